@@ -118,7 +118,7 @@ bool FastTrack::act(const std::string& text) {
   }
 }
 
-// A blob is a rectangle here: of all its pixels, each row has as many.
+// A blob is a rectangle here, with the same number of pixels in each row.
 void FastTrack::find_line(const Blob& blob, const Camera& camera, VisionChannel& channel) const {
   // Rows count from the bottom of the picture.
   const int bottom = std::max(blob.y - blob.height / 2 + camera.rows / 2, 0);
@@ -213,10 +213,12 @@ Devices::Answer Devices::act(const Integer& c, const Robot& robot, Bytes& out) {
     case Number::kGripperValue:
       return taken(parameters_.gripper);
     case Number::kAnalogSelect:
-      analog_port_ = static_cast<std::uint8_t>(c.value & 0xFF);
+      if (later_)
+        analog_port_ = static_cast<std::uint8_t>(c.value & 0xFF);
       return taken(later_);
     case Number::kBumpStall:
-      bump_stall_ = c.value & 3;
+      if (later_)
+        bump_stall_ = c.value & 3;
       return taken(later_);
     case Number::kHostBaud:
       return taken(later_);

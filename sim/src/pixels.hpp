@@ -30,8 +30,7 @@ struct Detail {
   static Detail of(double pixel);
 };
 
-/// What a line of pixels shows: a grey of 0 to 255 and a texture on it. It is evaluated for all of
-/// them at once.
+/// A line of pixels: a grey of 0 to 255 each, and a texture on it. All are evaluated at once.
 class Pixels {
  public:
   explicit Pixels(std::size_t count);

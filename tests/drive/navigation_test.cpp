@@ -335,6 +335,7 @@ TEST(Zones, NoGoalEntersAKeepOut) {
        {std::pair<std::string, saphira::Arguments>{
             "go_to", {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map)}},
         {"drive", {number("speed", 0.3)}},
+        {"drive", {number("speed", 1.0)}},
         {"roam", {}}}) {
     Whole whole(office_with_zones(zone));
     const auto goal = whole.ask(functor, arguments);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "agent_interface/shell/convert.hpp"
@@ -315,22 +316,21 @@ void DialogueShell::take_places() {
 
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<v1::GoalStatus> statuses = goals_.statuses();
-  std::stable_sort(statuses.begin(), statuses.end(),
-                   [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
-                     return std::pair(a.stamp().epoch(), a.stamp().cycle()) <
-                            std::pair(b.stamp().epoch(), b.stamp().cycle());
-                   });
+  std::stable_sort(
+      statuses.begin(), statuses.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
+        return std::tuple(a.stamp().epoch(), a.stamp().cycle(), a.functor(), a.id().number()) <
+               std::tuple(b.stamp().epoch(), b.stamp().cycle(), b.functor(), b.id().number());
+      });
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : statuses) {
     KnownGoal& goal = goals.emplace_back();
     goal.functor = status.functor();
-    const bool own = status.id().writer() == node_.instance() ||
-                     std::any_of(asked_.begin(), asked_.end(),
-                                 [&](const auto& one) { return one.second.goal == status.id(); });
-    goal.asker = own ? "" : status.requester();
-    for (const auto& [tag, asked] : asked_)
-      if (asked.goal == status.id())
-        goal.tag = tag;
+    const auto mine = std::find_if(asked_.begin(), asked_.end(),
+                                   [&](const auto& one) { return one.second.goal == status.id(); });
+    if (mine != asked_.end())
+      goal.tag = mine->first;
+    else if (status.id().writer() != node_.instance())
+      goal.asker = status.requester();
     goal.state = state_of(status.state());
     goal.reason = !status.reason().empty() ? status.reason()
                   : !status.note().empty() ? status.note()
@@ -352,7 +352,7 @@ void DialogueShell::take_utterances() {
     Utterance utterance;
     utterance.id = {sample.data.id().writer(), sample.data.id().number()};
     utterance.speaker = sample.data.speaker().substr(0, 31);
-    utterance.text = sample.data.text().substr(0, 255);
+    utterance.text = sample.data.text();
     utterance.confidence = sample.data.confidence();
     utterance.time = sample.data.time();
     situation_.goals = known_goals();

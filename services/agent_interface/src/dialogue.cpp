@@ -17,6 +17,7 @@ constexpr double kAhead = 10.0;       // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;  // [m] that one command of motion may take
 constexpr double kDoubtful = 20.0;    // [s] that a doubt waits for a yes
 constexpr std::size_t kHeard = 256;
+constexpr std::size_t kLongestText = 255;  // letters: as long as an argument of a goal
 /// Goals that interrupt a task for a moment.
 constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "attend-person", "pause"};
 constexpr const char* kHeardLine = "heard\t";
@@ -302,10 +303,18 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || doubted || drops);
   if ((doubted || drops) && !asked && !understood.addressed)
     std::erase_if(understood.meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
-  // Whoever goes on to something else leaves the doubt.
+  // Another sentence of that speaker ends the doubt.
   if (doubted && utterance.confidence >= kSure &&
       (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
     doubt_.reset();
+  if (utterance.text.size() > kLongestText) {
+    const bool meant = understood.addressed && !understood.meanings.empty();
+    std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
+    if (meant && understood.meanings.empty()) {
+      say(utterance, "that is too long for me", true, out);
+      return out;
+    }
+  }
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   if (understood.meanings.empty() || utterance.confidence < kSure) {
@@ -342,7 +351,7 @@ std::string Dialogue::save() const {
     text += sealed_line(kHeardLine + std::to_string(id.first) + "\t" + std::to_string(id.second)) +
             "\n";
   for (const Gone& one : gone_)
-    text += sealed_line(kGoneLine + one.person + "\t" + one.source) + "\n";
+    text += sealed_line(kGoneLine + field(one.person) + "\t" + field(one.source)) + "\n";
   if (said_ != CycleRef{})
     text +=
         sealed_line(kSaidLine + std::to_string(said_.first) + "\t" + std::to_string(said_.second)) +

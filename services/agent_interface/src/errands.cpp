@@ -17,7 +17,8 @@ std::string end_as_said(const std::string& words, const std::string& text) {
     if (text[at] == ' ' || (at > 0 && text[at - 1] != ' ') || words_of(text.substr(at)) != wanted)
       continue;
     std::string end = text.substr(at);
-    while (!end.empty() && (end.back() == ' ' || end.back() == '.' || end.back() == '!'))
+    while (!end.empty() &&
+           (end.back() == ' ' || end.back() == '.' || end.back() == '!' || end.back() == '?'))
       end.pop_back();
     return end;
   }
@@ -94,7 +95,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
           text("sender", speaker_of(utterance)), back()},
          out, 0.0, true);
   } else if (functor == "ask_person") {
-    const std::string question = slot(meaning, "question");
+    const std::string question = end_as_said(slot(meaning, "question"), utterance.text);
     want(meaning, utterance, "inquire",
          {text("person", slot(meaning, "person")), text("question", question),
           text("sender", speaker_of(utterance)), back()},

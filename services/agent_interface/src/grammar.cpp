@@ -640,28 +640,29 @@ std::string Grammar::paraphrase(const Meaning& meaning) const {
 
 std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
   const auto index = static_cast<std::size_t>(form);
-  // Of several rules of a functor, the one with the same slots.
-  const auto same = [&](const Rule& rule, bool slots) {
-    return rule.meaning.functor == meaning.functor &&
-           (!slots || std::equal(rule.meaning.slots.begin(), rule.meaning.slots.end(),
-                                 meaning.slots.begin(), meaning.slots.end(),
-                                 [](const auto& a, const auto& b) { return a.first == b.first; }));
-  };
-  for (const bool slots : {true, false}) {
-    const auto rule = std::find_if(rules_.begin(), rules_.end(),
-                                   [&](const Rule& one) { return same(one, slots); });
-    if (rule == rules_.end())
+  // Of several rules of a functor, the one with the most slots and values in common.
+  const Rule* best = nullptr;
+  int most = 0;
+  for (const Rule& rule : rules_) {
+    if (rule.meaning.functor != meaning.functor)
       continue;
-    if (index >= rule->paraphrases.size())
-      return {};
-    std::string text = rule->paraphrases[index];
-    for (auto slot = meaning.slots.rbegin(); slot != meaning.slots.rend(); ++slot)
-      for (std::size_t at = text.find('$' + slot->first); at != std::string::npos;
-           at = text.find('$' + slot->first, at + slot->second.size()))
-        text.replace(at, slot->first.size() + 1, slot->second);
-    return text;
+    int common = 0;
+    for (const auto& [name, value] : rule.meaning.slots)
+      if (const auto slot = meaning.slots.find(name); slot != meaning.slots.end())
+        common += !value.empty() && slot->second == value ? 2 : 1;
+    if (best == nullptr || common > most) {
+      best = &rule;
+      most = common;
+    }
   }
-  return {};
+  if (best == nullptr || index >= best->paraphrases.size())
+    return {};
+  std::string text = best->paraphrases[index];
+  for (auto slot = meaning.slots.rbegin(); slot != meaning.slots.rend(); ++slot)
+    for (std::size_t at = text.find('$' + slot->first); at != std::string::npos;
+         at = text.find('$' + slot->first, at + slot->second.size()))
+      text.replace(at, slot->first.size() + 1, slot->second);
+  return text;
 }
 
 }  // namespace saphira::agent_interface

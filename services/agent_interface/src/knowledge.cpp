@@ -6,6 +6,7 @@
 
 #include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
+#include "words.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -21,24 +22,6 @@ constexpr std::array<std::pair<Advice::Kind, const char*>, 4> kKinds{{
 /// Several pieces of advice of that kind may be true of one subject.
 bool several(Advice::Kind kind) {
   return kind == Advice::Kind::hazard || kind == Advice::Kind::knows_where;
-}
-
-/// Fields of a line are separated by tabs; tabs in people's words are replaced.
-std::string field(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return text;
-}
-
-std::vector<std::string> fields(std::string_view line) {
-  std::vector<std::string> result(1);
-  for (const char c : line) {
-    if (c == '\t')
-      result.emplace_back();
-    else
-      result.back() += c;
-  }
-  return result;
 }
 
 std::optional<double> parse_number(const std::string& text) {

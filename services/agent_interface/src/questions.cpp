@@ -172,13 +172,8 @@ bool Dialogue::inquiry(const Meaning& meaning, const Utterance& utterance,
         counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + words;
     }
     std::string newest;
-    std::vector<const Advice*> by_number;
-    for (const Advice& one : known)
-      by_number.push_back(&one);
-    std::sort(by_number.begin(), by_number.end(),
-              [](const Advice* a, const Advice* b) { return a->number > b->number; });
-    for (std::size_t i = 0; i < std::min(by_number.size(), kFewFacts); ++i)
-      newest += "; " + as_told(*by_number[i]);
+    for (std::size_t i = 0; i < std::min(known.size(), kFewFacts); ++i)
+      newest += "; " + as_told(known[known.size() - 1 - i]);
     say(utterance, known.empty() ? "nobody has told me anything" : "I know " + counts + newest,
         true, out);
   } else if (functor == "are_you_lost") {

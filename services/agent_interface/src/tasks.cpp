@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <utility>
+
+#include "saphira/base/numbers.hpp"
+#include "words.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -234,43 +236,33 @@ std::vector<std::string> Tasks::save() const {
     if (one.ref != GoalRef{})
       lines.push_back(std::to_string(one.goal.tag) + "\t" + std::to_string(one.ref.first) + "\t" +
                       std::to_string(one.ref.second) + "\t" + std::to_string(one.answers.first) +
-                      "\t" + std::to_string(one.answers.second) + "\t" + one.goal.speaker + "\t" +
-                      one.what + "\t" + one.doing + "\t" + one.name + "\t" + one.goal.functor);
+                      "\t" + std::to_string(one.answers.second) + "\t" + field(one.goal.speaker) +
+                      "\t" + field(one.what) + "\t" + field(one.doing) + "\t" + field(one.name) +
+                      "\t" + one.goal.functor);
   return lines;
 }
 
 void Tasks::restore(const std::string& line) {
-  std::array<std::uint64_t, 5> numbers{};
-  const char* at = line.c_str();
-  for (std::uint64_t& number : numbers) {
-    char* end = nullptr;
-    number = std::strtoull(at, &end, 10);
-    if (*end != '\t')
-      return;
-    at = end + 1;
-  }
-  std::string words = at;
-  std::array<std::string, 5> texts;  // an older file has two of them
-  std::size_t count = 0;
-  for (std::string& text : texts) {
-    const std::size_t tab = std::min(words.find('\t'), words.size());
-    text = words.substr(0, tab);
-    words.erase(0, tab + 1);
-    ++count;
-    if (words.empty())
-      break;
-  }
-  if (count < 2)
+  std::vector<std::string> parts = fields(line);
+  if (parts.size() < 7)
     return;
+  parts.resize(10);  // an older file has 7
+  std::array<std::uint64_t, 5> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto number = number_in<std::uint64_t>(parts[i]);
+    if (!number)
+      return;
+    numbers[i] = *number;
+  }
   tag_ = std::max(tag_, numbers[0]);
   Task task;
   task.goal.tag = numbers[0];
-  task.goal.functor = texts[4];
+  task.goal.functor = parts[9];
   task.goal.lasting = true;
-  task.goal.speaker = texts[0];
-  task.what = texts[1];
-  task.doing = texts[2];
-  task.name = texts[3];
+  task.goal.speaker = parts[5];
+  task.what = parts[6];
+  task.doing = parts[7];
+  task.name = parts[8];
   task.answers = {numbers[3], numbers[4]};
   task.ref = {numbers[1], numbers[2]};
   open_.push_back(std::move(task));

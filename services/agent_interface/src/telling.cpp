@@ -109,7 +109,8 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   return true;
 }
 
-/// What people say about a person after the keyword may be what the robot has asked for.
+/// The robot asks for a person, and somebody tells it about that person after the keyword: this
+/// also answers the question.
 void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
                            const Situation& situation, Outputs& out) const {
   if (situation.asked_about.empty() || lower(situation.asked_for) != advice.about)
@@ -119,7 +120,7 @@ void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
     out.claims.push_back({situation.asked_about, advice.value, claim_source(utterance)});
 }
 
-/// Facts about people that hold no longer.
+/// People say that a fact about a person is wrong.
 bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
                           const Situation& situation, Outputs& out) {
   using Kind = Advice::Kind;
@@ -222,9 +223,7 @@ void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* bec
   if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
     if (gone_.size() >= kMostGone)
       gone_.erase(gone_.begin());
-    Gone gone{forgotten->about, because == nullptr ? "taken back" : claim_source(*because)};
-    std::replace(gone.source.begin(), gone.source.end(), '\n', ' ');  // a line of save()
-    gone_.push_back(std::move(gone));
+    gone_.push_back({forgotten->about, because == nullptr ? "taken back" : claim_source(*because)});
   }
   out.claims.push_back({name, "", ""});
   claim_changes(before, name, out);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
 
@@ -26,6 +28,11 @@ std::string claim_source(const Utterance& utterance);
 bool is_rule(const Advice& advice);
 
 bool is_open(const KnownGoal& goal);
+
+/// A text as a field of a line that is kept; fields are separated by tabs. Tabs and line breaks in
+/// people's words become blanks.
+std::string field(std::string text);
+std::vector<std::string> fields(std::string_view line);
 
 /// The way to a place of the map, as the crow flies. Empty: no such place.
 std::string way_to(const std::string& place, const Situation& situation);

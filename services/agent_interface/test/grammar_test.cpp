@@ -112,13 +112,17 @@ TEST(Grammar, WithTheKeywordAReplyCountsWhereNothingElseIsMeant) {
   EXPECT_EQ(meant("is in x"), "at(place=x)");
 }
 
-TEST(Grammar, AParaphraseIsOfTheRuleWithTheSameSlots) {
+TEST(Grammar, AParaphraseIsOfTheRuleWithTheSameSlotsAndValues) {
   const Grammar one(
       "keyword: f\ngo(place) \"to $place\"\n  go {place}\n"
-      "go(owner) \"to $owner's\"\n  visit {owner}\n",
+      "go(owner) \"to $owner's\"\n  visit {owner}\n"
+      "drive(kind=fast) \"I drive fast\"\n  hurry\n"
+      "drive(kind=slow) \"I drive slowly\"\n  creep\n",
       "test");
   EXPECT_EQ(one.paraphrase({"go", {{"owner", "bob"}}}), "to bob's");
   EXPECT_EQ(one.paraphrase({"go", {{"place", "lab"}, {"side", "left"}}}), "to lab");
+  EXPECT_EQ(one.paraphrase({"drive", {{"kind", "slow"}}}), "I drive slowly");
+  EXPECT_EQ(one.paraphrase({"drive", {{"kind", "fast"}}}), "I drive fast");
 }
 
 TEST(Grammar, TypedSentencesAreNotListenedFor) {

@@ -133,6 +133,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
     inputs.new_robot = &robot_;
   }
   inputs.robot_radius = turn.description.radius();
+  inputs.deceleration = turn.description.deceleration();
   inputs.new_frame = turn.new_frame;
   inputs.robot = from_bus(turn.robot);
   inputs.readings = lps::sonars_from_bus(turn.robot);

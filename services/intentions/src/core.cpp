@@ -183,6 +183,7 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   around.topology = topology_;
   around.map = map_;
   around.robot_radius = inputs.robot_radius;
+  around.deceleration = inputs.deceleration;
   around.map_revision = places_revision_;
   for (const auto& [question, answer] : inputs.heard.answers)
     answers_[question] = answer;

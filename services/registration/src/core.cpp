@@ -56,7 +56,10 @@ maps::Feature artifact_of(const Arguments& arguments) {
   artifact.name = text_of(arguments, "name");
   artifact.learned = truth_of(arguments, "learned");
   if (artifact.type == lps::PointType::zone) {
-    artifact.rule = maps::zone_rule(text_of(arguments, "rule")).value_or(maps::ZoneRule::keep_out);
+    const auto rule = maps::zone_rule(text_of(arguments, "rule"));
+    if (!rule)
+      throw std::invalid_argument("a zone needs a rule: keep-out, slow, one-way or preferred");
+    artifact.rule = *rule;
     if (artifact.rule == maps::ZoneRule::slow)
       artifact.speed = number_of(arguments, "speed");
   }

@@ -202,6 +202,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
     Track& track = tracks_[t];
     if (track.thing.kind != kind || seen[t])
       continue;
+    track.arms = std::max(0, track.arms - 1);
     if (in_view(to_frame(robot, Vec2(track.state(0), track.state(1))))) {
       track.missed += kCycle;
       track.thing.confidence *= 0.95;

@@ -191,6 +191,7 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
   if (form->width)
     feature.width = next("the width in mm", 1, kMax) * kMillimetre;
   if (form->type == PointType::zone) {
+    in.take(',');
     const std::string_view text = in.word();
     const auto rule = zone_rule(text);
     if (!rule)
@@ -198,7 +199,7 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
               (text.empty() ? "the end of the line" : '"' + std::string(text) + '"'));
     feature.rule = *rule;
     if (feature.rule == ZoneRule::slow)
-      feature.speed = in.number("the speed in mm/s", 1, kMaxSpeed) * kMillimetre;
+      feature.speed = next("the speed in mm/s", 1, kMaxSpeed) * kMillimetre;
   }
   if (in.at_quote())
     feature.name = in.quoted();

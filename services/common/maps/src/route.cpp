@@ -28,6 +28,8 @@ Vec2 before(const Link& link, std::size_t region, double clearance) {
 
 // [m] A shorter stretch in a zone only touches its edge.
 constexpr double kTouches = 0.01;
+// [m] A robot that has passed a little beside a door may go back so far in a one-way zone.
+constexpr double kSidestep = 0.5;
 
 class Search {
  public:
@@ -40,9 +42,11 @@ class Search {
   /// A zone, and how near it a way may come.
   struct Held {
     const Zone* zone;
-    double margin;  // [m]
+    double margin;         // [m]
+    bool leaving = false;  // the robot begins in this keep-out
   };
   double inside(const Held& held, std::size_t region, const Vec2& from, const Vec2& to) const;
+  bool breaks(const Held& held, std::size_t region, const Vec2& from, const Vec2& to) const;
   static bool against(const Zone& zone, const Vec2& way);
   double cost(const Leg& leg, const Vec2& from) const;
   const Zone* kept_out(const std::vector<std::size_t>& regions,
@@ -89,8 +93,8 @@ Search::Search(const Topology& topology, const RouteSettings& settings, const Ve
       continue;
     }
     const double beside = settings.needs_width / 2;
-    if (!zone.contains(topology, from, zone.area ? 0.0 : settings.tolerance))
-      held_.push_back({&zone, zone.contains(topology, from, beside) ? 0.0 : beside});
+    const bool leaving = zone.contains(topology, from, zone.area ? 0.0 : settings.tolerance);
+    held_.push_back({&zone, zone.contains(topology, from, beside) ? 0.0 : beside, leaving});
   }
 }
 
@@ -100,6 +104,17 @@ double Search::inside(const Held& held, std::size_t region, const Vec2& from,
   if (held.zone->area)
     return length_inside(*held.zone->area, from, to, held.margin);
   return held.zone->covers(region) ? (to - from).norm() : 0.0;
+}
+
+/// True where a stretch breaks the rule of a zone. It may lead out of the keep-out in which the
+/// robot begins, and not into it again.
+bool Search::breaks(const Held& held, std::size_t region, const Vec2& from, const Vec2& to) const {
+  const Zone& zone = *held.zone;
+  if (zone.rule == ZoneRule::keep_out)
+    return !(held.leaving && zone.contains(topology_, from)) &&
+           (zone.covers(region) || inside(held, region, from, to) > kTouches);
+  return against(zone, to - from) &&
+         inside(held, region, from, to) > (from == from_ ? kSidestep : kTouches);
 }
 
 /// True where a stretch goes against a one-way zone; across it is no matter.
@@ -114,17 +129,12 @@ double Search::cost(const Leg& leg, const Vec2& from) const {
   double costs = 0.0;
   for (const Held& held : held_) {
     const Zone& zone = *held.zone;
-    if (zone.rule == ZoneRule::keep_out && zone.covers(leg.region))
-      return ShortestWays::kNever;
     Vec2 at = from;
     for (const Vec2& point : leg.points) {
-      const double length = inside(held, leg.region, at, point);
-      const bool forbidden = zone.rule == ZoneRule::keep_out || against(zone, point - at);
-      at = point;
-      if (length <= kTouches)
-        continue;
-      if (forbidden)
+      if (breaks(held, leg.region, at, point))
         return ShortestWays::kNever;
+      const double length = inside(held, leg.region, at, point);
+      at = point;
       if (zone.rule == ZoneRule::slow)
         costs += length * std::max(0.0, settings_.cruise / zone.speed - 1.0);
       else if (zone.rule == ZoneRule::preferred)
@@ -142,10 +152,10 @@ std::vector<const Zone*> Search::met_by(const Route& route) const {
     bool meets = false;
     Vec2 at = from_;
     for (const Leg& leg : route.legs) {
-      meets = meets || (zone.rule == ZoneRule::keep_out && zone.covers(leg.region));
       for (const Vec2& point : leg.points) {
-        meets = meets || (inside(held, leg.region, at, point) > kTouches &&
-                          (zone.rule != ZoneRule::one_way || against(zone, point - at)));
+        const bool rules = zone.rule == ZoneRule::keep_out || zone.rule == ZoneRule::one_way;
+        meets = meets || (rules ? breaks(held, leg.region, at, point)
+                                : inside(held, leg.region, at, point) > kTouches);
         at = point;
       }
     }
@@ -198,8 +208,13 @@ Leg Search::leg(std::size_t region, const Vec2& from, std::optional<std::size_t>
   if (came_by && topology_.links()[*came_by].kind != LinkKind::meeting)
     leg.points.push_back(before(topology_.links()[*came_by], region, settings_.door_clearance));
   const Vec2 inside = leg.points.empty() ? from : leg.points.back();
+  // Nearer than that to a door, the robot goes straight on.
+  const auto clearance = [&](const Link& door) {
+    return std::min(settings_.door_clearance, (door.pose_in_map.position() - inside).norm());
+  };
   const std::optional<Vec2> target =
-      link ? std::optional(before(topology_.links()[*link], region, settings_.door_clearance))
+      link ? std::optional(
+                 before(topology_.links()[*link], region, clearance(topology_.links()[*link])))
            : goal;
   // Along the middle of a corridor, unless it is only a step.
   if (here.kind == RegionKind::corridor && target && (*target - inside).norm() > 1.5) {

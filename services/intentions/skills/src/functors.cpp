@@ -129,6 +129,8 @@ class KeepOut {
     return !zone.empty() && static_cast<double>(self.now() - since_) * kTick >= kStands;
   }
   std::string reason() const { return "it must not go on: " + zone_; }
+  /// After a pause, or towards another target.
+  void restart() { zone_.clear(); }
 
  private:
   static constexpr double kStands = 2.0;  // [s]
@@ -196,8 +198,10 @@ class GoTo : public Activity {
     const bool checked = checking_since_.has_value();
     if (checked && move_about(self))
       return;
-    if (begun || waited || checked)
+    if (begun || waited || checked) {
       watchdog_.restart(left, self.now());
+      keep_out_.restart();
+    }
     // The behavior's own report, within limits: it may be satisfied a little before the radius.
     if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
       there_ = true;
@@ -317,6 +321,7 @@ class Drive : public Activity {
     const Pose& pose = self.robot().pose_in_odom;
     if (begins(self) || restart_) {
       restart_ = false;
+      keep_out_.restart();
       anchor_ = pose;
       anchored_ = self.now();
     } else {

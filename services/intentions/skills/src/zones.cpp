@@ -4,22 +4,24 @@
 #include <cmath>
 
 #include "on_map.hpp"
+#include "saphira/base/age.hpp"
 #include "saphira/intentions/beliefs.hpp"
+#include "saphira/maps/route.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-constexpr double kAhead = 1.5;     ///< [m] beyond its hull that a robot looks ahead
-constexpr double kProbe = 0.05;    ///< [m]
-constexpr double kKeepOff = 0.15;  ///< [m] between its hull and a keep-out
-constexpr double kBrakes = 1.0;    ///< [1/s] speed per metre that is left
-constexpr double kAtRest = 0.05;   ///< [m/s] too slow to go on
+constexpr double kAhead = 1.5;        ///< [m] beyond its hull that a slow robot looks ahead
+constexpr double kProbe = 0.05;       ///< [m]
+constexpr double kReaction = 0.3;     ///< [s] until the robot brakes
+constexpr double kBrakesSo = 0.3;     ///< [m/s2] of a robot that does not tell it
+constexpr double kStandstill = 0.05;  ///< [m/s] too slow to go on
 
-/// A keep-out before the robot, and the way that is left until there.
+/// A keep-out before the robot, and the speed from which the robot stops before it.
 struct Ahead {
   std::string text;  ///< empty: none
-  double left = kAhead;
+  double speed = 0.0;
 };
 
 Ahead look_ahead(const World& world, const std::vector<maps::Zone>& zones, bool backwards) {
@@ -30,16 +32,26 @@ Ahead look_ahead(const World& world, const std::vector<maps::Zone>& zones, bool 
   const maps::Topology& map = *world.around.topology;
   const double side = backwards ? -1.0 : 1.0;
   const double radius = world.around.robot_radius;
+  const double brakes = world.around.deceleration > 0.0 ? world.around.deceleration : kBrakesSo;
+  const double speed = world.robot.velocity;
+  double free = std::max(kAhead, speed * speed / (2.0 * brakes) + std::abs(speed) * kReaction);
   for (const maps::Zone& zone : zones) {
     // The robot may leave a keep-out.
     if (zone.rule != maps::ZoneRule::keep_out || zone.contains(map, robot->position()))
       continue;
-    for (double way = kProbe; way < radius + kKeepOff + ahead.left; way += kProbe)
-      if (zone.contains(map, transform(*robot, {side * way, 0.0}))) {
+    // The hull counts at its sides, too, unless it is beside the zone already.
+    const bool beside = zone.area && !zone.contains(map, robot->position(), radius);
+    const double before = (beside ? 0.0 : radius) + maps::kBeside;
+    for (double way = kProbe; way < before + free; way += kProbe)
+      if (zone.contains(map, transform(*robot, {side * way, 0.0}), beside ? radius : 0.0)) {
         ahead.text = zone.text;
-        ahead.left = std::max(0.0, way - radius - kKeepOff);
+        free = std::max(0.0, way - before);
         break;
       }
+  }
+  if (!ahead.text.empty()) {
+    const double allowed = speed_that_stops(free, kReaction, brakes);
+    ahead.speed = allowed < kStandstill ? 0.0 : allowed;
   }
   return ahead;
 }
@@ -70,7 +82,7 @@ std::string why_kept_out(const World& world, const Pose& point, Frame frame) {
 
 std::string keep_out_ahead(const World& world, bool backwards) {
   const Ahead ahead = look_ahead(world, zones_of(world), backwards);
-  return kBrakes * ahead.left < kAtRest ? ahead.text : std::string();
+  return ahead.speed == 0.0 ? ahead.text : std::string();
 }
 
 SpeedLimit speed_limit(const World& world, bool backwards) {
@@ -83,9 +95,8 @@ SpeedLimit speed_limit(const World& world, bool backwards) {
           maps::slowest_at(zones, *world.around.topology, robot->position()))
     limit = {slow->speed, slow->text};
   const Ahead ahead = look_ahead(world, zones, backwards);
-  const double speed = kBrakes * ahead.left < kAtRest ? 0.0 : kBrakes * ahead.left;
-  if (!ahead.text.empty() && (limit.speed < 0.0 || speed < limit.speed))
-    limit = {speed, ahead.text + (backwards ? " is behind it" : " is ahead")};
+  if (!ahead.text.empty() && (limit.speed < 0.0 || ahead.speed < limit.speed))
+    limit = {ahead.speed, ahead.text + (backwards ? " is behind it" : " is ahead")};
   return limit;
 }
 

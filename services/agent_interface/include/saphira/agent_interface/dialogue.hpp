@@ -24,7 +24,7 @@ struct Claimed {
   std::string value;                ///< a text
   std::string source;               ///< speaker, words and time, for people
   std::vector<std::string> list{};  ///< not empty: the value is this list
-  bool nil = false;                 ///< the value is nil, which also covers what activities believe
+  bool nil = false;                 ///< the value is nil; it goes before the beliefs of activities
 
   friend bool operator==(const Claimed&, const Claimed&) = default;
 };
@@ -80,8 +80,8 @@ class Dialogue {
   Outputs says(const std::string& text, const CycleRef& when);
   /// Withdraws advice by its number. Says so where that number is unknown.
   Outputs forget(std::uint64_t number);
-  /// An activity has found a person. before: before the dialogue's start, so that what people said
-  /// of that person may be newer, and counts.
+  /// An activity has found a person. `before`: it was found before this dialogue began; then newer
+  /// words of people count instead.
   Outputs found(const std::string& person, const std::string& place, double time,
                 bool before = false);
 
@@ -100,7 +100,7 @@ class Dialogue {
     Advice advice;
     std::string speaker;
   };
-  struct Gone {  ///< whose place is withdrawn
+  struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
     std::string source;
   };
@@ -125,7 +125,7 @@ class Dialogue {
   /// Questions about what the robot knows (questions.cpp).
   bool inquiry(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                Outputs& out) const;
-  /// Where a new task begins, for "come back".
+  /// Keeps the place where a new task begins, for "come back".
   void note_begin(const Situation& situation, const Outputs& out);
   void go_back(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                Outputs& out);
@@ -145,10 +145,10 @@ class Dialogue {
                    Outputs& out) const;
   void learn(const Advice& advice, Outputs& out);
   void withdraw(std::uint64_t number, Outputs& out, const Utterance* because = nullptr);
-  /// Claims that are none of `before`, and those of that name.
+  /// Adds the claims that are new or changed since `before`, and the claim of that name.
   void claim_changes(const std::vector<Claimed>& before, const std::string& name,
                      Outputs& out) const;
-  /// What is known of a person or thing, in words; empty: nothing.
+  /// The facts about a person or thing, in words; empty: none.
   std::string told_of(const std::string& about) const;
   /// The meaning as the robot would say it.
   std::string in_words(const Meaning& meaning) const;

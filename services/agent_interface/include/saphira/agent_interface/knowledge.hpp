@@ -51,9 +51,9 @@ class Knowledge {
   /// The probable place of a person: the place of a sighting, otherwise their office. Empty:
   /// unknown.
   std::string place_of(std::string_view person) const;
-  /// Whether the robot can look for that person: it knows a place, or somebody who knows.
+  /// True where it knows a place of that person, or somebody who knows it.
   bool findable(std::string_view person) const;
-  /// Whether anything is known about that person, or that person knows about others.
+  /// True where there is a fact about that person, or that person knows a place of others.
   bool knows(std::string_view person) const;
 
   /// As text, a sealed line for each (saphira/base/durable.hpp). Unreadable lines are left out;

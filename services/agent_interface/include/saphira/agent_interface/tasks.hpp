@@ -50,7 +50,7 @@ struct Outcome {
   std::string reason;
 };
 
-/// What a person asked for. Its owner is the speaker of its goal.
+/// The order of a person. Its owner is the speaker of its goal.
 struct Task {
   WantedGoal goal;
   std::string what;        ///< "I go to the library"
@@ -62,7 +62,7 @@ struct Task {
   std::vector<Task> then;  ///< the later steps of a sequence
 };
 
-/// Whose tasks the robot does, and in which order. A brief goal (a motion, a look) interrupts a
+/// The tasks of all people, and their order. A brief goal (a motion, a look) interrupts a
 /// task, which goes on afterwards. A task takes the place of an earlier one of the same person; for
 /// that of somebody else the robot asks first. A value: no clock.
 class Tasks {
@@ -76,7 +76,7 @@ class Tasks {
 
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
   Outputs want(std::vector<Task> steps, const Utterance& utterance);
-  /// Whether a yes or no of that person answers "Shall I drop that?".
+  /// True where this speaker may answer "Shall I drop that?" with yes or no.
   bool asks(const Utterance& utterance) const;
   Outputs answer(bool yes, const Utterance& utterance);
   Outputs ended(const Outcome& outcome);

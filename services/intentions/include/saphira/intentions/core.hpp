@@ -91,6 +91,7 @@ class Core {
     Stamp stamp;
     const lps::LpsSettings* new_robot = nullptr;  ///< the first step of an epoch
     double robot_radius = 0.0;                    ///< [m] of its hull, a circle; 0: unknown
+    double deceleration = 0.0;                    ///< [m/s2] of a stop; 0: unknown
     bool new_frame = false;                       ///< the odom frame has another origin
     Robot robot;                              ///< with its place on the map, where that is known
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order

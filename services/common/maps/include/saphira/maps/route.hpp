@@ -32,10 +32,12 @@ struct Route {
   std::vector<Vec2> points() const;
 };
 
-/// [m] Between two posts or walls a robot, a circle of this radius [m], needs its diameter and the
-/// guard's margin on each side (bridge/authority, GuardSettings::side_margin).
+/// [m] The guard's margin on each side of the robot (bridge/authority, GuardSettings::side_margin).
+inline constexpr double kBeside = 0.08;
+
+/// [m] Between two posts or walls a robot, a circle of this radius [m], needs its diameter and that
+/// margin on each side.
 inline double needed_width(double radius) {
-  constexpr double kBeside = 0.08;
   return 2.0 * (radius + kBeside);
 }
 
@@ -84,8 +86,9 @@ RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const 
 RouteResult find_route(const Topology& topology, std::string_view from_name_or_id,
                        std::string_view to_name_or_id, const RouteSettings& settings = {});
 
-/// The zone that forbids the legs of a way, of whose points nothing need be known, from a position
-/// on and to `end`; empty: none. The last leg counts even where it began in the zone.
+/// The zone that forbids a way from a position on; empty: none. The legs need no points: they are
+/// found anew. `end`: the last point of the way. The last leg counts even where it began in the
+/// zone.
 std::string forbidden(const Topology& topology, const Vec2& from_in_map,
                       const std::vector<Leg>& legs, const std::optional<Vec2>& end,
                       const RouteSettings& settings);

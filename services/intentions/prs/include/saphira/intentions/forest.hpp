@@ -132,7 +132,7 @@ class Forest {
   /// False while an existing tree has set *behavior-control* to nil (sfBehaviorControl, manual
   /// 7.4).
   bool behavior_control() const;
-  /// Whether it is believed only while the intention lasts that set it. save() includes its value.
+  /// True for a belief that ends with the intention that set it. save() includes its value.
   bool ends_with_intention(std::string_view belief) const;
 
   /// The intended behaviors, in the order of intending.

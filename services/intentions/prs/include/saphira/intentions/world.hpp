@@ -83,6 +83,7 @@ struct Surroundings {
   const std::vector<lps::SonarReading>* readings = nullptr;
   std::uint64_t map_revision = 0;
   double robot_radius = 0.0;  ///< [m] of its hull, a circle; 0: unknown
+  double deceleration = 0.0;  ///< [m/s2] of a stop; 0: unknown
   /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
 };
