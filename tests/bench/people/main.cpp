@@ -10,6 +10,7 @@
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/quantile.hpp"
 
 namespace saphira::test {
 namespace {
@@ -56,14 +57,6 @@ void print(const Run& run) {
         result.arrived ? "arrived   " : "NOT THERE ", run.length, result.seconds, result.closest,
         result.caused, result.walked_into, result.unseen, result.things + result.other_things,
         result.things, result.end_in_world.x(), result.end_in_world.y());
-}
-
-double median(std::vector<double> values) {
-  if (values.empty())
-    return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -158,7 +151,7 @@ int main(int argc, char** argv) {
       if (std::isfinite(result.closest))
         closest.push_back(result.closest);
     }
-    const double closest_p50 = median(closest);
+    const double closest_p50 = closest.empty() ? 0.0 : quantile(closest, 0.5);
     std::printf(
         "%d of %d arrived (%zu planned; the others have no way of 2 m for the robot). Contacts "
         "with people: %d caused by the robot, %d walked into it, %d unseen; with things: %d "

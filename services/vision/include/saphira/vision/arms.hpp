@@ -23,8 +23,8 @@ struct ArmSettings {
 
 /// The direction in the robot's frame [rad] of an arm that a person stretches out to the left or
 /// right (paper 4.2): a bar at the height of the shoulders that begins beside the torso, with
-/// nothing below it. None where there is such a bar on neither side or on both, or where the arm
-/// points more towards the camera, or away from it, than to a side.
+/// nothing below it. None where there is such a bar on neither side or on both, or where its end is
+/// less than `nearest` beside the person's middle.
 std::optional<double> arm_of(const Sight& person, const DisparityMap& map, const Rig& rig, int rows,
                              const ArmSettings& settings = {});
 
