@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "saphira/lps/point.hpp"
 #include "saphira/maps/drawing.hpp"
+#include "saphira/maps/topology.hpp"
 
 namespace saphira::test {
 
@@ -37,6 +39,8 @@ void Building::note() {
   const registration::MapBuilder* const builder = whole.drive().cores().registration().builder();
   if (builder == nullptr)
     return;
+  worst = std::max(worst, (whole.truth().position() - whole.believed().position()).norm());
+  closures = builder->closures();
   if (whole.cycle() % kLook != 0)
     return;
   way_ = {};
@@ -95,6 +99,53 @@ void Building::draw(const std::string& name) const {
 MapScore score(const maps::Map& built, const maps::Map& reference) {
   using lps::PointType;
   MapScore score;
+  std::vector<bool> used(built.features.size(), false);
+  for (const maps::Feature& corridor : reference.features) {
+    if (corridor.type != PointType::corridor)
+      continue;
+    ++score.corridors;
+    double best = 1e9;
+    for (std::size_t i = 0; i < built.features.size(); ++i) {
+      const maps::Feature& f = built.features[i];
+      if (f.type != PointType::corridor)
+        continue;
+      const Pose in = relative(corridor.pose_in_map, f.pose_in_map);
+      if (std::abs(norm3_angle(in.th)) > radians(4.0) || std::abs(in.y) > 0.4 ||
+          std::abs(f.width - corridor.width) > 0.3 ||
+          std::abs(in.x) > (f.length + corridor.length) / 2)
+        continue;
+      used[i] = true;
+      double off = 0.0;
+      for (const double sign : {1.0, -1.0}) {
+        const double end = sign * corridor.length / 2;
+        const double d = in.x + sign * f.length / 2 - end;
+        const Vec2 at = transform(corridor.pose_in_map, {end, 0.0});
+        double least = std::abs(d);
+        for (const maps::Feature& j : reference.features)
+          if (j.type == PointType::junction && maps::distance_to(j, at) < 0.1)
+            for (const double square : {j.length, -j.length})
+              least = std::min(least, std::abs(d - square));
+        off += least;
+      }
+      best = std::min(best, off / corridor.length);
+    }
+    if (best < 1.0)
+      score.worst_length = std::max(score.worst_length, best);
+    if (best <= 0.03)
+      ++score.corridors_found;
+    else
+      score.text += " corridor " + std::to_string(corridor.id) + " by " + std::to_string(best);
+  }
+  for (std::size_t i = 0; i < built.features.size(); ++i)
+    if (built.features[i].type == PointType::corridor && !used[i] &&
+        std::none_of(reference.features.begin(), reference.features.end(), [&](const auto& room) {
+          // An aisle between shelves is one, too.
+          return room.type == PointType::office &&
+                 maps::contains(room, built.features[i].pose_in_map.position());
+        })) {
+      ++score.corridors_false;
+      score.text += " false corridor " + std::to_string(built.features[i].id);
+    }
   std::vector<bool> real(built.features.size(), false);
   for (const maps::Feature& door : reference.features) {
     if (door.type != PointType::door)
@@ -108,10 +159,16 @@ MapScore score(const maps::Map& built, const maps::Map& reference) {
           std::abs(in.th) < radians(15.0) && std::abs(f.width - door.width) < 0.4)
         real[i] = found = true;
     }
-    score.doors_found += found ? 1 : 0;
+    if (found)
+      ++score.doors_found;
+    else
+      score.text += " door " + std::to_string(door.id);
   }
   for (std::size_t i = 0; i < built.features.size(); ++i)
-    score.doors_false += built.features[i].type == PointType::door && !real[i] ? 1 : 0;
+    if (built.features[i].type == PointType::door && !real[i]) {
+      ++score.doors_false;
+      score.text += " false door " + std::to_string(built.features[i].id);
+    }
   return score;
 }
 

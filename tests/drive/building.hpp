@@ -26,6 +26,8 @@ class Building {
   void draw(const std::string& name) const;
 
   Whole whole;
+  double worst = 0.0;  ///< [m] the estimated pose against the true one
+  int closures = 0;    ///< loops that were closed
 
  private:
   void note();
@@ -41,15 +43,21 @@ class Building {
   Way way_;
 };
 
-/// The doors of a built map compared with those of the true one.
+/// A built map compared with the hand-drawn one.
 struct MapScore {
+  int corridors = 0;        ///< of the reference
+  int corridors_found = 0;  ///< with the length to 3 %
+  int corridors_false = 0;
   int doors = 0;  ///< of the reference
   int doors_found = 0;
   int doors_false = 0;
+  double worst_length = 0.0;  ///< share of the length
+  std::string text;           ///< missing and wrong artifacts
 };
 
 /// A door is found, or real, as in tests/bench/perception: within 0.3 m, 15 degrees and 0.4 m of
-/// width.
+/// width. At a corner of two corridors either may have the corner's square: ends are compared
+/// without it.
 MapScore score(const maps::Map& built, const maps::Map& reference);
 
 }  // namespace saphira::test
