@@ -110,6 +110,7 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
   out.bumpers(in.bumpers);
   out.battery(in.battery);
   out.ptu(in.ptu);
+  out.head(in.head);
   out.say(in.say);
   out.timer(in.timer);
   out.analog(in.analog);
@@ -178,6 +179,7 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
   out.front_buffer(static_cast<std::uint16_t>(p.front_buffer));
   out.side_buffer(static_cast<std::uint16_t>(p.side_buffer));
   out.front_max_range(p.front_max_range);
+  out.head_reach(p.head_reach);
   out.lockstep(lockstep);
   for (const protocol::SonarUnit& unit : p.sonars) {
     if (out.sonars().size() == 64)

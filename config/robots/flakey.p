@@ -32,6 +32,11 @@ AngleDrift       0.003
 ;; Equipment
 Battery           24.0      ; V
 
+;; A head that turns the stereo cameras, on the position servo
+HeadReach        150        ; degrees to either side
+HeadPulse        6          ; us a degree, around HeadCenter (1500)
+HeadSpeed        120        ; degrees/s, in simulation
+
 ;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
 SideBuffer       40         ; readings on each side

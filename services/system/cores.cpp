@@ -166,6 +166,8 @@ intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
   inputs.robot.pose_in_odom = robot.pose_in_odom;
   inputs.robot.velocity = robot.velocity;
   inputs.robot.rotation_velocity = robot.rotation_velocity;
+  inputs.robot.head = robot.head;
+  inputs.head_reach = settings_.head_reach;
   inputs.robot.left_stalled = robot.left_stalled;
   inputs.robot.right_stalled = robot.right_stalled;
   inputs.readings = robot.readings;

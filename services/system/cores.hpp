@@ -19,6 +19,7 @@ struct RobotCycle {
   Pose pose_in_odom;
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
+  double head = 0.0;               ///< [rad] direction of the cameras
   bool left_stalled = false;
   bool right_stalled = false;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
@@ -32,6 +33,7 @@ class Cores {
   struct Settings {
     behaviors::RobotModel robot;
     behaviors::Registry behaviors;
+    double head_reach = 0.0;  ///< [rad] of the cameras, to either side
     bool interpretation = false;
     std::optional<registration::Core::Settings> registration;
     /// None: intend() sets the intent.

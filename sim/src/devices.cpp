@@ -167,7 +167,10 @@ Devices::Devices(const RobotParameters& parameters, const std::string& name)
     : parameters_(parameters),
       name_(name),
       later_(parameters.protocol != Protocol::kPsos),
-      digital_input_(has_table_sensors(parameters) ? 0xFF : 0) {}
+      digital_input_(has_table_sensors(parameters) ? 0xFF : 0) {
+  if (parameters.head_reach > 0.0)
+    servo_ = ptu_ = pulse_of_head(parameters, 0.0);
+}
 
 Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& out) {
   const auto taken = [](bool have) { return have ? Answer::kTaken : Answer::kMissing; };
@@ -323,7 +326,20 @@ void Devices::set_digital_input(std::uint8_t bits) {
   digital_input_ = bits;
 }
 
+double Devices::head() const {
+  return parameters_.head_reach == 0.0
+             ? 0.0
+             : (servo_ - parameters_.head_center) / parameters_.head_pulse;
+}
+
 void Devices::tick() {
+  if (parameters_.head_reach > 0.0 && ptu_ != 0) {
+    const double step = kTick * parameters_.head_speed * std::abs(parameters_.head_pulse);
+    const double way = parameters_.head_reach * std::abs(parameters_.head_pulse);
+    const double target =
+        std::clamp<double>(ptu_, parameters_.head_center - way, parameters_.head_center + way);
+    servo_ += std::clamp(target - servo_, -step, step);
+  }
   if (timer_pin_)
     timer_ = static_cast<std::uint16_t>(std::min(timer_ + kTimerTick, 0xFFFF));
 }
@@ -348,7 +364,8 @@ void Devices::reflect(InformationPacket& packet) const {
   packet.digital_output = digital_output_;
   packet.analog = analog(analog_port_);
   if (!later_) {
-    packet.ptu = ptu_;
+    packet.ptu =
+        parameters_.head_reach > 0.0 ? static_cast<std::uint16_t>(std::lround(servo_)) : ptu_;
     packet.timer = timer_;
     packet.say = sounding_ > 0 ? 1 : 0;
     return;

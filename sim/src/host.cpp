@@ -261,7 +261,7 @@ class Station {
       trace_.flush();
     // After the packet, which must not wait for the picture.
     if (stereo_)
-      stereo_->serve(simulation_.scene(), number_, server().cycle(),
+      stereo_->serve(simulation_.scene(), number_, server().devices().head(), server().cycle(),
                      server().single_step() ? kPicturesInStep : 1);
   }
 

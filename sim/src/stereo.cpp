@@ -272,13 +272,13 @@ StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig&
 }
 
 std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle) {
-  std::array<char, 200> head{};
-  std::snprintf(
-      head.data(), head.size(),
-      "P5\n# saphira stereo cycle=%llu focal=%.9g baseline=%.9g height=%.9g forward=%.9g\n"
-      "%d %d\n255\n",
-      static_cast<unsigned long long>(cycle), rig.focal(), rig.baseline, rig.height,
-      rig.pose_in_robot.x, 2 * pair.left.columns, pair.left.rows);
+  std::array<char, 256> head{};
+  std::snprintf(head.data(), head.size(),
+                "P5\n# saphira stereo cycle=%llu focal=%.9g baseline=%.9g height=%.9g forward=%.9g "
+                "pan=%.9g\n"
+                "%d %d\n255\n",
+                static_cast<unsigned long long>(cycle), rig.focal(), rig.baseline, rig.height,
+                rig.pose_in_robot.x, rig.pose_in_robot.th, 2 * pair.left.columns, pair.left.rows);
   std::string out = head.data();
   for (int row = 0; row < pair.left.rows; ++row)
     for (const GreyImage* image : {&pair.left, &pair.right}) {

@@ -58,8 +58,9 @@ void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
     throw std::runtime_error(folder_ + name.data() + ": cannot be written");
 }
 
-void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle,
+void StereoFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
                        std::size_t waiting) {
+  rig_.pose_in_robot.th = head;
   if (listener_)
     for (Fd fd = listener_->accept(); fd; fd = listener_->accept())
       viewers_.push_back(

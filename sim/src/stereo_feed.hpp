@@ -22,10 +22,11 @@ class StereoFeed {
   StereoFeed(std::string folder, const std::optional<std::string>& socket, std::uint64_t seed);
 
   void add_to(std::vector<pollfd>& fds) const;
-  /// Takes new viewers, sends queued pictures, and adds the picture of `cycle` where it is new. A
-  /// viewer with a full queue does not get it. Where the queue may hold more than one, a late
-  /// viewer gets the earlier pictures as well.
-  void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle, std::size_t waiting);
+  /// `head`: direction of the cameras in the robot [rad]. Takes new viewers, sends queued pictures,
+  /// and adds the picture of `cycle` where it is new. A viewer with a full queue does not get it.
+  /// Where the queue may hold more than one, a late viewer gets the earlier pictures as well.
+  void serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
+             std::size_t waiting);
 
  private:
   struct Viewer {

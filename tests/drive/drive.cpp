@@ -27,6 +27,7 @@ system::Cores::Settings services_of(const DriveOptions& options,
   system::Cores::Settings settings;
   settings.robot = behaviors::model_of(parameters);
   settings.behaviors = options.behaviors.value_or(behaviors::predefined());
+  settings.head_reach = parameters.head_reach;
   settings.interpretation = options.interpretation;
   settings.registration = options.registration;
   if (settings.registration && options.knows_pose)
@@ -79,6 +80,8 @@ const Seen& Drive::advance() {
   seen_.velocity = robot_->velocity();
   seen_.rotation_velocity = robot_->rotation_velocity();
   seen_.true_pose_in_world = robot_->pose_in_world();
+  const double turn = 0.1 * parameters_.head_speed;
+  seen_.head += std::clamp(look_ - seen_.head, -turn, turn);
   seen_.left_stalled = robot_->left_stalled();
   seen_.right_stalled = robot_->right_stalled();
   robot_->clear_stalls();
@@ -88,10 +91,14 @@ const Seen& Drive::advance() {
   now.pose_in_odom = seen_.pose_in_odom;
   now.velocity = seen_.velocity;
   now.rotation_velocity = seen_.rotation_velocity;
+  now.head = seen_.head;
   now.left_stalled = seen_.left_stalled;
   now.right_stalled = seen_.right_stalled;
   now.readings = seen_.readings;
-  obey(cores_.step(now).behaviors.output);
+  const system::Cores::Said& said = cores_.step(now);
+  obey(said.behaviors.output);
+  if (said.intentions.look)
+    look_ = *said.intentions.look;
   return seen_;
 }
 

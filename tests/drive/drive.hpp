@@ -49,6 +49,7 @@ struct Seen {
   double rotation_velocity = 0.0;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
   Pose true_pose_in_world;
+  double head = 0.0;  ///< [rad] direction of the cameras in the robot
   bool left_stalled = false;
   bool right_stalled = false;
 };
@@ -116,6 +117,7 @@ class Drive {
   bool by_hand_ = false;
   double speed_ = 0.0;
   double heading_ = 0.0;
+  double look_ = 0.0;  ///< [rad] the direction that the cameras turn to
   Seen seen_;
 };
 

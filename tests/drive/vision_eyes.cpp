@@ -43,7 +43,8 @@ struct Looker {
       vision.see(bands_of(sim::see_bands(drive.scene(), robot, camera, noise), camera), seen.cycle,
                  seen.pose_in_odom);
     } else {
-      const sim::StereoRig rig;
+      sim::StereoRig rig;
+      rig.pose_in_robot.th = seen.head;
       vision::PictureStream stream;
       stream.feed(
           sim::to_pgm(sim::render_stereo(drive.scene(), robot, rig, noise), rig, seen.cycle));

@@ -95,7 +95,7 @@ std::vector<std::string> fixed_words(const CLI::App& root, const Begun& line) {
       {"processes", {"interrupt", "resume", "suspend"}},
       {"knows", {"forget"}},
       {"device",
-       {"list", "follow", "servo", "gripper", "output", "analog", "timer", "sonar", "sound",
+       {"list", "follow", "servo", "look", "gripper", "output", "analog", "timer", "sonar", "sound",
         "motors", "origin", "bumpers", "report", "serial", "vision"}},
       {"map",
        {"follow", "list", "save", "show", "build", "load", "delete", "put", "remove", "place",

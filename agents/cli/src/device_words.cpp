@@ -12,6 +12,8 @@ namespace saphira::cli {
 
 const char* const kDeviceWords =
     "  servo WIDTH                    pulse width [us]\n"
+    "  look DEGREES                   turns the head with the cameras, from straight ahead to the "
+    "left\n"
     "  gripper open|close|stop|up|down|lift-stop|store|deploy|halt|NUMBER\n"
     "  gripper pressure|carry VALUE   in the robot's own units\n"
     "  output BITS [MASK]             such as 0x5A, or 0x01 0x01 for bit 0 alone\n"
@@ -189,6 +191,11 @@ DeviceCommand parse(const std::string& device, Words& words) {
     return {&kServo,
             {"servo",
              {whole_of("width", words.next("a pulse width [us]"), 0xFFFF, "a pulse width [us]")}}};
+  if (device == "look")
+    return {&kServo,
+            {"look",
+             {{"angle", radians(static_cast<double>(whole(words.next("an angle [degrees]"), -180,
+                                                          180, "an angle [degrees]")))}}}};
   if (device == "gripper")
     return {&kGripper, gripper(words)};
   if (device == "output") {
@@ -218,7 +225,8 @@ DeviceCommand parse(const std::string& device, Words& words) {
   if (device == "bumpers")
     return {&kServer, {"bump_stall", {whole_of("value", words.next("0..3"), 3, "which bumpers")}}};
   fail(
-      "a device (servo, gripper, output, analog, timer, sonar, sound, motors, origin, bumpers, "
+      "a device (servo, look, gripper, output, analog, timer, sonar, sound, motors, origin, "
+      "bumpers, "
       "report, serial, vision)",
       device);
 }
@@ -292,7 +300,10 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
   // Rounded to tens: the sonar of the last turn is no news.
   const unsigned rate = (robot.sonar_readings_per_s() + 5U) / 10U * 10U;
   add("sonar", rate == 0 ? "silent" : "about " + std::to_string(rate) + " readings/s");
-  add("servo", std::to_string(robot.ptu()) + " us");
+  add("servo", std::to_string(robot.ptu()) + " us" +
+                   (robot.head() == 0.0
+                        ? ""
+                        : text(", the cameras look to %.0f degrees", degrees(robot.head()))));
   add("digital input", bits(robot.digital_input()));
   add("digital output", bits(robot.digital_output()));
   add("analog", text("%.2f V", robot.analog() * 5.0 / 255.0));

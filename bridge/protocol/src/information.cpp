@@ -199,6 +199,7 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
                                            static_cast<unsigned>(packet.right_stall) << 8U);
   out.control = norm2_angle(packet.control * parameters.angle_unit);
   out.ptu = packet.ptu;
+  out.head = angle_of_head(parameters, packet.ptu);
   out.say = packet.say;
   out.sonars.reserve(packet.sonars.size());
   for (const RawSonar& raw : packet.sonars) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -77,6 +78,10 @@ constexpr std::array kNumbers{
                   "in degrees/s2"},
     NumberKeyword{"StopDeceleration", &P::stop_deceleration, kMillimetre, 0.0, 100000.0},
     NumberKeyword{"StopRotDeceleration", &P::stop_rotation_deceleration, kDegree, 0.0, 100000.0},
+    NumberKeyword{"HeadReach", &P::head_reach, kDegree, 0.0, 180.0, "in degrees"},
+    NumberKeyword{"HeadCenter", &P::head_center, 1.0, kShortestPulse, kLongestPulse, "in us"},
+    NumberKeyword{"HeadPulse", &P::head_pulse, 1.0 / kDegree, -100.0, 100.0, "in us a degree"},
+    NumberKeyword{"HeadSpeed", &P::head_speed, kDegree, 1.0, 1000.0, "in degrees/s"},
     NumberKeyword{"EncodeJitter", &P::encode_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleJitter", &P::angle_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleDrift", &P::angle_drift, 1.0, 0.0, 1.0},
@@ -192,6 +197,7 @@ class Parser {
     finish_sonars();
     finish_protocol();
     expect_needed();
+    expect_head();
     return std::move(parameters_);
   }
 
@@ -408,6 +414,29 @@ class Parser {
                     last.column + static_cast<int>(last.text.size()), message, lines_.back().text);
   }
 
+  void expect_head() const {
+    const P& p = parameters_;
+    if (p.head_reach == 0.0)
+      return;
+    const double way = p.head_reach * std::abs(p.head_pulse);
+    std::string message;
+    if (p.protocol != Protocol::kPsos)
+      message =
+          "expected no HeadReach: the packets of a later robot than psos do not show its servo";
+    else if (way < 1.0 || p.head_center - way < kShortestPulse ||
+             p.head_center + way > kLongestPulse)
+      message = "expected pulses of " + std::to_string(kShortestPulse) + " to " +
+                std::to_string(kLongestPulse) + " us, found HeadReach times HeadPulse around " +
+                "HeadCenter to be " + std::to_string(std::lround(p.head_center - way)) + " to " +
+                std::to_string(std::lround(p.head_center + way));
+    if (message.empty())
+      return;
+    const int number = seen_.at("headreach");
+    const auto line = std::find_if(lines_.begin(), lines_.end(),
+                                   [&](const Line& each) { return each.number == number; });
+    throw FileError(p.file, number, line->words[0].column, message, line->text);
+  }
+
   std::vector<Line> lines_;
   std::size_t next_ = 0;
   bool aria_ = false;          // the form of ARIA's files, with sections
@@ -420,6 +449,17 @@ class Parser {
 };
 
 }  // namespace
+
+std::uint16_t pulse_of_head(const RobotParameters& p, double angle) {
+  constexpr double kRounding = 1e-6;  // [rad]
+  if (p.head_reach == 0.0 || !(std::abs(angle) <= p.head_reach + kRounding))
+    return 0;
+  return static_cast<std::uint16_t>(std::lround(p.head_center + angle * p.head_pulse));
+}
+
+double angle_of_head(const RobotParameters& p, std::uint16_t pulse) {
+  return p.head_reach == 0.0 || pulse == 0 ? 0.0 : (pulse - p.head_center) / p.head_pulse;
+}
 
 RobotParameters parse_parameters(std::string_view text, const std::string& file) {
   return Parser(text, file).parse();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "saphira/base/overloaded.hpp"
 #include "saphira/protocol/impossible.hpp"
@@ -52,6 +53,17 @@ void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters
   std::visit(
       Overloaded{
           [&](const ServoWish& w) {
+            if (w.look) {
+              const std::uint16_t pulse = protocol::pulse_of_head(parameters, *w.look);
+              if (pulse == 0)
+                return refuse(
+                    parameters.head_reach == 0.0
+                        ? "this robot's parameter file has no head (HeadReach)"
+                        : "its head turns by " +
+                              std::to_string(std::lround(degrees(parameters.head_reach))) +
+                              " degrees to either side at most");
+              return send({protocol::Ptu{pulse}}, Proof::servo, pulse);
+            }
             if (!later && w.width != 0 &&
                 (w.width < protocol::kShortestPulse || w.width > protocol::kLongestPulse))
               return refuse("expected a pulse of " + std::to_string(protocol::kShortestPulse) +

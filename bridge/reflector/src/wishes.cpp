@@ -8,6 +8,7 @@
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/overloaded.hpp"
+#include "saphira/geometry/pose.hpp"
 #include "saphira/protocol/vision_setting.hpp"
 
 namespace saphira::reflector {
@@ -110,7 +111,10 @@ const std::vector<Functor>& functors(Device device) {
       {{"servo",
         "turns the position servo (command 41)",
         {whole_parameter("width", "pulse width [us]; later robots: in their own units", 0.0,
-                         65535.0)}}},
+                         65535.0)}},
+       {"look",
+        "turns the head with the cameras (command 41)",
+        {number_parameter("angle", "[rad] from straight ahead, to the left", -kPi, kPi)}}},
       {{"gripper",
         "moves the gripper (command 33); a Pioneer 1 takes numbers alone: 0, 1, 4, 5",
         {text_parameter("action", "what it is to do", all(kGripperActions)),
@@ -172,7 +176,9 @@ Wish wish_of(const Request& request) {
     return static_cast<std::uint16_t>(number_of(with, name));
   };
   if (what == "servo")
-    return ServoWish{value("width")};
+    return ServoWish{value("width"), {}};
+  if (what == "look")
+    return ServoWish{0, number_of(with, "angle")};
   if (what == "gripper")
     return GripperWish{static_cast<GripperAction>(which(kGripperActions, text_of(with, "action"))),
                        value("value")};
@@ -211,7 +217,10 @@ Wish wish_of(const Request& request) {
 std::string text(const Wish& wish) {
   return std::visit(
       Overloaded{
-          [](const ServoWish& w) { return "servo " + std::to_string(w.width) + " us"; },
+          [](const ServoWish& w) {
+            return w.look ? "look to " + std::to_string(std::lround(degrees(*w.look))) + " degrees"
+                          : "servo " + std::to_string(w.width) + " us";
+          },
           [](const GripperWish& w) {
             std::string out =
                 std::string("gripper ") + kGripperActions.at(static_cast<std::size_t>(w.action));

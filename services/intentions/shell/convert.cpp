@@ -160,6 +160,7 @@ Robot from_bus(const v1::RobotState& robot) {
   result.pose_in_odom = lps::from_bus(robot.pose_in_odom());
   result.velocity = robot.velocity();
   result.rotation_velocity = robot.rotation_velocity();
+  result.head = robot.head();
   result.left_stalled = robot.left_stalled();
   result.right_stalled = robot.right_stalled();
   result.bumpers = robot.bumpers();

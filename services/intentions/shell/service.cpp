@@ -69,6 +69,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       messages_(ports.changes(bus::topics::kMessages)),
       drawings_(ports.changes(bus::topics::kDrawings)),
       map_requests_(ports.asker(bus::topics::kRegistrationRequest)),
+      servo_(ports.asker(bus::topics::kServo)),
       agents_(ports.asker(bus::topics::kSolve)),
       answers_(ports.events(bus::topics::kSolved)),
       memory_(options.memory_file),
@@ -113,6 +114,8 @@ void Service::step(const runtime::Turn& turn) {
     publish(*outputs.beliefs);
   if (outputs.way)
     draw_way(*outputs.way);
+  if (outputs.look)
+    servo_.ask({"look", {{"angle", *outputs.look}}});
   ports_.say(outputs.notes.lines());
 }
 
@@ -134,6 +137,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   }
   inputs.robot_radius = turn.description.radius();
   inputs.deceleration = turn.description.deceleration();
+  inputs.head_reach = turn.description.head_reach();
   inputs.new_frame = turn.new_frame;
   inputs.robot = from_bus(turn.robot);
   inputs.readings = lps::sonars_from_bus(turn.robot);

@@ -71,6 +71,8 @@ Core::Outputs Core::step(Inputs inputs) {
       if (status.state == GoalState::kFailed)
         status.reason += "; " + gone;
   outputs.limit = limit_of(now, outputs.intended);
+  if (estop_.empty() && centering_.works())
+    outputs.look = gaze_.step({now.robot, now.around, executor_.beliefs(), 0});
   nodes_ = outputs.intended.nodes;
   outputs.way = look_for_way(now);
   tell(outputs.intended.news, outputs.notes);
@@ -184,6 +186,7 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   around.map = map_;
   around.robot_radius = inputs.robot_radius;
   around.deceleration = inputs.deceleration;
+  around.head_reach = inputs.head_reach;
   around.map_revision = places_revision_;
   for (const auto& [question, answer] : inputs.heard.answers)
     answers_[question] = answer;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/geometry/pose.hpp"
 
 namespace saphira::vision {
 namespace {
@@ -28,11 +30,12 @@ T number(std::string_view text, const std::string& what) {
 }
 
 void read_comment(std::string_view comment, StereoPicture& picture) {
-  const std::array<std::pair<std::string_view, double*>, 4> members{{
+  const std::array<std::pair<std::string_view, double*>, 5> members{{
       {"focal", &picture.rig.focal},
       {"baseline", &picture.rig.baseline},
       {"height", &picture.rig.height},
       {"forward", &picture.rig.forward},
+      {"pan", &picture.rig.pan},
   }};
   while (!comment.empty()) {
     const std::size_t blank = std::min(comment.find(' '), comment.size());
@@ -84,6 +87,8 @@ std::optional<StereoPicture> PictureStream::take() {
     wrong("expected two pictures side by side, found a size of " + std::string(lines[2]));
   if (!(picture.rig.focal > 0.0) || !(picture.rig.baseline > 0.0) || !(picture.rig.height > 0.0))
     wrong("expected focal, baseline and height above 0");
+  if (!std::isfinite(picture.rig.forward) || !(std::abs(picture.rig.pan) <= kPi))
+    wrong("expected a number of meters for forward, and a pan of -pi to pi");
   picture.columns = columns / 2;
   const std::size_t size =
       static_cast<std::size_t>(columns) * static_cast<std::size_t>(picture.rows);

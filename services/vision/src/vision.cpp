@@ -4,6 +4,16 @@ namespace saphira::vision {
 
 using Kind = lps::SeenThing::Kind;
 
+namespace {
+
+/// The robot's pose as if it had turned about its cameras instead of them.
+Pose looking(const Rig& rig, const Pose& robot_in_odom) {
+  const Pose eye = compose(robot_in_odom, {rig.forward, 0.0, rig.pan});
+  return compose(eye, {-rig.forward, 0.0, 0.0});
+}
+
+}  // namespace
+
 void Vision::see(const StereoPicture& picture, const Pose& robot_in_odom) {
   const auto [first, last] = torso_rows(picture.rig, picture.rows);
   const DisparityMap& map = census_.match(picture.left(), picture.right(), first, last);
@@ -11,7 +21,7 @@ void Vision::see(const StereoPicture& picture, const Pose& robot_in_odom) {
   std::vector<Sight> people = find_people(bands);
   for (Sight& person : people)
     person.points = arm_of(person, map, picture.rig, picture.rows);
-  see_people(bands, people, picture.cycle, robot_in_odom);
+  see_people(bands, people, picture.cycle, looking(picture.rig, robot_in_odom));
 }
 
 void Vision::see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom) {

@@ -107,6 +107,7 @@ class Devices {
   std::uint8_t analog(std::size_t port) const {  ///< [5 V / 255]
     return port < analogs_.size() ? analogs_[port] : std::uint8_t{0};
   }
+  double head() const;                            ///< [rad] direction of the cameras in the robot
   std::uint16_t timer() const { return timer_; }  ///< [ms] of the input timer; PSOS
 
  private:
@@ -129,7 +130,8 @@ class Devices {
   std::uint8_t analog_port_ = 0;
   std::uint16_t timer_ = 0;
   std::optional<std::uint8_t> timer_pin_;  ///< of a timer that runs
-  std::uint16_t ptu_ = 0;
+  std::uint16_t ptu_ = 0;                  ///< [us] as commanded
+  double servo_ = 0.0;  ///< [us] where the servo of a head is; others are there at once
   int bump_stall_ = 0;
   int sounding_ = 0;
 };

@@ -22,8 +22,8 @@ struct GreyImage {
   }
 };
 
-/// Two pinhole cameras side by side that look straight ahead, parallel to each other and to the
-/// floor. A point at depth z [m] is focal() * baseline / z pixels farther to the left in the right
+/// Two pinhole cameras side by side, parallel to each other and to the floor; a head may turn them.
+/// A point at depth z [m] is focal() * baseline / z pixels farther to the left in the right
 /// picture than in the left one. Pictures as large as Flakey's (Konolige and others 1996, Figure
 /// 3); the paper gives no other figures, so the rest is that of StereoCamera.
 struct StereoRig {
@@ -54,7 +54,7 @@ StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig&
 
 /// A pair as one picture in the format PGM, the left one on the left, with the parameters for
 /// ranges in a comment:
-/// "# saphira stereo cycle=12 focal=277.128 baseline=0.12 height=1 forward=0".
+/// "# saphira stereo cycle=12 focal=277.128 baseline=0.12 height=1 forward=0 pan=0".
 std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle);
 
 }  // namespace saphira::sim

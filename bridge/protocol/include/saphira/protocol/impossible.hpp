@@ -8,10 +8,6 @@
 
 namespace saphira::protocol {
 
-// A servo's pulses, with some tolerance beyond the usual 1000 to 2000.
-inline constexpr int kShortestPulse = 400;  ///< [us]
-inline constexpr int kLongestPulse = 2600;  ///< [us]
-
 /// A value that is impossible for a robot with these parameters, in spite of a right checksum.
 struct Impossible {
   std::string what;    ///< in words, with the file where its limits are

@@ -10,6 +10,10 @@
 
 namespace saphira::protocol {
 
+// A servo's pulses, with some tolerance beyond the usual 1000 to 2000.
+inline constexpr int kShortestPulse = 400;  ///< [us]
+inline constexpr int kLongestPulse = 2600;  ///< [us]
+
 struct SonarUnit {
   std::uint8_t number = 0;
   Pose pose_in_robot;  ///< of the transducer, looking along its heading
@@ -60,6 +64,12 @@ struct RobotParameters {
   bool compass = false;   ///< HasCompass
   bool gyro = false;      ///< HasGyro
   bool charger = false;   ///< HasCharger
+  // A head that turns the cameras, on the position servo (PTUPOS) of a server whose packets show
+  // that.
+  double head_reach = 0.0;             ///< [rad] HeadReach, to either side; 0: no head
+  double head_center = 1500.0;         ///< [us] HeadCenter: the pulse that looks ahead
+  double head_pulse = degrees(6.0);    ///< [us/rad] HeadPulse: of a turn to the left
+  double head_speed = radians(120.0);  ///< [rad/s] HeadSpeed, in simulation
   /// [m] EncoderTicksPerMM: the way of one count of an encoder packet; 0: the server has none.
   double encoder_unit = 0.0;
   double low_battery = 11.5;       ///< [V] LowBattery: the server complains
@@ -103,6 +113,12 @@ struct RobotParameters {
 
   bool operator==(const RobotParameters&) const = default;
 };
+
+/// [us] The pulse that turns the head to an angle from straight ahead; 0 where there is no head, or
+/// where the angle is beyond its reach.
+std::uint16_t pulse_of_head(const RobotParameters& parameters, double angle);
+/// [rad] The angle of the head at a pulse; 0: straight ahead, or no head.
+double angle_of_head(const RobotParameters& parameters, std::uint16_t pulse);
 
 /// True where the server has ESTOP, which brakes harder than a velocity of zero.
 inline bool has_emergency_stop(const RobotParameters& parameters) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,7 +12,8 @@
 namespace saphira::reflector {
 
 struct ServoWish {
-  std::uint16_t width = 0;  ///< [us]
+  std::uint16_t width = 0;       ///< [us]
+  std::optional<double> look{};  ///< [rad] instead, a direction of the head
 };
 enum class GripperAction {
   open,

@@ -13,6 +13,7 @@
 #include "saphira/base/process.hpp"
 #include "saphira/base/stamp.hpp"
 #include "saphira/intentions/executor.hpp"
+#include "saphira/intentions/gaze.hpp"
 #include "saphira/intentions/navigation.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
@@ -92,8 +93,9 @@ class Core {
     const lps::LpsSettings* new_robot = nullptr;  ///< the first step of an epoch
     double robot_radius = 0.0;                    ///< [m] of its hull, a circle; 0: unknown
     double deceleration = 0.0;                    ///< [m/s2] of a stop; 0: unknown
-    bool new_frame = false;                       ///< the odom frame has another origin
-    Robot robot;                              ///< with its place on the map, where that is known
+    double head_reach = 0.0;  ///< [rad] turn of the cameras to either side; 0: they are fixed
+    bool new_frame = false;   ///< the odom frame has another origin
+    Robot robot;              ///< with its place on the map, where that is known
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
     // Of the cycle before.
     std::vector<BehaviorLevel> behaviors;
@@ -113,7 +115,8 @@ class Core {
     /// The present way over the map [m] [map], from the robot's place, where it has changed; empty:
     /// none.
     std::optional<std::vector<Vec2>> way;
-    SpeedLimit limit;  ///< for the intended behaviors
+    SpeedLimit limit;            ///< for the intended behaviors
+    std::optional<double> look;  ///< [rad] the direction that the head has to turn to
     Notes notes;
   };
   Outputs step(Inputs inputs);
@@ -160,6 +163,8 @@ class Core {
   /// While suspended, nothing is intended: the goals are suspended, and the robot is released.
   Process& execution_ =
       processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
+  Process& centering_ = processes_.add("center-cameras", "keeps the cameras on what is watched");
+  Gaze gaze_;
   std::string refusal_;  ///< why the bridge does not let the behaviors drive
   std::string person_;   ///< why goals that drive wait for a person
   std::string estop_;    ///< the program that pressed the latched emergency stop

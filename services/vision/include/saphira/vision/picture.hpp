@@ -21,12 +21,13 @@ struct ImageView {
   }
 };
 
-/// Two parallel pinhole cameras side by side, looking straight ahead, level with the floor.
+/// Two parallel pinhole cameras side by side, level with the floor.
 struct Rig {
   double focal = 277.128129;  ///< [pixels]
   double baseline = 0.12;     ///< [m]
   double height = 1.0;        ///< [m] above the floor
   double forward = 0.0;       ///< [m] before the robot's centre
+  double pan = 0.0;           ///< [rad] from straight ahead, to the left, about the middle of both
 
   bool operator==(const Rig&) const = default;
 };

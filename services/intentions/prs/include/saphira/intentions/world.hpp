@@ -41,6 +41,7 @@ struct Robot {
   Pose pose_in_odom{};
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
+  double head = 0.0;               ///< [rad] direction of the cameras; 0: ahead
   /// The origin of odom on the map; none while the robot's place on the map is unknown.
   std::optional<Pose> odom_in_map{};
   bool left_stalled = false;
@@ -84,6 +85,7 @@ struct Surroundings {
   std::uint64_t map_revision = 0;
   double robot_radius = 0.0;  ///< [m] of its hull, a circle; 0: unknown
   double deceleration = 0.0;  ///< [m/s2] of a stop; 0: unknown
+  double head_reach = 0.0;    ///< [rad] turn of the cameras to either side; 0: they are fixed
   /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
 };

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "saphira/intentions/world.hpp"
+
+namespace saphira::intentions {
+
+/// Keeps the cameras on what activities want to see (the centering of paper 3.2.3), for a robot
+/// whose head can turn. The belief `gaze` is a direction in the robot [rad], a person, a colour or
+/// a point; without it the cameras look ahead.
+class Gaze {
+ public:
+  /// The direction to ask of the head [rad], where it has to turn.
+  std::optional<double> step(const World& world);
+
+ private:
+  std::optional<double> wanted(const World& world) const;
+
+  double asked_ = 0.0;     ///< [rad]
+  std::uint64_t at_ = 0;   ///< cycle of the newest request
+  std::uint64_t now_ = 0;  ///< cycle of the newest step
+};
+
+}  // namespace saphira::intentions
