@@ -97,18 +97,21 @@ Json describe_robot(const Server& server) {
     const Pose sonar = compose(pose, unit);
     beams.push_back(segment({sonar.position(), transform(sonar, Vec2(range, 0.0))}));
   }
-  return {{"x", rounded(pose.x)},
-          {"y", rounded(pose.y)},
-          {"th", rounded(pose.th)},
-          {"name", server.parameters().name},
-          {"radius", server.parameters().radius},
-          {"velocity", rounded(robot.velocity())},
-          {"rotation", rounded(robot.rotation_velocity())},
-          {"contacts", robot.contacts()},
-          {"connected", server.is_open()},
-          {"inputs", describe_inputs(server.devices())},
-          {"outputs", server.devices().digital_output()},
-          {"sonars", beams}};
+  Json out{{"x", rounded(pose.x)},
+           {"y", rounded(pose.y)},
+           {"th", rounded(pose.th)},
+           {"name", server.parameters().name},
+           {"radius", server.parameters().radius},
+           {"velocity", rounded(robot.velocity())},
+           {"rotation", rounded(robot.rotation_velocity())},
+           {"contacts", robot.contacts()},
+           {"connected", server.is_open()},
+           {"inputs", describe_inputs(server.devices())},
+           {"outputs", server.devices().digital_output()},
+           {"sonars", beams}};
+  if (server.parameters().head_reach > 0.0)
+    out["head"] = rounded(server.devices().head());
+  return out;
 }
 
 std::string set_input(Simulation& simulation, const SetInput& input) {

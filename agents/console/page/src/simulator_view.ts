@@ -1,6 +1,6 @@
 // The simulated world as it is, on a canvas, and things that are dragged in it.
 export interface Robot { x: number; y: number; th: number; name: string; radius: number; velocity: number; rotation: number;
-  contacts: number; connected: boolean; sonars: number[][]; inputs: Inputs; outputs: number }
+  contacts: number; connected: boolean; sonars: number[][]; inputs: Inputs; outputs: number; head?: number }
 // Of the user's devices: a bit for each pin, [5 V / 255] for each port, [ms].
 export interface Inputs { digital: number; analog: number[]; timer: number }
 export interface Person { name: string; x: number; y: number; th: number; radius: number; arm?: number[] }
@@ -232,6 +232,13 @@ export class SimulatorView {
       disc(robot.x, robot.y, robot.radius);
       c.fill();
       line([robot.x, robot.y, robot.x + robot.radius * Math.cos(robot.th), robot.y + robot.radius * Math.sin(robot.th)]);
+      if (robot.head !== undefined) {
+        const way = robot.radius + 0.6, th = robot.th + robot.head;
+        c.strokeStyle = color('person');
+        c.setLineDash([5, 4]);
+        line([robot.x, robot.y, robot.x + way * Math.cos(th), robot.y + way * Math.sin(th)]);
+        c.setLineDash([]);
+      }
     }
     const chosen = thingsOf(scene).find(t => `${t.kind} ${t.name}` === this.chosen);
     const mark = (x: number, y: number, r: number) => {

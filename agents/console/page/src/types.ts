@@ -10,6 +10,7 @@ export interface RobotState {
   rotation_velocity: number;
   target_velocity: number;
   target_heading_in_odom: number;
+  head: number;
   status: string;
   left_stalled: boolean;
   right_stalled: boolean;
@@ -26,6 +27,7 @@ export interface RobotDescription {
   diagonal: number;
   max_velocity: number;
   max_rotation_velocity: number;
+  head_reach: number;
   sonars: {sonar: number; pose_in_robot: Pose}[];
 }
 export interface Grant {

@@ -660,7 +660,8 @@ export class View {
   private drawRobot(robot: Pose, odom: Pose) {
     const c = this.context, {colors} = this;
     const state = this.link.data<RobotState>('robot/state')!;
-    const radius = Math.max(this.link.data<RobotDescription>('robot/description')?.radius ?? 0.22, this.px(9));
+    const description = this.link.data<RobotDescription>('robot/description');
+    const radius = Math.max(description?.radius ?? 0.22, this.px(9));
     c.beginPath();
     c.arc(0, 0, radius, 0, 7);
     c.fillStyle = colors.robot;
@@ -675,6 +676,9 @@ export class View {
     c.closePath();
     c.fillStyle = colors['robot-edge'];
     c.fill();
+    // The direction of cameras that turn.
+    if (description && description.head_reach > 0)
+      this.line([[0, 0], [(radius + 0.6) * Math.cos(state.head), (radius + 0.6) * Math.sin(state.head)]], colors.person, this.px(1.5), [this.px(5), this.px(4)]);
     // Velocity vectors (manual 2.3.2.4): forward, and to the side that it turns to.
     if (Math.abs(state.velocity) > 0.005)
       this.line([[0, 0], [Math.sign(state.velocity) * radius + 2 * state.velocity, 0]], colors.goal, this.px(2.5));
