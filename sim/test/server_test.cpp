@@ -21,9 +21,9 @@ using test::source;
 // A server in the office, and a client of it without a line between them.
 class Fixture : public ::testing::Test {
  protected:
-  explicit Fixture(ServerOptions options = traced())
+  explicit Fixture(ServerOptions options = traced(), const std::string& robot = "pioneer")
       : world_(load_world(source("config/worlds/office.wld"))),
-        parameters_(protocol::load_parameters(source("config/robots/pioneer.p"))),
+        parameters_(protocol::load_parameters(source("config/robots/" + robot + ".p"))),
         scene_(world_),
         server_(scene_, parameters_, *world_.start, options) {}
 
@@ -185,6 +185,30 @@ TEST_F(ServerTest, DevicesAreReflected) {
   send(protocol::Polling{});
   server_.advance(20);
   EXPECT_TRUE(packets().back().sonars.empty());
+}
+
+class HeadTest : public Fixture {
+ protected:
+  HeadTest() : Fixture(traced(), "pioneer-head") {}
+};
+
+// 120 degrees a second, six microseconds a degree.
+TEST_F(HeadTest, TurnsAtItsSpeedWithinItsReach) {
+  open();
+  server_.advance(10);
+  EXPECT_EQ(packets().back().ptu, 1500) << "straight ahead";
+  send(protocol::Ptu{2400});
+  server_.advance(50);
+  EXPECT_EQ(packets().back().ptu, 1860);
+  EXPECT_NEAR(server_.devices().head(), radians(60.0), 1e-9);
+  server_.advance(100);
+  EXPECT_EQ(packets().back().ptu, 2400);
+  send(protocol::Ptu{500});
+  server_.advance(300);
+  EXPECT_EQ(packets().back().ptu, 600) << "the end stop";
+  send(protocol::Ptu{0});
+  server_.advance(100);
+  EXPECT_EQ(packets().back().ptu, 600) << "no pulse: it stays";
 }
 
 TEST_F(ServerTest, UnknownCommandsAreIgnoredAndCounted) {

@@ -155,6 +155,46 @@ TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   EXPECT_EQ(whole.trouble(), "");
 }
 
+// Paper 4.4: the head scans, and stays on the person while the robot turns and comes near.
+TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
+  WholeOptions options;
+  options.drive.world = world_with("behind", "person ann 17500 10500");
+  options.drive.robot = "pioneer-head";
+  options.drive.start_in_world = Pose{17.5, 14.0, radians(90.0)};
+  options.map = "office-floor";
+  options.sees = vision_eyes(Stereo::pictures);
+  Whole whole(options);
+  const auto goal = whole.ask("attend-person");
+  const auto seen = [&] {
+    const auto& things = whole.drive().cores().said().things;
+    return things && std::any_of(things->begin(), things->end(), [](const lps::SeenThing& thing) {
+             return thing.kind == Kind::person;
+           });
+  };
+  whole.advance_until(seen, 100);
+  ASSERT_TRUE(seen());
+  EXPECT_LT(std::abs(degrees(norm2_angle(whole.truth().th - radians(90.0)))), 3.0)
+      << "the head turned, the robot did not";
+  int cycles = 0;
+  double worst = 0.0;
+  whole.advance_until(
+      [&] {
+        const Vec2 ann = to_frame(whole.truth(), {17.5, 10.5});
+        const double off = std::atan2(ann.y(), ann.x()) - whole.drive().seen().head;
+        if (++cycles > 15 && !whole.ended(goal))
+          worst = std::max(worst, std::abs(norm2_angle(off)));
+        return whole.ended(goal);
+      },
+      600);
+  EXPECT_EQ(whole.status(goal).state, intentions::GoalState::kSucceeded)
+      << whole.status(goal).reason;
+  EXPECT_LT(degrees(worst), 15.0) << "of 30 degrees to the edge of the picture";
+  EXPECT_NEAR((Vec2(17.5, 10.5) - whole.truth().position()).norm(), 1.0, 0.4);
+  for (int i = 0; i < 30; ++i)
+    whole.advance();
+  EXPECT_NEAR(whole.drive().seen().head, 0.0, radians(3.0)) << "ahead again";
+}
+
 // The demo with cameras (deployments/seeing.yaml): whenever one asks, the robot finds the person,
 // who may walk away or come up to it, and follows.
 TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
@@ -164,6 +204,7 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
   for (const int wait : {30, 150, 240, 330}) {
     WholeOptions options;
     options.drive.world = world;
+    options.drive.robot = wait % 20 == 0 ? "pioneer" : "pioneer-head";
     options.drive.start_in_world = Pose{0.85, 4.4, 0.0};
     options.drive.guard = true;
     options.drive.seed = static_cast<std::uint64_t>(wait);

@@ -229,6 +229,30 @@ TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
   }
 }
 
+TEST(Parameters, AHeadTurnsByPulses) {
+  const auto p = load_parameters(source("config/robots/flakey.p"));
+  EXPECT_EQ(pulse_of_head(p, 0.0), 1500);
+  EXPECT_EQ(pulse_of_head(p, radians(150.0)), 2400);
+  EXPECT_EQ(pulse_of_head(p, radians(-90.0)), 960);
+  EXPECT_EQ(pulse_of_head(p, radians(151.0)), 0) << "beyond its reach";
+  EXPECT_NEAR(angle_of_head(p, 960), radians(-90.0), 1e-9);
+  EXPECT_EQ(angle_of_head(p, 0), 0.0);
+  const auto fixed = load_parameters(source("config/robots/pioneer.p"));
+  EXPECT_EQ(pulse_of_head(fixed, 0.0), 0);
+  EXPECT_EQ(angle_of_head(fixed, 2000), 0.0);
+}
+
+// The Pioneer with a head is the Pioneer otherwise.
+TEST(Parameters, ThePioneerWithAHead) {
+  auto p = load_parameters(source("config/robots/pioneer-head.p"));
+  EXPECT_EQ(p.head_reach, radians(150.0));
+  const auto pioneer = load_parameters(source("config/robots/pioneer.p"));
+  p.head_reach = pioneer.head_reach;
+  p.file = pioneer.file;
+  p.subclass = pioneer.subclass;
+  EXPECT_EQ(p, pioneer);
+}
+
 TEST(Parameters, ThePioneer) {
   const auto p = load_parameters(source("config/robots/pioneer.p"));
   EXPECT_EQ(p.robot_class, "Pioneer");
@@ -389,7 +413,13 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"AngleConvFactor 0.0879\n", 1, 17, "radians a tick"},
         Broken{"DistConvFactor 485\n", 1, 16, "in mm a tick"},
         Broken{"MaxVelocity 0.4\n", 1, 13, "in mm/s"},
-        Broken{"TransAccel 0.3\n", 1, 12, "in mm/s2"},
+        Broken{"TransAccel 0.3\n", 1, 12, "in mm/s2"}, Broken{"HeadReach 200\n", 1, 11, "between"},
+        Broken{"HeadReach 90\nHeadPulse 20\nAngleConvFactor 0.006\nDistConvFactor 1\n"
+               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
+               1, 1, "to be -300 to 3300"},
+        Broken{"Protocol arcos\nHeadReach 90\nAngleConvFactor 0.006\nDistConvFactor 1\n"
+               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
+               2, 1, "do not show its servo"},
         Broken{"HasGripper maybe\n", 1, 12, "true or false"},
         Broken{"HasGripper\n", 1, 11, "true or false"},
         Broken{"SwitchToBaudRate 12345\n", 1, 18, "38400"},

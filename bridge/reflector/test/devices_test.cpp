@@ -96,6 +96,25 @@ TEST(Devices, AServoIsShownByARobotOfThatGeneration) {
   EXPECT_EQ(b.only().answer.code, AnswerCode::done);
 }
 
+TEST(Devices, AHeadLooksWithinItsReach) {
+  Bench b;
+  b.ask(ServoWish{0, 0.5});
+  EXPECT_EQ(b.only().answer.text,
+            "look to 29 degrees: refused; this robot's parameter file has no head (HeadReach)");
+  b.parameters.head_reach = radians(150.0);
+  b.ask(ServoWish{0, radians(160.0)});
+  EXPECT_EQ(b.only().answer.text,
+            "look to 160 degrees: refused; its head turns by 150 degrees to either side at most");
+  b.ask(ServoWish{0, radians(-90.0)});
+  EXPECT_EQ(b.cycle(protocol::Ptu{960}), 1);
+  b.packet.ptu = 1200;
+  b.cycle(Command{});
+  EXPECT_EQ(b.only().answer.code, AnswerCode::underway) << "it is on its way";
+  b.packet.ptu = 960;
+  b.cycle(Command{});
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done);
+}
+
 TEST(Devices, AreGivenUpAfterFiveSeconds) {
   Bench b;
   b.ask(ServoWish{1500});

@@ -15,6 +15,7 @@ std::string pgm(std::uint64_t cycle) {
   sim::StereoRig rig;
   rig.columns = 64;
   rig.rows = 8;
+  rig.pose_in_robot.th = 0.5;
   Random random(cycle);
   return sim::to_pgm(sim::render_stereo(scene, 0, rig, random), rig, cycle);
 }
@@ -36,6 +37,7 @@ TEST(Picture, ComesInPieces) {
   EXPECT_NEAR(pictures[0].rig.focal, 32.0 / std::tan(radians(30.0)), 1e-4);
   EXPECT_DOUBLE_EQ(pictures[0].rig.baseline, 0.12);
   EXPECT_DOUBLE_EQ(pictures[0].rig.height, 1.0);
+  EXPECT_DOUBLE_EQ(pictures[0].rig.pan, 0.5);
   // The right one stands beside the left one.
   EXPECT_EQ(pictures[0].right().row(3) - pictures[0].left().row(3), 64);
 }
@@ -43,7 +45,10 @@ TEST(Picture, ComesInPieces) {
 TEST(Picture, WhatIsNoneIsSaid) {
   for (const std::string text :
        {"GIF89a", "P5\n# other\n4 1\n255\n....", "P5\n# saphira stereo cycle=x\n4 1\n255\n",
-        "P5\n# saphira stereo cycle=1 focal=0\n4 1\n255\n", "P5\n# saphira stereo \n5 1\n255\n",
+        "P5\n# saphira stereo cycle=1 focal=0\n4 1\n255\n",
+        "P5\n# saphira stereo cycle=1 pan=4\n4 1\n255\n",
+        "P5\n# saphira stereo cycle=1 pan=nan\n4 1\n255\n",
+        "P5\n# saphira stereo cycle=1 forward=inf\n4 1\n255\n", "P5\n# saphira stereo \n5 1\n255\n",
         "P5\n# saphira stereo \n4000000 1\n255\n", "P5\n# saphira stereo \n\n255\n"}) {
     PictureStream stream;
     stream.feed(text);
