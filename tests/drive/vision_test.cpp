@@ -204,7 +204,7 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
   for (const int wait : {30, 150, 240, 330}) {
     WholeOptions options;
     options.drive.world = world;
-    options.drive.robot = wait % 20 == 0 ? "pioneer" : "pioneer-head";
+    options.drive.robot = wait < 200 ? "pioneer" : "pioneer-head";
     options.drive.start_in_world = Pose{0.85, 4.4, 0.0};
     options.drive.guard = true;
     options.drive.seed = static_cast<std::uint64_t>(wait);
