@@ -660,9 +660,9 @@ TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
             "tell person=\"karen\" message=\"John's meeting isn't at five\" sender=\"Alice\" "
             "back=\"upper corridor\"");
   EXPECT_EQ(said("Flakey, ask John where Karen is"),
-            "I drop the message to karen / I ask john where karen is");
+            "I drop the message to karen / I ask john where Karen is");
   EXPECT_EQ(goals(),
-            "inquire person=\"john\" question=\"where karen is\" sender=\"Alice\" "
+            "inquire person=\"john\" question=\"where Karen is\" sender=\"Alice\" "
             "back=\"upper corridor\"");
   EXPECT_TRUE(dialogue.knowledge().all().empty());
   situation.pose_in_map.reset();
