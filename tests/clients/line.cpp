@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "process.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::test {
 
@@ -150,12 +151,9 @@ const std::vector<KnownRobot>& all_known() {
 }
 
 const KnownRobot* find_known(const std::string& subclass) {
-  std::string lower = subclass;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  });
+  const std::string name = lowered(subclass);
   for (const KnownRobot& robot : all_known())
-    if (robot.subclass == lower)
+    if (robot.subclass == name)
       return &robot;
   return nullptr;
 }

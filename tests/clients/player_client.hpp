@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "line.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::test {
 
@@ -35,11 +35,8 @@ class PlayerClient {
             name += static_cast<char>((*body)[at++]);
           ++at;
         }
-        std::string robot_class = names[1];
-        for (char& c : robot_class)
-          c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         known_ = find_known(names[2]);
-        warned = robot_class != "pioneer" || known_ == nullptr;
+        warned = lowered(names[1]) != "pioneer" || known_ == nullptr;
         if (warned)
           known_ = find_known("amigo-sh");
       }

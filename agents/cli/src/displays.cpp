@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/situation/format.hpp"
@@ -267,24 +268,19 @@ std::string schema_display(const v1::BehaviorSchema& schema) {
 }
 
 std::string unknown_behavior(const std::string& name, std::vector<std::string> names) {
-  const auto lower = [](std::string text) {
-    for (char& c : text)
-      c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return text;
-  };
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
-  std::vector<std::string> lowered;
+  std::vector<std::string> small;
   std::string list;
   for (const std::string& each : names) {
-    lowered.push_back(lower(each));
+    small.push_back(lowered(each));
     list += (list.empty() ? " " : ", ") + each;
   }
-  const auto meant = std::find(lowered.begin(), lowered.end(), guess(lower(name), lowered));
+  const auto meant = std::find(small.begin(), small.end(), guess(lowered(name), small));
   return "no behavior \"" + name.substr(0, 200) + "\": " +
-         (meant == lowered.end()
+         (meant == small.end()
               ? "there are"
-              : "did you mean " + names[static_cast<std::size_t>(meant - lowered.begin())] +
+              : "did you mean " + names[static_cast<std::size_t>(meant - small.begin())] +
                     "? There are") +
          (list.empty() ? " none now" : list);
 }

@@ -23,14 +23,6 @@ bool is_of_the_first(std::string_view subclass) {
 constexpr double kMillimetre = 0.001;
 constexpr int kMaxSonars = 64;
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z')
-      c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 bool begins_number(std::string_view word) {
   return !word.empty() &&
          (word[0] == '-' || word[0] == '+' || word[0] == '.' || (word[0] >= '0' && word[0] <= '9'));
@@ -164,17 +156,17 @@ const std::vector<std::string>& keywords() {
 
 bool is_keyword(const std::string& name) {
   return std::any_of(keywords().begin(), keywords().end(),
-                     [&name](const std::string& known) { return lower(known) == name; });
+                     [&name](const std::string& known) { return lowered(known) == name; });
 }
 
 /// The keyword that a mistyped one may mean.
 std::string keyword_like(const std::string& name) {
-  std::vector<std::string> lowered;
+  std::vector<std::string> small;
   for (const std::string& known : keywords())
-    lowered.push_back(lower(known));
-  const std::string meant = guess(name, lowered);
-  const auto found = std::find(lowered.begin(), lowered.end(), meant);
-  return meant.empty() ? "" : keywords()[static_cast<std::size_t>(found - lowered.begin())];
+    small.push_back(lowered(known));
+  const std::string meant = guess(name, small);
+  const auto found = std::find(small.begin(), small.end(), meant);
+  return meant.empty() ? "" : keywords()[static_cast<std::size_t>(found - small.begin())];
 }
 
 class Parser {
@@ -205,14 +197,14 @@ class Parser {
   // ARIA's files have sections, keywords and columns beyond ours, and comments that are broken over
   // two lines. An acceleration of 0 there means the robot's own.
   bool is_passed_over(const Line& line) {
-    const std::string name = lower(line.words[0].text);
+    const std::string name = lowered(line.words[0].text);
     if (name == "configversion")
       aria_ = true;
     if (name == "section") {
       aria_ = true;
       std::string section;
       for (std::size_t i = 1; i < line.words.size(); ++i)
-        section += (i > 1 ? " " : "") + lower(line.words[i].text);
+        section += (i > 1 ? " " : "") + lowered(line.words[i].text);
       aria_section_ =
           std::find(kAriaSections.begin(), kAriaSections.end(), section) != kAriaSections.end();
     }
@@ -224,7 +216,7 @@ class Parser {
   }
 
   void keyword(LineReader& in) {
-    const std::string name = lower(in.word("a keyword"));
+    const std::string name = lowered(in.word("a keyword"));
     if (name == "sonarunit") {
       sonar_unit(in);
       return;
@@ -234,7 +226,7 @@ class Parser {
       in.fail("expected each keyword once; it stands on line " + std::to_string(seen->second) +
               " already");
     for (const NumberKeyword& k : kNumbers) {
-      if (lower(k.name) != name)
+      if (lowered(k.name) != name)
         continue;
       to_value(in);
       const std::string what =
@@ -243,13 +235,13 @@ class Parser {
       return;
     }
     for (const FlagKeyword& k : kFlags) {
-      if (lower(k.name) != name)
+      if (lowered(k.name) != name)
         continue;
       parameters_.*k.field = flag(in, k.name);
       return;
     }
     for (const CountKeyword& k : kCounts) {
-      if (lower(k.name) != name)
+      if (lowered(k.name) != name)
         continue;
       to_value(in);
       parameters_.*k.field = static_cast<int>(in.integer(k.name, k.low, k.high));
@@ -283,14 +275,14 @@ class Parser {
   }
 
   static bool flag(LineReader& in, std::string_view name) {
-    const std::string value = lower(in.word("true or false behind " + std::string(name)));
+    const std::string value = lowered(in.word("true or false behind " + std::string(name)));
     if (value != "true" && value != "false")
       in.fail("expected true or false");
     return value == "true";
   }
 
   void protocol(LineReader& in) {
-    const std::string value = lower(in.word("psos, p2os or arcos"));
+    const std::string value = lowered(in.word("psos, p2os or arcos"));
     if (value == "psos")
       parameters_.protocol = Protocol::kPsos;
     else if (value == "p2os")
@@ -311,7 +303,7 @@ class Parser {
 
   // ARIA's files do not give the protocol; the servers' version names do.
   Protocol protocol_of_subclass() const {
-    const std::string name = lower(parameters_.subclass);
+    const std::string name = lowered(parameters_.subclass);
     if ((name + "-").find("-sh-") != std::string::npos)
       return Protocol::kArcos;
     return is_of_the_first(name) ? Protocol::kPsos : Protocol::kP2os;
@@ -401,7 +393,7 @@ class Parser {
   void expect_needed() const {
     std::string missing;
     for (const NeededKeyword& k : kNeeded)
-      if (!seen_.contains(lower(k.name)) && (seen_.contains("class") || !k.with_class_only))
+      if (!seen_.contains(lowered(k.name)) && (seen_.contains("class") || !k.with_class_only))
         missing += (missing.empty() ? "" : ", ") + std::string(k.name);
     if (missing.empty())
       return;
@@ -470,7 +462,7 @@ RobotParameters load_parameters(const std::string& path) {
 }
 
 bool RobotParameters::is_of(std::string_view of_class, std::string_view of_subclass) const {
-  return lower(of_class) == lower(robot_class) && lower(of_subclass) == lower(subclass);
+  return lowered(of_class) == lowered(robot_class) && lowered(of_subclass) == lowered(subclass);
 }
 
 std::vector<std::string> parameter_file_names(std::string_view robot_class,
@@ -485,7 +477,7 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
     if (plain && std::find(names.begin(), names.end(), name + ".p") == names.end())
       names.push_back(name + ".p");
   };
-  std::string name = lower(subclass);
+  std::string name = lowered(subclass);
   add(name);
   // The part behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
   // Without -sh it is another generation.
@@ -495,7 +487,7 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
     add(name);
   }
   // The file of the class Pioneer is one of the manual's time, with its units.
-  const std::string of_class = lower(robot_class);
+  const std::string of_class = lowered(robot_class);
   if (of_class != "pioneer" || is_of_the_first(name) || name.empty())
     add(of_class);
   return names;

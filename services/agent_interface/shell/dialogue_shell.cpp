@@ -32,8 +32,6 @@ constexpr const char* kPerson = "asking-for";
 constexpr const char* kPlaceOf = "place-of-";
 constexpr const char* kFinder = "find-person";
 
-constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act on
-
 /// A text in the activity language: "karen's office".
 std::string literal(const std::string& text) {
   std::string result = "\"";
@@ -137,7 +135,7 @@ void DialogueShell::announce() {
                const auto number =
                    static_cast<std::uint64_t>(bus::number_of(request.arguments(), "number"));
                const Dialogue::Outputs out = dialogue_.forget(number);
-               if (!out.learned)
+               if (!out.changed)
                  return bus::refused("nothing is known under " + std::to_string(number) +
                                      ": saphira knows lists what is");
                perform(out);
@@ -195,16 +193,16 @@ void DialogueShell::claim(const Claimed& claim) {
   claims_.write(sample);
 }
 
-void DialogueShell::rename(const Naming& naming) {
+void DialogueShell::rename(const maps::Feature& feature) {
   Request request;
   request.functor = "put";
-  request.arguments = {number("id", naming.feature.id),
-                       text("type", std::string(maps::traits(naming.feature.type).word)),
-                       point("position", naming.feature.pose_in_map, Frame::map),
-                       number("length", naming.feature.length),
-                       number("width", naming.feature.width),
-                       text("name", naming.feature.name),
-                       truth("learned", naming.feature.learned)};
+  request.arguments = {number("id", feature.id),
+                       text("type", std::string(maps::traits(feature.type).word)),
+                       point("position", feature.pose_in_map, Frame::map),
+                       number("length", feature.length),
+                       number("width", feature.width),
+                       text("name", feature.name),
+                       truth("learned", feature.learned)};
   registration_.send(to_bus(request));
 }
 
@@ -230,9 +228,11 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
     want(goal);
   for (const Claimed& one : out.claims)
     claim(one);
-  for (const Naming& naming : out.namings)
-    rename(naming);
-  if (out.learned) {
+  for (const maps::Feature& feature : out.namings)
+    rename(feature);
+  if (!out.note.empty())
+    node_.info(out.note);
+  if (out.changed) {
     remember();
     publish();
   }
@@ -266,7 +266,6 @@ void DialogueShell::take_goals() {
       goals_.cancel(goal->second.goal);
     goal = asked_.erase(goal);
     perform(dialogue_.ended(outcome));
-    remember();
   }
 }
 
@@ -277,18 +276,18 @@ void DialogueShell::take_beliefs() {
   situation_.asked_about.clear();
   situation_.asked_for.clear();
   const std::string_view place_of(kPlaceOf);
+  std::vector<Find> finds;
   for (const v1::Belief& belief : beliefs->beliefs()) {
     const std::string& name = belief.name();
-    const std::pair news(text_of(belief), std::uint64_t{belief.since()});
+    const std::string value = text_of(belief);
     if (name == kQuestion)
-      situation_.asked_about = text_of(belief);
+      situation_.asked_about = value;
     else if (name == kPerson)
-      situation_.asked_for = text_of(belief);
-    else if (belief.said_by() == kFinder && std::string_view(name).starts_with(place_of) &&
-             !news.first.empty() && std::exchange(found_[name], news) != news)
-      perform(dialogue_.found(name.substr(place_of.size()), news.first, unix_time(), !looked_));
+      situation_.asked_for = value;
+    else if (belief.said_by() == kFinder && name.starts_with(place_of) && !value.empty())
+      finds.push_back({name.substr(place_of.size()), value, belief.since()});
   }
-  looked_ = true;
+  perform(dialogue_.found(finds, situation_.now));
 }
 
 /// Of the robot, and of a person who points.
@@ -332,9 +331,9 @@ std::vector<KnownGoal> DialogueShell::known_goals() const {
     else if (status.id().writer() != node_.instance())
       goal.asker = status.requester();
     goal.state = state_of(status.state());
-    goal.reason = !status.reason().empty() ? status.reason()
-                  : !status.note().empty() ? status.note()
-                                           : status.step();
+    goal.reason = status.reason();
+    goal.note = status.note();
+    goal.step = status.step();
   }
   return goals;
 }
@@ -343,12 +342,6 @@ void DialogueShell::take_utterances() {
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
       continue;
-    // A living writer repeats its earlier sentences to a new reader.
-    if (sample.data.time() > 0.0 && unix_time() - sample.data.time() > kOld) {
-      node_.info("not acted on, since it is older than a minute: " +
-                 saphira::quoted(sample.data.text()));
-      continue;
-    }
     Utterance utterance;
     utterance.id = {sample.data.id().writer(), sample.data.id().number()};
     utterance.speaker = sample.data.speaker().substr(0, 31);
@@ -360,7 +353,8 @@ void DialogueShell::take_utterances() {
   }
 }
 
-void DialogueShell::step() {
+void DialogueShell::step(double now) {
+  situation_.now = now;
   if (const auto map = maps_.take_newest()) {
     situation_.map = maps::from_bus(*map);
     node_.status().state(v1::SERVICE_RUNNING);
@@ -370,11 +364,9 @@ void DialogueShell::step() {
   registration_.poll();
   take_beliefs();
   for (const auto& sample : messages_.take())
-    if (!sample.info.disposed && !asked_.empty()) {
+    if (!sample.info.disposed)
       perform(dialogue_.says(sample.data.text(),
                              {sample.data.stamp().epoch(), sample.data.stamp().cycle()}));
-      remember();
-    }
   take_goals();
   take_utterances();
   agent_.poll();
@@ -388,7 +380,7 @@ void DialogueShell::run(const bus::Stop& stop) {
   auto looked = Clock::now();
   while (!stop.requested()) {
     node_.wait(kLook, &stop);
-    step();
+    step(unix_time());
     if (Clock::now() - looked > std::chrono::seconds(1)) {
       reload();
       looked = Clock::now();

@@ -24,8 +24,8 @@ class DialogueShell {
   /// FileError where the grammar has a mistake.
   DialogueShell(bus::Node& node, const DialogueOptions& options);
 
-  /// Takes the inputs and carries out the results.
-  void step();
+  /// Takes the inputs and carries out the results. now: [s] since 1970; 0: unknown, in lockstep.
+  void step(double now = 0.0);
   /// Reads the grammar again where its file has changed; a file with an error is not accepted.
   void reload();
   void run(const bus::Stop& stop);
@@ -40,7 +40,7 @@ class DialogueShell {
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
   void claim(const Claimed& claim);
-  void rename(const Naming& naming);
+  void rename(const maps::Feature& feature);
   void remember();
   void publish();
 
@@ -68,9 +68,6 @@ class DialogueShell {
   };
   std::map<std::uint64_t, Asked> asked_;            ///< by the dialogue's tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
-  /// Newest places where an activity has found people, with the cycle; by the belief's name.
-  std::map<std::string, std::pair<std::string, std::uint64_t>> found_;
-  bool looked_ = false;  ///< at beliefs
   std::uint64_t number_ = 0;
 };
 

@@ -15,11 +15,14 @@ namespace {
 constexpr double kSure = 0.5;         // a lower confidence of a recognizer is ignored
 constexpr double kAhead = 10.0;       // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;  // [m] that one command of motion may take
-constexpr double kDoubtful = 20.0;    // [s] that a doubt waits for a yes
+constexpr double kOld = 60.0;         // [s] after which an utterance is too old to act on
 constexpr std::size_t kHeard = 256;
 constexpr std::size_t kLongestText = 255;  // letters: as long as an argument of a goal
 /// Goals that interrupt a task for a moment.
 constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "attend-person", "pause"};
+/// Tasks, which continue while the dialogue restarts.
+constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
+                              "inquire",     "patrol",      "guide",   "come-back"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
 constexpr const char* kSaidLine = "said\t";
@@ -37,10 +40,13 @@ void Dialogue::say(const Utterance& utterance, const std::string& text, bool end
 }
 
 void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
-                    Arguments arguments, Outputs&, double deadline, bool lasting) {
+                    Arguments arguments, double deadline) {
+  const auto is_in = [&](const auto& functors) {
+    return std::find(functors.begin(), functors.end(), functor) != functors.end();
+  };
   Task task;
-  task.goal = {0, functor, std::move(arguments), deadline, lasting, utterance.speaker};
-  task.brief = std::find(kBrief.begin(), kBrief.end(), functor) != kBrief.end();
+  task.goal = {0, functor, std::move(arguments), deadline, is_in(kLasting), utterance.speaker};
+  task.brief = is_in(kBrief);
   task.what = grammar_.paraphrase(meaning);
   task.doing = grammar_.paraphrase(meaning, Grammar::Form::doing);
   task.name = grammar_.paraphrase(meaning, Grammar::Form::task);
@@ -53,7 +59,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
                  Frame::robot);
   };
   if (meaning.functor == "stop") {
-    want(meaning, utterance, "stop", {}, out);
+    want(meaning, utterance, "stop", {});
   } else if (meaning.functor == "move") {
     const double distance = number_of(meaning, "distance");
     if (distance <= 0.0) {
@@ -66,9 +72,9 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
     }
     if (slot(meaning, "direction") == "back") {
       constexpr double kBackSpeed = 0.1;  // [m/s]
-      want(meaning, utterance, "drive", {number("speed", -kBackSpeed)}, out, distance / kBackSpeed);
+      want(meaning, utterance, "drive", {number("speed", -kBackSpeed)}, distance / kBackSpeed);
     } else {
-      want(meaning, utterance, "go_to", {point_ahead(distance, 0.0)}, out);
+      want(meaning, utterance, "go_to", {point_ahead(distance, 0.0)});
     }
   } else if (meaning.functor == "turn" || meaning.functor == "turn_around") {
     const bool around = meaning.functor == "turn_around";
@@ -83,7 +89,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
     }
     const double angle = degrees / 180.0 * std::numbers::pi;
     want(meaning, utterance, "turn_to",
-         {point_ahead(kAhead, slot(meaning, "direction") == "right" ? -angle : angle)}, out);
+         {point_ahead(kAhead, slot(meaning, "direction") == "right" ? -angle : angle)});
   } else {
     return false;
   }
@@ -93,21 +99,19 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
 bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                     Outputs& out) {
   const std::string& functor = meaning.functor;
-  const auto whom = [&](const std::string& name) {
-    const std::string known = place(name, situation);
-    return known.empty() ? name : known;
+  const auto whom = [&](const char* name) {
+    return place_or_person(slot(meaning, name), situation);
   };
   if (functor == "follow_me") {
-    want(meaning, utterance, "follow-person", {}, out);
+    want(meaning, utterance, "follow-person", {});
   } else if (functor == "look_at_me") {
-    want(meaning, utterance, "attend-person", {}, out);
+    want(meaning, utterance, "attend-person", {});
   } else if (functor == "follow_corridor") {
-    want(meaning, utterance, "find-and-follow", {}, out);
+    want(meaning, utterance, "find-and-follow", {});
   } else if (functor == "explore") {
-    want(meaning, utterance, "explore", {}, out);
+    want(meaning, utterance, "explore", {});
   } else if (functor == "find") {
-    want(meaning, utterance, "find-person", {text("name", slot(meaning, "person"))}, out, 0.0,
-         true);
+    want(meaning, utterance, "find-person", {text("name", slot(meaning, "person"))});
   } else if (functor == "go_to") {
     const std::string name = slot(meaning, "place");
     std::uint32_t artifact = 0;
@@ -116,26 +120,23 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     Meaning shown = with(meaning, "place", where);
     shown.slots["owner"] = "";
     if (!where.empty())
-      want(shown, utterance, "go-to-place", {text("place", where)}, out, 0.0, true);
+      want(shown, utterance, "go-to-place", {text("place", where)});
     else if (!name.empty() && !knowledge_.place_of(name).empty())
-      want(with(meaning, "place", name), utterance, "find-person", {text("name", name)}, out, 0.0,
-           true);
+      want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     else
       say(utterance, wrong, true, out);
   } else if (functor == "deliver") {
     want(meaning, utterance, "deliver",
-         {text("object", "the " + slot(meaning, "object")),
-          text("from", whom(slot(meaning, "from"))), text("to", whom(slot(meaning, "to")))},
-         out, 0.0, true);
+         {text("object", "the " + slot(meaning, "object")), text("from", whom("from")),
+          text("to", whom("to"))});
   } else if (functor == "fetch") {
     const std::string to = bring_to(utterance, situation);
     if (to.empty())
       say(utterance, "I do not know where to bring it: where I am has no name", true, out);
     else
       want(meaning, utterance, "deliver",
-           {text("object", "the " + slot(meaning, "object")),
-            text("from", whom(slot(meaning, "person"))), text("to", to)},
-           out, 0.0, true);
+           {text("object", "the " + slot(meaning, "object")), text("from", whom("person")),
+            text("to", to)});
   } else {
     return false;
   }
@@ -174,14 +175,12 @@ void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& ut
 bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                      Outputs& out) {
   const bool yes = meaning.functor == "yes";
-  if ((yes || meaning.functor == "no") && tasks_.asks(utterance)) {
+  if (is_yes_or_no(meaning) && tasks_.asks(utterance)) {
     add(tasks_.answer(yes, utterance), out);
     note_begin(situation, out);
     return true;
   }
-  if (situation.asked_about.empty() && tasks_.asks(utterance))
-    return true;  // it answers something else
-  if (doubt_ && doubt_->speaker == utterance.speaker && is_yes_or_no(meaning)) {
+  if (is_yes_or_no(meaning) && doubt_ && may_answer(utterance, doubt_->raised_by)) {
     const Doubt doubt = *doubt_;
     doubt_.reset();
     if (yes) {
@@ -193,7 +192,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     return true;
   }
   std::string value;
-  const std::string asked_for = lower(situation.asked_for);
+  const std::string asked_for = lowered(situation.asked_for);
   Advice told;  // about nobody: nothing
   told.kind = Advice::Kind::person_at;
   told.about = asked_for;
@@ -209,13 +208,13 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     told.about.clear();
   } else if (meaning.functor == "somebody") {
     const std::string name = slot(meaning, "person");
-    const std::string known = place(name, situation);
-    value = known.empty() ? name : known;
-    if (open && known.empty() && !knowledge_.findable(name)) {
+    const bool person = place(name, situation).empty();
+    value = place_or_person(name, situation);
+    if (open && person && !knowledge_.findable(name)) {
       say(utterance, "nobody has told me where " + name + " is", true, out);
       return true;
     }
-    if (known.empty())
+    if (person)
       told.kind = Advice::Kind::knows_where;
   } else if (meaning.functor == "at") {
     std::uint32_t artifact = 0;
@@ -248,8 +247,10 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
 void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                    Outputs& out) {
   if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
-      errand(meaning, utterance, situation, out) || inquiry(meaning, utterance, situation, out) ||
-      question(meaning, utterance, situation, out) || advice(meaning, utterance, situation, out) ||
+      errand(meaning, utterance, situation, out) ||
+      question_about_robot(meaning, utterance, situation, out) ||
+      question_about_world(meaning, utterance, situation, out) ||
+      advice(meaning, utterance, situation, out) ||
       correction(meaning, utterance, situation, out) ||
       naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
@@ -286,27 +287,33 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
   Outputs out;
+  // A living writer repeats its earlier sentences to a new reader.
+  if (situation.now > 0.0 && utterance.time > 0.0 && situation.now - utterance.time > kOld) {
+    out.note = "not acted on, since it is older than a minute: " + quoted(utterance.text);
+    return out;
+  }
   if (utterance.id != UtteranceId{}) {
     if (std::find(heard_.begin(), heard_.end(), utterance.id) != heard_.end())
       return out;
     heard_.push_back(utterance.id);
     if (heard_.size() > kHeard)
       heard_.erase(heard_.begin());
-    out.learned = true;
+    out.changed = true;
   }
-  if (doubt_ && utterance.time > 0.0 && doubt_->advice.time > 0.0 &&
-      utterance.time - doubt_->advice.time > kDoubtful)
-    doubt_.reset();
-  const bool doubted = doubt_ && doubt_->speaker == utterance.speaker;
+  const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
   const bool drops = tasks_.asks(utterance);
   const bool asked = !situation.asked_about.empty();
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || doubted || drops);
   if ((doubted || drops) && !asked && !understood.addressed)
     std::erase_if(understood.meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
-  // Another sentence of that speaker ends the doubt.
-  if (doubted && utterance.confidence >= kSure &&
-      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
-    doubt_.reset();
+  // Another sentence of that speaker ends the robot's question.
+  if (utterance.confidence >= kSure &&
+      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front()))) {
+    if (doubted)
+      doubt_.reset();
+    if (drops)
+      tasks_.withdraw_question();
+  }
   if (utterance.text.size() > kLongestText) {
     const bool meant = understood.addressed && !understood.meanings.empty();
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
@@ -331,16 +338,20 @@ Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
   Outputs out;
   const Task* const task = tasks_.find(outcome.tag);
   if (task != nullptr && (outcome.tag != stop_ || !ended_ || ended_->success))
-    ended_ = Ended{task->what, task->goal.speaker, outcome.success, outcome.reason};
+    ended_ = Ended{named_task(*task, ""), outcome.success, outcome.reason};
+  out.changed = task != nullptr;
   add(tasks_.ended(outcome), out);
   return out;
 }
 
 Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) {
   Outputs out;
+  if (tasks_.empty())
+    return out;
   if (when.first == before_.first && when.second <= before_.second)
     return out;
   said_ = when;
+  out.changed = true;
   out.said.push_back({tasks_.spoken_for(), {}, text, false});
   return out;
 }

@@ -28,12 +28,10 @@ std::string end_as_said(const std::string& words, const std::string& text) {
 }  // namespace
 
 void Dialogue::note_begin(const Situation& situation, const Outputs& out) {
-  if (out.goals.empty() || !out.goals.back().lasting || out.goals.back().functor == "come-back" ||
-      !situation.pose_in_map)
+  if (out.goals.empty() || !out.goals.back().lasting || out.goals.back().functor == "come-back")
     return;
-  const std::string here = place_at(situation.map, situation.pose_in_map->position());
-  if (!here.empty())
-    began_ = Spot{here, *situation.pose_in_map};
+  if (const std::string place = here(situation); !place.empty())
+    began_ = Spot{place, *situation.pose_in_map};
 }
 
 /// Back to where the last task began, or home; as a later step to where the first one begins.
@@ -42,18 +40,13 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
   const std::string named = place("home", situation);
   const std::string home = named.empty() ? place("start", situation) : named;
   std::optional<Spot> spot = began_;
-  if (!wanted_.empty() && situation.pose_in_map) {
-    const std::string here = place_at(situation.map, situation.pose_in_map->position());
-    if (!here.empty())
-      spot = Spot{here, *situation.pose_in_map};
-  }
+  if (const std::string place = here(situation); !wanted_.empty() && !place.empty())
+    spot = Spot{place, *situation.pose_in_map};
   if (meaning.functor == "go_home" ? !home.empty() : !spot && !home.empty())
-    want(with(meaning, "place", home), utterance, "go-to-place", {text("place", home)}, out, 0.0,
-         true);
+    want(with(meaning, "place", home), utterance, "go-to-place", {text("place", home)});
   else if (spot)
     want(with(meaning, "place", spot->place), utterance, "come-back",
-         {text("place", spot->place), point("spot", spot->pose_in_map, Frame::map)}, out, 0.0,
-         true);
+         {text("place", spot->place), point("spot", spot->pose_in_map, Frame::map)});
   else
     say(utterance, "I do not know where that is: my map has no place called home or start", true,
         out);
@@ -62,10 +55,6 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
 bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
                       const Situation& situation, Outputs& out) {
   const std::string& functor = meaning.functor;
-  const auto whom = [&](const std::string& name) {
-    const std::string known = place(name, situation);
-    return known.empty() ? name : known;
-  };
   // A place that the sentence names, or that of an owner; empty, and said, where there is none.
   const auto where = [&](const char* name) {
     Meaning referring = with(meaning, "place", slot(meaning, name));
@@ -76,46 +65,39 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
       say(utterance, wrong, true, out);
     return found;
   };
-  const auto back = [&] {
-    const std::string known = bring_to(utterance, situation);
-    return text("back", known);
-  };
+  const auto back = [&] { return text("back", bring_to(utterance, situation)); };
   if (functor == "deliver_here") {
     const bool office = !slot(meaning, "owner").empty();
-    const std::string to = office ? where("to") : whom(slot(meaning, "to"));
+    const std::string to = office ? where("to") : place_or_person(slot(meaning, "to"), situation);
     if (!to.empty())
       want(with(meaning, "to", to), utterance, "deliver",
            {text("object", "the " + slot(meaning, "object")), text("to", to),
-            text("sender", speaker_of(utterance))},
-           out, 0.0, true);
+            text("sender", named_person(utterance.speaker))});
   } else if (functor == "tell") {
     const std::string message = end_as_said(slot(meaning, "message"), utterance.text);
     want(with(meaning, "message", message), utterance, "tell",
          {text("person", slot(meaning, "person")), text("message", message),
-          text("sender", speaker_of(utterance)), back()},
-         out, 0.0, true);
+          text("sender", named_person(utterance.speaker)), back()});
   } else if (functor == "ask_person") {
     const std::string question = end_as_said(slot(meaning, "question"), utterance.text);
     want(meaning, utterance, "inquire",
          {text("person", slot(meaning, "person")), text("question", question),
-          text("sender", speaker_of(utterance)), back()},
-         out, 0.0, true);
+          text("sender", named_person(utterance.speaker)), back()});
   } else if (functor == "patrol") {
-    want(meaning, utterance, "patrol", {}, out, 0.0, true);
+    want(meaning, utterance, "patrol", {});
   } else if (functor == "guide") {
     const std::string to = where("place");
     if (!to.empty())
-      want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)},
-           out, 0.0, true);
+      want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)});
   } else if (functor == "pause") {
     const double unit = slot(meaning, "unit") == "minutes" ? 60.0 : 1.0;
     const double seconds = number_of(meaning, "time") * unit;
     if (seconds <= 0.0 || seconds > kLongestWait)
       say(utterance, "I wait for up to an hour", true, out);
     else
-      want(meaning, utterance, "pause", {number("seconds", seconds)}, out);
+      want(meaning, utterance, "pause", {number("seconds", seconds)});
   } else if (functor == "wait_there") {
-    want(meaning, utterance, "pause", {number("seconds", kWaitThere)}, out);
+    want(meaning, utterance, "pause", {number("seconds", kWaitThere)});
     wanted_.back().brief = false;
   } else if (functor == "come_back" || functor == "go_home") {
     go_back(meaning, utterance, situation, out);

@@ -36,7 +36,8 @@ std::string describe(const Meaning& meaning) {
   return text + ")";
 }
 
-std::vector<std::string> words_of(std::string_view text) {
+std::vector<std::string> words_of(std::string_view said) {
+  const std::string text = lowered(said);
   std::vector<std::string> words;
   std::string word;
   const auto end = [&] {
@@ -48,11 +49,11 @@ std::vector<std::string> words_of(std::string_view text) {
     const bool digit_follows =
         i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
     if (is_letter(c)) {
-      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      word += c;
     } else if (c == '.' && is_number(word) && digit_follows) {
       word += c;
     } else if (c == '\'' && !word.empty()) {
-      const bool owner = i + 1 < text.size() && (text[i + 1] == 's' || text[i + 1] == 'S') &&
+      const bool owner = i + 1 < text.size() && text[i + 1] == 's' &&
                          (i + 2 == text.size() || !is_letter(text[i + 2]));
       if (owner) {
         end();

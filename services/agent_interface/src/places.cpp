@@ -1,10 +1,12 @@
 // The part of the dialogue for places: what names, "this office", "here" and a pointing arm stand
 // for.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "saphira/agent_interface/pointing.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -31,7 +33,7 @@ std::string direction_of(const Vec2& from_robot) {
 
 /// A name in the letters of the text that it is from.
 std::string as_said(const std::string& name, const std::string& text) {
-  const std::size_t at = lower(text).rfind(name);
+  const std::size_t at = lowered(text).rfind(name);
   return at == std::string::npos ? name : text.substr(at, name.size());
 }
 
@@ -41,22 +43,34 @@ const maps::Feature* feature_at(const maps::Map& map, const Vec2& position,
                                 const std::optional<Pose>& arm, bool corridor) {
   if (corridor && arm)
     return area_at(map, *arm, true);
-  const maps::Feature* nearest = nullptr;
-  double distance = kDoorInSight;
-  for (const maps::Feature& feature : map.features) {
+  for (const maps::Feature& feature : map.features)
     if ((corridor ? feature.type == lps::PointType::corridor : is_room(feature.type)) &&
         feature.width > 0.0 && maps::contains(feature, position))
       return &feature;
-    const double away = (feature.pose_in_map.position() - position).norm();
-    if (!corridor && feature.type == lps::PointType::door && away < distance) {
-      nearest = &feature;
-      distance = away;
-    }
-  }
-  return arm ? doorway_at(map, *arm) : nearest;
+  return corridor ? nullptr
+         : arm    ? doorway_at(map, *arm)
+                  : nearest_door(map, position, kDoorInSight);
 }
 
 }  // namespace
+
+const maps::Feature* nearest_door(const maps::Map& map, const Vec2& position, double within,
+                                  const std::function<bool(const maps::Feature&)>& fits) {
+  const maps::Feature* nearest = nullptr;
+  for (const maps::Feature& feature : map.features) {
+    const double distance = (feature.pose_in_map.position() - position).norm();
+    if (feature.type != lps::PointType::door || distance >= within || !fits(feature))
+      continue;
+    nearest = &feature;
+    within = distance;
+  }
+  return nearest;
+}
+
+std::string here(const Situation& situation) {
+  return situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position())
+                               : std::string();
+}
 
 std::string place_at(const maps::Map& map, const Vec2& position) {
   std::string corridor;
@@ -94,9 +108,14 @@ std::string way_to(const std::string& place, const Situation& situation) {
 
 std::string Dialogue::place(const std::string& name, const Situation& situation) const {
   for (const maps::Feature& feature : situation.map.features)
-    if (!feature.name.empty() && lower(feature.name) == name)
+    if (!feature.name.empty() && lowered(feature.name) == name)
       return feature.name;
   return {};
+}
+
+std::string Dialogue::place_or_person(const std::string& name, const Situation& situation) const {
+  const std::string known = place(name, situation);
+  return known.empty() ? name : known;
 }
 
 std::string Dialogue::owner_in(const std::string& name) const {
@@ -115,19 +134,20 @@ std::string Dialogue::owner_in(const std::string& name) const {
 /// The destination "here" of things to bring. A corridor is long: there it is the speaker's own
 /// place, if its doorway is near.
 std::string Dialogue::bring_to(const Utterance& utterance, const Situation& situation) const {
-  const std::string own = place(lower(knowledge_.place_of(lower(utterance.speaker))), situation);
+  const std::string own =
+      place(lowered(knowledge_.place_of(lowered(utterance.speaker))), situation);
   if (!situation.pose_in_map)
     return own;
   const Vec2 robot = situation.pose_in_map->position();
-  bool in_room = false;
-  bool near = false;
-  for (const maps::Feature& feature : situation.map.features) {
-    in_room = in_room || (is_room(feature.type) && maps::contains(feature, robot));
-    near = near || (!own.empty() && feature.name == own && feature.type == lps::PointType::door &&
-                    (feature.pose_in_map.position() - robot).norm() < kDoorInSight);
-  }
-  const std::string here = place_at(situation.map, robot);
-  return here.empty() || (near && !in_room) ? own : here;
+  const bool in_room = std::any_of(
+      situation.map.features.begin(), situation.map.features.end(),
+      [&](const maps::Feature& one) { return is_room(one.type) && maps::contains(one, robot); });
+  const bool near = !own.empty() && nearest_door(situation.map, robot, kDoorInSight,
+                                                 [&](const maps::Feature& door) {
+                                                   return door.name == own;
+                                                 }) != nullptr;
+  const std::string place = here(situation);
+  return place.empty() || (near && !in_room) ? own : place;
 }
 
 std::string Dialogue::referred(const Meaning& meaning, const Situation& situation, Outputs& out,
@@ -148,7 +168,7 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
       std::vector<std::string> names;
       for (const maps::Feature& feature : situation.map.features)
         if (!feature.name.empty())
-          names.push_back(lower(feature.name));
+          names.push_back(lowered(feature.name));
       const std::string meant = guess(name, names);
       wrong = "I know no place called " + name +
               (meant.empty() ? "" : "; do you mean " + place(meant, situation) + "?");
@@ -156,7 +176,7 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
     return known;
   }
   if (!situation.pose_in_map) {
-    wrong = "I do not know where I am on the map";
+    wrong = kLost;
     return {};
   }
   // "This office" is the nearest doorway (paper 4.5), or before that the room around the robot. A
@@ -165,32 +185,26 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
   const std::optional<Pose>& arm = situation.pointing_in_map;
   if (meaning.functor != "office_of") {
     const maps::Feature* const area = arm ? area_at(situation.map, *arm, false) : nullptr;
-    const std::string here =
-        area != nullptr ? area->name : place_at(situation.map, robot.position());
-    if (here.empty())
+    const std::string name_here = area != nullptr ? area->name : here(situation);
+    if (name_here.empty())
       wrong = "where I am has no name on the map";
-    return here;
+    return name_here;
   }
-  const maps::Feature* nearest = nullptr;
-  double distance = kDoorInSight;
-  for (const maps::Feature& feature : situation.map.features) {
-    if (is_room(feature.type) && side.empty() && !feature.name.empty() &&
-        maps::contains(feature, robot.position())) {
-      artifact = feature.id;
-      return feature.name;
-    }
-    if (feature.type != lps::PointType::door)
-      continue;
-    const Vec2 from_robot = to_frame(robot, feature.pose_in_map.position());
-    if ((side == "left" && from_robot.y() <= 0.0) || (side == "right" && from_robot.y() >= 0.0) ||
-        from_robot.norm() >= distance)
-      continue;
-    nearest = &feature;
-    distance = from_robot.norm();
-  }
+  if (side.empty())
+    for (const maps::Feature& feature : situation.map.features)
+      if (is_room(feature.type) && !feature.name.empty() &&
+          maps::contains(feature, robot.position())) {
+        artifact = feature.id;
+        return feature.name;
+      }
   const bool points = arm && side.empty();
-  if (points)
-    nearest = doorway_at(situation.map, *arm);
+  const maps::Feature* const nearest =
+      points ? doorway_at(situation.map, *arm)
+             : nearest_door(situation.map, robot.position(), kDoorInSight,
+                            [&](const maps::Feature& door) {
+                              const double left = to_frame(robot, door.pose_in_map.position()).y();
+                              return side.empty() || (side == "left" ? left > 0.0 : left < 0.0);
+                            });
   if (nearest == nullptr) {
     wrong = points         ? "I know no doorway where you point"
             : side.empty() ? "I know no doorway here"
@@ -200,10 +214,9 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
   artifact = nearest->id;
   if (!nearest->name.empty())
     return nearest->name;
-  Naming naming{*nearest};
-  naming.feature.name = slot(meaning, "person") + "'s office";
-  out.namings.push_back(naming);
-  return naming.feature.name;
+  out.namings.push_back(*nearest);
+  out.namings.back().name = slot(meaning, "person") + "'s office";
+  return out.namings.back().name;
 }
 
 /// A name for the nameless room, doorway or corridor at the robot. A name that the map has stays.
@@ -213,27 +226,27 @@ bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
     return false;
   const std::string name = as_said(slot(meaning, "name"), utterance.text);
   const bool corridor = slot(meaning, "kind") == "corridor";
-  const std::string known = place(lower(name), situation);
+  const std::string known = place(lowered(name), situation);
   if (!situation.pose_in_map) {
-    say(utterance, "I do not know where I am on the map", true, out);
+    say(utterance, kLost, true, out);
     return true;
   }
-  const maps::Feature* const here = feature_at(situation.map, situation.pose_in_map->position(),
-                                               situation.pointing_in_map, corridor);
-  if (here == nullptr) {
+  const maps::Feature* const feature = feature_at(situation.map, situation.pose_in_map->position(),
+                                                  situation.pointing_in_map, corridor);
+  if (feature == nullptr) {
     say(utterance,
         std::string("I know no ") + (corridor ? "corridor" : "room or doorway") +
             (situation.pointing_in_map ? " where you point" : " here"),
         true, out);
-  } else if (!here->name.empty()) {
-    say(utterance, (here->name == known ? "I know: this is " : "on my map this is ") + here->name,
-        true, out);
+  } else if (!feature->name.empty()) {
+    say(utterance,
+        (feature->name == known ? "I know: this is " : "on my map this is ") + feature->name, true,
+        out);
   } else if (!known.empty()) {
     say(utterance, "my map has " + known + " at another place", true, out);
   } else {
-    Naming naming{*here};
-    naming.feature.name = name;
-    out.namings.push_back(naming);
+    out.namings.push_back(*feature);
+    out.namings.back().name = name;
     say(utterance, "I put it on my map: this is " + name, true, out);
   }
   return true;

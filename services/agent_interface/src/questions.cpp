@@ -1,7 +1,7 @@
 // The part of the dialogue for people's questions: about the robot, its reasons, and its knowledge.
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <limits>
 
 #include "words.hpp"
 
@@ -55,14 +55,12 @@ std::string step_in_words(const std::string& step) {
   return "the robot " + step.substr(colon + 2);
 }
 
-/// "Alice asked me to go to EJ-233", of an announcement.
-std::string asked_in_words(const std::string& speaker, const std::string& what) {
-  const std::string who = speaker.empty() ? "somebody" : speaker;
-  constexpr std::string_view kYou = " you";
-  if (what.ends_with(kYou))
-    return asked_in_words(speaker, what.substr(0, what.size() - kYou.size() + 1) + who);
-  return who + (what.starts_with("I ") ? " asked me to " + what.substr(2)
-                                       : " asked me: \"" + what + "\"");
+/// The state of a goal with the best explanation that is known of it.
+std::string state_of(const KnownGoal& goal) {
+  const std::string detail = !goal.reason.empty() ? goal.reason
+                             : !goal.note.empty() ? goal.note
+                                                  : step_in_words(goal.step);
+  return state_in_words(goal.state) + (detail.empty() ? "" : ": " + detail);
 }
 
 }  // namespace
@@ -81,79 +79,84 @@ std::string Dialogue::why(const Situation& situation) const {
   const KnownGoal* const goal = reason_of(situation.goals);
   if (ended_ && (goal == nullptr || (!is_open(*goal) && goal->asker.empty()) ||
                  (goal->tag == stop_ && stop_ != 0 && !ended_->success)))
-    return asked_in_words(ended_->speaker, ended_->what) +
-           (ended_->success ? "; that is done: " : "; that failed: ") + ended_->reason;
+    return ended_->task + (ended_->success ? " is done: " : " failed: ") + ended_->reason;
   if (goal == nullptr)
     return "I have nothing to do";
-  const Task* const asked = goal->tag == 0 ? nullptr : tasks_.find(goal->tag);
-  const bool underway = goal->state == KnownGoal::State::underway;
-  const std::string reason = underway ? step_in_words(goal->reason) : goal->reason;
-  if (asked != nullptr)
-    return asked_in_words(asked->goal.speaker, asked->what) +
-           (underway
-                ? (reason.empty() ? "" : "; " + reason)
-                : "; that " + state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason));
-  return goal->functor + (goal->asker.empty() ? "" : " of " + goal->asker) + " " +
-         state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason);
+  const Task* const own = tasks_.find(goal->tag);
+  return (own != nullptr ? named_task(*own, "")
+                         : goal->functor + (goal->asker.empty() ? "" : " of " + goal->asker)) +
+         " " + state_of(*goal);
 }
 
-bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
-                        const Situation& situation, Outputs& out) {
-  if (meaning.functor == "where_are_you") {
-    const std::string here =
-        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
+bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utterance,
+                                    const Situation& situation, Outputs& out) const {
+  const std::string& functor = meaning.functor;
+  const std::string place = here(situation);
+  if (functor == "where_are_you") {
     say(utterance,
-        !situation.pose_in_map ? "I do not know where I am on the map"
-        : here.empty()         ? "I am at a place without a name"
-                               : "I am in " + here,
+        !situation.pose_in_map ? kLost
+        : place.empty()        ? "I am at a place without a name"
+                               : "I am in " + place,
         true, out);
-  } else if (meaning.functor == "what_are_you_doing") {
+  } else if (functor == "are_you_lost") {
+    say(utterance,
+        !situation.pose_in_map ? std::string("yes: ") + kLost
+        : place.empty()        ? "no, but this place has no name"
+                               : "no: I am in " + place,
+        true, out);
+  } else if (functor == "you_are_in") {
+    std::uint32_t artifact = 0;
+    std::string wrong;
+    const std::string at = referred(meaning, situation, out, artifact, wrong);
+    say(utterance,
+        at.empty() ? wrong
+        : at == place
+            ? "I know: I am in " + at
+            : (place.empty() ? "" : "I think that I am in " + place + ". ") + "To put me in " + at +
+                  " I need the exact place: saphira map place X Y HEADING, or saphira map find",
+        true, out);
+  } else if (functor == "what_are_you_doing") {
     say(utterance, doing(situation), true, out);
-  } else if (meaning.functor == "why") {
+  } else if (functor == "why") {
     say(utterance, why(situation), true, out);
-  } else if (meaning.functor == "what_can_you_do") {
+  } else if (functor == "what_can_you_do") {
     say(utterance, grammar_.paraphrase(meaning), true, out);
-  } else if (meaning.functor == "where_is") {
-    const std::string person = slot(meaning, "person");
-    const std::string owner = place(person, situation).empty() ? owner_in(person) : std::string();
-    if (!owner.empty())
-      return question(with({"where_office", {}}, "person", owner), utterance, situation, out);
-    std::string text = told_of(person);
-    if (text.empty())
-      text = way_to(place(person, situation), situation);
-    say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
-  } else if (meaning.functor == "where_office") {
-    const std::string person = slot(meaning, "person");
-    const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
-    say(utterance,
-        office == nullptr ? "nobody has told me where " + person + "'s office is"
-                          : as_told(*office),
-        true, out);
   } else {
     return false;
   }
   return true;
 }
 
-bool Dialogue::inquiry(const Meaning& meaning, const Utterance& utterance,
-                       const Situation& situation, Outputs& out) const {
+bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utterance,
+                                    const Situation& situation, Outputs& out) const {
   const std::string& functor = meaning.functor;
   const std::vector<Advice>& known = knowledge_.all();
-  if (functor == "nearest") {
-    const maps::Feature* nearest = nullptr;
-    double distance = 0.0;
-    for (const maps::Feature& feature : situation.map.features) {
-      if (!situation.pose_in_map || feature.type != lps::PointType::door || feature.name.empty())
-        continue;
-      const double away =
-          (feature.pose_in_map.position() - situation.pose_in_map->position()).norm();
-      if (nearest == nullptr || away < distance) {
-        nearest = &feature;
-        distance = away;
-      }
-    }
+  if (functor == "where_is") {
+    const std::string person = slot(meaning, "person");
+    const std::string owner = place(person, situation).empty() ? owner_in(person) : std::string();
+    if (!owner.empty())
+      return question_about_world(with({"where_office", {}}, "person", owner), utterance, situation,
+                                  out);
+    std::string text = told_of(person);
+    if (text.empty())
+      text = way_to(place(person, situation), situation);
+    say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
+  } else if (functor == "where_office") {
+    const std::string person = slot(meaning, "person");
+    const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
     say(utterance,
-        !situation.pose_in_map ? "I do not know where I am on the map"
+        office == nullptr ? "nobody has told me where " + person + "'s office is"
+                          : as_told(*office),
+        true, out);
+  } else if (functor == "nearest") {
+    const maps::Feature* const nearest =
+        situation.pose_in_map
+            ? nearest_door(situation.map, situation.pose_in_map->position(),
+                           std::numeric_limits<double>::infinity(),
+                           [](const maps::Feature& door) { return !door.name.empty(); })
+            : nullptr;
+    say(utterance,
+        !situation.pose_in_map ? kLost
         : nearest == nullptr   ? "I know no door with a name"
                                : "the nearest door with a name is that of " + nearest->name +
                                    ": say go to " + nearest->name,
@@ -175,14 +178,6 @@ bool Dialogue::inquiry(const Meaning& meaning, const Utterance& utterance,
     for (std::size_t i = 0; i < std::min(known.size(), kFewFacts); ++i)
       newest += "; " + as_told(known[known.size() - 1 - i]);
     say(utterance, known.empty() ? "nobody has told me anything" : "I know " + counts + newest,
-        true, out);
-  } else if (functor == "are_you_lost") {
-    const std::string here =
-        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
-    say(utterance,
-        !situation.pose_in_map ? "yes: I do not know where I am on the map"
-        : here.empty()         ? "no, but this place has no name"
-                               : "no: I am in " + here,
         true, out);
   } else if (functor == "is_there" || functor == "who_is_in") {
     const bool people = functor == "who_is_in";
@@ -210,19 +205,6 @@ bool Dialogue::inquiry(const Meaning& meaning, const Utterance& utterance,
                    : "nobody has told me of a " + slot(meaning, "kind") +
                          (at.empty() ? "" : " at " + at);
     say(utterance, all, true, out);
-  } else if (functor == "you_are_in") {
-    std::uint32_t artifact = 0;
-    std::string wrong;
-    const std::string at = referred(meaning, situation, out, artifact, wrong);
-    const std::string here =
-        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
-    say(utterance,
-        at.empty() ? wrong
-        : at == here
-            ? "I know: I am in " + at
-            : (here.empty() ? "" : "I think that I am in " + here + ". ") + "To put me in " + at +
-                  " I need the exact place: saphira map place X Y HEADING, or saphira map find",
-        true, out);
   } else {
     return false;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
@@ -15,22 +14,6 @@ constexpr double kLongestHold = 600.0;  // [s]
 
 bool is_stop(const Task& task) {
   return task.goal.functor == "stop";
-}
-
-bool same_person(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
-}
-
-std::string named_person(const std::string& name) {
-  return name.empty() ? "somebody" : name;
-}
-
-/// "the mail for alice"; for the person themselves without their name.
-std::string named_task(const Task& task, const std::string& to) {
-  return (task.name.empty() ? "that" : task.name) +
-         (same_person(task.goal.speaker, to) ? "" : " for " + named_person(task.goal.speaker));
 }
 
 std::string whole_text(const Task& task) {
@@ -112,7 +95,7 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
                                               : "I am " + other->doing + " for " + owner) +
                             ". Shall I drop that?",
                         true});
-    question_ = Question{{std::move(first)}, utterance.speaker, utterance.text, utterance.time};
+    question_ = Question{std::move(first), utterance};
     return out;
   }
   std::string text = whole_text(first);
@@ -133,9 +116,7 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
 }
 
 bool Tasks::asks(const Utterance& utterance) const {
-  return question_ && same_person(question_->speaker, utterance.speaker) &&
-         (question_->time <= 0.0 || utterance.time <= 0.0 ||
-          utterance.time - question_->time <= kPatience);
+  return question_ && may_answer(utterance, question_->raised_by);
 }
 
 Tasks::Outputs Tasks::answer(bool yes, const Utterance& utterance) {
@@ -152,9 +133,10 @@ Tasks::Outputs Tasks::answer(bool yes, const Utterance& utterance) {
          true});
     return out;
   }
-  drop(false, question.speaker, question.text, out);
-  drop(true, question.speaker, question.text, out);
-  Task task = std::move(question.steps.front());
+  const Utterance& raised_by = question.raised_by;
+  drop(false, raised_by.speaker, raised_by.text, out);
+  drop(true, raised_by.speaker, raised_by.text, out);
+  Task task = std::move(question.task);
   task.answers = utterance.id;
   for (Task& step : task.then)
     step.answers = utterance.id;

@@ -2,6 +2,7 @@
 // follow.
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "words.hpp"
 
@@ -43,10 +44,10 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
   // A person's place changes all the time; the owner of an office does not.
   if (known != nullptr && advice.kind == Advice::Kind::office_of) {
     say(utterance,
-        speaker_of(*known) + " told me that " + describe(*known) + ". Is it now " + advice.value +
-            "?",
+        named_person(known->speaker) + " told me that " + describe(*known) + ". Is it now " +
+            advice.value + "?",
         true, out);
-    doubt_ = Doubt{advice, utterance.speaker};
+    doubt_ = Doubt{advice, utterance};
     return;
   }
   say(utterance, "I know now that " + describe(advice), true, out);
@@ -113,7 +114,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
 /// also answers the question.
 void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
                            const Situation& situation, Outputs& out) const {
-  if (situation.asked_about.empty() || lower(situation.asked_for) != advice.about)
+  if (situation.asked_about.empty() || lowered(situation.asked_for) != advice.about)
     return;
   if (advice.kind == Advice::Kind::person_at ||
       (advice.kind == Advice::Kind::knows_where && knowledge_.findable(advice.value)))
@@ -182,24 +183,29 @@ void Dialogue::learn(const Advice& advice, Outputs& out) {
   knowledge_.learn(advice);
   if (advice.kind == Advice::Kind::person_at || advice.kind == Advice::Kind::office_of)
     std::erase_if(gone_, [&](const Gone& one) { return one.person == advice.about; });
-  out.learned = true;
+  out.changed = true;
   claim_changes(before, "", out);
 }
 
-Dialogue::Outputs Dialogue::found(const std::string& person, const std::string& place, double time,
-                                  bool before) {
+Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
   Outputs out;
-  Advice advice;
-  advice.kind = Advice::Kind::person_at;
-  advice.about = lower(person);
-  if (before && (knowledge_.find(advice.kind, advice.about) != nullptr ||
-                 std::any_of(gone_.begin(), gone_.end(),
-                             [&](const Gone& one) { return one.person == advice.about; })))
-    return out;
-  advice.value = place;
-  advice.speaker = kRobot;
-  advice.time = time;
-  learn(advice, out);
+  const std::vector<Find> known = std::exchange(found_, finds);
+  const bool before = !std::exchange(looked_, true);
+  for (const Find& find : finds) {
+    if (std::find(known.begin(), known.end(), find) != known.end())
+      continue;
+    Advice advice;
+    advice.kind = Advice::Kind::person_at;
+    advice.about = lowered(find.person);
+    if (before && (knowledge_.find(advice.kind, advice.about) != nullptr ||
+                   std::any_of(gone_.begin(), gone_.end(),
+                               [&](const Gone& one) { return one.person == advice.about; })))
+      continue;
+    advice.value = find.place;
+    advice.speaker = kRobot;
+    advice.time = now;
+    learn(advice, out);
+  }
   return out;
 }
 
@@ -214,7 +220,7 @@ void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* bec
   const std::optional<Advice> forgotten = knowledge_.forget(number);
   if (!forgotten)
     return;
-  out.learned = true;
+  out.changed = true;
   const bool hazard = forgotten->kind == Advice::Kind::hazard;
   const bool knows = forgotten->kind == Advice::Kind::knows_where;
   const std::string name =
@@ -241,7 +247,8 @@ std::vector<Claimed> Dialogue::claims() const {
   const auto source = [](const Advice& advice) {
     return advice.speaker == kRobot
                ? kRobot + (" found " + advice.about) + " " + time_text(advice.time) + "there"
-               : speaker_of(advice) + " said " + time_text(advice.time) + "\"" + advice.said + "\"";
+               : named_person(advice.speaker) + " said " + time_text(advice.time) + "\"" +
+                     advice.said + "\"";
   };
   const auto join = [&](Claimed& all, const Advice& advice, const std::string& value,
                         const char* between) {

@@ -1,8 +1,9 @@
 #include "words.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
 
@@ -20,27 +21,34 @@ Meaning with(Meaning meaning, const std::string& name, const std::string& value)
   return meaning;
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+std::string named_person(const std::string& name) {
+  return name.empty() ? "somebody" : name;
 }
 
-std::string speaker_of(const Advice& advice) {
-  return advice.speaker.empty() ? "somebody" : advice.speaker;
+std::string named_task(const Task& task, const std::string& listener) {
+  return (task.name.empty() ? "that" : task.name) +
+         (same_person(task.goal.speaker, listener) ? ""
+                                                   : " for " + named_person(task.goal.speaker));
 }
 
-std::string speaker_of(const Utterance& utterance) {
-  return utterance.speaker.empty() ? "somebody" : utterance.speaker;
+bool same_person(const std::string& a, const std::string& b) {
+  return lowered(a) == lowered(b);
+}
+
+bool may_answer(const Utterance& utterance, const Utterance& raised_by) {
+  constexpr double kPatience = 20.0;  // [s]
+  return same_person(utterance.speaker, raised_by.speaker) &&
+         (utterance.time <= 0.0 || raised_by.time <= 0.0 ||
+          utterance.time - raised_by.time <= kPatience);
 }
 
 std::string as_told(const Advice& advice) {
   return advice.speaker == kRobot ? "I found " + advice.about + " at " + advice.value
-                                  : speaker_of(advice) + " said that " + describe(advice);
+                                  : named_person(advice.speaker) + " said that " + describe(advice);
 }
 
 std::string claim_source(const Utterance& utterance) {
-  return speaker_of(utterance) + " said \"" + utterance.text + "\"";
+  return named_person(utterance.speaker) + " said \"" + utterance.text + "\"";
 }
 
 bool is_rule(const Advice& advice) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,11 +15,15 @@ double number_of(const Meaning& meaning, const std::string& name);
 /// The meaning with another value of a slot.
 Meaning with(Meaning meaning, const std::string& name, const std::string& value);
 
-std::string lower(std::string text);
+/// "somebody" for an empty name.
+std::string named_person(const std::string& name);
+/// "the mail for alice"; for the listener's own task without that name.
+std::string named_task(const Task& task, const std::string& listener);
+bool same_person(const std::string& a, const std::string& b);
+/// True where this utterance may answer a question of the robot with yes or no: it is of the
+/// speaker whose words raised the question, and comes within 20 s of them.
+bool may_answer(const Utterance& utterance, const Utterance& raised_by);
 
-/// "somebody" where the speaker has no name.
-std::string speaker_of(const Advice& advice);
-std::string speaker_of(const Utterance& utterance);
 /// "Alice said that karen is at EJ-231".
 std::string as_told(const Advice& advice);
 /// The origin of a claim that follows from an utterance.
@@ -34,6 +39,15 @@ bool is_open(const KnownGoal& goal);
 std::string field(std::string text);
 std::vector<std::string> fields(std::string_view line);
 
+inline constexpr const char* kLost = "I do not know where I am on the map";
+/// The robot's place in the map's words; empty: unknown, or nameless.
+std::string here(const Situation& situation);
+/// The nearest doorway within that distance [m] that `fits`; nullptr: none.
+const maps::Feature* nearest_door(
+    const maps::Map& map, const Vec2& position, double within,
+    const std::function<bool(const maps::Feature&)>& fits = [](const maps::Feature&) {
+      return true;
+    });
 /// The way to a place of the map, as the crow flies. Empty: no such place.
 std::string way_to(const std::string& place, const Situation& situation);
 

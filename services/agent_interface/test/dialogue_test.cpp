@@ -113,8 +113,8 @@ TEST_F(DialogueTest, AnOfficeOnASideIsOnThatSideAndANamelessDoorwayGetsAName) {
   EXPECT_EQ(said("Flakey, the door on the right is Bob's office"),
             "I know now that bob's office is bob's office");
   ASSERT_EQ(last.namings.size(), 1u);
-  EXPECT_EQ(last.namings[0].feature.id, 1235u);
-  EXPECT_EQ(last.namings[0].feature.name, "bob's office");
+  EXPECT_EQ(last.namings[0].id, 1235u);
+  EXPECT_EQ(last.namings[0].name, "bob's office");
   situation.pose_in_map.reset();
   EXPECT_EQ(said("Flakey, this is Ann's office"), "I do not know where I am on the map");
 }
@@ -130,7 +130,7 @@ TEST_F(DialogueTest, ThisOfficeIsTheOneAtWhichAPersonPoints) {
   EXPECT_EQ(dialogue.knowledge().all().at(0).artifact, 1233u);
   points(-130.0);
   EXPECT_EQ(said("Flakey, this office is Bob's"), "I know now that bob's office is bob's office");
-  EXPECT_EQ(last.namings.at(0).feature.id, 1235u);
+  EXPECT_EQ(last.namings.at(0).id, 1235u);
   points(-10.0);
   EXPECT_EQ(said("Flakey, this is Ann's office"), "I know now that EJ-233 is ann's office");
   points(-60.0);
@@ -151,12 +151,12 @@ TEST_F(DialogueTest, HereIsWhereAPersonPoints) {
             "I know now that there is a spill at upper corridor");
   situation.pointing_in_map = Pose{3.2, 0.6, -std::numbers::pi / 2.0};
   EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
-  EXPECT_EQ(last.namings.at(0).feature.id, 1235u);
+  EXPECT_EQ(last.namings.at(0).id, 1235u);
   situation.map.features.push_back(
       {lps::PointType::corridor, 2, Pose{8.0, -3.0, -std::numbers::pi / 2.0}, 6.0, 2.0, "", false});
   situation.pointing_in_map = Pose{8.0, 0.8, -1.5};
   EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
-  EXPECT_EQ(last.namings.at(0).feature.id, 2u);
+  EXPECT_EQ(last.namings.at(0).id, 2u);
 }
 
 TEST_F(DialogueTest, AContradictionIsAskedBack) {
@@ -207,7 +207,7 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   const Dialogue::Outputs out = dialogue.forget(2);
   EXPECT_EQ(out.claims.at(0).name, "knows-where-karen");
   EXPECT_EQ(out.claims.at(0).value, "");
-  EXPECT_FALSE(dialogue.forget(2).learned);
+  EXPECT_FALSE(dialogue.forget(2).changed);
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
 }
 
@@ -321,34 +321,30 @@ TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
   EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
 }
 
-TEST_F(DialogueTest, TheReasonBeginsWithWhatWasAskedAndByWhom) {
+TEST_F(DialogueTest, TheReasonBeginsWithTheTaskAndItsOwner) {
   using State = KnownGoal::State;
   hear("Flakey, take the mail from EJ-231 to Alice");
   const std::uint64_t tag = last.goals.at(0).tag;
-  situation.goals = {
-      {"deliver", "", State::underway, "through-door: passes a door or another opening", tag}};
+  situation.goals = {{"deliver", "", State::underway, "", tag}};
+  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway");
+  situation.goals[0].step = "through-door: passes a door or another opening";
   EXPECT_EQ(said("Flakey, why?", "Bob"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot passes "
-            "a door or another opening");
-  situation.goals[0].reason = "ask: asks people something, and waits for the answer";
+            "the mail for Alice is underway: the robot passes a door or another opening");
+  situation.goals[0].step = "waits for a person";
+  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: waits for a person");
+  // The reason of the state goes before a note, and that before the step.
+  situation.goals[0].note = "was begun anew at its first step";
   EXPECT_EQ(said("Flakey, why?"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot asks "
-            "people something, and waits for the answer");
-  situation.goals[0].reason = "find-position: moves about until the robot knows where it is";
-  EXPECT_EQ(said("Flakey, why?"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot moves "
-            "about until the robot knows where it is");
+            "the mail for Alice is underway: was begun anew at its first step");
+  situation.goals[0].reason = "changed by its requester";
+  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: changed by its requester");
   situation.goals[0] = {"deliver", "", State::suspended, "drive is more important", tag};
-  EXPECT_EQ(said("Flakey, why?"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; that is suspended: "
-            "drive is more important");
+  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is suspended: drive is more important");
 }
 
 TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
   using State = KnownGoal::State;
-  const std::string failed =
-      "Alice asked me to get the mail from ej-231 and bring it to john; that failed: nobody at "
-      "EJ-231 gave the robot the mail";
+  const std::string failed = "the mail for Alice failed: nobody at EJ-231 gave the robot the mail";
   hear("Flakey, take the mail from EJ-231 to John");
   dialogue.ended({last.goals.at(0).tag, false, "nobody at EJ-231 gave the robot the mail"});
   situation.goals = {{"deliver", "", State::failed, "nobody at EJ-231 gave the robot the mail"}};
@@ -367,13 +363,16 @@ TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
   hear("Flakey, follow me", "Bob");
   situation.goals.push_back(
       {"follow-person", "", State::underway, "waits for a person", last.goals.at(0).tag});
-  EXPECT_EQ(said("Flakey, why?"), "Bob asked me to follow Bob; waits for a person");
+  EXPECT_EQ(said("Flakey, why?"), "the walk for Bob is underway: waits for a person");
   situation.goals.pop_back();
   hear("Flakey, turn left");
   dialogue.ended({last.goals.at(0).tag, true, "turned"});
   situation.goals.push_back({"turn_to", "", State::over, "turned"});
-  EXPECT_EQ(said("Flakey, why?"),
-            "Alice asked me to turn 90 degrees to the left; that is done: turned");
+  EXPECT_EQ(said("Flakey, why?"), "the turn for Alice is done: turned");
+  hear("Flakey, stop");
+  dialogue.ended({last.goals.at(0).tag, true, "at rest"});
+  situation.goals = {{"stop", "", State::over, "at rest"}};
+  EXPECT_EQ(said("Flakey, why?"), "the stop for Alice is done: at rest");
 }
 
 TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
@@ -479,15 +478,15 @@ TEST_F(DialogueTest, WhatIsNamelessOnTheMapGetsAName) {
   situation.pose_in_map = Pose{3.0, 0.5, 0.0};
   EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
   ASSERT_EQ(last.namings.size(), 1u);
-  EXPECT_EQ(last.namings[0].feature.id, 1235u);
-  EXPECT_EQ(last.namings[0].feature.name, "Kitchen");
+  EXPECT_EQ(last.namings[0].id, 1235u);
+  EXPECT_EQ(last.namings[0].name, "Kitchen");
   EXPECT_EQ(said("Flakey, this room is called EJ-233"), "my map has EJ-233 at another place");
   EXPECT_TRUE(last.namings.empty());
   for (maps::Feature& feature : situation.map.features)
     if (feature.type == lps::PointType::corridor)
       feature.name.clear();
   EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
-  EXPECT_EQ(last.namings.at(0).feature.type, lps::PointType::corridor);
+  EXPECT_EQ(last.namings.at(0).type, lps::PointType::corridor);
 }
 
 TEST_F(DialogueTest, ThingsAreBroughtToWhoIsNearTheirOwnRoom) {
@@ -547,11 +546,49 @@ TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   hear("no, sorry");
   EXPECT_EQ(last.claims.size(), 1u);
   // What an activity finds takes the place of what was said.
-  const Dialogue::Outputs out = dialogue.found("karen", "EJ-231", now);
+  dialogue.found({}, now);
+  const Dialogue::Outputs out = dialogue.found({{"karen", "EJ-231", 70}}, now);
   ASSERT_EQ(out.claims.size(), 1u);
   EXPECT_EQ(out.claims[0].value, "EJ-231");
   EXPECT_EQ(said("Flakey, where is Karen?"),
             "I found karen at EJ-231; John said that bob knows where karen is");
+}
+
+TEST_F(DialogueTest, AFindIsLearnedOnceAndNotWhereItIsOlderThanTheDialogue) {
+  hear("Flakey, Karen is in EJ-233");
+  dialogue.found({{"Karen", "EJ-231", 70}, {"John", "EJ-231", 71}}, now);
+  EXPECT_EQ(dialogue.knowledge().place_of("karen"), "EJ-233");
+  EXPECT_EQ(dialogue.knowledge().place_of("john"), "EJ-231");
+  EXPECT_FALSE(dialogue.found({{"Karen", "EJ-231", 70}, {"John", "EJ-231", 71}}, now).changed);
+  EXPECT_TRUE(dialogue.found({{"Karen", "EJ-231", 80}, {"John", "EJ-231", 71}}, now).changed);
+  EXPECT_EQ(dialogue.knowledge().all().back().value, "EJ-231");
+  EXPECT_EQ(dialogue.knowledge().all().back().about, "karen");
+  EXPECT_EQ(dialogue.knowledge().all().back().time, now);
+}
+
+TEST_F(DialogueTest, AnUtteranceOfMoreThanAMinuteAgoIsNotActedOn) {
+  situation.now = now + 60.1;
+  EXPECT_EQ(said("Flakey, go forward"), "");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(last.note, "not acted on, since it is older than a minute: \"Flakey, go forward\"");
+  situation.now = now + 59.9;
+  EXPECT_EQ(said("Flakey, go forward"), "I go forward 1 m");
+  EXPECT_EQ(last.note, "");
+  situation.now = now + 60.1;
+  now = 0.0;  // unknown
+  EXPECT_EQ(said("Flakey, stop"), "I stop / I drop the move");
+}
+
+TEST_F(DialogueTest, AnActivityIsHeardWhileTheDialogueHasAGoal) {
+  EXPECT_TRUE(dialogue.says("Is anybody here?", {3, 40}).said.empty());
+  hear("Flakey, get the mail from John");
+  const Dialogue::Outputs out = dialogue.says("Is anybody here?", {3, 41});
+  ASSERT_EQ(out.said.size(), 1u);
+  EXPECT_EQ(out.said[0].text, "Is anybody here?");
+  EXPECT_EQ(out.said[0].answers, (UtteranceId{7, 1}));
+  EXPECT_TRUE(out.changed);
+  EXPECT_TRUE(dialogue.ended({last.goals.at(0).tag, true, "brought"}).changed);
+  EXPECT_TRUE(dialogue.says("Is anybody here?", {3, 42}).said.empty());
 }
 
 TEST_F(DialogueTest, AReplyAboutAnotherPersonIsNoAnswer) {
@@ -627,9 +664,15 @@ TEST_F(DialogueTest, TheTaskOfSomebodyElseIsDroppedOnlyAfterAQuestion) {
   EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"),
             "I am bringing the mail for Alice. Shall I drop that?");
   EXPECT_TRUE(last.goals.empty());
-  EXPECT_EQ(said("good morning", "Bob"), "");
+  EXPECT_EQ(said("good morning", "Alice"), "");
   EXPECT_EQ(said("yes", "Carol"), "");
   EXPECT_EQ(said("no", "Bob"), "good: I go on with the mail for Alice");
+  EXPECT_EQ(said("yes", "Bob"), "");
+  hear("Flakey, go to EJ-233", "Bob");
+  EXPECT_EQ(said("good morning", "Bob"), "");
+  EXPECT_EQ(said("yes", "Bob"), "") << "another sentence of Bob has ended the question";
+  hear("Flakey, go to EJ-233", "Bob");
+  now += 21.0;
   EXPECT_EQ(said("yes", "Bob"), "");
   hear("Flakey, go to EJ-233", "Bob");
   EXPECT_EQ(said("yes please", "Bob"),

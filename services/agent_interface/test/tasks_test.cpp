@@ -112,6 +112,14 @@ TEST_F(TasksTest, TheQuestionIsOpenForTwentySeconds) {
   EXPECT_EQ(reply(false, "bob", 1019.9), "bob: good: I go on with the mail for alice.\n");
 }
 
+TEST_F(TasksTest, AWithdrawnQuestionIsNotAnswered) {
+  want({errand("alice", "the mail")}, "alice");
+  want({errand("bob", "the book")}, "bob");
+  tasks.withdraw_question();
+  EXPECT_EQ(reply(true, "bob"), "not asked");
+  EXPECT_FALSE(tasks.empty());
+}
+
 TEST_F(TasksTest, AnythingElseThatTheRobotBeginsEndsTheQuestion) {
   want({errand("alice", "the mail")}, "alice");
   want({errand("bob", "the book")}, "bob");

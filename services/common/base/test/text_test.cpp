@@ -9,6 +9,10 @@
 namespace saphira {
 namespace {
 
+TEST(Text, LoweredChangesCapitalLettersAlone) {
+  EXPECT_EQ(lowered("EJ-231 [@Z`{\xC4"), "ej-231 [@z`{\xC4");
+}
+
 TEST(Text, SplitsWordsAndDropsComments) {
   const auto lines = split_lines("; head\n\n  width 38000 ; mm\r\n\tpop\n");
   ASSERT_EQ(lines.size(), 2U);

@@ -6,6 +6,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::maps {
 
@@ -49,13 +50,6 @@ std::optional<Feature> crossing(const Feature& a, const Feature& b) {
   junction.length = b.width;
   junction.width = a.width;
   return junction;
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
 }
 
 }  // namespace
@@ -365,8 +359,8 @@ std::optional<Place> Topology::place(std::string_view name_or_id) const {
   }
   if (auto found = search([&](const Feature& feature) { return feature.name == name_or_id; }))
     return found;
-  const std::string small = lower(name_or_id);
-  return search([&](const Feature& feature) { return lower(feature.name) == small; });
+  const std::string small = lowered(name_or_id);
+  return search([&](const Feature& feature) { return lowered(feature.name) == small; });
 }
 
 std::string Topology::text(std::size_t region) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,9 +28,13 @@ struct Claimed {
   friend bool operator==(const Claimed&, const Claimed&) = default;
 };
 
-/// A new name of an artifact of the map.
-struct Naming {
-  maps::Feature feature;
+/// A place where an activity believes to have found a person.
+struct Find {
+  std::string person;
+  std::string place;
+  std::uint64_t since = 0;  ///< cycle of the newest change
+
+  friend bool operator==(const Find&, const Find&) = default;
 };
 
 /// A goal of anybody.
@@ -40,8 +43,10 @@ struct KnownGoal {
   std::string functor;
   std::string asker;  ///< empty: this dialogue
   State state = State::underway;
-  std::string reason;
+  std::string reason;     ///< of the state, in words; empty: none
   std::uint64_t tag = 0;  ///< of this dialogue's goals that have not ended
+  std::string note{};     ///< beside the state; empty: none
+  std::string step{};     ///< of the work, such as "through-door: passes a door"; empty: none
 };
 
 /// The world as the dialogue knows it, beside the advice.
@@ -53,6 +58,7 @@ struct Situation {
   std::vector<KnownGoal> goals;  ///< the newest change last
   /// A person who points: their place, with the heading of the arm (pointing.hpp).
   std::optional<Pose> pointing_in_map{};
+  double now = 0.0;  ///< [s] since 1970; 0: unknown, as in lockstep
 };
 
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
@@ -67,8 +73,9 @@ class Dialogue {
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
     std::vector<WantedGoal> goals;
     std::vector<Claimed> claims;
-    std::vector<Naming> namings;
-    bool learned = false;  ///< knowledge(), or the newest utterance, has changed
+    std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
+    bool changed = false;                ///< save() has other contents
+    std::string note;                    ///< for the log; empty: none
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
@@ -76,14 +83,14 @@ class Dialogue {
   void asked(std::uint64_t tag, const GoalRef& goal) { tasks_.asked(tag, goal); }
   /// The lasting goals that have not ended, by tag.
   std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const { return tasks_.lasting(); }
-  /// An activity's message to people. Messages from before a restart are not repeated.
+  /// An activity's message to people. Messages from before a restart, and those of activities while
+  /// this dialogue has no goal, are not said.
   Outputs says(const std::string& text, const CycleRef& when);
   /// Withdraws advice by its number. Says so where that number is unknown.
   Outputs forget(std::uint64_t number);
-  /// An activity has found a person. `before`: it was found before this dialogue began; then newer
-  /// words of people count instead.
-  Outputs found(const std::string& person, const std::string& place, double time,
-                bool before = false);
+  /// All present finds of activities; those that are new are learned. The first ones may be from
+  /// before this dialogue began: what it knows of those people already counts instead.
+  Outputs found(const std::vector<Find>& finds, double now);
 
   const Knowledge& knowledge() const { return knowledge_; }
   /// The claims for activities that follow from all advice, after a start.
@@ -98,15 +105,14 @@ class Dialogue {
  private:
   struct Doubt {  ///< contradicting advice, until its speaker says yes or no
     Advice advice;
-    std::string speaker;
+    Utterance raised_by;
   };
   struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
     std::string source;
   };
-  struct Ended {  ///< the newest goal that has ended
-    std::string what;
-    std::string speaker;
+  struct Ended {       ///< the newest goal that has ended
+    std::string task;  ///< in words
     bool success = false;
     std::string reason;
   };
@@ -122,15 +128,15 @@ class Dialogue {
   /// Tasks for people that are not in 4.6 of the paper (errands.cpp).
   bool errand(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
-  /// Questions about what the robot knows (questions.cpp).
-  bool inquiry(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
-               Outputs& out) const;
   /// Keeps the place where a new task begins, for "come back".
   void note_begin(const Situation& situation, const Outputs& out);
   void go_back(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                Outputs& out);
-  bool question(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
-                Outputs& out);
+  bool question_about_robot(const Meaning& meaning, const Utterance& utterance,
+                            const Situation& situation, Outputs& out) const;
+  /// People, places and hazards.
+  bool question_about_world(const Meaning& meaning, const Utterance& utterance,
+                            const Situation& situation, Outputs& out) const;
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
   bool correction(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -159,7 +165,7 @@ class Dialogue {
   void choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
                Outputs& out) const;
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
-            Arguments arguments, Outputs& out, double deadline = 0.0, bool lasting = false);
+            Arguments arguments, double deadline = 0.0);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
   /// The robot's present goals in words: its own one, and those of others.
   std::string doing(const Situation& situation) const;
@@ -167,6 +173,8 @@ class Dialogue {
   std::string bring_to(const Utterance& utterance, const Situation& situation) const;
   /// The place of the map with that name; empty: none.
   std::string place(const std::string& name, const Situation& situation) const;
+  /// The same, or the name of a person.
+  std::string place_or_person(const std::string& name, const Situation& situation) const;
   /// The place that slots stand for: "this", a side, a name, or a person's office. Reports errors.
   std::string referred(const Meaning& meaning, const Situation& situation, Outputs& out,
                        std::uint32_t& artifact, std::string& wrong) const;
@@ -188,6 +196,8 @@ class Dialogue {
   CycleRef said_{};                 ///< of an activity's newest message
   CycleRef before_{};               ///< the same, before a restart
   std::vector<UtteranceId> heard_;  ///< the newest, so that none is carried out twice
+  std::vector<Find> found_;         ///< the newest
+  bool looked_ = false;             ///< at finds
 };
 
 /// The robot's place in the map's words: a room, otherwise a corridor; empty: neither.

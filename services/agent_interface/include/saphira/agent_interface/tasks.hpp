@@ -72,12 +72,13 @@ class Tasks {
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
     std::vector<WantedGoal> goals;
   };
-  static constexpr double kPatience = 20.0;  ///< [s] for the answer to a question
 
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
   Outputs want(std::vector<Task> steps, const Utterance& utterance);
-  /// True where this speaker may answer "Shall I drop that?" with yes or no.
+  /// True where this utterance may answer "Shall I drop that?" with yes or no.
   bool asks(const Utterance& utterance) const;
+  /// That question is no longer open.
+  void withdraw_question() { question_.reset(); }
   Outputs answer(bool yes, const Utterance& utterance);
   Outputs ended(const Outcome& outcome);
 
@@ -87,6 +88,7 @@ class Tasks {
   void asked(std::uint64_t tag, const GoalRef& goal);
   /// The lasting goals that have not ended, by tag.
   std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const;
+  bool empty() const { return open_.empty(); }
   /// In the robot's words, the newest first; empty: nothing.
   std::string doing() const;
   /// The utterance that an activity's message answers; 0, 0: none.
@@ -98,10 +100,8 @@ class Tasks {
 
  private:
   struct Question {
-    std::vector<Task> steps;
-    std::string speaker;
-    std::string text;
-    double time = 0.0;
+    Task task;
+    Utterance raised_by;
   };
   Task* task();
   void begin(Task task, Outputs& out);

@@ -29,6 +29,9 @@ class FileError : public std::runtime_error {
   int column_;
 };
 
+/// With small letters in place of A to Z.
+std::string lowered(std::string_view text);
+
 /// True for a separator of words within a line.
 bool blank(char c);
 
