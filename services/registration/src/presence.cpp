@@ -37,7 +37,7 @@ std::optional<Stretch> path_through(const Feature& box, const Pose& sensor, doub
   const Vec2 half(box.length / 2.0, box.width / 2.0);
   const Vec2 core = (0.3 * half).cwiseMax(half - Vec2(inside, inside));
   const auto path = clip(from, way, half);
-  if (!path || path->begin <= 0.0 || !clip(from, way, core))
+  if (!path || path->from <= 0.0 || !clip(from, way, core))
     return std::nullopt;
   return path;
 }
@@ -78,17 +78,17 @@ void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map)
   const bool wall = feature.type == PointType::wall;
   const auto path =
       path_through(wall ? slab(feature) : feature, look.sensor_in_map, settings_.inside);
-  if (!path || path->begin > settings_.range)
+  if (!path || path->from > settings_.range)
     return;
   // A wall at a slant deflects the sound, and an echo may come from behind it.
   if (wall && (std::abs(std::sin(look.sensor_in_map.th - feature.pose_in_map.th)) <
                    std::cos(settings_.facing) ||
                in_an_opening(map, look.sensor_in_map.position() +
-                                      path->begin * look.sensor_in_map.direction())))
+                                      path->from * look.sensor_in_map.direction())))
     return;
-  if (look.range > path->end + settings_.behind) {
+  if (look.range > path->to + settings_.behind) {
     take_look(watched.through, look.sensor_in_map, settings_.spacing);
-  } else if (std::abs(look.range - path->begin) < settings_.near &&
+  } else if (std::abs(look.range - path->from) < settings_.near &&
              take_look(watched.at, look.sensor_in_map, settings_.spacing) &&
              watched.at.size() > 2 * watched.through.size()) {
     // The object is there; count later looks through it anew.

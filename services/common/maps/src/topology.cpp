@@ -144,7 +144,7 @@ double length_inside(const Feature& feature, const Vec2& from, const Vec2& to, d
   const Vec2 way = to_frame(feature.pose_in_map, to) - a;
   const Vec2 half(feature.length / 2 + margin, feature.width / 2 + margin);
   const auto inside = clip(a, way, half, {0.0, 1.0});
-  return inside ? (inside->end - inside->begin) * way.norm() : 0.0;
+  return inside ? (inside->to - inside->from) * way.norm() : 0.0;
 }
 
 double distance_to(const Feature& feature, const Vec2& position) {

@@ -11,8 +11,8 @@ namespace saphira {
 
 /// A part of the line from + s * way, between two values of s.
 struct Stretch {
-  double begin = 0.0;
-  double end = std::numeric_limits<double>::infinity();
+  double from = 0.0;
+  double to = std::numeric_limits<double>::infinity();
 };
 
 /// The part of a stretch that lies in a rectangle around the origin, along the axes, of half the
@@ -27,10 +27,10 @@ inline std::optional<Stretch> clip(const Vec2& from, const Vec2& way, const Vec2
     }
     const double a = (-half[axis] - from[axis]) / way[axis];
     const double b = (half[axis] - from[axis]) / way[axis];
-    stretch.begin = std::max(stretch.begin, std::min(a, b));
-    stretch.end = std::min(stretch.end, std::max(a, b));
+    stretch.from = std::max(stretch.from, std::min(a, b));
+    stretch.to = std::min(stretch.to, std::max(a, b));
   }
-  return stretch.end < stretch.begin ? std::nullopt : std::optional(stretch);
+  return stretch.to < stretch.from ? std::nullopt : std::optional(stretch);
 }
 
 }  // namespace saphira

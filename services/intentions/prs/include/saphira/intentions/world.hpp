@@ -25,6 +25,7 @@ class Topology;
 namespace saphira::intentions {
 
 class Beliefs;
+struct KnownZones;
 struct Reference;
 class Value;
 
@@ -86,6 +87,8 @@ struct Surroundings {
   double deceleration = 0.0;  ///< [m/s2] of a stop; 0: unknown
   /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
+  /// The zones of the map and by advice, once somebody has asked for them (skills/src/zones.hpp).
+  mutable std::shared_ptr<const KnownZones> zones;
 };
 
 /// The world of activities in a cycle: the input of the functions of their language.
