@@ -92,7 +92,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
       const std::string& place = known->value;
       say(utterance,
           "good: " + (rule == maps::ZoneRule::keep_out ? "I may go to " + place + " again"
-                      : rule == maps::ZoneRule::slow  ? "I may go fast in " + place + " again"
+                      : rule == maps::ZoneRule::slow   ? "I may go fast in " + place + " again"
                       : rule == maps::ZoneRule::preferred
                           ? "I need not prefer " + place + " any more"
                           : "no " + advice.about + " at " + place + " any more"),

@@ -164,8 +164,7 @@ TEST_F(Navigation, ZonesOfTheMapForbidAndSlowDown) {
       "80");
   EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.08);
   EXPECT_EQ(speed_limit(world(), false).reason, "slow zone 901");
-  EXPECT_EQ(spoken(call("zones-on", {path("cross")})),
-            "through slow zone \"k\" and slow zone 901");
+  EXPECT_EQ(spoken(call("zones-on", {path("cross")})), "through slow zone \"k\" and slow zone 901");
   // The hull counts.
   be_at({0.3, 0.0, 0.0});
   EXPECT_EQ(speed_limit(world(), false).reason, "slow zone 901");

@@ -104,8 +104,8 @@ SpeedLimit speed_limit(const World& world, bool backwards) {
   const std::vector<maps::Zone>& zones = zones_of(world);
   if (zones.empty() || !robot)
     return limit;
-  if (const maps::Zone* const slow = maps::slowest_at(
-          zones, *world.around.topology, robot->position(), world.around.robot_radius))
+  if (const maps::Zone* const slow = maps::slowest_at(zones, *world.around.topology,
+                                                      robot->position(), world.around.robot_radius))
     limit = {slow->speed, slow->text};
   const Ahead ahead = look_ahead(world, backwards);
   if (!ahead.text.empty() && (limit.speed < 0.0 || ahead.speed < limit.speed))
