@@ -46,7 +46,9 @@ std::optional<Stretch> part_in(const Feature& box, const Vec2& start, const Vec2
   const Vec2 a = to_box(start);
   const auto part =
       clip(a, to_box(start + way) - a, {box.length / 2.0, box.width / 2.0}, {0.0, length});
-  return part && part->to - part->from < 1e-6 ? std::nullopt : part;
+  if (!part || part->to - part->from < 1e-6)
+    return std::nullopt;
+  return part;
 }
 
 /// [0, length] without the holes.

@@ -30,7 +30,9 @@ inline std::optional<Stretch> clip(const Vec2& from, const Vec2& way, const Vec2
     stretch.from = std::max(stretch.from, std::min(a, b));
     stretch.to = std::min(stretch.to, std::max(a, b));
   }
-  return stretch.to < stretch.from ? std::nullopt : std::optional(stretch);
+  if (stretch.to < stretch.from)
+    return std::nullopt;
+  return stretch;
 }
 
 }  // namespace saphira
