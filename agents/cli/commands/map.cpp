@@ -27,12 +27,11 @@ using std::chrono::milliseconds;
 constexpr double kMapPatience = 5.0;  ///< [s] for the map, and for an answer
 constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot is discovered
 
-/// The map and the robot on it, from the bus.
 /// The belief with the zones by advice, its value without the quotation marks.
 v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
   for (const v1::Belief& belief : beliefs.beliefs())
     if (const std::string& value = belief.value();
-        belief.name() == "hazards" && value.size() > 2 && value.front() == '"') {
+        belief.name() == maps::kHazards && value.size() > 2 && value.front() == '"') {
       v1::Belief found = belief;
       found.value(value.substr(1, value.size() - 2));
       return found;
@@ -40,6 +39,7 @@ v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
   return {};
 }
 
+/// The map and the robot on it, from the bus.
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
@@ -370,10 +370,8 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   settings.closed = view.closed_doors();
   if (view.radius)
     settings.needs_width = maps::needed_width(*view.radius);
-  settings.zones = maps::zones_of(view.map);
-  for (maps::Zone& zone :
-       maps::advised_zones(topology, view.hazards.value(), view.hazards.said_by()))
-    settings.zones.push_back(std::move(zone));
+  settings.zones =
+      maps::all_zones(view.map, topology, view.hazards.value(), view.hazards.said_by());
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route) {
     std::cerr << "saphira: " << found.reason << '\n';

@@ -224,7 +224,8 @@ void Reason::add_purpose(Sentence& sentence,
     sentence.add(4, ", by " + with_arguments(*own), ", by " + intention_name(*own));
 }
 
-/// The zones that a followed path goes around or through, in words; empty: none, or a past cycle.
+/// The zones that a followed path goes around or through, in words; empty: none, it is interrupted,
+/// or a past cycle.
 std::string Reason::detour() const {
   if (scene_.past || !scene_.intentions)
     return {};
@@ -234,7 +235,7 @@ std::string Reason::detour() const {
       }))
     return {};
   for (const v1::Belief& belief : scene_.beliefs)
-    if (belief.name() == "*detour*" && belief.value().size() > 2 && belief.value().front() == '"')
+    if (belief.name() == "detour" && belief.value().size() > 2 && belief.value().front() == '"')
       return "it takes the way " + without_escapes(belief.value());
   return {};
 }

@@ -6,6 +6,7 @@
 
 #include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/maps/map.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -73,11 +74,12 @@ std::string describe(const Advice& advice) {
     case Advice::Kind::hazard:
       break;
   }
-  if (advice.about == kKeepOut)
+  const auto rule = maps::zone_rule(advice.about);
+  if (rule == maps::ZoneRule::keep_out)
     return "I am to keep out of " + advice.value;
-  if (advice.about == kSlow)
+  if (rule == maps::ZoneRule::slow)
     return "I am to go slowly in " + advice.value;
-  if (advice.about == kPreferred)
+  if (rule == maps::ZoneRule::preferred)
     return "I am to prefer " + advice.value;
   return (advice.about == "broken glass" ? "there is " : "there is a ") + advice.about + " at " +
          advice.value;

@@ -196,7 +196,7 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
       if ((people ? one.kind == Advice::Kind::person_at ||
                         (one.kind == Advice::Kind::office_of &&
                          knowledge_.place_of(one.about) == one.value)
-                  : one.kind == Advice::Kind::hazard && !is_rule(one) &&
+                  : one.kind == Advice::Kind::hazard && !maps::zone_rule(one.about) &&
                         one.about.ends_with(slot(meaning, "kind"))) &&
           (at.empty() || one.value == at))
         all += (all.empty() ? "" : "; ") + as_told(one);

@@ -4,12 +4,12 @@
 #include <ctime>
 #include <utility>
 
+#include "saphira/maps/zones.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
 namespace {
 
-constexpr const char* kHazards = "hazards";  // the belief: "leak at lab; fire at hall"
 constexpr std::size_t kMostGone = 256;
 
 /// "at 10:02 ", in local time; empty for an unknown time.
@@ -79,21 +79,22 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     return false;
   }
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
+    const auto rule = maps::zone_rule(advice.about);
     const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
-    if (known == nullptr && slot(meaning, "place") == "this" && !is_rule(advice))
+    if (known == nullptr && slot(meaning, "place") == "this" && !rule)
       known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
       say(utterance,
-          advice.about == kSlow || advice.about == kPreferred
+          rule == maps::ZoneRule::slow || rule == maps::ZoneRule::preferred
               ? "I did not know that " + describe(advice)
               : "I knew of no " + advice.about + " at " + advice.value,
           true, out);
     } else {
       const std::string& place = known->value;
       say(utterance,
-          "good: " + (advice.about == kKeepOut ? "I may go to " + place + " again"
-                      : advice.about == kSlow  ? "I may go fast in " + place + " again"
-                      : advice.about == kPreferred
+          "good: " + (rule == maps::ZoneRule::keep_out ? "I may go to " + place + " again"
+                      : rule == maps::ZoneRule::slow   ? "I may go fast in " + place + " again"
+                      : rule == maps::ZoneRule::preferred
                           ? "I need not prefer " + place + " any more"
                           : "no " + advice.about + " at " + place + " any more"),
           true, out);
@@ -224,7 +225,7 @@ void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* bec
   const bool hazard = forgotten->kind == Advice::Kind::hazard;
   const bool knows = forgotten->kind == Advice::Kind::knows_where;
   const std::string name =
-      hazard ? kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
+      hazard ? maps::kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
   // What activities believe of the person is withdrawn, too.
   if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
     if (gone_.size() >= kMostGone)
@@ -255,7 +256,7 @@ std::vector<Claimed> Dialogue::claims() const {
     all.value += (all.value.empty() ? "" : between) + value;
     all.source += (all.source.empty() ? "" : "; ") + source(advice);
   };
-  Claimed hazards{kHazards, "", ""};
+  Claimed hazards{maps::kHazards, "", ""};
   for (const Advice& one : knowledge_.all()) {
     const std::string name =
         (one.kind == Advice::Kind::knows_where ? "knows-where-" : "place-of-") + one.about;

@@ -51,11 +51,6 @@ std::string claim_source(const Utterance& utterance) {
   return named_person(utterance.speaker) + " said \"" + utterance.text + "\"";
 }
 
-bool is_rule(const Advice& advice) {
-  return advice.kind == Advice::Kind::hazard &&
-         (advice.about == kKeepOut || advice.about == kSlow || advice.about == kPreferred);
-}
-
 bool is_open(const KnownGoal& goal) {
   return goal.state != KnownGoal::State::failed && goal.state != KnownGoal::State::over;
 }

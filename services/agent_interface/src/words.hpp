@@ -29,9 +29,6 @@ std::string as_told(const Advice& advice);
 /// The origin of a claim that follows from an utterance.
 std::string claim_source(const Utterance& utterance);
 
-/// Keep-out, slow and preferred are rules for a place; any other hazard is a thing there.
-bool is_rule(const Advice& advice);
-
 bool is_open(const KnownGoal& goal);
 
 /// A text as a field of a line that is kept; fields are separated by tabs. Tabs and line breaks in

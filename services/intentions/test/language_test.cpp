@@ -4,6 +4,7 @@
 
 #include "language_bench.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/intentions/navigation.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -221,6 +222,39 @@ TEST(Activities, Figure9RunsFromItsFile) {
   stage.satisfy("way", 1.0);
   stage.step(8);
   EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+}
+
+// The planner and the check of zones may disagree, since the check does not know the way so far.
+TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
+  const std::string folder = std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/config/activities/";
+  Functions functions = *all_functions();
+  bool forbidden = true;
+  functions.add(Function{
+      "find-path", 2, 2,
+      [](const World&, Values arguments) { return Value(Value::List{arguments[1]}); }, ""});
+  functions.add(Function{
+      "hazard-on", 1, 1,
+      [&](const World&, Values) { return forbidden ? Value("keep-out zone 7") : Value(); }, ""});
+  functions.add(Function{"zones-on", 1, 1, [](const World&, Values) { return Value(); }, ""});
+  functions.add(Function{"leg", 1, 1, [](const World&, Values) { return Value("done"); }, ""});
+  Stage stage(read_file(folder + "figure-9.act") + read_file(folder + "navigation.act"), functions);
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.inputs.robot.odom_in_map = Pose{};
+  stage.ask(1, "plan-and-execute", {text("dest", "lab")});
+  stage.step(100);
+  EXPECT_EQ(stage.messages, Names(4, "Planning path to lab"));
+  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).reason, "the way is not allowed: keep-out zone 7");
+
+  // Two refusals, as for a zone that people have just told of, are no failure.
+  stage.messages.clear();
+  stage.ask(2, "plan-and-execute", {text("dest", "lab")});
+  for (int i = 0; i < 100 && stage.messages.size() < 3; ++i)
+    stage.step();
+  forbidden = false;
+  stage.step(20);
+  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded) << stage.status(2).reason;
+  EXPECT_TRUE(stage.belief("*refusals*").nil());
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ class Navigation : public testing::Test {
  protected:
   Navigation() {
     add_navigation(functions);
-    around.topology = std::make_shared<const maps::Topology>(maps::parse_map(kMap, "test.map"));
+    around.map = std::make_shared<const maps::Map>(maps::parse_map(kMap, "test.map"));
+    around.topology = std::make_shared<const maps::Topology>(*around.map);
     around.map_revision = 1;
     around.registration.state = Localization::kTracking;
     robot.connected = true;
@@ -163,12 +164,16 @@ TEST_F(Navigation, ZonesOfTheMapForbidAndSlowDown) {
       "80");
   EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.08);
   EXPECT_EQ(speed_limit(world(), false).reason, "slow zone 901");
-  EXPECT_EQ(spoken(call("zones-on", {path("cross")})),
-            "through: slow zone \"k\", through: slow zone 901");
+  EXPECT_EQ(spoken(call("zones-on", {path("cross")})), "through slow zone \"k\" and slow zone 901");
+  // The hull counts.
+  be_at({0.3, 0.0, 0.0});
+  EXPECT_EQ(speed_limit(world(), false).reason, "slow zone 901");
+  be_at({0.2, 0.0, 0.0});
+  EXPECT_LT(speed_limit(world(), false).speed, 0.0);
   beliefs.set("hazards", "slow at hall", "test", now);
   be_at({6.0, 0.0, 0.0});
   EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.15);
-  EXPECT_EQ(speed_limit(world(), false).reason, "people told me to go slowly in hall");
+  EXPECT_EQ(speed_limit(world(), false).reason, "hall, where people told me to go slowly");
 }
 
 TEST_F(Navigation, APathOfAnotherRevisionOfTheMapIsNoMoreOne) {

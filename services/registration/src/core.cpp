@@ -309,7 +309,7 @@ const std::vector<Functor>& Core::functors() {
         optional(number_parameter("length", "along its heading [m]", 0.0, far)),
         optional(number_parameter("width", "across its heading [m]", 0.0, far)),
         optional(text_parameter("name", "of a room and of its doors")),
-        optional(truth_parameter("learned", "taken back where it is seen no more")),
+        optional(truth_parameter("learned", "the robot added it: removed when no longer seen")),
         optional(text_parameter("rule", "of a zone", rule_words())),
         optional(number_parameter("speed", "of a slow zone [m/s]", 0.0, 10.0))}},
       {"remove", "removes an artifact", {whole_parameter("id", "of the artifact", 1.0, most_ids)}},

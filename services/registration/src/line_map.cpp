@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/geometry/clip.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::registration {
@@ -21,11 +22,6 @@ constexpr double kShortest = 0.1;  // [m] of surfaces that are kept
 // Of a field, which has a 16-bit number for each surface and up to 24 bytes for each cell of 0.1 m.
 constexpr std::size_t kMostSurfaces = 65000;
 constexpr double kMostArea = 250e3;  // [m2]
-
-struct Interval {
-  double from;
-  double to;
-};
 
 bool is_region(const Feature& feature) {
   return maps::traits(feature.type).region.has_value();
@@ -44,39 +40,24 @@ bool open_to(const Feature& a, const Feature& b) {
 }
 
 /// The part of the line from `start` along `way` that lies in the rectangle.
-std::optional<Interval> clip(const Vec2& start, const Vec2& way, double length,
-                             const Feature& box) {
+std::optional<Stretch> part_in(const Feature& box, const Vec2& start, const Vec2& way,
+                               double length) {
   const ToFrame to_box(box.pose_in_map);
   const Vec2 a = to_box(start);
-  const Vec2 d = to_box(start + way) - a;
-  Interval part{0.0, length};
-  const std::array<double, 2> half{box.length / 2.0, box.width / 2.0};
-  for (int axis = 0; axis < 2; ++axis) {
-    const double limit = half[static_cast<std::size_t>(axis)];
-    if (std::abs(d[axis]) < 1e-9) {
-      if (std::abs(a[axis]) > limit)
-        return std::nullopt;
-      continue;
-    }
-    double t1 = (-limit - a[axis]) / d[axis];
-    double t2 = (limit - a[axis]) / d[axis];
-    if (t1 > t2)
-      std::swap(t1, t2);
-    part.from = std::max(part.from, t1);
-    part.to = std::min(part.to, t2);
-  }
-  if (part.to - part.from < 1e-6)
+  const auto part =
+      clip(a, to_box(start + way) - a, {box.length / 2.0, box.width / 2.0}, {0.0, length});
+  if (!part || part->to - part->from < 1e-6)
     return std::nullopt;
   return part;
 }
 
 /// [0, length] without the holes.
-std::vector<Interval> without(double length, std::vector<Interval> holes) {
+std::vector<Stretch> without(double length, std::vector<Stretch> holes) {
   std::sort(holes.begin(), holes.end(),
-            [](const Interval& a, const Interval& b) { return a.from < b.from; });
-  std::vector<Interval> left;
+            [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
+  std::vector<Stretch> left;
   double at = 0.0;
-  for (const Interval& hole : holes) {
+  for (const Stretch& hole : holes) {
     if (hole.from - at > kShortest)
       left.push_back({at, hole.from});
     at = std::max(at, hole.to);
@@ -148,7 +129,7 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
   const Feature& region = map.features[index];
   for (const Side& side : sides(region)) {
     const Vec2 inwards{-side.way.y(), side.way.x()};
-    std::vector<Interval> holes;
+    std::vector<Stretch> holes;
     // Doors and breaks first, so that a corridor behind one does not become another opening.
     for (std::size_t i = 0; i < map.features.size(); ++i) {
       const Feature& door = map.features[i];
@@ -164,19 +145,19 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
       openings_.push_back(
           {{middle.x(), middle.y(), std::atan2(inwards.y(), inwards.x())}, door.width, i});
     }
-    std::vector<Interval> gaps;
+    std::vector<Stretch> gaps;
     for (std::size_t i = 0; i < map.features.size(); ++i) {
       const Feature& other = map.features[i];
       if (i == index || !is_region(other) || !open_to(region, other))
         continue;
-      const auto part = clip(side.start - inwards * kBeyond, side.way, side.length, other);
+      const auto part = part_in(other, side.start - inwards * kBeyond, side.way, side.length);
       if (!part)
         continue;
       holes.push_back(*part);
       const double width = part->to - part->from;
       // A corridor that meets this side from the side is an opening in it.
       if (is_way(other) && part->from > 0.05 && part->to < side.length - 0.05 && width > 0.5) {
-        const bool there = std::any_of(gaps.begin(), gaps.end(), [&](const Interval& gap) {
+        const bool there = std::any_of(gaps.begin(), gaps.end(), [&](const Stretch& gap) {
           return std::abs(gap.from - part->from) < 0.2 && std::abs(gap.to - part->to) < 0.2;
         });
         if (!there) {
@@ -192,7 +173,7 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
         }
       }
     }
-    for (const Interval& part : without(side.length, holes)) {
+    for (const Stretch& part : without(side.length, holes)) {
       Surface piece = surface(side.start + side.way * part.from, side.start + side.way * part.to,
                               inwards, index);
       piece.from_is_end = part.from > 0.0;

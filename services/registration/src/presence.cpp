@@ -1,9 +1,8 @@
 #include "saphira/registration/presence.hpp"
 
-#include <array>
-#include <limits>
 #include <optional>
 
+#include "saphira/geometry/clip.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::registration {
@@ -29,40 +28,18 @@ Kind kind_of(const Feature& feature) {
   return of_type.gate ? Kind::door : Kind::thing;
 }
 
-/// The entry and exit of a line through a box [m].
-struct Crossing {
-  double in = 0.0;
-  double out = 0.0;
-};
-
-/// The path of a sonar's axis through a rectangle; nothing where it misses the rectangle made
+/// The path of a sonar's axis through a rectangle [m]; nothing where it misses the rectangle made
 /// smaller by `inside` on each side.
-std::optional<Crossing> cross(const Feature& box, const Pose& sensor, double inside) {
+std::optional<Stretch> path_through(const Feature& box, const Pose& sensor, double inside) {
   const ToFrame to_box(box.pose_in_map);
   const Vec2 from = to_box(sensor.position());
   const Vec2 way = to_box(sensor.position() + sensor.direction()) - from;
-  const std::array<double, 2> half{box.length / 2.0, box.width / 2.0};
-  Crossing crossing{0.0, std::numeric_limits<double>::infinity()};
-  Crossing core = crossing;
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto clip = [&](Crossing& part, double limit) {
-      if (std::abs(way[axis]) < 1e-9) {
-        if (std::abs(from[axis]) > limit)
-          part.out = -1.0;
-        return;
-      }
-      const double a = (-limit - from[axis]) / way[axis];
-      const double b = (limit - from[axis]) / way[axis];
-      part.in = std::max(part.in, std::min(a, b));
-      part.out = std::min(part.out, std::max(a, b));
-    };
-    const double limit = half[static_cast<std::size_t>(axis)];
-    clip(crossing, limit);
-    clip(core, std::max(0.3 * limit, limit - inside));
-  }
-  if (core.out < core.in || crossing.in <= 0.0)
+  const Vec2 half(box.length / 2.0, box.width / 2.0);
+  const Vec2 core = (0.3 * half).cwiseMax(half - Vec2(inside, inside));
+  const auto path = clip(from, way, half);
+  if (!path || path->from <= 0.0 || !clip(from, way, core))
     return std::nullopt;
-  return crossing;
+  return path;
 }
 
 /// A wall as a box of 0.1 m.
@@ -99,18 +76,19 @@ Presence::Watched& Presence::watch(const Feature& feature) {
 void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map) {
   const Feature& feature = watched.feature;
   const bool wall = feature.type == PointType::wall;
-  const auto crossing = cross(wall ? slab(feature) : feature, look.sensor_in_map, settings_.inside);
-  if (!crossing || crossing->in > settings_.range)
+  const auto path =
+      path_through(wall ? slab(feature) : feature, look.sensor_in_map, settings_.inside);
+  if (!path || path->from > settings_.range)
     return;
   // A wall at a slant deflects the sound, and an echo may come from behind it.
   if (wall && (std::abs(std::sin(look.sensor_in_map.th - feature.pose_in_map.th)) <
                    std::cos(settings_.facing) ||
                in_an_opening(map, look.sensor_in_map.position() +
-                                      crossing->in * look.sensor_in_map.direction())))
+                                      path->from * look.sensor_in_map.direction())))
     return;
-  if (look.range > crossing->out + settings_.behind) {
+  if (look.range > path->to + settings_.behind) {
     take_look(watched.through, look.sensor_in_map, settings_.spacing);
-  } else if (std::abs(look.range - crossing->in) < settings_.near &&
+  } else if (std::abs(look.range - path->from) < settings_.near &&
              take_look(watched.at, look.sensor_in_map, settings_.spacing) &&
              watched.at.size() > 2 * watched.through.size()) {
     // The object is there; count later looks through it anew.

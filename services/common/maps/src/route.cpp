@@ -435,10 +435,11 @@ std::string RouteResult::remark() const {
   std::string text;
   const auto add = [&](const char* how, const std::vector<std::string>& zones) {
     for (const std::string& zone : zones)
-      text += (text.empty() ? "" : ", ") + (how + zone);
+      text +=
+          &zone == &zones.front() ? (text.empty() ? "" : ", and ") + (how + zone) : " and " + zone;
   };
-  add("around: ", around);
-  add("through: ", through);
+  add("around ", around);
+  add("through ", through);
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/geometry/clip.hpp"
 
 namespace saphira::maps {
 
@@ -135,22 +136,9 @@ Vec2 on_axis(const Feature& feature, const Vec2& position, double margin) {
 double length_inside(const Feature& feature, const Vec2& from, const Vec2& to, double margin) {
   const Vec2 a = to_frame(feature.pose_in_map, from);
   const Vec2 way = to_frame(feature.pose_in_map, to) - a;
-  const std::array<double, 2> half{feature.length / 2 + margin, feature.width / 2 + margin};
-  double enters = 0.0;  // as parts of the way
-  double leaves = 1.0;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double limit = half[static_cast<std::size_t>(axis)];
-    if (std::abs(way[axis]) < 1e-9) {
-      if (std::abs(a[axis]) > limit)
-        return 0.0;
-      continue;
-    }
-    const double one = (-limit - a[axis]) / way[axis];
-    const double other = (limit - a[axis]) / way[axis];
-    enters = std::max(enters, std::min(one, other));
-    leaves = std::min(leaves, std::max(one, other));
-  }
-  return std::max(0.0, leaves - enters) * way.norm();
+  const Vec2 half(feature.length / 2 + margin, feature.width / 2 + margin);
+  const auto inside = clip(a, way, half, {0.0, 1.0});
+  return inside ? (inside->to - inside->from) * way.norm() : 0.0;
 }
 
 double distance_to(const Feature& feature, const Vec2& position) {

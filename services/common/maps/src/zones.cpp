@@ -26,15 +26,16 @@ std::string speaker(const std::string& source) {
 
 Zone advised(const std::string& kind, const std::string& place, const std::string& who) {
   Zone zone;
-  if (kind == word(ZoneRule::keep_out)) {
+  const std::optional<ZoneRule> rule = zone_rule(kind);
+  if (rule == ZoneRule::keep_out) {
     zone.text = place + ", which " + who + " told me to keep out of";
     zone.inside = "is in a place that " + who + " told me to keep out of";
-  } else if (kind == word(ZoneRule::slow)) {
+  } else if (rule == ZoneRule::slow) {
     zone.rule = ZoneRule::slow;
-    zone.text = who + " told me to go slowly in " + place;
-  } else if (kind == word(ZoneRule::preferred)) {
+    zone.text = place + ", where " + who + " told me to go slowly";
+  } else if (rule == ZoneRule::preferred) {
     zone.rule = ZoneRule::preferred;
-    zone.text = who + " told me to prefer " + place;
+    zone.text = place + ", which " + who + " told me to prefer";
   } else {
     // On a slippery floor the robot drives, but slowly.
     if (kind == "wet floor" || kind == "slippery floor")
@@ -45,6 +46,41 @@ Zone advised(const std::string& kind, const std::string& place, const std::strin
   if (zone.rule == ZoneRule::slow)
     zone.speed = kSlowly;
   return zone;
+}
+
+void add_zones_of(const Map& map, std::vector<Zone>& zones) {
+  for (const Feature& feature : map.features) {
+    if (feature.type != lps::PointType::zone)
+      continue;
+    Zone zone;
+    zone.rule = feature.rule;
+    zone.speed = feature.speed;
+    zone.text = std::string(word(feature.rule)) + " zone " +
+                (feature.name.empty() ? std::to_string(feature.id) : '"' + feature.name + '"');
+    zone.inside = "is in " + zone.text;
+    zone.area = feature;
+    zones.push_back(std::move(zone));
+  }
+}
+
+void add_advised(const Topology& topology, std::string_view hazards, std::string_view said_by,
+                 std::vector<Zone>& zones) {
+  const std::vector<std::string> all = parts(hazards);
+  const std::vector<std::string> sources = parts(said_by);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t at = all[i].find(" at ");
+    if (at == std::string::npos)
+      continue;
+    const std::string place = all[i].substr(at + 4);
+    const auto named = topology.place(place);
+    if (!named)
+      continue;
+    // A quoted sentence may hold the mark between two: then the sources are not told apart.
+    Zone zone = advised(all[i].substr(0, at), place,
+                        sources.size() == all.size() ? speaker(sources[i]) : "people");
+    zone.regions = named->regions;
+    zones.push_back(std::move(zone));
+  }
 }
 
 }  // namespace
@@ -60,42 +96,11 @@ bool Zone::contains(const Topology& topology, const Vec2& position_in_map, doubl
   return region && covers(*region);
 }
 
-std::vector<Zone> zones_of(const Map& map) {
+std::vector<Zone> all_zones(const Map& map, const Topology& topology, std::string_view hazards,
+                            std::string_view said_by) {
   std::vector<Zone> zones;
-  for (const Feature& feature : map.features) {
-    if (feature.type != lps::PointType::zone)
-      continue;
-    Zone zone;
-    zone.rule = feature.rule;
-    zone.speed = feature.speed;
-    zone.text = std::string(word(feature.rule)) + " zone " +
-                (feature.name.empty() ? std::to_string(feature.id) : '"' + feature.name + '"');
-    zone.inside = "is in " + zone.text;
-    zone.area = feature;
-    zones.push_back(std::move(zone));
-  }
-  return zones;
-}
-
-std::vector<Zone> advised_zones(const Topology& topology, std::string_view hazards,
-                                std::string_view said_by) {
-  const std::vector<std::string> all = parts(hazards);
-  const std::vector<std::string> sources = parts(said_by);
-  std::vector<Zone> zones;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::size_t at = all[i].find(" at ");
-    if (at == std::string::npos)
-      continue;
-    const std::string place = all[i].substr(at + 4);
-    const auto named = topology.place(place);
-    if (!named)
-      continue;
-    // A quoted sentence may hold the mark between two: then the sources are not told apart.
-    Zone zone = advised(all[i].substr(0, at), place,
-                        sources.size() == all.size() ? speaker(sources[i]) : "people");
-    zone.regions = named->regions;
-    zones.push_back(std::move(zone));
-  }
+  add_zones_of(map, zones);
+  add_advised(topology, hazards, said_by, zones);
   return zones;
 }
 
@@ -108,11 +113,11 @@ const Zone* zone_at(const std::vector<Zone>& zones, ZoneRule rule, const Topolog
 }
 
 const Zone* slowest_at(const std::vector<Zone>& zones, const Topology& topology,
-                       const Vec2& position_in_map) {
+                       const Vec2& position_in_map, double radius) {
   const Zone* slowest = nullptr;
   for (const Zone& zone : zones)
     if (zone.rule == ZoneRule::slow && (slowest == nullptr || zone.speed < slowest->speed) &&
-        zone.contains(topology, position_in_map))
+        zone.contains(topology, position_in_map, radius))
       slowest = &zone;
   return slowest;
 }

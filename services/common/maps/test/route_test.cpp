@@ -140,9 +140,7 @@ RouteResult with_zones(const std::string& lines, const Vec2& from, const std::st
                        const std::string& advice = {}, const std::string& said_by = {}) {
   RouteSettings settings;
   settings.needs_width = 0.6;
-  settings.zones = zones_of(parse_map(lines, "zones.map"));
-  for (Zone& zone : advised_zones(floor(), advice, said_by))
-    settings.zones.push_back(std::move(zone));
+  settings.zones = all_zones(parse_map(lines, "zones.map"), floor(), advice, said_by);
   return find_route(floor(), from, to, settings);
 }
 
@@ -159,7 +157,7 @@ TEST(Zones, AWayDoesNotEnterAKeepOut) {
       with_zones("ZONE (900) 26000, 16000, 0, 3000, 1000 keep-out \"lab\"", kUpper, "EJ-271");
   ASSERT_TRUE(found.route) << found.reason;
   EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "around: keep-out zone \"lab\"");
+  EXPECT_EQ(found.remark(), "around keep-out zone \"lab\"");
   // One that is not on the way does not matter.
   const RouteResult other =
       with_zones("ZONE (900) 3000, 16000, 0, 3000, 1000 keep-out", kUpper, "EJ-271");
@@ -174,7 +172,8 @@ TEST(Zones, AGoalInAKeepOutHasNoRoute) {
                 .reason,
             "room 265 (EJ-265) is in keep-out zone \"lab\"");
   RouteSettings settings;
-  settings.zones = zones_of(parse_map("ZONE (7) 17600, 10000, 0, 1000, 1000 keep-out", "m"));
+  settings.zones =
+      all_zones(parse_map("ZONE (7) 17600, 10000, 0, 1000, 1000 keep-out", "m"), floor());
   const RouteResult point = find_route(floor(), Vec2(17.6, 14.0), Vec2(17.6, 10.2), settings);
   EXPECT_EQ(point.reason, "the goal, (17600, 10200) mm, is in keep-out zone 7");
   // All the ways in.
@@ -201,12 +200,12 @@ TEST(Zones, ASlowZoneIsLonger) {
       with_zones("ZONE (900) 26000, 16000, 0, 3000, 12000 slow 50", kUpper, "EJ-271");
   ASSERT_TRUE(around.route);
   EXPECT_EQ(text(floor(), *around.route), kByCentral);
-  EXPECT_EQ(around.remark(), "around: slow zone 900");
+  EXPECT_EQ(around.remark(), "around slow zone 900");
   const RouteResult through =
       with_zones("ZONE (900) 26000, 16000, 0, 3000, 500 slow 150 \"k\"", kUpper, "EJ-271");
   ASSERT_TRUE(through.route);
   EXPECT_EQ(text(floor(), *through.route), kByEast);
-  EXPECT_EQ(through.remark(), "through: slow zone \"k\"");
+  EXPECT_EQ(through.remark(), "through slow zone \"k\"");
 }
 
 TEST(Zones, OneWayHoldsAlongItsHeading) {
@@ -219,7 +218,7 @@ TEST(Zones, OneWayHoldsAlongItsHeading) {
       with_zones("ZONE (900) 26000, 16000, 90, 2000, 3000 one-way", kUpper, "EJ-271");
   ASSERT_TRUE(against.route);
   EXPECT_EQ(text(floor(), *against.route), kByCentral);
-  EXPECT_EQ(against.remark(), "around: one-way zone 900");
+  EXPECT_EQ(against.remark(), "around one-way zone 900");
 }
 
 TEST(Zones, APreferredWayCountsHalf) {
@@ -227,7 +226,7 @@ TEST(Zones, APreferredWayCountsHalf) {
       with_zones("ZONE (900) 17600, 16000, 0, 3000, 17000 preferred", Vec2(20.5, 25.0), "EJ-271");
   ASSERT_TRUE(found.route);
   EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "through: preferred zone 900");
+  EXPECT_EQ(found.remark(), "through preferred zone 900");
 }
 
 TEST(Zones, ByAdviceTheyAreRegions) {
@@ -235,7 +234,7 @@ TEST(Zones, ByAdviceTheyAreRegions) {
                                  "Charlie said \"keep out of the east corridor\"");
   ASSERT_TRUE(found.route) << found.reason;
   EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "around: east corridor, which Charlie told me to keep out of");
+  EXPECT_EQ(found.remark(), "around east corridor, which Charlie told me to keep out of");
   found = with_zones("", kUpper, "EJ-271", "leak at lab; keep-out at EJ-271",
                      "Karen said \"x\"; Charlie said \"y\"");
   EXPECT_EQ(found.reason, "room 271 (EJ-271) is in a place that Charlie told me to keep out of");
@@ -245,11 +244,11 @@ TEST(Zones, ByAdviceTheyAreRegions) {
   ASSERT_TRUE(found.route) << found.reason;
   EXPECT_EQ(text(floor(), *found.route), kByCentral);
   EXPECT_EQ(found.remark(),
-            "around: people told me to go slowly in east corridor, through: people told me to "
-            "prefer central corridor");
+            "around east corridor, where people told me to go slowly, and through central "
+            "corridor, which people told me to prefer");
   found = with_zones("", Vec2(17.6, 14.0), "EJ-265", "wet floor at central corridor");
   ASSERT_TRUE(found.route) << found.reason;
-  EXPECT_EQ(found.remark(), "through: wet floor at central corridor");
+  EXPECT_EQ(found.remark(), "through wet floor at central corridor");
 }
 
 }  // namespace

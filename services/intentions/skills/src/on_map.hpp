@@ -12,9 +12,6 @@
 /// a wrong value names the `function`.
 namespace saphira::intentions {
 
-/// The belief with the zones by advice.
-inline constexpr const char* kHazards = "hazards";
-
 /// [m] tolerated distance of the robot from its region.
 inline constexpr double kAstray = 0.5;
 

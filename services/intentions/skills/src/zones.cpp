@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "on_map.hpp"
 #include "saphira/base/age.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/maps/route.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::intentions {
+
+/// Zones, and what they were made of.
+struct KnownZones {
+  std::shared_ptr<const maps::Map> map;
+  std::uint64_t beliefs = 0;  ///< their revision
+  std::vector<maps::Zone> zones;
+};
+
 namespace {
 
 constexpr double kAhead = 1.5;        ///< [m] beyond its hull that a slow robot looks ahead
@@ -24,10 +31,11 @@ struct Ahead {
   double speed = 0.0;
 };
 
-Ahead look_ahead(const World& world, const std::vector<maps::Zone>& zones, bool backwards) {
+Ahead look_ahead(const World& world, bool backwards) {
   Ahead ahead;
   const std::optional<Pose> robot = world.robot_in_map();
-  if (!robot || world.around.topology == nullptr)
+  const std::vector<maps::Zone>& zones = zones_of(world);
+  if (!robot || zones.empty())
     return ahead;
   const maps::Topology& map = *world.around.topology;
   const double side = backwards ? -1.0 : 1.0;
@@ -58,43 +66,48 @@ Ahead look_ahead(const World& world, const std::vector<maps::Zone>& zones, bool 
 
 }  // namespace
 
-std::vector<maps::Zone> zones_of(const World& world) {
-  std::vector<maps::Zone> zones;
-  if (world.around.map != nullptr)
-    zones = maps::zones_of(*world.around.map);
-  const Belief* const belief = world.beliefs.stored(kHazards);
-  const std::string* const text = belief == nullptr ? nullptr : belief->value.text();
-  if (text != nullptr && world.around.topology != nullptr)
-    for (maps::Zone& zone : maps::advised_zones(*world.around.topology, *text, belief->said_by))
-      zones.push_back(std::move(zone));
-  return zones;
+const std::vector<maps::Zone>& zones_of(const World& world) {
+  static const std::vector<maps::Zone> kNone;
+  const Surroundings& around = world.around;
+  if (around.map == nullptr || around.topology == nullptr)
+    return kNone;
+  const std::uint64_t beliefs = world.beliefs.revision();
+  if (around.zones == nullptr || around.zones->map != around.map ||
+      around.zones->beliefs != beliefs) {
+    const Belief* const belief = world.beliefs.stored(maps::kHazards);
+    const std::string* const text = belief == nullptr ? nullptr : belief->value.text();
+    around.zones = std::make_shared<const KnownZones>(KnownZones{
+        around.map, beliefs,
+        text == nullptr ? maps::all_zones(*around.map, *around.topology)
+                        : maps::all_zones(*around.map, *around.topology, *text, belief->said_by)});
+  }
+  return around.zones->zones;
 }
 
 std::string why_kept_out(const World& world, const Pose& point, Frame frame) {
   const auto at = in_frame(point, frame, Frame::map, world.robot);
   if (!at || world.around.topology == nullptr)
     return {};
-  const std::vector<maps::Zone> zones = zones_of(world);
-  const maps::Zone* const zone =
-      maps::zone_at(zones, maps::ZoneRule::keep_out, *world.around.topology, at->position());
+  const maps::Zone* const zone = maps::zone_at(zones_of(world), maps::ZoneRule::keep_out,
+                                               *world.around.topology, at->position());
   return zone == nullptr ? std::string() : zone->inside;
 }
 
 std::string keep_out_ahead(const World& world, bool backwards) {
-  const Ahead ahead = look_ahead(world, zones_of(world), backwards);
+  const Ahead ahead = look_ahead(world, backwards);
   return ahead.speed == 0.0 ? ahead.text : std::string();
 }
 
 SpeedLimit speed_limit(const World& world, bool backwards) {
   SpeedLimit limit;
   const std::optional<Pose> robot = world.robot_in_map();
-  const std::vector<maps::Zone> zones = zones_of(world);
-  if (zones.empty() || !robot || world.around.topology == nullptr)
+  const std::vector<maps::Zone>& zones = zones_of(world);
+  if (zones.empty() || !robot)
     return limit;
-  if (const maps::Zone* const slow =
-          maps::slowest_at(zones, *world.around.topology, robot->position()))
+  if (const maps::Zone* const slow = maps::slowest_at(zones, *world.around.topology,
+                                                      robot->position(), world.around.robot_radius))
     limit = {slow->speed, slow->text};
-  const Ahead ahead = look_ahead(world, zones, backwards);
+  const Ahead ahead = look_ahead(world, backwards);
   if (!ahead.text.empty() && (limit.speed < 0.0 || ahead.speed < limit.speed))
     limit = {ahead.speed, ahead.text + (backwards ? " is behind it" : " is ahead")};
   return limit;

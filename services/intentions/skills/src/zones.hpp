@@ -9,7 +9,8 @@
 /// The zones of the map and by advice, for the activities that drive.
 namespace saphira::intentions {
 
-std::vector<maps::Zone> zones_of(const World& world);
+/// None without a map. They are made once for each change of the beliefs in a cycle.
+const std::vector<maps::Zone>& zones_of(const World& world);
 
 /// The reason why the robot is not to go to a point, in words; empty: it may, or the point's place
 /// on the map is not known.

@@ -13,7 +13,7 @@ struct Advice {
   enum class Kind { office_of, person_at, knows_where, hazard };
   std::uint64_t number = 0;
   Kind kind = Kind::office_of;
-  std::string about;  ///< the person, or the kind of hazard
+  std::string about;  ///< the person, or the kind of hazard: a thing, or the rule of a zone
   std::string value;  ///< a place, or the person that knows
   std::string speaker;
   std::string said;            ///< in the speaker's words
@@ -22,11 +22,6 @@ struct Advice {
 
   friend bool operator==(const Advice&, const Advice&) = default;
 };
-
-/// The kind of a hazard that is only a wish: people want the robot out of that place.
-inline constexpr const char* kKeepOut = "keep-out";
-inline constexpr const char* kSlow = "slow";
-inline constexpr const char* kPreferred = "preferred";
 
 /// The speaker of what the robot has found out itself.
 inline constexpr const char* kRobot = "the robot";

@@ -68,7 +68,7 @@ struct RouteResult {
   std::vector<std::string> around{};   ///< without them another way would be shorter
   std::vector<std::string> through{};  ///< slow or preferred zones on the way
 
-  /// "around: keep-out zone "lab", through: slow zone "kitchen""; empty: no zone matters.
+  /// "around keep-out zone "lab", and through slow zone "kitchen""; empty: no zone matters.
   std::string remark() const;
 };
 

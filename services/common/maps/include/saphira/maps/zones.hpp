@@ -10,6 +10,9 @@
 
 namespace saphira::maps {
 
+/// The belief with the zones by advice.
+inline constexpr const char* kHazards = "hazards";
+
 /// [m/s] By advice to go slowly, which gives no speed.
 inline constexpr double kSlowly = 0.15;
 
@@ -17,7 +20,7 @@ inline constexpr double kSlowly = 0.15;
 struct Zone {
   ZoneRule rule = ZoneRule::keep_out;
   double speed = 0.0;  ///< [m/s] of slow
-  std::string text;    ///< for people: keep-out zone "lab"; water leak at upper corridor
+  std::string text;    ///< for people: keep-out zone "lab"; lab, where Charlie told me to go slowly
   std::string inside;  ///< says of a place that it lies there: is in keep-out zone "lab"
   // Where: a rectangle, or the whole of some regions.
   std::optional<Feature> area;
@@ -28,21 +31,19 @@ struct Zone {
   bool covers(std::size_t region) const;
 };
 
-/// The zones of a map.
-std::vector<Zone> zones_of(const Map& map);
-
-/// The zones by advice: the belief `hazards`, such as "water leak at upper corridor; slow at lab;
-/// keep-out at EJ-231; preferred at central corridor". `said_by` tells of each who said it, in the
-/// same order: "Charlie said ...; ...". Places that are not on the map are left out.
-std::vector<Zone> advised_zones(const Topology& topology, std::string_view hazards,
-                                std::string_view said_by);
+/// The zones of a map, and those by advice: the belief kHazards, such as "water leak at upper
+/// corridor; slow at lab; keep-out at EJ-231; preferred at central corridor". `said_by` names the
+/// speaker of each, in the same order: "Charlie said ...; ...". Places that the topology does not
+/// have are left out.
+std::vector<Zone> all_zones(const Map& map, const Topology& topology, std::string_view hazards = {},
+                            std::string_view said_by = {});
 
 /// The first zone with that rule that holds at a position; nullptr: none.
 const Zone* zone_at(const std::vector<Zone>& zones, ZoneRule rule, const Topology& topology,
                     const Vec2& position_in_map);
 
-/// The slowest slow zone at a position; nullptr: none.
+/// The slowest slow zone that a circle of that radius [m] around a position reaches; nullptr: none.
 const Zone* slowest_at(const std::vector<Zone>& zones, const Topology& topology,
-                       const Vec2& position_in_map);
+                       const Vec2& position_in_map, double radius);
 
 }  // namespace saphira::maps

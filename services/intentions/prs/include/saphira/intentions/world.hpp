@@ -25,6 +25,7 @@ class Topology;
 namespace saphira::intentions {
 
 class Beliefs;
+struct KnownZones;
 struct Reference;
 class Value;
 
@@ -88,6 +89,8 @@ struct Surroundings {
   double head_reach = 0.0;    ///< [rad] turn of the cameras to either side; 0: they are fixed
   /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
+  /// The zones of the map and by advice, once somebody has asked for them (skills/src/zones.hpp).
+  mutable std::shared_ptr<const KnownZones> zones;
 };
 
 /// The world of activities in a cycle: the input of the functions of their language.
