@@ -752,6 +752,19 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
   EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
   EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
+
+  const Outcome speech = run({"check", "office", "--set", "speech=on", "--set",
+                              "microphone=no-microphone", "--set", "loudspeaker=no-loudspeaker"});
+  EXPECT_EQ(speech.code, 0) << speech.text;
+  if (std::filesystem::exists(test::program("saphira-speech"))) {
+    EXPECT_TRUE(has(speech.text, "the sound device \"no-microphone\" cannot be opened: "))
+        << speech.text;
+    EXPECT_TRUE(has(speech.text, "the sound device \"no-loudspeaker\" cannot be opened: "))
+        << speech.text;
+  } else {
+    EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
+  }
+  EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
   EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 

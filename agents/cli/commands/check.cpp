@@ -55,7 +55,8 @@ int check(const std::string& name, const std::vector<std::string>& set,
   places.run = folder.path();
   places.robot = options.robot;
   int wrong = 0;
-  for (ChildSpec& child : command_lines(deployment, places, set)) {
+  std::vector<std::string> left_out;
+  for (ChildSpec& child : command_lines(deployment, places, set, &left_out)) {
     child.environment.merge(as_environment(options));
     const std::string program = std::filesystem::path(child.argv.at(0)).filename();
     if (!program.starts_with("saphira-")) {
@@ -70,8 +71,11 @@ int check(const std::string& name, const std::vector<std::string>& set,
           said.text.c_str());
     wrong += said.well ? 0 : 1;
   }
+  for (const std::string& text : left_out)
+    print("%s\n", text.c_str());
   if (wrong == 0)
-    print("%s would start\n", deployment.file.c_str());
+    print("%s would start%s\n", deployment.file.c_str(),
+          left_out.empty() ? "" : ", without what is left out");
   else
     print("%s would not start: %d of its programs do not take what they are given\n",
           deployment.file.c_str(), wrong);

@@ -113,7 +113,6 @@ TEST_F(Navigation, NobodyIsAskedToOpenAWayThatIsOpen) {
   const auto reason_after = [&](const std::string& ending) {
     Stage stage(read_file(std::getenv("SAPHIRA_SOURCE_DIR") +
                           std::string("/config/activities/navigation.act")) +
-                    "(defintention :roam :goals '((WAIT 1s)))"
                     "(defintention :plan-and-execute :params (dest)"
                     " :goals '((EXECUTE (say \"I try\")) " +
                     ending + "))",
