@@ -94,9 +94,8 @@ Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Pla
   deployment.bus.robot = node.robot;
   deployment.bus.domain = node.domain;
   deployment.bus.profile = "host";
-  std::erase_if(deployment.programs, [](const Program& program) {
-    return program.name == "console" || program.when;
-  });
+  std::erase_if(deployment.programs,
+                [](const Program& program) { return program.name == "console" || program.when; });
   // The simulator is the deployment's first program.
   std::vector<Placed>& simulator = deployment.programs.at(0).arguments;
   simulator.insert(simulator.end(), {Placed{"--trace"}, Placed{run.trace()}});
@@ -222,9 +221,8 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
     throw std::runtime_error(text + ": cannot be written: " + std::strerror(errno));
   const std::string speech = find_places().bin + "/saphira-speech";
   if (!std::filesystem::exists(speech))
-    throw std::runtime_error(
-        "--audio: there is no saphira-speech beside this program; " + text +
-        " has what was said. To hear it, " + kInstallSpeech);
+    throw std::runtime_error("--audio: there is no saphira-speech beside this program; " + text +
+                             " has what was said. To hear it, " + kInstallSpeech);
   Kept kept;
   ChildSpec reader{"speech", {speech, "--read", text, "--speaker", folder}, {}, false};
   Supervisor supervisor(

@@ -359,8 +359,8 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
     if (program.when && !is_on(deployment, *program.when, values))
       continue;
     std::string missing;
-    const std::optional<std::string> path = find_program(
-        deployment, replaced(deployment, program.program, values), places, missing);
+    const std::optional<std::string> path =
+        find_program(deployment, replaced(deployment, program.program, values), places, missing);
     if (!path) {
       if (!program.when || left_out == nullptr)
         fail_at(deployment, program.program, missing);

@@ -141,9 +141,9 @@ TEST_F(DeploymentTest, AnOptionalProgramThatIsNotInstalledIsLeftOutWithAWord) {
   EXPECT_EQ(left_out[0], "speech is left out: expected a program, found no \"saphira-speech\" in " +
                              folder_ + " or on PATH: " + kInstallSpeech);
   // The others are needed.
-  EXPECT_THROW(command_lines(parse_deployment("programs: [{program: two}]", "f"), places_, {},
-                             &left_out),
-               FileError);
+  EXPECT_THROW(
+      command_lines(parse_deployment("programs: [{program: two}]", "f"), places_, {}, &left_out),
+      FileError);
 }
 
 struct Broken {
