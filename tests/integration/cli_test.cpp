@@ -765,6 +765,16 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
     EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
   }
   EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
+
+  // Of a program that lacks something the supervisor tries again; the others run on.
+  std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),
+                               std::filesystem::perms::owner_all);
+  const Outcome lacking =
+      run({"check", write("lacking.yaml", "programs: [{program: ./saphira-lacking}]\n")});
+  EXPECT_EQ(lacking.code, 2);
+  EXPECT_TRUE(has(lacking.text, "no model")) << lacking.text;
+  EXPECT_TRUE(has(lacking.text, "would start, but 1 of its programs would not run"))
+      << lacking.text;
   EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 
