@@ -96,7 +96,8 @@ TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
   const Outcome stands = run({"why"});
   EXPECT_EQ(stands.code, 0) << stands.text;
   EXPECT_TRUE(stands.text.starts_with("The robot stands: no goal is underway")) << stands.text;
-  EXPECT_TRUE(has(stands.text, "go_to of test: canceled, withdrawn by its requester"))
+  EXPECT_TRUE(
+      has(stands.text, "go_to of test: canceled, withdrawn by the program that asked for it"))
       << stands.text;
 }
 

@@ -752,6 +752,29 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
   EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
   EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
+
+  const Outcome speech = run({"check", "office", "--set", "speech=on", "--set",
+                              "microphone=no-microphone", "--set", "loudspeaker=no-loudspeaker"});
+  EXPECT_EQ(speech.code, 0) << speech.text;
+  if (std::filesystem::exists(test::program("saphira-speech"))) {
+    EXPECT_TRUE(has(speech.text, "the sound device \"no-microphone\" cannot be opened: "))
+        << speech.text;
+    EXPECT_TRUE(has(speech.text, "the sound device \"no-loudspeaker\" cannot be opened: "))
+        << speech.text;
+  } else {
+    EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
+  }
+  EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
+
+  // Of a program that lacks something the supervisor tries again; the others run on.
+  std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),
+                               std::filesystem::perms::owner_all);
+  const Outcome lacking =
+      run({"check", write("lacking.yaml", "programs: [{program: ./saphira-lacking}]\n")});
+  EXPECT_EQ(lacking.code, 2);
+  EXPECT_TRUE(has(lacking.text, "no model")) << lacking.text;
+  EXPECT_TRUE(has(lacking.text, "would start, but 1 of its programs would not run"))
+      << lacking.text;
   EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 

@@ -27,6 +27,7 @@ std::string quoted(const std::string& word) {
 /// run: others may not know the option --dry-run.
 struct Said {
   bool well = true;
+  bool misused = false;  ///< `saphira up` ends for that
   std::string text;
 };
 Said ask(const ChildSpec& child) {
@@ -38,12 +39,13 @@ Said ask(const ChildSpec& child) {
   Said said;
   FILE* const output = popen((command + " --dry-run 2>&1 </dev/null").c_str(), "r");
   if (output == nullptr)
-    return {false, "it cannot be started"};
+    return {false, false, "it cannot be started"};
   std::array<char, 4096> part;
   while (fgets(part.data(), part.size(), output) != nullptr)
     said.text += part.data();
   const int status = pclose(output);
   said.well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  said.misused = WIFEXITED(status) && WEXITSTATUS(status) == bus::kExitUsage;
   return said;
 }
 
@@ -55,7 +57,9 @@ int check(const std::string& name, const std::vector<std::string>& set,
   places.run = folder.path();
   places.robot = options.robot;
   int wrong = 0;
-  for (ChildSpec& child : command_lines(deployment, places, set)) {
+  int misused = 0;
+  std::vector<std::string> left_out;
+  for (ChildSpec& child : command_lines(deployment, places, set, &left_out)) {
     child.environment.merge(as_environment(options));
     const std::string program = std::filesystem::path(child.argv.at(0)).filename();
     if (!program.starts_with("saphira-")) {
@@ -69,12 +73,18 @@ int check(const std::string& name, const std::vector<std::string>& set,
                               : "would start, but says",
           said.text.c_str());
     wrong += said.well ? 0 : 1;
+    misused += said.misused ? 1 : 0;
   }
+  for (const std::string& text : left_out)
+    print("%s\n", text.c_str());
   if (wrong == 0)
-    print("%s would start\n", deployment.file.c_str());
+    print("%s would start%s\n", deployment.file.c_str(),
+          left_out.empty() ? "" : ", without what is left out");
+  else if (misused == 0)
+    print("%s would start, but %d of its programs would not run\n", deployment.file.c_str(), wrong);
   else
     print("%s would not start: %d of its programs do not take what they are given\n",
-          deployment.file.c_str(), wrong);
+          deployment.file.c_str(), misused);
   return wrong == 0 ? bus::kExitOk : bus::kExitUsage;
 }
 

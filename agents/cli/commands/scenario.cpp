@@ -95,7 +95,7 @@ Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Pla
   deployment.bus.domain = node.domain;
   deployment.bus.profile = "host";
   std::erase_if(deployment.programs,
-                [](const Program& program) { return program.name == "console"; });
+                [](const Program& program) { return program.name == "console" || program.when; });
   // The simulator is the deployment's first program.
   std::vector<Placed>& simulator = deployment.programs.at(0).arguments;
   simulator.insert(simulator.end(), {Placed{"--trace"}, Placed{run.trace()}});
@@ -221,10 +221,8 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
     throw std::runtime_error(text + ": cannot be written: " + std::strerror(errno));
   const std::string speech = find_places().bin + "/saphira-speech";
   if (!std::filesystem::exists(speech))
-    throw std::runtime_error(
-        "--audio: there is no saphira-speech beside this program; " + text +
-        " has what was said. It is of the package saphira-speech, or is built where Debian's "
-        "libpocketsphinx-dev, pocketsphinx-en-us, flite1-dev and libasound2-dev are");
+    throw std::runtime_error("--audio: there is no saphira-speech beside this program; " + text +
+                             " has what was said. To hear it, " + kInstallSpeech);
   Kept kept;
   ChildSpec reader{"speech", {speech, "--read", text, "--speaker", folder}, {}, false};
   Supervisor supervisor(

@@ -136,7 +136,8 @@ int up(const std::string& name, const std::vector<std::string>& set,
   const RunFolder folder(name_of(deployment, options));
   places.run = folder.path();
   places.robot = options.robot;
-  std::vector<ChildSpec> children = command_lines(deployment, places, set);
+  std::vector<std::string> left_out;
+  std::vector<ChildSpec> children = command_lines(deployment, places, set, &left_out);
   ProgramLocks locks;
   for (ChildSpec& child : children) {
     child.environment.merge(as_environment(options));
@@ -153,6 +154,8 @@ int up(const std::string& name, const std::vector<std::string>& set,
   const ServiceManager manager;
   const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);
+  for (const std::string& text : left_out)
+    print({}, text);
   Supervisor supervisor(std::move(children), print);
   supervisor.start();
   const FoundBus found(bus_of(deployment, options));
@@ -210,7 +213,10 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
   places.run = "/tmp";
-  command_lines(deployment, places, set);
+  std::vector<std::string> left_out;
+  command_lines(deployment, places, set, &left_out);
+  for (const std::string& text : left_out)
+    std::cerr << "saphira: " << text << '\n';
   const std::string running = name_of(deployment, options);
   const std::string log = log_of(running);
   const pid_t child = start_again(std::filesystem::absolute(deployment.file), set, options, log);

@@ -211,7 +211,11 @@ class Parser {
           {"arguments", [&](const auto& n) { made.arguments = words(n, "a list of arguments"); }},
           {"robot", [&](const auto& n) { made.robot = robot(n); }},
           {"bus", [&](const auto& n) { made.bus = boolean(n, "bus"); }},
-          {"restart", [&](const auto& n) { made.restart = boolean(n, "restart"); }}});
+          {"restart", [&](const auto& n) { made.restart = boolean(n, "restart"); }},
+          {"when", [&](const auto& n) {
+             made.when = {word(n, "on, off or a ${setting}"), n.Mark().line + 1,
+                          n.Mark().column + 1};
+           }}});
     if (made.program.text.empty())
       fail(node.Mark(), "expected program: in this entry");
     if (made.name.empty()) {
@@ -265,27 +269,38 @@ std::optional<std::string> executable(const fs::path& path) {
   return std::nullopt;
 }
 
-std::string find_program(const Deployment& deployment, const Placed& program,
-                         const std::string& name, const Places& places) {
+/// The path of a program; nothing, with the reason in `missing`, where there is none.
+std::optional<std::string> find_program(const Deployment& deployment, const std::string& name,
+                                        const Places& places, std::string& missing) {
   if (name.find('/') != std::string::npos) {
     // As every path in a file: relative to the file.
     const fs::path path = fs::path(deployment.file).parent_path() / name;
-    if (const auto found = executable(path))
-      return *found;
-    fail_at(deployment, program, "expected a program, found no executable " + path.string());
+    missing = "expected a program, found no executable " + path.string();
+    return executable(path);
   }
   if (const auto found = executable(fs::path(places.bin) / name))
-    return *found;
+    return found;
   const char* path = std::getenv("PATH");
   const std::string folders = path == nullptr ? "" : path;
   for (std::size_t at = 0; at < folders.size();) {
     const std::size_t end = std::min(folders.find(':', at), folders.size());
     if (const auto found = executable(fs::path(folders.substr(at, end - at)) / name))
-      return *found;
+      return found;
     at = end + 1;
   }
-  fail_at(deployment, program,
-          "expected a program, found no \"" + name + "\" in " + places.bin + " or on PATH");
+  missing = "expected a program, found no \"" + name + "\" in " + places.bin + " or on PATH";
+  if (name == "saphira-speech")
+    missing += std::string(": ") + kInstallSpeech;
+  return std::nullopt;
+}
+
+bool is_on(const Deployment& deployment, const Placed& when,
+           const std::map<std::string, std::string>& values) {
+  const std::string word = replaced(deployment, when, values);
+  bool on = false;
+  if (!YAML::convert<bool>::decode(YAML::Node(word), on))
+    fail_at(deployment, when, "expected on or off for " + when.text + ", found \"" + word + "\"");
+  return on;
 }
 
 }  // namespace
@@ -315,7 +330,8 @@ std::string find_deployment(const std::string& name, const Places& places) {
 }
 
 std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,
-                                     const std::vector<std::string>& set) {
+                                     const std::vector<std::string>& set,
+                                     std::vector<std::string>* left_out) {
   std::map<std::string, std::string> values{{"config", places.config},
                                             {"run", places.run},
                                             {"robot", deployment.bus.robot.value_or(places.robot)}};
@@ -340,11 +356,21 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
   for (const Program& program : deployment.programs) {
     const std::optional<std::string> robot = program.robot ? program.robot : deployment.bus.robot;
     values["robot"] = robot.value_or(places.robot);
+    if (program.when && !is_on(deployment, *program.when, values))
+      continue;
+    std::string missing;
+    const std::optional<std::string> path =
+        find_program(deployment, replaced(deployment, program.program, values), places, missing);
+    if (!path) {
+      if (!program.when || left_out == nullptr)
+        fail_at(deployment, program.program, missing);
+      left_out->push_back(program.name + " is left out: " + missing);
+      continue;
+    }
     ChildSpec child;
     child.name = program.name;
     child.restart = program.restart;
-    child.argv.push_back(find_program(deployment, program.program,
-                                      replaced(deployment, program.program, values), places));
+    child.argv.push_back(*path);
     for (const Placed& argument : program.arguments)
       child.argv.push_back(replaced(deployment, argument, values));
     if (program.bus) {

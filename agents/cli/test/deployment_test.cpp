@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
@@ -90,6 +93,59 @@ TEST_F(DeploymentTest, AnUnknownSettingIsRefused) {
     EXPECT_THROW(command_lines(deployment, places_, {word}), std::invalid_argument) << word;
 }
 
+constexpr const char* kOptional = R"(settings:
+  speech: off
+programs:
+  - program: one
+  - program: saphira-speech
+    when: "${speech}"
+)";
+
+TEST_F(DeploymentTest, AnOptionalProgramRunsWhereItsSettingIsOn) {
+  std::filesystem::copy_file(folder_ + "/one", folder_ + "/saphira-speech");
+  const Deployment deployment = parse_deployment(kOptional, "f");
+  EXPECT_EQ(command_lines(deployment, places_).size(), 1U);
+  for (const char* word : {"speech=on", "speech=true", "speech=yes"})
+    EXPECT_EQ(command_lines(deployment, places_, {word}).at(1).name, "speech");
+  for (const char* word : {"speech=off", "speech=no"})
+    EXPECT_EQ(command_lines(deployment, places_, {word}).size(), 1U);
+  EXPECT_TRUE(command_lines(parse_deployment("programs: [{program: one, when: off}]", "f"), places_)
+                  .empty());
+  for (const char* word : {"perhaps", ""}) {
+    try {
+      command_lines(deployment, places_, {std::string("speech=") + word});
+      FAIL() << word;
+    } catch (const FileError& error) {
+      EXPECT_EQ(error.line(), 6);
+      EXPECT_EQ(error.column(), 11);
+      EXPECT_NE(std::string(error.what())
+                    .find(std::string("expected on or off for ${speech}, found \"") + word + "\""),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST_F(DeploymentTest, AnOptionalProgramThatIsNotInstalledIsLeftOutWithAWord) {
+  const Deployment deployment = parse_deployment(kOptional, "f");
+  const std::vector<std::string> on{"speech=on"};
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.c_str(), 1);  // this machine may have it
+  std::vector<std::string> left_out;
+  EXPECT_EQ(command_lines(deployment, places_, {}, &left_out).size(), 1U);
+  EXPECT_TRUE(left_out.empty());
+  EXPECT_EQ(command_lines(deployment, places_, on, &left_out).size(), 1U);
+  EXPECT_THROW(command_lines(deployment, places_, on), FileError);
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_EQ(left_out[0], "speech is left out: expected a program, found no \"saphira-speech\" in " +
+                             folder_ + " or on PATH: " + kInstallSpeech);
+  // The others are needed.
+  EXPECT_THROW(
+      command_lines(parse_deployment("programs: [{program: two}]", "f"), places_, {}, &left_out),
+      FileError);
+}
+
 struct Broken {
   const char* text;
   int line;
@@ -126,6 +182,10 @@ INSTANTIATE_TEST_SUITE_P(
                "expected a list of arguments, found \"--x 1\""},
         Broken{"programs:\n  - program: sh\n    arguments: [[a]]\n", 3, 17, "found a list"},
         Broken{"programs:\n  - program: sh\n    bus: perhaps\n", 3, 10, "expected true or false"},
+        Broken{"programs:\n  - program: sh\n    when: [on]\n", 3, 11,
+               "expected on, off or a ${setting}, found a list"},
+        Broken{"programs:\n  - program: sh\n    when: \"${speech}\"\n", 3, 11,
+               "unknown ${speech}: expected one of config"},
         Broken{"programs:\n  - program: sh\n  - program: sh\n", 3, 5, "is there already"},
         Broken{"robot: a\nrobot: b\nprograms: [{program: sh}]\n", 2, 1, "is there already"},
         Broken{"domain: 232\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 231"},
@@ -172,6 +232,52 @@ TEST(ShippedDeployments, AreAllGood) {
     }
   }
   EXPECT_GE(count, 5);
+}
+
+// Speech is beside each dialogue, off, and knows what the dialogue understands.
+TEST(ShippedDeployments, HearAndSpeakWhereTheyUnderstandSentences) {
+  const test::TempDir bin;
+  const Places places{bin.path(), test::source("config"), "/tmp"};
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(places.config + "/deployments")) {
+    if (entry.path().extension() != ".yaml")
+      continue;
+    const Deployment deployment = load_deployment(entry.path().string());
+    for (const Program& program : deployment.programs) {
+      std::ofstream(bin.path(program.program.text)) << "#!/bin/sh\n";
+      std::filesystem::permissions(bin.path(program.program.text),
+                                   std::filesystem::perms::owner_all);
+    }
+    const auto argv_of = [](const std::vector<ChildSpec>& children, const std::string& name) {
+      for (const ChildSpec& child : children)
+        if (child.name == name)
+          return child.argv;
+      return std::vector<std::string>{};
+    };
+    const auto grammar = [](const std::vector<std::string>& argv) {
+      const auto option = std::find(argv.begin(), argv.end(), "--grammar");
+      return option == argv.end() ? "flakey" : *std::next(option);
+    };
+    const auto usual = command_lines(deployment, places);
+    EXPECT_TRUE(argv_of(usual, "speech").empty()) << entry.path();
+    const std::vector<std::string> dialogue = argv_of(usual, "dialogue");
+    EXPECT_EQ(deployment.settings.contains("speech"), !dialogue.empty()) << entry.path();
+    if (dialogue.empty())
+      continue;
+    ++count;
+    const std::vector<std::string> speech = argv_of(
+        command_lines(deployment, places, {"speech=on", "microphone=hw:1", "loudspeaker=none"}),
+        "speech");
+    ASSERT_FALSE(speech.empty()) << entry.path();
+    EXPECT_EQ(grammar(speech), grammar(dialogue)) << entry.path();
+    for (const auto& [option, value] :
+         std::map<std::string, std::string>{{"--microphone", "hw:1"}, {"--speaker", "none"}}) {
+      const auto found = std::find(speech.begin(), speech.end(), option);
+      ASSERT_NE(found, speech.end()) << entry.path() << option;
+      EXPECT_EQ(*std::next(found), value) << entry.path();
+    }
+  }
+  EXPECT_EQ(count, 4);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -36,6 +37,16 @@ using Pcm = std::unique_ptr<snd_pcm_t, ClosePcm>;
 void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
                  const char* /*format*/, ...) {}
 
+std::runtime_error not_opened(const std::string& name, snd_pcm_stream_t direction, int error) {
+  return std::runtime_error(
+      "the sound device \"" + name + "\" cannot be opened: " + snd_strerror(error) +
+      (direction == SND_PCM_STREAM_CAPTURE
+           ? ". Connect a microphone, or name one with --microphone (in a deployment, the setting "
+             "microphone): arecord -L lists them, for users of the group audio"
+           : ". Connect a loudspeaker, or name one with --speaker (in a deployment, the setting "
+             "loudspeaker): aplay -L lists them, for users of the group audio"));
+}
+
 Pcm open_device(const std::string& name, snd_pcm_stream_t direction) {
   snd_lib_error_set_handler(say_nothing);
   snd_pcm_t* raw = nullptr;
@@ -45,11 +56,18 @@ Pcm open_device(const std::string& name, snd_pcm_stream_t direction) {
     error = snd_pcm_set_params(pcm.get(), SND_PCM_FORMAT_S16_LE, SND_PCM_ACCESS_RW_INTERLEAVED, 1,
                                kRate, 1, kLatency);
   if (error < 0)
-    throw std::runtime_error("the sound device \"" + name + "\": " + snd_strerror(error) +
-                             (direction == SND_PCM_STREAM_CAPTURE
-                                  ? " (arecord -L lists those there are)"
-                                  : " (aplay -L lists those there are)"));
+    throw not_opened(name, direction, error);
   return pcm;
+}
+
+std::string trouble_of(const std::string& name, snd_pcm_stream_t direction) {
+  if (name == "none" || name == "-" || fs::exists(name))
+    return {};
+  snd_lib_error_set_handler(say_nothing);
+  snd_pcm_t* raw = nullptr;
+  const int error = snd_pcm_open(&raw, name.c_str(), direction, SND_PCM_NONBLOCK);
+  const Pcm pcm(error < 0 ? nullptr : raw);
+  return error < 0 && error != -EBUSY ? not_opened(name, direction, error).what() : "";
 }
 
 /// The error after a device has failed for good.
@@ -59,6 +77,14 @@ std::runtime_error failed(const std::string& device, snd_pcm_sframes_t error) {
 }
 
 }  // namespace
+
+std::string microphone_trouble(const std::string& source) {
+  return trouble_of(source, SND_PCM_STREAM_CAPTURE);
+}
+
+std::string speaker_trouble(const std::string& sink) {
+  return trouble_of(sink, SND_PCM_STREAM_PLAYBACK);
+}
 
 Microphone::Microphone(std::string source, std::function<void(const std::string&)> trouble)
     : source_(std::move(source)), trouble_(std::move(trouble)), thread_([this] { run(); }) {}

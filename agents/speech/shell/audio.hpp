@@ -12,6 +12,11 @@
 
 namespace saphira::speech {
 
+/// The reason why the device cannot be opened; empty: it can, it is in use, or it is no device of
+/// ALSA.
+std::string microphone_trouble(const std::string& source);
+std::string speaker_trouble(const std::string& sink);
+
 /// The source of sound: a device of ALSA, a WAV file, `-` or a FIFO with raw samples (16 bits, 16
 /// kHz, one channel), or `none`. Reads in a thread of its own; the queue holds a few seconds at
 /// most, and a device's older sound is lost.

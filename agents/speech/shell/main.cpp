@@ -73,6 +73,11 @@ int main(int argc, char** argv) {
         speech.grammar = find_file(config_folder() + "/grammars", speech.grammar, ".grammar");
         if (speech.pronunciations.empty())
           speech.pronunciations = config_folder() + "/speech/pronunciations.dict";
+        if (options.dry_run)
+          for (const std::string& trouble : {speech::microphone_trouble(speech.microphone),
+                                             speech::speaker_trouble(speech.speaker)})
+            if (!trouble.empty())
+              std::fprintf(stderr, "%s\n", trouble.c_str());
         bus::Node node(options);
         speech::SpeechShell(node, speech).run(stop);
         return bus::kExitOk;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
@@ -31,13 +32,17 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
       microphone_(options.microphone,
                   [this](const std::string& text) {
                     const std::lock_guard lock(mutex_);
-                    trouble_ = text;
+                    microphone_trouble_ = text;
                   }),
       speaker_(options.speaker, [this](const std::string& text) {
         const std::lock_guard lock(mutex_);
-        trouble_ = text;
+        speaker_trouble_ = text;
       }) {
   folder_.look();
+  // Its thread opens it only to speak.
+  std::string trouble = speaker_trouble(options.speaker);
+  const std::lock_guard lock(mutex_);
+  speaker_trouble_ = std::move(trouble);
 }
 
 void SpeechShell::run(const bus::Stop& stop) {
@@ -110,9 +115,12 @@ void SpeechShell::reload() {
 /// Reports the errors of the sound threads, each once.
 void SpeechShell::report() {
   const std::lock_guard lock(mutex_);
-  if (trouble_ == told_)
+  std::string trouble = microphone_trouble_;
+  if (!speaker_trouble_.empty())
+    trouble += (trouble.empty() ? "" : "; ") + speaker_trouble_;
+  if (trouble == told_)
     return;
-  told_ = trouble_;
+  told_ = std::move(trouble);
   if (!told_.empty())
     node_.warn(told_);
   node_.status().state(told_.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED);

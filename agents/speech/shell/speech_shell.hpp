@@ -47,7 +47,8 @@ class SpeechShell {
   bus::Writer<v1::Utterance> heard_;
   std::uint64_t number_ = 0;
   std::mutex mutex_;
-  std::string trouble_;  ///< of the threads; guarded
+  std::string microphone_trouble_;  ///< of the threads; guarded, with the next
+  std::string speaker_trouble_;
   std::string told_ = "?";
   Microphone microphone_;
   Speaker speaker_;

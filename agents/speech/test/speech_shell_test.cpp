@@ -66,7 +66,7 @@ TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
 TEST_F(SpeechOnTheBus, WithoutASoundCardItSaysSoAndGoesOn) {
   SpeechOptions none = options();
   none.microphone = "no-such-device";
-  none.speaker = "none";
+  none.speaker = "no-such-speaker";
   bus::Reader<v1::ServiceStatus> statuses = person.reader(bus::topics::kStatus);
   SpeechShell speech(service, none);
   bus::Stop stop;
@@ -76,11 +76,28 @@ TEST_F(SpeechOnTheBus, WithoutASoundCardItSaysSoAndGoesOn) {
     for (const auto& sample : statuses.take())
       if (sample.data.state() == v1::SERVICE_DEGRADED)
         reason = sample.data.reason();
-    return !reason.empty();
-  }));
-  EXPECT_NE(reason.find("no-such-device"), std::string::npos) << reason;
+    return reason.find("no-such-device") != std::string::npos &&
+           reason.find("no-such-speaker") != std::string::npos;
+  })) << reason;
   stop.request();
   thread.join();
+}
+
+TEST_F(SpeechOnTheBus, OnlyADeviceCanBeMissing) {
+  for (const std::string& name : {std::string("none"), std::string("-"), folder.path("")}) {
+    EXPECT_EQ(microphone_trouble(name), "");
+    EXPECT_EQ(speaker_trouble(name), "");
+  }
+  const std::string head = "the sound device \"no-such-device\" cannot be opened: ";
+  const std::string microphone = microphone_trouble("no-such-device");
+  EXPECT_TRUE(microphone.starts_with(head)) << microphone;
+  EXPECT_NE(microphone.find(". Connect a microphone, or name one with --microphone"),
+            std::string::npos)
+      << microphone;
+  const std::string speaker = speaker_trouble("no-such-device");
+  EXPECT_TRUE(speaker.starts_with(head)) << speaker;
+  EXPECT_NE(speaker.find(". Connect a loudspeaker, or name one with --speaker"), std::string::npos)
+      << speaker;
 }
 
 }  // namespace

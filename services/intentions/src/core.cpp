@@ -258,6 +258,11 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
     GoalEvent event = goal.event;
     if (!take_sender(goal, event, notes))
       continue;
+    if (const auto asked = requesters_.find(event.goal.id);
+        event.kind == GoalEvent::Kind::kDisposed && event.by.empty() && asked != requesters_.end())
+      event.by = asked->second == goal.writer ? "the program that asked for it"
+                 : goal.sender                ? goal.sender->name
+                                              : "another program";
     // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
@@ -277,6 +282,8 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
       event.goal.id = id;
       events.push_back(std::move(event));
     }
+    // A program that comes back has another writer.
+    std::erase_if(requesters_, [&](const auto& asked) { return asked.second == lost; });
   }
   return events;
 }

@@ -169,6 +169,30 @@ TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   EXPECT_FALSE(ended(state(2)));
 }
 
+// On an open bus; the requester may be a person, for whom a program asks.
+TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
+  const auto withdrawn = [&](const Core::Writer& asks, const Core::Writer& withdraws, bool gone) {
+    static std::uint64_t number = 0;
+    Core::Heard::Goal goal = written(++number, asks);
+    goal.event.goal.writer_lost = WriterLost::kKeep;
+    inputs_.heard.goals = {goal};
+    step();
+    if (gone)
+      inputs_.heard.lost_requesters = {asks};
+    step();
+    goal.event.kind = GoalEvent::Kind::kDisposed;
+    goal.writer = withdraws;
+    inputs_.heard.goals = {goal};
+    step();
+    EXPECT_EQ(state(number), GoalState::kCanceled);
+    return statuses_.at({5, number}).reason;
+  };
+  EXPECT_EQ(withdrawn(kKaren, kKaren, false), "withdrawn by the program that asked for it");
+  EXPECT_EQ(withdrawn(kKaren, kJohn, false), "withdrawn by another program");
+  EXPECT_EQ(withdrawn(kKaren, kJohn, true), "withdrawn by its requester")
+      << "it may be the same program, which has slept";
+}
+
 // The rights of programs on a goal, on a bus that knows the writer of a sample.
 class OwnedGoal : public CoreTest {
  protected:
@@ -210,7 +234,15 @@ TEST_F(OwnedGoal, ItsOwnerMay) {
   EXPECT_EQ(status().reason, "changed by its requester");
   hear(by({"karen"}, kDisposed));
   EXPECT_EQ(state(1), GoalState::kCanceled);
-  EXPECT_EQ(status().reason, "withdrawn by its requester");
+  EXPECT_EQ(status().reason, "withdrawn by the program that asked for it");
+  // Another program of hers.
+  Core::Heard::Goal second = by({"karen"}, kWritten);
+  second.event.goal.id.number = 2;
+  hear(second);
+  second.event.kind = kDisposed;
+  second.writer = kJohn;
+  hear(second);
+  EXPECT_EQ(statuses_.at({5, 2}).reason, "withdrawn by karen");
 }
 
 TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {

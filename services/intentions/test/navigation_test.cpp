@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "language_bench.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/maps/topology.hpp"
@@ -94,6 +97,41 @@ TEST_F(Navigation, AClosedWayIsLeftOutAndForgottenAfterFiveMinutes) {
   EXPECT_NE(spoken(call("why-no-path", {Value(), "south"})).find("not closed"), std::string::npos);
   now += 3001;
   EXPECT_FALSE(path("south").nil());
+  EXPECT_TRUE(call("why-no-path", {Value(), "south"}).nil());
+}
+
+TEST_F(Navigation, WhereThePathEndsTheRobotIsAtThePlace) {
+  be_at({3.0, 4.8, 0.0});
+  EXPECT_TRUE(call("at-place", {"north"}).truthy());
+  be_at({3.0, 5.3, 0.0});  // beside the room, and in no other
+  EXPECT_EQ(call("leg", {path("north")}), Value("done"));
+  EXPECT_TRUE(call("at-place", {"north"}).truthy());
+  be_at({3.0, 0.9, 0.0});  // before its door
+  EXPECT_TRUE(call("at-place", {"north"}).nil());
+}
+
+TEST_F(Navigation, NobodyIsAskedToOpenAWayThatIsOpen) {
+  const auto reason_after = [&](const std::string& ending) {
+    Stage stage(read_file(std::getenv("SAPHIRA_SOURCE_DIR") +
+                          std::string("/config/activities/navigation.act")) +
+                    "(defintention :plan-and-execute :params (dest)"
+                    " :goals '((EXECUTE (say \"I try\")) " +
+                    ending + "))",
+                functions);
+    EXPECT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+    stage.inputs.around = around;
+    stage.inputs.robot = robot;
+    stage.inputs.robot.odom = 1;
+    stage.ask(1, "go_to_place", {text("place", "north")});
+    stage.step(60);
+    EXPECT_EQ(stage.messages, std::vector<std::string>(4, "I try"));
+    EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+    return stage.status(1).reason;
+  };
+  EXPECT_EQ(reason_after("(FAIL \"a behavior is missing\")"),
+            "it has not come to north, though it knows a way: a behavior is missing");
+  EXPECT_EQ(reason_after("(SUCCEED \"at the end of the path\")"),
+            "it has not come to north, though it knows a way: its path ended elsewhere");
 }
 
 TEST_F(Navigation, PeopleCanOpenADoorAndNotMakeItWider) {

@@ -268,9 +268,10 @@ void add_paths(Functions& functions) {
                          "(find-path FROM TO): the regions and ways out to go through, or nil"});
   functions.add(Function{"why-no-path", 2, 2,
                          [](const World& world, Values arguments) {
-                           return Value(route(world, arguments[0], arguments[1]).reason);
+                           const maps::RouteResult found = route(world, arguments[0], arguments[1]);
+                           return found.route ? Value() : Value(found.reason);
                          },
-                         "(why-no-path FROM TO): the reason why find-path gives nil"});
+                         "(why-no-path FROM TO): the reason why find-path gives nil, or nil"});
   functions.add(Function{"could-be-opened", 2, 2,
                          [](const World& world, Values arguments) {
                            return Value::truth(
@@ -351,7 +352,8 @@ void add_paths(Functions& functions) {
                "that is none of the points, or nil"});
 }
 
-/// True where the robot is at a place: within its region, and near its point where it has one.
+/// True where the robot is at a place: in its region, as find-path sees it, and near its point
+/// where it has one.
 bool at_place(const World& world, const Value& place) {
   const std::optional<Pose> robot = world.robot_in_map();
   if (!robot || world.around.topology == nullptr)
@@ -365,8 +367,10 @@ bool at_place(const World& world, const Value& place) {
     return false;
   if (meant->point)
     return (*meant->point - robot->position()).norm() < kThere;
+  const std::optional<std::size_t> here = region_here(world);
   return std::any_of(meant->regions.begin(), meant->regions.end(), [&](std::size_t region) {
-    return maps::contains(world.around.topology->regions()[region].area, robot->position());
+    return here == region ||
+           maps::contains(world.around.topology->regions()[region].area, robot->position());
   });
 }
 

@@ -36,7 +36,14 @@ struct Program {
   std::optional<std::string> robot;  ///< in place of the deployment's
   bool bus = true;                   ///< takes the bus options
   bool restart = true;               ///< started again when it ends
+  /// On, off, or a ${setting} that is: an optional program runs where it is on.
+  std::optional<Placed> when{};
 };
+
+/// What to do where there is no saphira-speech.
+inline constexpr const char* kInstallSpeech =
+    "install the package saphira-speech, or build where Debian's libpocketsphinx-dev, "
+    "pocketsphinx-en-us, flite1-dev and libasound2-dev are installed";
 
 /// The programs that run together, from config/deployments/*.yaml. The format is in
 /// config/deployments/README.md.
@@ -75,7 +82,10 @@ std::string find_deployment(const std::string& name, const Places& places);
 /// The command lines of a deployment: ${name} replaced by the settings, ${config}, ${run} and
 /// ${robot}; programs found; bus options added. FileError where a name or a program is unknown.
 /// `set` are name=value words that replace settings; std::invalid_argument where one is unknown.
+/// `left_out` gets a message for each optional program that is not installed; without it such a
+/// program is a FileError, too.
 std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,
-                                     const std::vector<std::string>& set = {});
+                                     const std::vector<std::string>& set = {},
+                                     std::vector<std::string>* left_out = nullptr);
 
 }  // namespace saphira::cli
