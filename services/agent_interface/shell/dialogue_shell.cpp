@@ -93,6 +93,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       registrations_(node.reader(bus::topics::kRegistration)),
       maps_(node.reader(bus::topics::kMap)),
       visions_(node.reader(bus::topics::kVision)),
+      robots_(node.reader(bus::topics::kRobotDescription)),
       said_(node.writer(bus::topics::kSaid)),
       claims_(node.writer(bus::topics::kBeliefClaims)),
       knows_(node.writer(bus::topics::kKnows)) {
@@ -292,6 +293,8 @@ void DialogueShell::take_beliefs() {
 
 /// Of the robot, and of a person who points.
 void DialogueShell::take_places() {
+  if (const auto robot = robots_.take_newest())
+    situation_.turns_cameras = robot->head_reach() > 0.0;
   if (auto vision = visions_.take_newest())
     seen_ = std::move(*vision);
   const auto registration = registrations_.take_newest();

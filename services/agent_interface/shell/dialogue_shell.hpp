@@ -57,6 +57,7 @@ class DialogueShell {
   bus::Reader<v1::Registration> registrations_;
   bus::Reader<v1::FloorMap> maps_;
   bus::Reader<v1::Vision> visions_;
+  bus::Reader<v1::RobotDescription> robots_;
   bus::Writer<v1::Utterance> said_;
   bus::Writer<v1::BeliefClaim> claims_;
   bus::Writer<v1::Knowledge> knows_;

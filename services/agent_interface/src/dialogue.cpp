@@ -19,7 +19,7 @@ constexpr double kOld = 60.0;         // [s] after which an utterance is too old
 constexpr std::size_t kHeard = 256;
 constexpr std::size_t kLongestText = 255;  // letters: as long as an argument of a goal
 /// Goals that interrupt a task for a moment.
-constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "attend-person", "pause"};
+constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend-person", "pause"};
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
@@ -53,7 +53,8 @@ void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const st
   wanted_.push_back(std::move(task));
 }
 
-bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs& out) {
+bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+                    Outputs& out) {
   const auto point_ahead = [](double distance, double angle) {
     return point("position", Pose(distance * std::cos(angle), distance * std::sin(angle), 0.0),
                  Frame::robot);
@@ -90,6 +91,18 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
     const double angle = degrees / 180.0 * std::numbers::pi;
     want(meaning, utterance, "turn_to",
          {point_ahead(kAhead, slot(meaning, "direction") == "right" ? -angle : angle)});
+  } else if (meaning.functor == "look") {
+    const std::string direction = slot(meaning, "direction");
+    const double angle = direction == "left"    ? std::numbers::pi / 2.0
+                         : direction == "right" ? -std::numbers::pi / 2.0
+                         : direction == "back"  ? std::numbers::pi
+                                                : 0.0;
+    if (situation.turns_cameras)
+      want(meaning, utterance, "look", {number("angle", angle)});
+    else if (angle == 0.0)
+      say(utterance, "my cameras always look ahead", true, out);
+    else  // the cameras turn with the robot
+      want(meaning, utterance, "turn_to", {point_ahead(kAhead, angle)});
   } else {
     return false;
   }
@@ -246,7 +259,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
 
 void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                    Outputs& out) {
-  if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
+  if (move(meaning, utterance, situation, out) || task(meaning, utterance, situation, out) ||
       errand(meaning, utterance, situation, out) ||
       question_about_robot(meaning, utterance, situation, out) ||
       question_about_world(meaning, utterance, situation, out) ||

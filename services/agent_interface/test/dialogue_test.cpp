@@ -645,6 +645,19 @@ TEST_F(DialogueTest, KnowledgeOutlivesARestart) {
 
 // Whose task it is, errands, and ways of several steps.
 
+TEST_F(DialogueTest, ItLooksWithItsHeadOrTurns) {
+  EXPECT_EQ(said("Flakey, look left"), "I look left");
+  EXPECT_EQ(last.goals.at(0).functor, "turn_to") << "its cameras are fixed";
+  EXPECT_EQ(said("Flakey, look ahead"), "my cameras always look ahead");
+  EXPECT_TRUE(last.goals.empty());
+  situation.turns_cameras = true;
+  EXPECT_EQ(said("Flakey, look behind you"), "I look back");
+  EXPECT_EQ(last.goals.at(0).functor, "look");
+  EXPECT_DOUBLE_EQ(last.goals.at(0).arguments.at(0).number, std::numbers::pi);
+  EXPECT_EQ(said("Flakey, look to the right"), "I look right");
+  EXPECT_DOUBLE_EQ(last.goals.at(0).arguments.at(0).number, -std::numbers::pi / 2.0);
+}
+
 TEST_F(DialogueTest, AMotionLetsTheTaskOfSomebodyElseGoOn) {
   hear("Flakey, get the mail from John");
   EXPECT_EQ(said("Flakey, turn left", "Bob"),

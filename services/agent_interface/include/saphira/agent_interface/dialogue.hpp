@@ -58,7 +58,8 @@ struct Situation {
   std::vector<KnownGoal> goals;  ///< the newest change last
   /// A person who points: their place, with the heading of the arm (pointing.hpp).
   std::optional<Pose> pointing_in_map{};
-  double now = 0.0;  ///< [s] since 1970; 0: unknown, as in lockstep
+  double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
+  bool turns_cameras = false;  ///< the robot has a head
 };
 
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
@@ -122,7 +123,8 @@ class Dialogue {
   void act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
                   const Situation& situation, Outputs& out);
   static void add(Tasks::Outputs more, Outputs& out);
-  bool move(const Meaning& meaning, const Utterance& utterance, Outputs& out);
+  bool move(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+            Outputs& out);
   bool task(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
             Outputs& out);
   /// Tasks for people that are not in 4.6 of the paper (errands.cpp).
