@@ -25,17 +25,20 @@ nlohmann::json scenario(const std::vector<std::string>& options) {
 
 class Story : public testing::TestWithParam<const char*> {};
 
-TEST_P(Story, EndsAsItsCastSaysAndTheSameEachTime) {
-  const nlohmann::json first = scenario({"--cast", GetParam(), "--seed", "1", "--seeds", "2"});
-  EXPECT_EQ(first.at("runs"), 2);
-  EXPECT_EQ(first.at("well"), 2) << first;
-  EXPECT_EQ(first.at("contacts"), 0) << first;
-  EXPECT_EQ(scenario({"--cast", GetParam(), "--seed", "1", "--seeds", "2"}), first);
+TEST_P(Story, EndsAsItsCastSays) {
+  const nlohmann::json result = scenario({"--cast", GetParam(), "--seed", "1", "--seeds", "2"});
+  EXPECT_EQ(result.at("runs"), 2);
+  EXPECT_EQ(result.at("well"), 2) << result;
+  EXPECT_EQ(result.at("contacts"), 0) << result;
 }
 
 INSTANTIATE_TEST_SUITE_P(Casts, Story,
                          testing::Values("report", "early", "away", "leak", "knowers"),
                          [](const auto& cast) { return std::string(cast.param); });
+
+TEST(Scenario, IsTheSameEachTime) {
+  EXPECT_EQ(scenario({"--cast", "knowers"}), scenario({"--cast", "knowers"}));
+}
 
 // Paper 4.4: it follows its supervisor, by its cameras, around a corner and through a door.
 TEST(Scenario, ItIsIntroducedToTheOfficeByFollowingItsSupervisor) {
