@@ -35,19 +35,23 @@ RequestClient::RequestClient(Node& node, const RequestTopic& topic, std::string 
     direct_ = node.reader(*direct);
 }
 
-v1::Request RequestClient::complete(v1::Request request) {
+v1::Request RequestClient::complete(v1::Request request, std::uint64_t number) {
   request.asker(node_.instance());
-  request.number(next_request_number());
+  request.number(number);
   if (request.source().empty())
     request.source(source_);
   return request;
 }
 
 std::uint64_t RequestClient::send(v1::Request request) {
-  request = complete(std::move(request));
+  request = complete(std::move(request), next_request_number());
   if (!writer_.write(request))
     throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
   return request.number();
+}
+
+void RequestClient::again(std::uint64_t number, v1::Request request) {
+  writer_.write(complete(std::move(request), number));
 }
 
 std::vector<v1::Answer> RequestClient::poll() {
@@ -80,7 +84,7 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
                               const std::function<void()>& meanwhile) {
-  request = complete(std::move(request));
+  request = complete(std::move(request), next_request_number());
   v1::Answer newest;
   newest.asker(request.asker());
   newest.number(request.number());

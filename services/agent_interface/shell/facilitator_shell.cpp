@@ -71,16 +71,20 @@ void FacilitatorShell::take_triggers(double now) {
 }
 
 void FacilitatorShell::take_requests(double now) {
+  std::erase_if(requests_of_, [this](const auto& one) {
+    return !facilitator_.is_open(one.second.first, one.second.second);
+  });
   for (const auto& sample : asked_.take())
     if (!sample.info.disposed) {
-      note(askers_of_, sample.info.writer, std::uint64_t{sample.data.asker()});
+      const std::pair<std::uint64_t, std::uint64_t> id{sample.data.asker(), sample.data.number()};
+      note(requests_of_, sample.info.writer, id);
       facilitator_.ask(saphira::from_bus(sample.data), now);
     }
   for (const bus::WriterId& writer : asked_.take_lost()) {
-    const auto [begin, end] = askers_of_.equal_range(writer);
+    const auto [begin, end] = requests_of_.equal_range(writer);
     for (auto one = begin; one != end; ++one)
-      robot_.forget(one->second);
-    askers_of_.erase(writer);
+      facilitator_.withdraw(one->second.first, one->second.second);
+    requests_of_.erase(writer);
   }
 }
 

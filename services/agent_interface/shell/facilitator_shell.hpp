@@ -39,7 +39,8 @@ class FacilitatorShell {
   /// The writer of each agent: an agent ends with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
-  std::multimap<bus::WriterId, std::uint64_t> askers_of_;
+  /// Open requests: they end with their writer.
+  std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> requests_of_;
 };
 
 }  // namespace saphira::agent_interface

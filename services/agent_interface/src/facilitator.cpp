@@ -140,14 +140,34 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
 
 void Facilitator::ask(const Request& request, double now) {
   const Id id{request.asker, request.number};
-  if (open_.contains(id))
+  const bool withdraws = request.functor == kWithdraw;
+  if (open_.contains(id)) {
+    if (withdraws)
+      withdraw(request.asker, request.number);
     return;
+  }
   for (const auto& [known, solved] : ended_)
     if (known == id) {
       out_.solved.push_back(solved);
       return;
     }
-  begin(request, std::nullopt, now);
+  if (!withdraws)
+    begin(request, std::nullopt, now);
+}
+
+void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
+  const Id id{asker, number};
+  const auto found = open_.find(id);
+  if (found == open_.end())
+    return;
+  Open& open = found->second;
+  open.withdrawn = true;
+  open.left.clear();
+  std::erase_if(open.asked, [](const Asked& one) { return !one.acts; });
+  if (open.asked.empty())
+    return end(id, kName, {AnswerCode::refused, "withdrawn; nothing was done"});
+  for (const Asked& asked : open.asked)
+    tell(open, asked.agent);
 }
 
 void Facilitator::begin(const Request& request, std::optional<Id> trigger, double now) {
@@ -189,8 +209,17 @@ void Facilitator::match(const Id& id, double now) {
 void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   const Capability* const can = capability(agent, open.request.functor);
   open.asked.push_back({agent, can != nullptr && can->acts, now + kAgain});
+  tell(open, agent);
+}
+
+/// Sends the request, or its withdrawal.
+void Facilitator::tell(const Open& open, std::uint64_t agent) {
   Request request = open.request;
   request.service = agents_.at(agent).address;
+  if (open.withdrawn) {
+    request.functor = kWithdraw;
+    request.arguments.clear();
+  }
   out_.requests.push_back(std::move(request));
 }
 
@@ -226,6 +255,9 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
   if (asked == open.asked.end())
     return;
   asked->heard = true;
+  // An agent that knows no withdrawals does the action to its end.
+  if (open.withdrawn && answer.code == AnswerCode::unknown_functor)
+    return;
   if (!ended(answer.code)) {
     // An agent that says again and again that it is at work has the time that it needs.
     if (open.request.deadline <= 0.0)
@@ -371,9 +403,7 @@ Facilitator::Outputs Facilitator::step(double now) {
     for (Asked& asked : open.asked)
       if (!asked.heard && now >= asked.again) {
         asked.again = now + kAgain;
-        Request request = open.request;
-        request.service = agents_.at(asked.agent).address;
-        out_.requests.push_back(std::move(request));
+        tell(open, asked.agent);
       }
   }
   for (const Id& id : waiting)

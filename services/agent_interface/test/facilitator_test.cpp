@@ -192,6 +192,65 @@ TEST_F(Facilitation, ARepeatedRequestIsAnsweredAgainAndAskedOnce) {
   EXPECT_EQ(again.solved[0].answer, library());
 }
 
+Request withdrawal(std::uint64_t number) {
+  Request request = place_of(number);
+  request.functor = kWithdraw;
+  request.arguments.clear();
+  return request;
+}
+
+TEST_F(Facilitation, AWithdrawnActionEndsWithTheAnswerOfItsAgent) {
+  facilitator.announce(agent(1, "a", true));
+  facilitator.announce(agent(2, "b", true));
+  ask(place_of(5));
+  hear("a", place_of(5), {AnswerCode::underway, "on its way"});
+  const auto told = ask(withdrawal(5));
+  EXPECT_TRUE(told.solved.empty());
+  ASSERT_EQ(told.requests.size(), 1u);
+  EXPECT_EQ(told.requests[0].service, "address of a");
+  EXPECT_EQ(told.requests[0].functor, kWithdraw);
+  EXPECT_EQ(told.requests[0].number, 5u);
+  EXPECT_TRUE(told.requests[0].arguments.empty());
+  EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the request once more";
+  const auto end = hear("a", place_of(5), {AnswerCode::refused, "withdrawn before it was begun"});
+  EXPECT_TRUE(end.requests.empty()) << "no other agent begins it";
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.text, "withdrawn before it was begun");
+  EXPECT_EQ(ask(withdrawal(5)).solved.at(0).answer.code, AnswerCode::refused) << "told again";
+}
+
+TEST_F(Facilitation, AWithdrawalIsRepeatedInsteadOfTheRequest) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  ask(withdrawal(5));
+  now += 0.4;
+  const auto again = facilitator.step(now).requests;
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].functor, kWithdraw);
+}
+
+TEST_F(Facilitation, AnAgentThatKnowsNoWithdrawalEndsItsAction) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  ask(withdrawal(5));
+  EXPECT_TRUE(hear("a", place_of(5), {AnswerCode::unknown_functor, "withdraw?"}).solved.empty());
+  EXPECT_EQ(hear("a", place_of(5), library()).solved.at(0).answer, library());
+}
+
+TEST_F(Facilitation, WhatNobodyHasBegunEndsAtOnceWhenItIsWithdrawn) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(wanting(place_of(5), 0.0));  // facts
+  const auto end = ask(withdrawal(5));
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer, (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
+  const auto unknown = ask(withdrawal(6));
+  EXPECT_TRUE(unknown.requests.empty());
+  EXPECT_TRUE(unknown.solved.empty());
+  EXPECT_EQ(facilitator.open(), 0u);
+}
+
 TEST_F(Facilitation, WhoFloodsHurtsItselfOnly) {
   facilitator.announce(agent(1, "a"));
   std::size_t refused = 0;

@@ -65,8 +65,11 @@ class Facilitator {
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
-  /// A new request; a known one is ignored.
+  /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one.
   void ask(const Request& request, double now);
+  /// The asker no longer wants a request: no further agent gets it, and an agent that is at work on
+  /// an action is told. That agent's answer is the end.
+  void withdraw(std::uint64_t asker, std::uint64_t number);
   /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
             const Answer& answer, double now);
@@ -82,6 +85,9 @@ class Facilitator {
   std::optional<double> due() const;
 
   std::size_t open() const { return open_.size(); }
+  bool is_open(std::uint64_t asker, std::uint64_t number) const {
+    return open_.contains({asker, number});
+  }
   std::size_t agents() const { return agents_.size(); }
 
  private:
@@ -103,6 +109,7 @@ class Facilitator {
     std::string troubler{};
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
     bool unmatched = false;       ///< waits for an agent that can answer it
+    bool withdrawn = false;
   };
   struct Armed {
     Trigger trigger;
@@ -117,6 +124,7 @@ class Facilitator {
   void match(const Id& id, double now);
   void advance(const Id& id, double now);
   void send(Open& open, std::uint64_t agent, double now);
+  void tell(const Open& open, std::uint64_t agent);
   void give(const Id& id, const std::string& service, const Answer& answer);
   void end(const Id& id, const std::string& service, const Answer& answer);
   void looked(const Id& trigger, const Answer& answer);
