@@ -174,9 +174,8 @@ void Door::say(const Call& call) {
       situation::typed(node_.instance(), bus::next_request_number(), who_,
                        call.arguments.value("text", ""), unix_time());
   heard_writer_.write(utterance);
-  waiting_[call.number] = {.what = Waiting::For::words,
-                           .number = utterance.id().number(),
-                           .until = now_ + kReply};
+  waiting_[call.number] = {
+      .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
 }
 
 /// Sends a request to any capable agent. The answer fills missing parameters. An action gets an id

@@ -90,10 +90,10 @@ class Door {
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     double until = 0.0;        ///< [s]
-    double told = -1.0;      ///< progress
-    std::string words = {};  ///< of that progress
+    double told = -1.0;        ///< progress
+    std::string words = {};    ///< of that progress
     std::string said = {};
-    std::optional<Result> result = std::nullopt;                  ///< of the request
+    std::optional<Result> result = std::nullopt;         ///< of the request
     std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
   };
 
@@ -129,7 +129,7 @@ class Door {
   std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
   double now_ = 0.0;
   double noted_since_ = 0.0;  ///< [s]
-  std::size_t noted_ = 0;  ///< lines of the log in that second
+  std::size_t noted_ = 0;     ///< lines of the log in that second
 };
 
 }  // namespace saphira::mcp

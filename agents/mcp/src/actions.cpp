@@ -8,8 +8,8 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr double kAgain = 2.0;        // [s]
-constexpr double kGrace = 10.0;       // [s] after the deadline of the request, for the last answer
+constexpr double kAgain = 2.0;         // [s]
+constexpr double kGrace = 10.0;        // [s] after the deadline of the request, for the last answer
 constexpr std::size_t kMostKept = 64;  // actions that are remembered
 
 v1::GoalState state_of(const v1::Answer& answer, bool withdrawn) {
@@ -90,8 +90,7 @@ std::vector<v1::Request> Actions::due(double now) {
       continue;
     if (now >= asked.end) {
       asked.action.status.state(v1::GOAL_FAILED);
-      asked.action.status.reason(
-          "its end was not heard in time; whether it was done is not known");
+      asked.action.status.reason("its end was not heard in time; whether it was done is not known");
     } else if (now >= asked.again) {
       asked.again = now + kAgain;
       requests.push_back(asked.request);

@@ -9,8 +9,7 @@ namespace saphira::mcp {
 namespace {
 
 Json object(Json properties, const std::vector<std::string>& required = {}) {
-  return {
-      {"type", "object"}, {"properties", std::move(properties)}, {"required", Json(required)}};
+  return {{"type", "object"}, {"properties", std::move(properties)}, {"required", Json(required)}};
 }
 
 Json list_of(Json items) {
@@ -122,10 +121,9 @@ Json json_of(const v1::GoalStatus& status) {
 Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParameter>& declared) {
   Json value = Json::object();
   for (const v1::Argument& result : answer.results()) {
-    const auto parameter =
-        std::find_if(declared.begin(), declared.end(), [&](const v1::CapabilityParameter& each) {
-          return each.name() == result.name();
-        });
+    const auto parameter = std::find_if(
+        declared.begin(), declared.end(),
+        [&](const v1::CapabilityParameter& each) { return each.name() == result.name(); });
     if (parameter != declared.end() && parameter->kind() != v1::ARGUMENT_UNBOUND &&
         parameter->kind() != result.kind())
       continue;
@@ -151,8 +149,8 @@ Json form_of(const std::string& tool) {
                             {"x", number()},
                             {"y", number()}},
                            {"what", "where", "distance"});
-  const Json place = object(
-      {{"name", text()}, {"kind", text()}, {"x", number()}, {"y", number()}}, {"name", "x", "y"});
+  const Json place = object({{"name", text()}, {"kind", text()}, {"x", number()}, {"y", number()}},
+                            {"name", "x", "y"});
   const Json fact = object({{"number", of_type("integer")},
                             {"what", text()},
                             {"speaker", text()},

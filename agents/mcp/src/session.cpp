@@ -40,12 +40,11 @@ bool is_resource(const Tool& tool) {
 }
 
 Json describe(const Tool& tool, bool structured) {
-  Json json{
-      {"name", tool.name},
-      {"description", tool.description},
-      {"inputSchema", tool.input},
-      {"annotations",
-       {{"readOnlyHint", tool.reads}, {"destructiveHint", false}, {"openWorldHint", false}}}};
+  Json json{{"name", tool.name},
+            {"description", tool.description},
+            {"inputSchema", tool.input},
+            {"annotations",
+             {{"readOnlyHint", tool.reads}, {"destructiveHint", false}, {"openWorldHint", false}}}};
   if (structured && !tool.output.is_null())
     json["outputSchema"] = tool.output;
   return json;

@@ -14,13 +14,12 @@ class DoorInMemory : public testing::Test {
     v1::Agent agent;
     agent.id(7);
     agent.name("sweeper");
-    agent.capabilities(
-        {bus::action("sweep", "sweeps a room",
-                     {bus::text_slot("room", "of the map", true),
-                      bus::number_slot("dust", "[g] that was found")}),
-         bus::capability("place_of", "where a person is",
-                         {bus::text_slot("person", "a name", true),
-                          bus::text_slot("place", "of the map")})});
+    agent.capabilities({bus::action("sweep", "sweeps a room",
+                                    {bus::text_slot("room", "of the map", true),
+                                     bus::number_slot("dust", "[g] that was found")}),
+                        bus::capability("place_of", "where a person is",
+                                        {bus::text_slot("person", "a name", true),
+                                         bus::text_slot("place", "of the map")})});
     agents.write(agent);
     schemas.write(v1::ActivitySchemas());
     turn();
@@ -153,8 +152,7 @@ TEST_F(DoorInMemory, AnActionIsCanceledByItsHandle) {
 TEST_F(DoorInMemory, ACallThatIsGivenUpWithdrawsItsAction) {
   call(1, "sweep", {{"room", "kitchen"}});
   const v1::Request request = heard();
-  session.take(
-      R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":1}})");
+  session.take(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":1}})");
   turn();
   EXPECT_EQ(heard().functor(), bus::kWithdraw);
   EXPECT_TRUE(result(1).is_null());

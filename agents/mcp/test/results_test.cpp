@@ -42,9 +42,9 @@ TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
   EXPECT_NE(misfit({{"age", "old"}}, form), "");
   EXPECT_NE(misfit({{"place", {{"x", 1.0}}}}, form), "");
   capability.acts(true);
-  EXPECT_EQ(misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", value}},
-                   form_of(capability)),
-            "");
+  EXPECT_EQ(
+      misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", value}}, form_of(capability)),
+      "");
   EXPECT_NE(misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", {{"age", "old"}}}},
                    form_of(capability)),
             "");

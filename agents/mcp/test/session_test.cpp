@@ -94,9 +94,8 @@ TEST(McpSession, ResultsHaveTheirStructureWhereTheRevisionHasIt) {
         std::pair("1999-01-01", true)}) {  // answered with the newest
     Client client;
     client.session.set_tools({tool});
-    client.one(
-        R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":")" +
-        std::string(revision) + R"("}})");
+    client.one(R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":")" +
+               std::string(revision) + R"("}})");
     const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
     EXPECT_EQ(list["result"]["tools"][0].contains("outputSchema"), structured) << revision;
     client.say(

@@ -21,7 +21,8 @@ Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParame
 Json goal_form();
 /// Of a permanent tool; null: there is none of this name.
 Json form_of(const std::string& tool);
-/// Of a capability: the parameters that an answer may fill. Of an action: a goal with these results.
+/// Of a capability: the parameters that an answer may fill. Of an action: a goal with these
+/// results.
 Json form_of(const v1::Capability& capability);
 
 }  // namespace saphira::mcp
