@@ -11,7 +11,8 @@ namespace saphira::agent_interface {
 /// The facilitator on the bus. For the node's own thread.
 class FacilitatorShell {
  public:
-  FacilitatorShell(bus::Node& node, double now);
+  /// memory: a file by which nothing is done twice over a restart [empty: none].
+  FacilitatorShell(bus::Node& node, double now, std::string memory = {});
 
   /// Takes the inputs and sends the outputs. now: [s] of a clock that never goes back.
   void step(double now);
@@ -33,6 +34,7 @@ class FacilitatorShell {
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
   const double begun_;  ///< [s] of the clock of step()
+  const std::string memory_;
   Facilitator facilitator_;
   RobotAgent robot_;
   bool awaits_ = false;  ///< the last step has sent a request to an agent

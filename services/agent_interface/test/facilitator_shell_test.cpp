@@ -117,6 +117,11 @@ class FacilitatorInMemory : public testing::Test {
       worker.answer(request, end);
     });
   }
+  /// The facilitator is killed, and comes back with its memory.
+  void restart() {
+    facilitator.reset();
+    facilitator = std::make_unique<FacilitatorShell>(hub, now, folder.path("memory"));
+  }
   /// Lets everybody take what has come.
   void turn() {
     for (int i = 0; i < 3; ++i) {
@@ -135,7 +140,9 @@ class FacilitatorInMemory : public testing::Test {
   bus::Node other{test::memory_options("sweeper"), memory};
   bus::Node person{test::memory_options("person"), memory};
   double now = 10.0;
-  std::unique_ptr<FacilitatorShell> facilitator = std::make_unique<FacilitatorShell>(hub, now);
+  test::TempDir folder;
+  std::unique_ptr<FacilitatorShell> facilitator =
+      std::make_unique<FacilitatorShell>(hub, now, folder.path("memory"));
   bus::Agent worker{other, "sweeper", "sweeps"};
   std::vector<std::uint64_t> begun;
   std::vector<std::uint64_t> stopped;
@@ -168,6 +175,47 @@ TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
   first.reset();
   turn();
   EXPECT_EQ(stopped, std::vector<std::uint64_t>{number});
+}
+
+TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  const std::uint64_t number = asker.send(sweep());
+  turn();
+  int swept = 0;
+  bus::Agent broom(other, "broom", "comes first by its name");
+  broom.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request&) {
+    ++swept;
+    return bus::done({});
+  });
+  restart();
+  asker.again(number, sweep());
+  turn();
+  broom.poll();
+  EXPECT_EQ(swept, 0);
+  EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
+  v1::Request begun_one;
+  begun_one.asker(person.instance());
+  begun_one.number(number);
+  worker.answer(begun_one, bus::done({}, "clean"));
+  turn();
+  EXPECT_EQ(asker.poll().back().text(), "clean");
+}
+
+TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
+  v1::Trigger trigger;
+  trigger.kind(v1::TRIGGER_TIME);
+  trigger.period(1.0);
+  trigger.action("sweep");
+  trigger.times(1);
+  worker.set(trigger);
+  turn();
+  for (int i = 0; i < 3; ++i) {
+    now += 2.0;
+    turn();
+    EXPECT_EQ(begun.size(), 1u) << i;
+    restart();
+    turn();
+  }
 }
 
 TEST_F(FacilitatorInMemory, AGoalOfTheRobotEndsWithItsAsker) {

@@ -353,6 +353,105 @@ TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
   EXPECT_EQ(facilitator.step(103.0).solved.back().answer.code, AnswerCode::nobody) << "at once";
 }
 
+Trigger every_five_seconds(std::uint64_t times) {
+  return {{1, 4}, "ann", TriggerKind::time, 5.0, "", {}, "note", {}, times};
+}
+
+/// How often a trigger fires in 50 s. The agent answers at once.
+std::size_t firings(Facilitator& facilitator, double& now) {
+  std::size_t fired = 0;
+  for (int i = 0; i < 10; ++i) {
+    now += 5.0;
+    for (const Request& request : facilitator.step(now).requests) {
+      ++fired;
+      facilitator.hear(request.service, request.asker, request.number, {}, now);
+    }
+  }
+  return fired;
+}
+
+TEST_F(Facilitation, ATriggerFiresItsTimesWhateverIsHeardAgain) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(2), now);
+  facilitator.step(now);
+  now += 5.0;
+  EXPECT_TRUE(facilitator.step(now).changed);
+  facilitator.set(every_five_seconds(2), now);  // its sample came once more
+  facilitator.miss({1, 4});                     // its writer was not heard for a moment
+  facilitator.set(every_five_seconds(2), now);
+  EXPECT_EQ(firings(facilitator, now), 1u);
+  facilitator.set(every_five_seconds(3), now);
+  EXPECT_EQ(firings(facilitator, now), 3u) << "it was changed";
+  facilitator.take_back({1, 4});
+  EXPECT_TRUE(facilitator.step(now).changed);
+  EXPECT_EQ(facilitator.save().find("fired"), std::string::npos);
+}
+
+TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(12), now);
+  EXPECT_EQ(firings(facilitator, now), 10u);
+  Facilitator next(kSelf + 1);
+  next.restore(facilitator.save());
+  next.announce(agent_that_notes());
+  next.set(every_five_seconds(12), now);
+  EXPECT_EQ(firings(next, now), 2u);
+}
+
+/// A facilitator that was killed after it has asked `sweeper` for an action, and is back.
+struct FacilitationAgain : Facilitation {
+  FacilitationAgain() {
+    facilitator.announce(agent(2, "sweeper", true));
+    facilitator.ask(place_of(5), now);
+    EXPECT_TRUE(facilitator.step(now).changed) << "it is kept before the request is sent";
+    const std::string kept = facilitator.save();
+    facilitator = Facilitator(kSelf + 1, now + 2.0);
+    facilitator.restore(kept);
+    facilitator.announce(agent(1, "a cheaper one", true));
+  }
+};
+
+TEST_F(FacilitationAgain, ABegunActionIsAskedOfItsAgentAlone) {
+  EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the agent may come yet";
+  facilitator.announce(agent(2, "sweeper", true));
+  const auto asked = facilitator.step(now).requests;
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].service, "address of sweeper");
+  EXPECT_EQ(asked[0].number, 5u) << "by which the agent knows it";
+  const auto end = hear("sweeper", place_of(5), library());
+  EXPECT_EQ(end.solved.at(0).answer, library());
+  EXPECT_EQ(ask(place_of(6)).requests.at(0).service, "address of a cheaper one") << "a new one";
+}
+
+TEST_F(FacilitationAgain, ABegunActionOfAnAgentThatIsGoneIsLost) {
+  ask(place_of(5));
+  now += 2.0;
+  const auto end = facilitator.step(now);
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer,
+            (Answer{AnswerCode::lost,
+                    "the agent that was asked is gone; whether it was done is not known"}));
+}
+
+TEST_F(FacilitationAgain, ABegunActionIsWithdrawnFromItsAgent) {
+  ask(withdrawal(5));
+  EXPECT_TRUE(ask(withdrawal(5)).solved.empty()) << "whether it was done is not known yet";
+  facilitator.announce(agent(2, "sweeper", true));
+  const auto told = facilitator.step(now).requests;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].service, "address of sweeper");
+  EXPECT_EQ(told[0].functor, kWithdraw);
+  EXPECT_EQ(hear("sweeper", place_of(5), {AnswerCode::given_up, "stopped"}).solved.size(), 1u);
+}
+
+TEST_F(Facilitation, AnActionThatAnAgentRefusedMayBeBegunByAnother) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  hear("a", place_of(5), {AnswerCode::refused, "no"});
+  EXPECT_EQ(facilitator.save(), "");
+}
+
 TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
   facilitator.announce(agent(1, "robot", true));
   ask(place_of(5));
