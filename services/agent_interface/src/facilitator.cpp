@@ -210,9 +210,8 @@ void Facilitator::begin(const Request& request, std::optional<Id> trigger, doubl
 void Facilitator::match(const Id& id, double now) {
   Open& open = open_.at(id);
   const std::optional<Answer> none = candidates(open);
-  open.unmatched = none &&
-                   (none->code == AnswerCode::nobody || none->code == AnswerCode::lost) &&
-                   now < known_;
+  open.unmatched =
+      none && (none->code == AnswerCode::nobody || none->code == AnswerCode::lost) && now < known_;
   if (open.unmatched)
     return;
   if (none)
@@ -412,8 +411,7 @@ void Facilitator::looked(const Id& trigger, const Answer& answer) {
 Facilitator::Outputs Facilitator::step(double now) {
   now_ = now;
   for (auto& [id, armed] : triggers_) {
-    if (armed.trigger.kind == TriggerKind::event || now < armed.next ||
-        is_spent(armed.trigger))
+    if (armed.trigger.kind == TriggerKind::event || now < armed.next || is_spent(armed.trigger))
       continue;
     // Times that this program slept through are skipped.
     armed.next = now + armed.trigger.period;

@@ -102,6 +102,7 @@ TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
 class FacilitatorInMemory : public testing::Test {
  protected:
   FacilitatorInMemory() {
+    restart();
     worker.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request& request) {
       begun.push_back(request.number());
       v1::Answer answer;
@@ -120,7 +121,8 @@ class FacilitatorInMemory : public testing::Test {
   /// The facilitator is killed, and comes back with its memory.
   void restart() {
     facilitator.reset();
-    facilitator = std::make_unique<FacilitatorShell>(hub, now, folder.path("memory"));
+    hub.emplace(test::memory_options("facilitator"), memory);
+    facilitator = std::make_unique<FacilitatorShell>(*hub, now, folder.path("memory"));
   }
   /// Lets everybody take what has come.
   void turn() {
@@ -136,13 +138,12 @@ class FacilitatorInMemory : public testing::Test {
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
-  bus::Node hub{test::memory_options("facilitator"), memory};
+  std::optional<bus::Node> hub;
   bus::Node other{test::memory_options("sweeper"), memory};
   bus::Node person{test::memory_options("person"), memory};
   double now = 10.0;
   test::TempDir folder;
-  std::unique_ptr<FacilitatorShell> facilitator =
-      std::make_unique<FacilitatorShell>(hub, now, folder.path("memory"));
+  std::unique_ptr<FacilitatorShell> facilitator;
   bus::Agent worker{other, "sweeper", "sweeps"};
   std::vector<std::uint64_t> begun;
   std::vector<std::uint64_t> stopped;

@@ -375,7 +375,10 @@ TEST_F(Facilitation, ATriggerFiresItsTimesWhateverIsHeardAgain) {
   facilitator.set(every_five_seconds(2), now);
   facilitator.step(now);
   now += 5.0;
-  EXPECT_TRUE(facilitator.step(now).changed);
+  const auto first = facilitator.step(now);
+  EXPECT_TRUE(first.changed);
+  ASSERT_EQ(first.requests.size(), 1u);
+  facilitator.hear(first.requests[0].service, kSelf, first.requests[0].number, {}, now);
   facilitator.set(every_five_seconds(2), now);  // its sample came once more
   facilitator.miss({1, 4});                     // its writer was not heard for a moment
   facilitator.set(every_five_seconds(2), now);
