@@ -91,12 +91,18 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
   newest.code(v1::ANSWER_NOBODY);
   newest.text(std::string("no program takes what is asked on ") + topic_.name);
   bool heard = false;
+  std::size_t matched = writer_.matched();
   auto again = Clock::now();
   const auto limit =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
   auto end = again + limit;
   for (auto now = again; now < end && (stop == nullptr || !stop->requested()); now = Clock::now()) {
-    if (!heard && now >= again && writer_.matched() > 0 && writer_.write(request)) {
+    // A program that was started again has to hear the request anew.
+    if (const std::size_t before = std::exchange(matched, writer_.matched()); matched < before) {
+      heard = false;
+      again = now;
+    }
+    if (!heard && now >= again && matched > 0 && writer_.write(request)) {
       again = now + kAgain;
       newest.code(v1::ANSWER_TOO_LATE);
       newest.text("nothing was heard of the request within " + seconds(patience));
@@ -118,7 +124,7 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
         end = Clock::now() + limit;
     }
   }
-  if (heard) {
+  if (!ended(newest.code())) {
     newest.code(v1::ANSWER_TOO_LATE);
     newest.text("the request is still under way");
   }

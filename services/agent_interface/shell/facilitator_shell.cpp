@@ -86,15 +86,19 @@ void FacilitatorShell::take_requests(double now) {
   });
   for (const auto& sample : asked_.take())
     if (!sample.info.disposed) {
-      const std::pair<std::uint64_t, std::uint64_t> id{sample.data.asker(), sample.data.number()};
+      const RequestId id{sample.data.asker(), sample.data.number()};
       note(requests_of_, sample.info.writer, id);
       facilitator_.ask(saphira::from_bus(sample.data), now);
     }
   for (const bus::WriterId& writer : asked_.take_lost()) {
     const auto [begin, end] = requests_of_.equal_range(writer);
-    for (auto one = begin; one != end; ++one)
-      facilitator_.withdraw(one->second.first, one->second.second);
-    requests_of_.erase(writer);
+    const std::multimap<bus::WriterId, RequestId> orphans(begin, end);
+    requests_of_.erase(begin, end);
+    // An asker whose network has changed repeats its requests by a new writer.
+    for (const auto& [gone, id] : orphans)
+      if (std::none_of(requests_of_.begin(), requests_of_.end(),
+                       [&](const auto& other) { return other.second == id; }))
+        facilitator_.withdraw(id.first, id.second);
   }
 }
 

@@ -21,6 +21,8 @@ class FacilitatorShell {
   static double seconds();
 
  private:
+  using RequestId = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
+
   void take_agents();
   void take_triggers(double now);
   void take_requests(double now);
@@ -42,7 +44,7 @@ class FacilitatorShell {
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
   /// Open requests: they end with their writer.
-  std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> requests_of_;
+  std::multimap<bus::WriterId, RequestId> requests_of_;
 };
 
 }  // namespace saphira::agent_interface

@@ -105,6 +105,7 @@ class FacilitatorInMemory : public testing::Test {
     restart();
     worker.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request& request) {
       begun.push_back(request.number());
+      begun_request = request;
       v1::Answer answer;
       answer.code(v1::ANSWER_UNDERWAY);
       answer.text("sweeps");
@@ -146,6 +147,7 @@ class FacilitatorInMemory : public testing::Test {
   std::unique_ptr<FacilitatorShell> facilitator;
   bus::Agent worker{other, "sweeper", "sweeps"};
   std::vector<std::uint64_t> begun;
+  v1::Request begun_request;  // the newest
   std::vector<std::uint64_t> stopped;
 };
 
@@ -194,12 +196,28 @@ TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
   broom.poll();
   EXPECT_EQ(swept, 0);
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
-  v1::Request begun_one;
-  begun_one.asker(person.instance());
-  begun_one.number(number);
-  worker.answer(begun_one, bus::done({}, "clean"));
+  worker.answer(begun_request, bus::done({}, "clean"));
   turn();
   EXPECT_EQ(asker.poll().back().text(), "clean");
+}
+
+TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  int turns = 0;
+  const auto others = [&] {
+    ++turns;
+    if (turns == 2) {
+      facilitator.reset();
+      return;
+    }
+    if (turns == 3)
+      restart();
+    turn();
+    if (turns == 5)
+      worker.answer(begun_request, bus::done({}, "clean"));
+  };
+  EXPECT_EQ(asker.ask(sweep(), 30.0, nullptr, others).text(), "clean");
+  EXPECT_EQ(begun.size(), 1u);
 }
 
 TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {

@@ -28,7 +28,8 @@ class RequestClient {
   /// Asks, and waits for the end of the request, for `patience` [s] at most; without a deadline in
   /// the request, for as long after each ANSWER_UNDERWAY. There is always an answer: ANSWER_NOBODY
   /// says that no program takes such requests, and ANSWER_TOO_LATE that none has answered. The
-  /// request is written again until a program answers, and carried out once.
+  /// request is written again until a program answers, and when such a program is gone; it is
+  /// carried out once.
   /// `meanwhile` is called whenever a sample has come to the node.
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {});
