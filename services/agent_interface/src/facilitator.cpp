@@ -176,6 +176,8 @@ void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
   std::erase_if(open.asked, [](const Asked& one) { return !one.acts; });
   if (open.asked.empty() && begun(id))
     return;  // of before a restart: the agent may come yet
+  if (open.asked.empty() && open.got > 0)
+    return end(id, kName, {AnswerCode::done, counted(open.got) + "; withdrawn"});
   if (open.asked.empty())
     return end(id, kName, {AnswerCode::refused, "withdrawn; nothing was done"});
   for (const Asked& asked : open.asked)

@@ -245,6 +245,9 @@ TEST_F(Facilitation, WhatNobodyHasBegunEndsAtOnceWhenItIsWithdrawn) {
   EXPECT_TRUE(end.requests.empty());
   ASSERT_EQ(end.solved.size(), 1u);
   EXPECT_EQ(end.solved[0].answer, (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
+  ask(wanting(place_of(7), 0.0));
+  hear("a", wanting(place_of(7), 0.0), library());
+  EXPECT_EQ(ask(withdrawal(7)).solved.at(0).answer.text, "1 answer; withdrawn");
   const auto unknown = ask(withdrawal(6));
   EXPECT_TRUE(unknown.requests.empty());
   EXPECT_TRUE(unknown.solved.empty());
