@@ -11,18 +11,12 @@ namespace saphira::mcp {
 
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr double kDeadline = 600.0;     // [s] of a goal without one
+constexpr double kDeadline = 600.0;     // [s] of a goal or an action
 constexpr std::size_t kMostGoals = 4;   // underway at once
 constexpr double kNews = 1e-6;          // of progress, for new words alone
 constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
 constexpr std::size_t kLongestNote = 160;
 constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
-
-milliseconds seconds_of(double seconds) {
-  return milliseconds(static_cast<int>(1000 * seconds));
-}
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -40,40 +34,6 @@ v1::Argument argument(const std::string& name, const Json& value) {
   return bus::text(name, value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-Json json_of(const v1::GoalStatus& status) {
-  Json json{{"goal", bus::describe(status.id())},
-            {"what", status.functor()},
-            {"asked_by", status.requester()},
-            {"state", bus::describe(status.state())},
-            {"step", status.step()},
-            {"reason", status.reason()},
-            {"progress", status.progress()}};
-  if (status.waits_for().writer() != 0)
-    json["waits_for"] = bus::describe(status.waits_for());
-  return json;
-}
-
-Json json_of(const v1::Argument& argument) {
-  switch (argument.kind()) {
-    case v1::ARGUMENT_NUMBER:
-      return argument.number();
-    case v1::ARGUMENT_TEXT:
-      return argument.text();
-    case v1::ARGUMENT_POINT:
-      return {{"x", argument.point().x()},
-              {"y", argument.point().y()},
-              {"heading", argument.point().th()},
-              {"frame", argument.frame() == v1::FRAME_MAP    ? "map"
-                        : argument.frame() == v1::FRAME_ODOM ? "odom"
-                                                             : "robot"}};
-    case v1::ARGUMENT_TRUTH:
-      return argument.number() != 0.0;
-    case v1::ARGUMENT_UNBOUND:
-      break;
-  }
-  return nullptr;
-}
-
 /// The first line of a text for the log, without control characters.
 std::string first_line(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
@@ -87,21 +47,6 @@ std::string first_line(const std::string& text) {
       line.begin(), line.end(),
       [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
   return line;
-}
-
-/// The answer of an agent. Several results of one name are a list.
-Result result_of(const v1::Answer& answer) {
-  Json value = Json::object();
-  for (const v1::Argument& result : answer.results()) {
-    Json& place = value[result.name()];
-    if (place.is_null())
-      place = json_of(result);
-    else if (place.is_array())
-      place.push_back(json_of(result));
-    else
-      place = Json::array({place, json_of(result)});
-  }
-  return {cli::line_of(answer), std::move(value), !bus::well(answer.code())};
 }
 
 }  // namespace
@@ -130,24 +75,28 @@ void Door::hear() {
           sample.data.answers().number() == waiting.number) {
         waiting.said += (waiting.said.empty() ? "" : "\n") + sample.data.text();
         if (sample.data.end())
-          waiting.until = Clock::now();
+          waiting.until = now_;
       }
-  for (const v1::Answer& answer : requests_.poll())
+  for (const v1::Answer& answer : requests_.poll()) {
+    actions_.hear(answer);
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::request && waiting.number == answer.number() &&
           bus::ended(answer.code()))
-        waiting.result = result_of(answer);
+        waiting.result = Result{cli::line_of(answer), results_of(answer, waiting.declared),
+                                !bus::well(answer.code())};
+  }
 }
 
-void Door::turn() {
-  session_.set_time(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
+void Door::turn(double now) {
+  now_ = now;
+  session_.set_time(now);
   session_.set_tools(robot_.tools());
   session_.wait_for_tools(!robot_.knows_tools());
   hear();
   for (const std::uint64_t number : session_.take_given_up())
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
-      if (found->second.what == Waiting::For::goal && found->second.goal)
-        goals_.cancel(*found->second.goal);
+      if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
+        withdraw(*found->second.goal);
       waiting_.erase(found);
     }
   for (const Call& call : session_.take_calls()) {
@@ -162,13 +111,20 @@ void Door::turn() {
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
+  write_due();
   note();
+}
+
+/// Writes what is due of the actions.
+void Door::write_due() {
+  for (const v1::Request& request : actions_.due(now_))
+    requests_.again(request.number(), request);
 }
 
 /// Logs each call that has ended.
 void Door::note() {
-  if (const auto now = Clock::now(); now - noted_since_ >= std::chrono::seconds(1)) {
-    noted_since_ = now;
+  if (now_ - noted_since_ >= 1.0) {
+    noted_since_ = now_;
     noted_ = 0;
   }
   for (const Outcome& outcome : session_.take_outcomes())
@@ -178,24 +134,22 @@ void Door::note() {
 }
 
 void Door::begin(const Call& call) {
-  const auto now = Clock::now();
   if (const v1::ActivitySchema* const activity = robot_.activity(call.tool)) {
     ask(call, *activity);
   } else if (const v1::Capability* const capability = robot_.capability(call.tool)) {
     request(call, *capability);
   } else if (call.tool == "emergency_stop") {
-    waiting_[call.number] = {.what = Waiting::For::stop, .until = now + std::chrono::seconds(10)};
+    waiting_[call.number] = {.what = Waiting::For::stop, .until = now_ + 10.0};
   } else if (call.tool == "cancel") {
     cancel(call);
   } else if (call.tool == "say") {
     say(call);
   } else if (call.tool == "goal") {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
-    if (!id || !goals_.status(*id))
+    if (!id || !status(*id))
       return session_.answer(
           call.number, {"nothing is known of this goal; the tool goals lists them", nullptr, true});
-    waiting_[call.number] = {.goal = id,
-                             .until = now + seconds_of(call.arguments.value("wait_s", kWait))};
+    waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
   } else if (call.tool == "goals") {
     session_.answer(call.number, {goals().dump(), {{"goals", goals()}}, false});
   } else if (call.tool == "robot_status") {
@@ -220,34 +174,56 @@ void Door::say(const Call& call) {
       situation::typed(node_.instance(), bus::next_request_number(), who_,
                        call.arguments.value("text", ""), unix_time());
   heard_writer_.write(utterance);
-  waiting_[call.number] = {.what = Waiting::For::words,
-                           .number = utterance.id().number(),
-                           .until = Clock::now() + seconds_of(kReply)};
+  waiting_[call.number] = {
+      .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
 }
 
-/// Sends a request to any capable agent. The answer fills missing parameters.
+/// Sends a request to any capable agent. The answer fills missing parameters. An action gets an id
+/// as a goal has.
 void Door::request(const Call& call, const v1::Capability& capability) {
+  if (capability.acts() && !has_room(call))
+    return;
   v1::Request request;
   request.functor(capability.functor());
-  request.deadline(kReply);
+  request.deadline(capability.acts() ? kDeadline : kReply);
+  request.source(who_);
   for (const v1::CapabilityParameter& parameter : capability.parameters())
     request.arguments().push_back(call.arguments.contains(parameter.name())
                                       ? argument(parameter.name(), call.arguments[parameter.name()])
                                       : bus::open(parameter.name()));
-  waiting_[call.number] = {.what = Waiting::For::request,
-                           .number = requests_.send(std::move(request)),
-                           .until = Clock::now() + seconds_of(kReply + 1.0)};
+  const std::uint64_t number = requests_.send(request);
+  if (!capability.acts()) {
+    waiting_[call.number] = {.what = Waiting::For::request,
+                             .number = number,
+                             .until = now_ + kReply + 1.0,
+                             .declared = capability.parameters()};
+    return;
+  }
+  v1::GoalId id;
+  id.writer(node_.instance());
+  id.number(number);
+  actions_.begin(id, std::move(request), capability.parameters(), now_);
+  own_.push_back(id);
+  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+}
+
+/// False: the client has too much underway, and the call is answered.
+bool Door::has_room(const Call& call) {
+  std::erase_if(own_, [this](const v1::GoalId& id) {
+    const auto known = status(id);
+    return known && bus::ended(known->state());
+  });
+  if (own_.size() < kMostGoals)
+    return true;
+  session_.answer(call.number, {"not done: " + std::to_string(own_.size()) +
+                                    " goals of yours have not ended; cancel one, or wait",
+                                nullptr, true});
+  return false;
 }
 
 void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
-  std::erase_if(own_, [this](const v1::GoalId& id) {
-    const auto known = goals_.status(id);
-    return known && bus::ended(known->state());
-  });
-  if (own_.size() >= kMostGoals)
-    return session_.answer(call.number, {"not done: " + std::to_string(own_.size()) +
-                                             " goals of yours have not ended; cancel one, or wait",
-                                         nullptr, true});
+  if (!has_room(call))
+    return;
   v1::Goal goal;
   goal.functor(schema.name());
   for (const auto& [name, value] : call.arguments.items())
@@ -257,44 +233,51 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
   goal.writer_lost(v1::WRITER_LOST_CANCEL);
   const v1::GoalId id = goals_.ask(goal);
   own_.push_back(id);
-  waiting_[call.number] = {
-      .goal = id, .until = Clock::now() + seconds_of(call.arguments.value("wait_s", kWait))};
+  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+}
+
+bool Door::is_own(const v1::GoalId& id) const {
+  return std::find(own_.begin(), own_.end(), id) != own_.end();
+}
+
+void Door::withdraw(const v1::GoalId& id) {
+  if (actions_.find(id) != nullptr)
+    actions_.withdraw(id);
+  else
+    goals_.cancel(id);
 }
 
 void Door::cancel(const Call& call) {
-  Waiting waiting{.what = Waiting::For::cancel, .until = Clock::now() + std::chrono::seconds(5)};
+  Waiting waiting{.what = Waiting::For::cancel, .until = now_ + 5.0};
   if (call.arguments.contains("goal")) {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
-    const bool own = id && std::any_of(own_.begin(), own_.end(), [&](const v1::GoalId& each) {
-                       return each.writer() == id->writer() && each.number() == id->number();
-                     });
-    if (!own)
+    if (!id || !is_own(*id))
       return session_.answer(
           call.number, {"not done: this is no goal of yours that is underway", nullptr, true});
     waiting.goal = id;
-    goals_.cancel(*id);
+    withdraw(*id);
   } else {
     for (const v1::GoalId& id : own_)
-      goals_.cancel(id);
+      withdraw(id);
   }
   waiting_[call.number] = waiting;
 }
 
 /// Answers a waiting call, if possible now.
 bool Door::is_over(std::uint64_t number, Waiting& waiting) {
-  const bool late = Clock::now() >= waiting.until;
+  const bool late = now_ >= waiting.until;
   switch (waiting.what) {
     case Waiting::For::goal: {
-      const auto status = goals_.status(*waiting.goal);
-      if (!late && !(status && bus::ended(status->state()))) {
-        if (!status)
+      const auto known = status(*waiting.goal);
+      if (!late && !(known && bus::ended(known->state()))) {
+        if (!known)
           return false;
-        const std::string words =
-            bus::describe(status->state()) + ("\n" + status->step() + "\n" + status->reason());
-        if (status->progress() > waiting.told || words != waiting.words) {
-          waiting.told = std::max(waiting.told + kNews, status->progress());
-          waiting.words = words;
-          session_.progress(number, waiting.told, bus::describe(*status));
+        const std::string news =
+            bus::describe(known->state()) + ("\n" + known->step() + "\n" + known->reason());
+        if (known->progress() > waiting.told || news != waiting.words) {
+          waiting.told = std::max(waiting.told + kNews, known->progress());
+          waiting.words = news;
+          session_.progress(number, waiting.told, words(*waiting.goal, *known));
         }
         return false;
       }
@@ -304,8 +287,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     case Waiting::For::cancel: {
       const bool ended = std::all_of(own_.begin(), own_.end(), [&](const v1::GoalId& id) {
         const bool meant = !waiting.goal || waiting.goal->number() == id.number();
-        const auto status = goals_.status(id);
-        return !meant || (status && bus::ended(status->state()));
+        const auto known = status(id);
+        return !meant || (known && bus::ended(known->state()));
       });
       if (!late && (!ended || robot_.moves()))
         return false;
@@ -372,30 +355,45 @@ void Door::press() {
   }
 }
 
+/// Of a goal, or of an action of this client.
+std::optional<v1::GoalStatus> Door::status(const v1::GoalId& id) const {
+  const Action* const action = actions_.find(id);
+  return action == nullptr ? goals_.status(id) : action->status;
+}
+
+std::string Door::words(const v1::GoalId& id, const v1::GoalStatus& status) const {
+  const Action* const action = actions_.find(id);
+  return action == nullptr ? bus::describe(status) : words_of(*action);
+}
+
 Result Door::outcome(const v1::GoalId& id) const {
-  const auto status = goals_.status(id);
-  if (!status)
+  const auto known = status(id);
+  if (!known)
     return {"goal " + bus::describe(id) +
                 ": no answer yet; intentions may not run (robot_status says more)",
             {{"goal", bus::describe(id)}, {"state", "unknown"}},
             false};
-  const bool bad = bus::ended(status->state()) && status->state() != v1::GOAL_SUCCEEDED;
-  std::string text = "goal " + bus::describe(id) + ": " + bus::describe(*status);
-  if (!bus::ended(status->state()))
+  const bool bad = bus::ended(known->state()) && known->state() != v1::GOAL_SUCCEEDED;
+  std::string text = "goal " + bus::describe(id) + ": " + words(id, *known);
+  if (!bus::ended(known->state()))
     text += "; it goes on: ask the tool goal for its end, or cancel it";
-  return {text, json_of(*status), bad};
+  const Action* const action = actions_.find(id);
+  return {text, action == nullptr ? json_of(*known) : json_of(*action), bad};
 }
 
 Json Door::goals() const {
   Json all = Json::array();
   for (const v1::GoalStatus& status : goals_.statuses())
     all.push_back(json_of(status));
+  for (const Action& action : actions_.all())
+    all.push_back(json_of(action));
   return all;
 }
 
 void Door::close() {
   for (const v1::GoalId& id : own_)
-    goals_.cancel(id);
+    withdraw(id);
+  write_due();
 }
 
 void Door::close_and_wait() {

@@ -9,6 +9,7 @@
 
 #include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
+#include "saphira/mcp/actions.hpp"
 #include "saphira/mcp/session.hpp"
 #include "saphira/mcp/surroundings.hpp"
 
@@ -68,32 +69,32 @@ class Robot {
 };
 
 /// Carries out the calls of one client on the bus: goals, requests, words, and the emergency stop.
-/// Its goals end with the client, and also when this program is killed (Goal.writer_lost).
+/// Its goals and actions end with the client, and also when this program is killed: their writer is
+/// lost then.
 class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
 
   /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
-  /// least ten times a second.
-  void turn();
-  /// Withdraws every goal of this client.
+  /// least ten times a second. now: [s] of a clock that never goes back.
+  void turn(double now);
+  /// Withdraws every goal and action of this client.
   void close();
   /// Waits until that is acknowledged, for a second at most.
   void close_and_wait();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// A call without an answer yet.
   struct Waiting {
     enum class For { goal, cancel, request, words, stop } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
-    Clock::time_point until = {};
-    double told = -1.0;      ///< progress
-    std::string words = {};  ///< of that progress
+    double until = 0.0;        ///< [s]
+    double told = -1.0;        ///< progress
+    std::string words = {};    ///< of that progress
     std::string said = {};
-    std::optional<Result> result = std::nullopt;  ///< of the request
+    std::optional<Result> result = std::nullopt;         ///< of the request
+    std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
   };
 
   void hear();
@@ -101,10 +102,16 @@ class Door {
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
+  bool has_room(const Call& call);
+  bool is_own(const v1::GoalId& id) const;
+  void withdraw(const v1::GoalId& id);
+  void write_due();
   void say(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);
   void press();
   void note();
+  std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
+  std::string words(const v1::GoalId& id, const v1::GoalStatus& status) const;
   Result outcome(const v1::GoalId& id) const;
   Json goals() const;
 
@@ -118,9 +125,11 @@ class Door {
   bus::Writer<v1::Utterance> heard_writer_;
   bus::Writer<v1::MotorCommand> stop_writer_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
-  std::vector<v1::GoalId> own_;
-  Clock::time_point noted_since_ = {};
-  std::size_t noted_ = 0;  ///< lines of the log in that second
+  Actions actions_;
+  std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
+  double now_ = 0.0;
+  double noted_since_ = 0.0;  ///< [s]
+  std::size_t noted_ = 0;     ///< lines of the log in that second
 };
 
 }  // namespace saphira::mcp

@@ -97,12 +97,12 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;
   robot_.poll();
-  client->door.turn();
+  client->door.turn(now());
   if (!client->session.take(request.body, exchange, &headers)) {
     client->waits.erase(exchange);
     server_.answer(exchange, 202, kJson, "");
   }
-  client->door.turn();
+  client->door.turn(now());
   tell(id, *client);
 }
 
@@ -136,7 +136,7 @@ void HttpDoor::lost(Exchange exchange) {
 void HttpDoor::turn() {
   robot_.poll();
   for (const auto& [id, client] : clients_) {
-    client->door.turn();
+    client->door.turn(now());
     tell(id, *client);
   }
 }

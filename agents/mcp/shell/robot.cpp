@@ -6,6 +6,7 @@
 #include <string>
 
 #include "door.hpp"
+#include "saphira/mcp/results.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::mcp {
@@ -144,10 +145,12 @@ std::vector<Tool> fixed_tools() {
       {"knows",
        "What people told the robot, and it knows now: each fact with its number, speaker and time",
        object(nullptr), true},
-      {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
-      {"goal", "The outcome of one goal; waits for its end",
+      {"goals", "Every goal that is known, every action of yours, and what became of it",
+       object(nullptr), true},
+      {"goal", "The outcome of one goal or of one action of yours; waits for its end",
        object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
-      {"cancel", "Withdraws a goal of yours, or all of them, and says whether the robot stands",
+      {"cancel",
+       "Withdraws a goal or an action of yours, or all of them, and says whether the robot stands",
        object(
            {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
        false},
@@ -209,6 +212,8 @@ void Robot::poll() {
 /// The permanent tools come first, then activities, then capabilities of the same name.
 void Robot::make_tools() {
   tools_ = fixed_tools();
+  for (Tool& tool : tools_)
+    tool.output = form_of(tool.name);
   activities_.clear();
   capabilities_.clear();
   const auto is_new = [&](const std::string& name) {
@@ -224,9 +229,11 @@ void Robot::make_tools() {
       continue;
     Json input = input_of(schema.parameters());
     input["properties"]["wait_s"] = wait_of(kWait);
-    tools_.push_back({name,
-                      schema.summary().empty() ? "The activity " + schema.name() : schema.summary(),
-                      std::move(input)});
+    tools_.push_back({.name = name,
+                      .description = schema.summary().empty() ? "The activity " + schema.name()
+                                                              : schema.summary(),
+                      .input = std::move(input),
+                      .output = goal_form()});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_)
@@ -235,10 +242,15 @@ void Robot::make_tools() {
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
         continue;
-      tools_.push_back({name,
-                        capability.summary().substr(0, kLongestText) + " (agent " +
-                            agent.name().substr(0, kLongestText) + ")",
-                        input_of(capability.parameters()), !capability.acts()});
+      Json input = input_of(capability.parameters());
+      if (capability.acts())
+        input["properties"]["wait_s"] = wait_of(kWait);
+      tools_.push_back({.name = name,
+                        .description = capability.summary().substr(0, kLongestText) + " (agent " +
+                                       agent.name().substr(0, kLongestText) + ")",
+                        .input = std::move(input),
+                        .reads = !capability.acts(),
+                        .output = form_of(capability)});
       capabilities_[name] = capability;
     }
 }

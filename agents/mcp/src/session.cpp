@@ -11,7 +11,8 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr std::array kRevisions{Session::kLegacy, "2025-06-18", "2025-03-26", "2024-11-05"};
+constexpr const char* kStructured = "2025-06-18";  // the first with structured results
+constexpr std::array kRevisions{Session::kLegacy, kStructured, "2025-03-26", "2024-11-05"};
 constexpr int kParseError = -32700;
 constexpr int kBadRequest = -32600;
 constexpr int kNoMethod = -32601;
@@ -38,15 +39,21 @@ bool is_resource(const Tool& tool) {
   return tool.reads && member(tool.input, "properties").empty();
 }
 
-Json describe(const Tool& tool) {
-  return {{"name", tool.name},
-          {"description", tool.description},
-          {"inputSchema", tool.input},
-          {"annotations",
-           {{"readOnlyHint", tool.reads}, {"destructiveHint", false}, {"openWorldHint", false}}}};
+Json describe(const Tool& tool, bool structured) {
+  Json json{{"name", tool.name},
+            {"description", tool.description},
+            {"inputSchema", tool.input},
+            {"annotations",
+             {{"readOnlyHint", tool.reads}, {"destructiveHint", false}, {"openWorldHint", false}}}};
+  if (structured && !tool.output.is_null())
+    json["outputSchema"] = tool.output;
+  return json;
 }
 
-bool has_type(const Json& value, const std::string& type) {
+bool has_type(const Json& value, const Json& type) {
+  if (type.is_array())
+    return std::any_of(type.begin(), type.end(),
+                       [&](const Json& each) { return has_type(value, each); });
   if (type == "number")
     return value.is_number();
   if (type == "integer")
@@ -57,13 +64,24 @@ bool has_type(const Json& value, const std::string& type) {
     return value.is_boolean();
   if (type == "object")
     return value.is_object();
+  if (type == "array")
+    return value.is_array();
   return type != "null" || value.is_null();
 }
 
 std::string misfit_at(const std::string& where, const Json& value, const Json& schema) {
   const std::string who = where.empty() ? "the arguments" : "\"" + where + "\"";
-  if (const Json type = member(schema, "type"); type.is_string() && !has_type(value, type))
-    return who + ": expected " + type.get<std::string>() + ", found " + value.dump().substr(0, 60);
+  if (const Json type = member(schema, "type"); !type.is_null() && !has_type(value, type))
+    return who + ": expected " + (type.is_string() ? type.get<std::string>() : type.dump()) +
+           ", found " + value.dump().substr(0, 60);
+  if (const Json forms = member(schema, "anyOf"); !forms.is_null()) {
+    std::string why;
+    for (const Json& form : forms)
+      if (why = misfit_at(where, value, form); why.empty())
+        break;
+    if (!why.empty())
+      return why;
+  }
   if (const Json choices = member(schema, "enum");
       choices.is_array() && std::find(choices.begin(), choices.end(), value) == choices.end())
     return who + ": expected one of " + choices.dump() + ", found " + value.dump().substr(0, 60);
@@ -76,6 +94,10 @@ std::string misfit_at(const std::string& where, const Json& value, const Json& s
       return who + ": expected a number" + (low.is_number() ? " from " + low.dump() : "") +
              (high.is_number() ? " up to " + high.dump() : "") + ", found " + value.dump();
   }
+  if (value.is_array() && schema.contains("items"))
+    for (const Json& each : value)
+      if (std::string why = misfit_at(where, each, schema["items"]); !why.empty())
+        return why;
   if (!value.is_object())
     return {};
   const Json properties = member(schema, "properties");
@@ -292,6 +314,7 @@ void Session::ask(const std::string& method, const Request& request, const Json&
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     begun_ = true;
+    structures_ = !known || asked.get<std::string>() >= kStructured;
     return reply(request, {{"protocolVersion", known ? asked : Json(kLegacy)},
                            {"capabilities", capabilities()},
                            {"serverInfo", {{"name", name_}, {"version", version_}}},
@@ -350,7 +373,7 @@ Json Session::capabilities() const {
 void Session::list_tools(const Request& request) {
   Json all = Json::array();
   for (const Tool& tool : tools_)
-    all.push_back(describe(tool));
+    all.push_back(describe(tool, structures(request)));
   list(request, {{"tools", std::move(all)}});
 }
 
@@ -508,7 +531,7 @@ void Session::answer(std::uint64_t call, const Result& result) {
         open.request,
         {{"contents", {{{"uri", open.uri}, {"mimeType", "text/plain"}, {"text", result.text}}}}});
   Json json{{"content", {{{"type", "text"}, {"text", result.text}}}}, {"isError", result.is_error}};
-  if (result.value.is_object())
+  if (result.value.is_object() && structures(open.request))
     json["structuredContent"] = result.value;
   reply(open.request, std::move(json));
 }

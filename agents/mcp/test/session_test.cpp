@@ -85,6 +85,29 @@ TEST(McpSession, ACallIsAnsweredLaterAndTellsOfItsProgress) {
   EXPECT_TRUE(client.heard().empty());
 }
 
+TEST(McpSession, ResultsHaveTheirStructureWhereTheRevisionHasIt) {
+  Tool tool = go_to();
+  tool.output = Json::parse(R"({"type":"object","properties":{"state":{"type":"string"}}})");
+  for (const auto& [revision, structured] :
+       {std::pair("2024-11-05", false), std::pair("2025-03-26", false),
+        std::pair("2025-06-18", true), std::pair("2025-11-25", true),
+        std::pair("1999-01-01", true)}) {  // answered with the newest
+    Client client;
+    client.session.set_tools({tool});
+    client.one(R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":")" +
+               std::string(revision) + R"("}})");
+    const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
+    EXPECT_EQ(list["result"]["tools"][0].contains("outputSchema"), structured) << revision;
+    client.say(
+        R"({"jsonrpc":"2.0","id":3,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1}}})");
+    client.session.answer(client.session.take_calls().at(0).number,
+                          {"there", {{"state", "succeeded"}}, false});
+    const Json answer = client.heard().at(0)["result"];
+    EXPECT_EQ(answer["content"][0]["text"], "there") << revision;
+    EXPECT_EQ(answer.contains("structuredContent"), structured) << revision;
+  }
+}
+
 TEST(McpSession, ArgumentsThatDoNotFitAreNamedAndNotCalled) {
   for (const auto& [arguments, named] : std::vector<std::pair<std::string, std::string>>{
            {"{}", "\"x\" is missing"},
@@ -148,6 +171,7 @@ TEST(McpSession, TheNewerEraNeedsNoBeginning) {
   EXPECT_EQ(discovered["resultType"], "complete");
   const Json list = client.one(modern("l", "tools/list"))["result"];
   EXPECT_EQ(list["tools"][0]["name"], "go_to");
+  EXPECT_FALSE(list["tools"][0].contains("outputSchema")) << "none is declared";
   EXPECT_EQ(list["ttlMs"], 0);
   EXPECT_EQ(list["cacheScope"], "private");
   client.say(modern("c", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "saphira/mcp/results.hpp"
+
 namespace saphira::mcp {
 namespace {
 
@@ -61,6 +63,7 @@ TEST_F(SurroundingsTest, TheMapSaysWhereTheRobotIsAndWhereItCanBeSent) {
   EXPECT_EQ(result.value["places"][1]["name"], "library");
   EXPECT_EQ(result.value["robot"]["in"], "corridor 4");
   EXPECT_EQ(result.value["closed_doors"], Json::array({"lobby (door)"}));
+  EXPECT_EQ(misfit(result.value, form_of("map")), "");
 }
 
 TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {
@@ -74,6 +77,7 @@ TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {
             "the robot's place on the map is not known: the walls do not fit");
   EXPECT_FALSE(result.value.contains("robot"));
   EXPECT_FALSE(map_of({}).is_error);
+  EXPECT_EQ(misfit(map_of({}).value, form_of("map")), "");
 }
 
 TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
@@ -110,6 +114,7 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
             "3.00 m behind: echo");
   EXPECT_EQ(result.value["seen"][1]["x"], 1.0);
   EXPECT_EQ(result.value["seen"][1]["y"], -1.0);
+  EXPECT_EQ(misfit(result.value, form_of("look")), "");
 }
 
 TEST_F(SurroundingsTest, SamplesOfAnotherFrameAreLeftOut) {
@@ -147,6 +152,7 @@ TEST(McpFacts, TheKnowledgeHasTheNumbersThatForgetTakes) {
   EXPECT_EQ(result.value["known"][0]["time"], "2025-11-26 12:30 UTC");
   EXPECT_EQ(result.value["known"][1]["time"], nullptr);
   EXPECT_FALSE(result.is_error);
+  EXPECT_EQ(misfit(result.value, form_of("knows")), "");
 
   knowledge.known(std::vector<v1::Advice>(201, office));
   const Result many = facts_of(&knowledge);

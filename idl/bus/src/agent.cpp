@@ -74,7 +74,10 @@ void Agent::handle(const v1::Request& request) {
   const Id id{request.asker(), request.number()};
   const auto known =
       std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == id; });
+  const bool withdrawn = request.functor() == kWithdraw;
   if (known != known_.end()) {
+    if (withdrawn && stop_ && !ended(known->second.code()))
+      stop_(request);
     answers_.write(known->second);
     return;
   }
@@ -86,7 +89,9 @@ void Agent::handle(const v1::Request& request) {
   const auto answerer = answerers_.find(request.functor());
   v1::Answer said;
   try {
-    if (answerer == answerers_.end()) {
+    if (withdrawn) {
+      said = refused("withdrawn before it was begun");
+    } else if (answerer == answerers_.end()) {
       said = refused("agent " + self_.name() + " cannot do " + request.functor());
       said.code(v1::ANSWER_UNKNOWN_FUNCTOR);
     } else {

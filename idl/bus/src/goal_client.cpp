@@ -1,7 +1,6 @@
 #include "saphira/bus/goal_client.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
@@ -13,12 +12,6 @@ namespace {
 
 std::pair<std::uint64_t, std::uint64_t> key_of(const v1::GoalId& id) {
   return {id.writer(), id.number()};
-}
-
-/// Counts the goals of the process, so that two clients on one node never make the same id.
-std::uint64_t next_number() {
-  static std::atomic<std::uint64_t> number{0};
-  return ++number;
 }
 
 constexpr std::chrono::milliseconds kToldAgain{10000};  // by a service that is started again
@@ -35,7 +28,7 @@ GoalClient::GoalClient(Node& node, std::string requester, std::chrono::milliseco
 v1::GoalId GoalClient::ask(v1::Goal goal) {
   v1::GoalId id;
   id.writer(node_.instance());
-  id.number(next_number());
+  id.number(next_request_number());
   own_[key_of(id)];
   change(id, std::move(goal));
   return id;

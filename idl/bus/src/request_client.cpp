@@ -35,19 +35,23 @@ RequestClient::RequestClient(Node& node, const RequestTopic& topic, std::string 
     direct_ = node.reader(*direct);
 }
 
-v1::Request RequestClient::complete(v1::Request request) {
+v1::Request RequestClient::complete(v1::Request request, std::uint64_t number) {
   request.asker(node_.instance());
-  request.number(next_request_number());
+  request.number(number);
   if (request.source().empty())
     request.source(source_);
   return request;
 }
 
 std::uint64_t RequestClient::send(v1::Request request) {
-  request = complete(std::move(request));
+  request = complete(std::move(request), next_request_number());
   if (!writer_.write(request))
     throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
   return request.number();
+}
+
+void RequestClient::again(std::uint64_t number, v1::Request request) {
+  writer_.write(complete(std::move(request), number));
 }
 
 std::vector<v1::Answer> RequestClient::poll() {
@@ -80,19 +84,25 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
                               const std::function<void()>& meanwhile) {
-  request = complete(std::move(request));
+  request = complete(std::move(request), next_request_number());
   v1::Answer newest;
   newest.asker(request.asker());
   newest.number(request.number());
   newest.code(v1::ANSWER_NOBODY);
   newest.text(std::string("no program takes what is asked on ") + topic_.name);
   bool heard = false;
+  std::size_t matched = writer_.matched();
   auto again = Clock::now();
   const auto limit =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
   auto end = again + limit;
   for (auto now = again; now < end && (stop == nullptr || !stop->requested()); now = Clock::now()) {
-    if (!heard && now >= again && writer_.matched() > 0 && writer_.write(request)) {
+    // A program that was started again has to hear the request anew.
+    if (const std::size_t before = std::exchange(matched, writer_.matched()); matched < before) {
+      heard = false;
+      again = now;
+    }
+    if (!heard && now >= again && matched > 0 && writer_.write(request)) {
       again = now + kAgain;
       newest.code(v1::ANSWER_TOO_LATE);
       newest.text("nothing was heard of the request within " + seconds(patience));
@@ -114,7 +124,7 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
         end = Clock::now() + limit;
     }
   }
-  if (heard) {
+  if (!ended(newest.code())) {
     newest.code(v1::ANSWER_TOO_LATE);
     newest.text("the request is still under way");
   }

@@ -5,6 +5,7 @@
 
 #include "agent_interface/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -22,7 +23,7 @@ void note(std::multimap<bus::WriterId, Key>& of, const bus::WriterId& writer, co
 
 }  // namespace
 
-FacilitatorShell::FacilitatorShell(bus::Node& node, double now)
+FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memory)
     : node_(node),
       agents_(node.reader(bus::topics::kAgents)),
       triggers_(node.reader(bus::topics::kTriggers)),
@@ -32,8 +33,17 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now)
       requests_(node.writer<v1::Request>(bus::topics::kAgentRequest)),
       solved_(node.writer(bus::topics::kSolved)),
       begun_(now),
+      memory_(std::move(memory)),
       facilitator_(node.instance(), now + kKnown),
-      robot_(node) {}
+      robot_(node) {
+  if (memory_.empty())
+    return;
+  const std::string trouble = read_or_set_aside(memory_, [this](const std::string& text) {
+    facilitator_.restore(std::string(unsealed(text, memory_)));
+  });
+  if (!trouble.empty())
+    node_.warn(trouble);
+}
 
 void FacilitatorShell::take_agents() {
   for (const auto& sample : agents_.take()) {
@@ -65,22 +75,30 @@ void FacilitatorShell::take_triggers(double now) {
   for (const bus::WriterId& writer : triggers_.take_lost()) {
     const auto [begin, end] = triggers_of_.equal_range(writer);
     for (auto one = begin; one != end; ++one)
-      facilitator_.take_back(one->second);
+      facilitator_.miss(one->second);
     triggers_of_.erase(writer);
   }
 }
 
 void FacilitatorShell::take_requests(double now) {
+  std::erase_if(requests_of_, [this](const auto& one) {
+    return !facilitator_.is_open(one.second.first, one.second.second);
+  });
   for (const auto& sample : asked_.take())
     if (!sample.info.disposed) {
-      note(askers_of_, sample.info.writer, std::uint64_t{sample.data.asker()});
+      const RequestId id{sample.data.asker(), sample.data.number()};
+      note(requests_of_, sample.info.writer, id);
       facilitator_.ask(saphira::from_bus(sample.data), now);
     }
   for (const bus::WriterId& writer : asked_.take_lost()) {
-    const auto [begin, end] = askers_of_.equal_range(writer);
-    for (auto one = begin; one != end; ++one)
-      robot_.forget(one->second);
-    askers_of_.erase(writer);
+    const auto [begin, end] = requests_of_.equal_range(writer);
+    const std::multimap<bus::WriterId, RequestId> orphans(begin, end);
+    requests_of_.erase(begin, end);
+    // An asker whose network has changed repeats its requests by a new writer.
+    for (const auto& [gone, id] : orphans)
+      if (std::none_of(requests_of_.begin(), requests_of_.end(),
+                       [&](const auto& other) { return other.second == id; }))
+        facilitator_.withdraw(id.first, id.second);
   }
 }
 
@@ -104,6 +122,8 @@ void FacilitatorShell::step(double now) {
 
   const Facilitator::Outputs out = facilitator_.step(now);
   awaits_ = !out.requests.empty();
+  if (out.changed && !memory_.empty() && !replace_file(memory_, sealed(facilitator_.save())))
+    node_.warn(memory_ + " cannot be written: after a restart an action may be done again");
   for (const Request& request : out.requests)
     if (request.service == robot_.address())
       robot_says(request, robot_.begin(request, now));

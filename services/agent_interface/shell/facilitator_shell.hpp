@@ -11,7 +11,8 @@ namespace saphira::agent_interface {
 /// The facilitator on the bus. For the node's own thread.
 class FacilitatorShell {
  public:
-  FacilitatorShell(bus::Node& node, double now);
+  /// memory: a file by which nothing is done twice over a restart [empty: none].
+  FacilitatorShell(bus::Node& node, double now, std::string memory = {});
 
   /// Takes the inputs and sends the outputs. now: [s] of a clock that never goes back.
   void step(double now);
@@ -20,6 +21,8 @@ class FacilitatorShell {
   static double seconds();
 
  private:
+  using RequestId = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
+
   void take_agents();
   void take_triggers(double now);
   void take_requests(double now);
@@ -33,13 +36,15 @@ class FacilitatorShell {
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
   const double begun_;  ///< [s] of the clock of step()
+  const std::string memory_;
   Facilitator facilitator_;
   RobotAgent robot_;
   bool awaits_ = false;  ///< the last step has sent a request to an agent
   /// The writer of each agent: an agent ends with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
-  std::multimap<bus::WriterId, std::uint64_t> askers_of_;
+  /// Open requests: they end with their writer.
+  std::multimap<bus::WriterId, RequestId> requests_of_;
 };
 
 }  // namespace saphira::agent_interface

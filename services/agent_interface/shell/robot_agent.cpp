@@ -54,6 +54,14 @@ void RobotAgent::announce(const v1::ActivitySchemas& schemas) {
 }
 
 Answer RobotAgent::begin(const Request& request, double now) {
+  if (request.functor == kWithdraw) {
+    for (const Begun& one : begun_)
+      if (one.request.asker == request.asker && one.request.number == request.number) {
+        goals_.cancel(one.goal);
+        return {AnswerCode::underway, "withdrawn"};
+      }
+    return {AnswerCode::given_up, "withdrawn"};
+  }
   if (request.arguments.size() > kMostArguments)
     return {AnswerCode::refused,
             "a goal has " + std::to_string(kMostArguments) + " arguments at most"};
@@ -65,14 +73,6 @@ Answer RobotAgent::begin(const Request& request, double now) {
   goal.writer_lost(v1::WRITER_LOST_CANCEL);
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
   return {AnswerCode::underway, ""};
-}
-
-void RobotAgent::forget(std::uint64_t asker) {
-  std::erase_if(begun_, [&](const Begun& one) {
-    if (one.request.asker == asker)
-      goals_.cancel(one.goal);
-    return one.request.asker == asker;
-  });
 }
 
 std::vector<RobotAgent::Report> RobotAgent::step(double now) {

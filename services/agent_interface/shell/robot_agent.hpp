@@ -19,9 +19,8 @@ class RobotAgent {
 
   /// Request.service that means this agent.
   const std::string& address() const { return address_; }
+  /// Asks for the goal of a request. With the functor `withdraw`: cancels it.
   Answer begin(const Request& request, double now);
-  /// Cancels the goals of an asker that is gone.
-  void forget(std::uint64_t asker);
 
   struct Report {
     Request request;

@@ -1,6 +1,7 @@
 #include "saphira/agent_interface/facilitator.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <tuple>
 
 #include "saphira/base/guess.hpp"
@@ -12,6 +13,8 @@ constexpr double kUsualDeadline = 10.0;  // [s] of a request that names none
 constexpr double kAgain = 0.3;           // [s] until a silent agent is asked again
 constexpr std::size_t kOpenOfOne = 64;   // requests of one asker at a time
 constexpr std::size_t kEnded = 256;      // ends that are remembered
+constexpr std::size_t kBegun = 256;      // actions that are remembered, besides open ones
+constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
 constexpr const char* kName = "facilitator";
 
 Arguments without(Arguments arguments, const std::string& name) {
@@ -102,6 +105,13 @@ void Facilitator::leave(std::uint64_t agent) {
 
 std::optional<Answer> Facilitator::candidates(Open& open) const {
   const Request& request = open.request;
+  if (const auto agent = begun({request.asker, request.number})) {
+    if (!agents_.contains(*agent))
+      return Answer{AnswerCode::lost,
+                    "the agent that was asked is gone; whether it was done is not known"};
+    open.left.push_back(*agent);
+    return std::nullopt;
+  }
   std::string wrong;
   std::vector<std::string> known;
   bool named = request.service.empty();
@@ -140,20 +150,45 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
 
 void Facilitator::ask(const Request& request, double now) {
   const Id id{request.asker, request.number};
-  if (open_.contains(id))
+  const bool withdraws = request.functor == kWithdraw;
+  if (open_.contains(id)) {
+    if (withdraws)
+      withdraw(request.asker, request.number);
     return;
+  }
   for (const auto& [known, solved] : ended_)
     if (known == id) {
       out_.solved.push_back(solved);
       return;
     }
-  begin(request, std::nullopt, now);
+  if (!withdraws || begun(id))
+    begin(request, std::nullopt, now);
+}
+
+void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
+  const Id id{asker, number};
+  const auto found = open_.find(id);
+  if (found == open_.end())
+    return;
+  Open& open = found->second;
+  open.withdrawn = true;
+  open.left.clear();
+  std::erase_if(open.asked, [](const Asked& one) { return !one.acts; });
+  if (open.asked.empty() && begun(id))
+    return;  // of before a restart: the agent may come yet
+  if (open.asked.empty() && open.got > 0)
+    return end(id, kName, {AnswerCode::done, counted(open.got) + "; withdrawn"});
+  if (open.asked.empty())
+    return end(id, kName, {AnswerCode::refused, "withdrawn; nothing was done"});
+  for (const Asked& asked : open.asked)
+    tell(open, asked.agent);
 }
 
 void Facilitator::begin(const Request& request, std::optional<Id> trigger, double now) {
   const Id id{request.asker, request.number};
   Open open{request};
   open.trigger = trigger;
+  open.withdrawn = request.functor == kWithdraw;
   if (const Argument* const wanted = find(request.arguments, "answers")) {
     open.wanted = static_cast<std::size_t>(std::clamp(wanted->number, 0.0, 1e6));
     open.request.arguments = without(request.arguments, "answers");
@@ -177,7 +212,8 @@ void Facilitator::begin(const Request& request, std::optional<Id> trigger, doubl
 void Facilitator::match(const Id& id, double now) {
   Open& open = open_.at(id);
   const std::optional<Answer> none = candidates(open);
-  open.unmatched = none && none->code == AnswerCode::nobody && now < known_;
+  open.unmatched =
+      none && (none->code == AnswerCode::nobody || none->code == AnswerCode::lost) && now < known_;
   if (open.unmatched)
     return;
   if (none)
@@ -187,10 +223,24 @@ void Facilitator::match(const Id& id, double now) {
 }
 
 void Facilitator::send(Open& open, std::uint64_t agent, double now) {
+  const Id id{open.request.asker, open.request.number};
   const Capability* const can = capability(agent, open.request.functor);
-  open.asked.push_back({agent, can != nullptr && can->acts, now + kAgain});
+  const bool acts = begun(id) || (can != nullptr && can->acts);
+  open.asked.push_back({agent, acts, now + kAgain});
+  // Requests of triggers are of one run of this program.
+  if (acts && open.wanted == 1 && id.first != self_)
+    note_begun(id, agent);
+  tell(open, agent);
+}
+
+/// Sends the request, or its withdrawal.
+void Facilitator::tell(const Open& open, std::uint64_t agent) {
   Request request = open.request;
   request.service = agents_.at(agent).address;
+  if (open.withdrawn) {
+    request.functor = kWithdraw;
+    request.arguments.clear();
+  }
   out_.requests.push_back(std::move(request));
 }
 
@@ -226,6 +276,9 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
   if (asked == open.asked.end())
     return;
   asked->heard = true;
+  // An agent that knows no withdrawals does the action to its end.
+  if (open.withdrawn && answer.code == AnswerCode::unknown_functor)
+    return;
   if (!ended(answer.code)) {
     // An agent that says again and again that it is at work has the time that it needs.
     if (open.request.deadline <= 0.0)
@@ -249,6 +302,7 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
     open.troubler = name;
     if (acts && open.wanted == 1 && !untouched(answer.code))
       return end(id, name, answer);
+    forget_begun(id);
   }
   advance(id, now);
 }
@@ -279,11 +333,22 @@ void Facilitator::set(const Trigger& trigger, double now) {
   Armed armed{trigger};
   armed.trigger.period = std::max(trigger.period, 0.1);
   armed.next = now + (trigger.kind == TriggerKind::time ? armed.trigger.period : 0.0);
+  if (const auto known = triggers_.find(trigger.id); known != triggers_.end()) {
+    if (known->second.trigger == armed.trigger)
+      return;
+    take_back(trigger.id);
+  }
   triggers_[trigger.id] = armed;
 }
 
 void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
   triggers_.erase(trigger);
+  out_.changed = fired_.erase(trigger) > 0 || out_.changed;
+}
+
+bool Facilitator::is_spent(const Trigger& trigger) const {
+  const auto fired = fired_.find(trigger.id);
+  return trigger.times != 0 && fired != fired_.end() && fired->second >= trigger.times;
 }
 
 void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
@@ -304,9 +369,17 @@ void Facilitator::happened(const std::string& functor, const Arguments& argument
 
 void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
   const Trigger& trigger = armed.trigger;
-  if (trigger.times != 0 && armed.fired >= trigger.times)
+  if (is_spent(trigger))
     return;
-  ++armed.fired;
+  if (trigger.times != 0) {
+    ++fired_[trigger.id];
+    out_.changed = true;
+    const auto gone = std::find_if(fired_.begin(), fired_.end(), [this](const auto& one) {
+      return !triggers_.contains(one.first);
+    });
+    if (fired_.size() > kFired && gone != fired_.end())
+      fired_.erase(gone);
+  }
   Request request;
   request.functor = trigger.action;
   request.source = "a trigger of " + trigger.source;
@@ -340,8 +413,7 @@ void Facilitator::looked(const Id& trigger, const Answer& answer) {
 Facilitator::Outputs Facilitator::step(double now) {
   now_ = now;
   for (auto& [id, armed] : triggers_) {
-    if (armed.trigger.kind == TriggerKind::event || now < armed.next ||
-        (armed.trigger.times != 0 && armed.fired >= armed.trigger.times))
+    if (armed.trigger.kind == TriggerKind::event || now < armed.next || is_spent(armed.trigger))
       continue;
     // Times that this program slept through are skipped.
     armed.next = now + armed.trigger.period;
@@ -371,9 +443,7 @@ Facilitator::Outputs Facilitator::step(double now) {
     for (Asked& asked : open.asked)
       if (!asked.heard && now >= asked.again) {
         asked.again = now + kAgain;
-        Request request = open.request;
-        request.service = agents_.at(asked.agent).address;
-        out_.requests.push_back(std::move(request));
+        tell(open, asked.agent);
       }
   }
   for (const Id& id : waiting)
@@ -408,10 +478,55 @@ std::optional<double> Facilitator::due() const {
         consider(asked.again);
   }
   for (const auto& [id, armed] : triggers_)
-    if (armed.trigger.kind != TriggerKind::event &&
-        (armed.trigger.times == 0 || armed.fired < armed.trigger.times))
+    if (armed.trigger.kind != TriggerKind::event && !is_spent(armed.trigger))
       consider(armed.next);
   return soonest;
+}
+
+std::optional<std::uint64_t> Facilitator::begun(const Id& id) const {
+  for (const auto& [known, agent] : begun_)
+    if (known == id)
+      return agent;
+  return std::nullopt;
+}
+
+void Facilitator::note_begun(const Id& id, std::uint64_t agent) {
+  if (begun(id) == agent)
+    return;
+  forget_begun(id);
+  begun_.emplace_back(id, agent);
+  out_.changed = true;
+  if (begun_.size() <= kBegun)
+    return;
+  const auto over = std::find_if(begun_.begin(), begun_.end(),
+                                 [this](const auto& one) { return !open_.contains(one.first); });
+  if (over != begun_.end())
+    begun_.erase(over);
+}
+
+void Facilitator::forget_begun(const Id& id) {
+  if (std::erase_if(begun_, [&](const auto& one) { return one.first == id; }) > 0)
+    out_.changed = true;
+}
+
+std::string Facilitator::save() const {
+  std::ostringstream text;
+  for (const auto& [trigger, times] : fired_)
+    text << "fired " << trigger.first << ' ' << trigger.second << ' ' << times << '\n';
+  for (const auto& [request, agent] : begun_)
+    text << "begun " << request.first << ' ' << request.second << ' ' << agent << '\n';
+  return text.str();
+}
+
+void Facilitator::restore(const std::string& text) {
+  std::istringstream lines(text);
+  std::string word;
+  Id id;
+  for (std::uint64_t value = 0; lines >> word >> id.first >> id.second >> value;)
+    if (word == "fired")
+      fired_[id] = value;
+    else
+      begun_.emplace_back(id, value);
 }
 
 }  // namespace saphira::agent_interface

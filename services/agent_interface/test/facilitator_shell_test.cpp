@@ -97,5 +97,170 @@ TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
   EXPECT_GE(asked, 2);
 }
 
+/// The facilitator with an agent and an asker, on a bus in memory, with a clock that the test
+/// moves.
+class FacilitatorInMemory : public testing::Test {
+ protected:
+  FacilitatorInMemory() {
+    restart();
+    worker.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request& request) {
+      begun.push_back(request.number());
+      begun_request = request;
+      v1::Answer answer;
+      answer.code(v1::ANSWER_UNDERWAY);
+      answer.text("sweeps");
+      return answer;
+    });
+    worker.when_withdrawn([&](const v1::Request& request) {
+      stopped.push_back(request.number());
+      v1::Answer end;
+      end.code(v1::ANSWER_GIVEN_UP);
+      end.text("half of the floor is clean");
+      worker.answer(request, end);
+    });
+  }
+  /// The facilitator is killed, and comes back with its memory.
+  void restart() {
+    facilitator.reset();
+    hub.emplace(test::memory_options("facilitator"), memory);
+    facilitator = std::make_unique<FacilitatorShell>(*hub, now, folder.path("memory"));
+  }
+  /// Lets everybody take what has come.
+  void turn() {
+    for (int i = 0; i < 3; ++i) {
+      facilitator->step(now += 0.01);
+      worker.poll();
+    }
+  }
+  static v1::Request sweep() {
+    v1::Request request;
+    request.functor("sweep");
+    return request;
+  }
+
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  std::optional<bus::Node> hub;
+  bus::Node other{test::memory_options("sweeper"), memory};
+  bus::Node person{test::memory_options("person"), memory};
+  double now = 10.0;
+  test::TempDir folder;
+  std::unique_ptr<FacilitatorShell> facilitator;
+  bus::Agent worker{other, "sweeper", "sweeps"};
+  std::vector<std::uint64_t> begun;
+  v1::Request begun_request;  // the newest
+  std::vector<std::uint64_t> stopped;
+};
+
+TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  const std::uint64_t number = asker.send(sweep());
+  turn();
+  EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
+  v1::Request withdrawal;
+  withdrawal.functor(bus::kWithdraw);
+  asker.again(number, withdrawal);
+  turn();
+  EXPECT_EQ(stopped, begun);
+  const auto answers = asker.poll();
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].text(), "sweeps");
+  EXPECT_EQ(answers[1].code(), v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(answers[1].text(), "half of the floor is clean");
+}
+
+TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
+  auto first = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
+  bus::RequestClient second(person, bus::topics::kSolve, "a person");  // of the same program
+  const std::uint64_t number = first->send(sweep());
+  second.send(sweep());
+  turn();
+  EXPECT_EQ(begun.size(), 2u);
+  first.reset();
+  turn();
+  EXPECT_EQ(stopped, std::vector<std::uint64_t>{number});
+}
+
+TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  const std::uint64_t number = asker.send(sweep());
+  turn();
+  int swept = 0;
+  bus::Agent broom(other, "broom", "comes first by its name");
+  broom.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request&) {
+    ++swept;
+    return bus::done({});
+  });
+  restart();
+  asker.again(number, sweep());
+  turn();
+  broom.poll();
+  EXPECT_EQ(swept, 0);
+  EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
+  worker.answer(begun_request, bus::done({}, "clean"));
+  turn();
+  EXPECT_EQ(asker.poll().back().text(), "clean");
+}
+
+TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  int turns = 0;
+  const auto others = [&] {
+    ++turns;
+    if (turns == 2) {
+      facilitator.reset();
+      return;
+    }
+    if (turns == 3)
+      restart();
+    turn();
+    if (turns == 5)
+      worker.answer(begun_request, bus::done({}, "clean"));
+  };
+  EXPECT_EQ(asker.ask(sweep(), 30.0, nullptr, others).text(), "clean");
+  EXPECT_EQ(begun.size(), 1u);
+}
+
+TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
+  v1::Trigger trigger;
+  trigger.kind(v1::TRIGGER_TIME);
+  trigger.period(1.0);
+  trigger.action("sweep");
+  trigger.times(1);
+  worker.set(trigger);
+  turn();
+  for (int i = 0; i < 3; ++i) {
+    now += 2.0;
+    turn();
+    EXPECT_EQ(begun.size(), 1u) << i;
+    restart();
+    turn();
+  }
+}
+
+TEST_F(FacilitatorInMemory, AGoalOfTheRobotEndsWithItsAsker) {
+  v1::ActivitySchema schema;
+  schema.name("explore");
+  v1::ActivitySchemas schemas;
+  schemas.schemas({schema});
+  auto activities = person.writer(bus::topics::kActivitySchemas);
+  activities.write(schemas);
+  auto goals = person.reader(bus::topics::kGoals);
+  turn();
+  auto asker = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
+  v1::Request request;
+  request.functor("explore");
+  asker->send(request);
+  turn();
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_FALSE(asked[0].info.disposed);
+  asker.reset();
+  turn();
+  const auto ended = goals.take();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_TRUE(ended[0].info.disposed);
+  EXPECT_EQ(ended[0].data.id(), asked[0].data.id());
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

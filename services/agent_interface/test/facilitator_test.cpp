@@ -192,6 +192,68 @@ TEST_F(Facilitation, ARepeatedRequestIsAnsweredAgainAndAskedOnce) {
   EXPECT_EQ(again.solved[0].answer, library());
 }
 
+Request withdrawal(std::uint64_t number) {
+  Request request = place_of(number);
+  request.functor = kWithdraw;
+  request.arguments.clear();
+  return request;
+}
+
+TEST_F(Facilitation, AWithdrawnActionEndsWithTheAnswerOfItsAgent) {
+  facilitator.announce(agent(1, "a", true));
+  facilitator.announce(agent(2, "b", true));
+  ask(place_of(5));
+  hear("a", place_of(5), {AnswerCode::underway, "on its way"});
+  const auto told = ask(withdrawal(5));
+  EXPECT_TRUE(told.solved.empty());
+  ASSERT_EQ(told.requests.size(), 1u);
+  EXPECT_EQ(told.requests[0].service, "address of a");
+  EXPECT_EQ(told.requests[0].functor, kWithdraw);
+  EXPECT_EQ(told.requests[0].number, 5u);
+  EXPECT_TRUE(told.requests[0].arguments.empty());
+  EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the request once more";
+  const auto end = hear("a", place_of(5), {AnswerCode::refused, "withdrawn before it was begun"});
+  EXPECT_TRUE(end.requests.empty()) << "no other agent begins it";
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.text, "withdrawn before it was begun");
+  EXPECT_EQ(ask(withdrawal(5)).solved.at(0).answer.code, AnswerCode::refused) << "told again";
+}
+
+TEST_F(Facilitation, AWithdrawalIsRepeatedInsteadOfTheRequest) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  ask(withdrawal(5));
+  now += 0.4;
+  const auto again = facilitator.step(now).requests;
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].functor, kWithdraw);
+}
+
+TEST_F(Facilitation, AnAgentThatKnowsNoWithdrawalEndsItsAction) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  ask(withdrawal(5));
+  EXPECT_TRUE(hear("a", place_of(5), {AnswerCode::unknown_functor, "withdraw?"}).solved.empty());
+  EXPECT_EQ(hear("a", place_of(5), library()).solved.at(0).answer, library());
+}
+
+TEST_F(Facilitation, WhatNobodyHasBegunEndsAtOnceWhenItIsWithdrawn) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(wanting(place_of(5), 0.0));  // facts
+  const auto end = ask(withdrawal(5));
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer, (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
+  ask(wanting(place_of(7), 0.0));
+  hear("a", wanting(place_of(7), 0.0), library());
+  EXPECT_EQ(ask(withdrawal(7)).solved.at(0).answer.text, "1 answer; withdrawn");
+  const auto unknown = ask(withdrawal(6));
+  EXPECT_TRUE(unknown.requests.empty());
+  EXPECT_TRUE(unknown.solved.empty());
+  EXPECT_EQ(facilitator.open(), 0u);
+}
+
 TEST_F(Facilitation, WhoFloodsHurtsItselfOnly) {
   facilitator.announce(agent(1, "a"));
   std::size_t refused = 0;
@@ -292,6 +354,108 @@ TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
   other.number = 9;
   facilitator.ask(other, 103.0);
   EXPECT_EQ(facilitator.step(103.0).solved.back().answer.code, AnswerCode::nobody) << "at once";
+}
+
+Trigger every_five_seconds(std::uint64_t times) {
+  return {{1, 4}, "ann", TriggerKind::time, 5.0, "", {}, "note", {}, times};
+}
+
+/// How often a trigger fires in 50 s. The agent answers at once.
+std::size_t firings(Facilitator& facilitator, double& now) {
+  std::size_t fired = 0;
+  for (int i = 0; i < 10; ++i) {
+    now += 5.0;
+    for (const Request& request : facilitator.step(now).requests) {
+      ++fired;
+      facilitator.hear(request.service, request.asker, request.number, {}, now);
+    }
+  }
+  return fired;
+}
+
+TEST_F(Facilitation, ATriggerFiresItsTimesWhateverIsHeardAgain) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(2), now);
+  facilitator.step(now);
+  now += 5.0;
+  const auto first = facilitator.step(now);
+  EXPECT_TRUE(first.changed);
+  ASSERT_EQ(first.requests.size(), 1u);
+  facilitator.hear(first.requests[0].service, kSelf, first.requests[0].number, {}, now);
+  facilitator.set(every_five_seconds(2), now);  // its sample came once more
+  facilitator.miss({1, 4});                     // its writer was not heard for a moment
+  facilitator.set(every_five_seconds(2), now);
+  EXPECT_EQ(firings(facilitator, now), 1u);
+  facilitator.set(every_five_seconds(3), now);
+  EXPECT_EQ(firings(facilitator, now), 3u) << "it was changed";
+  facilitator.take_back({1, 4});
+  EXPECT_TRUE(facilitator.step(now).changed);
+  EXPECT_EQ(facilitator.save().find("fired"), std::string::npos);
+}
+
+TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(12), now);
+  EXPECT_EQ(firings(facilitator, now), 10u);
+  Facilitator next(kSelf + 1);
+  next.restore(facilitator.save());
+  next.announce(agent_that_notes());
+  next.set(every_five_seconds(12), now);
+  EXPECT_EQ(firings(next, now), 2u);
+}
+
+/// A facilitator that was killed after it has asked `sweeper` for an action, and is back.
+struct FacilitationAgain : Facilitation {
+  FacilitationAgain() {
+    facilitator.announce(agent(2, "sweeper", true));
+    facilitator.ask(place_of(5), now);
+    EXPECT_TRUE(facilitator.step(now).changed) << "it is kept before the request is sent";
+    const std::string kept = facilitator.save();
+    facilitator = Facilitator(kSelf + 1, now + 2.0);
+    facilitator.restore(kept);
+    facilitator.announce(agent(1, "a cheaper one", true));
+  }
+};
+
+TEST_F(FacilitationAgain, ABegunActionIsAskedOfItsAgentAlone) {
+  EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the agent may come yet";
+  facilitator.announce(agent(2, "sweeper", true));
+  const auto asked = facilitator.step(now).requests;
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].service, "address of sweeper");
+  EXPECT_EQ(asked[0].number, 5u) << "by which the agent knows it";
+  const auto end = hear("sweeper", place_of(5), library());
+  EXPECT_EQ(end.solved.at(0).answer, library());
+  EXPECT_EQ(ask(place_of(6)).requests.at(0).service, "address of a cheaper one") << "a new one";
+}
+
+TEST_F(FacilitationAgain, ABegunActionOfAnAgentThatIsGoneIsLost) {
+  ask(place_of(5));
+  now += 2.0;
+  const auto end = facilitator.step(now);
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer,
+            (Answer{AnswerCode::lost,
+                    "the agent that was asked is gone; whether it was done is not known"}));
+}
+
+TEST_F(FacilitationAgain, ABegunActionIsWithdrawnFromItsAgent) {
+  ask(withdrawal(5));
+  EXPECT_TRUE(ask(withdrawal(5)).solved.empty()) << "whether it was done is not known yet";
+  facilitator.announce(agent(2, "sweeper", true));
+  const auto told = facilitator.step(now).requests;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].service, "address of sweeper");
+  EXPECT_EQ(told[0].functor, kWithdraw);
+  EXPECT_EQ(hear("sweeper", place_of(5), {AnswerCode::given_up, "stopped"}).solved.size(), 1u);
+}
+
+TEST_F(Facilitation, AnActionThatAnAgentRefusedMayBeBegunByAnother) {
+  facilitator.announce(agent(1, "a", true));
+  ask(place_of(5));
+  hear("a", place_of(5), {AnswerCode::refused, "no"});
+  EXPECT_EQ(facilitator.save(), "");
 }
 
 TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {

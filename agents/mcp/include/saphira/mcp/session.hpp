@@ -18,6 +18,7 @@ struct Tool {
   Json input;               ///< JSON Schema of its arguments: an object
   bool reads = false;       ///< changes nothing; without arguments it is a resource as well
   bool always = false;      ///< exempt from the limit: it stops the robot
+  Json output = nullptr;    ///< JSON Schema of Result.value, an object; null: not declared
   bool operator==(const Tool&) const = default;
 };
 
@@ -30,7 +31,7 @@ struct Call {
 
 struct Result {
   std::string text;       ///< for the model
-  Json value;             ///< the same for programs: an object, or null
+  Json value;             ///< the same for programs: an object that fits Tool.output, or null
   bool is_error = false;  ///< the request failed; the text gives the reason and advice
 };
 
@@ -151,6 +152,7 @@ class Session {
   Json capabilities() const;
   void list_resources(const Request& request);
   void read(const Request& request, const Json& parameters);
+  bool structures(const Request& request) const { return request.modern || structures_; }
   void list(const Request& request, Json result);
   void call(const Request& request, const Json& parameters, const Json& uri = nullptr);
   double too_soon();
@@ -163,6 +165,7 @@ class Session {
   const std::string instructions_;
   std::vector<Tool> tools_;
   bool begun_ = false;
+  bool structures_ = true;  ///< the client's revision has structured results
   bool waits_ = false;      ///< for the tools
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
@@ -178,8 +181,8 @@ class Session {
 };
 
 /// The reason why arguments do not fit a schema, in words, with the argument's name; empty where
-/// they do. Of JSON Schema: type, properties, required, additionalProperties, enum, minimum,
-/// maximum.
+/// they do. Of JSON Schema: type, properties, required, additionalProperties, items, anyOf, enum,
+/// minimum, maximum.
 std::string misfit(const Json& arguments, const Json& schema);
 
 }  // namespace saphira::mcp

@@ -39,6 +39,9 @@ class Agent {
   void poll();
   /// Ends a request that was underway.
   void answer(const v1::Request& request, v1::Answer answer);
+  /// Called, perhaps repeatedly, when the asker of a request that is underway withdraws it or is
+  /// gone: the work stops soon, and answer() says so. Without it the work goes on to its end.
+  void when_withdrawn(std::function<void(const v1::Request&)> stop) { stop_ = std::move(stop); }
 
   /// Asks whichever agent can, and waits: see RequestClient::ask. Others are answered meanwhile.
   /// request.service: the one agent that is meant; an argument `answers`: how many are wanted.
@@ -65,6 +68,7 @@ class Agent {
   Writer<v1::Answer> answers_;
   RequestClient solver_;
   std::map<std::string, Answerer> answerers_;
+  std::function<void(const v1::Request&)> stop_;
   std::deque<std::pair<Id, v1::Answer>> known_;  ///< newest requests with their newest answers
   bool answering_ = false;
 };

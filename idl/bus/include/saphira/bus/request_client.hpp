@@ -28,18 +28,22 @@ class RequestClient {
   /// Asks, and waits for the end of the request, for `patience` [s] at most; without a deadline in
   /// the request, for as long after each ANSWER_UNDERWAY. There is always an answer: ANSWER_NOBODY
   /// says that no program takes such requests, and ANSWER_TOO_LATE that none has answered. The
-  /// request is written again until a program answers, and carried out once.
+  /// request is written again until a program answers, and when such a program is gone; it is
+  /// carried out once.
   /// `meanwhile` is called whenever a sample has come to the node.
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {});
 
   /// Asks without waiting: the number of the request. Its answers come out of poll().
   std::uint64_t send(v1::Request request);
+  /// Writes a request of send() once more, under its number, for a program that has started since.
+  /// With the functor kWithdraw: withdraws it.
+  void again(std::uint64_t number, v1::Request request);
   /// The answers to this client's requests, since the last call, oldest first.
   std::vector<v1::Answer> poll();
 
  private:
-  v1::Request complete(v1::Request request);
+  v1::Request complete(v1::Request request, std::uint64_t number);
   std::optional<v1::Answer> take_direct(const v1::Request& request);
 
   Node& node_;
@@ -49,6 +53,9 @@ class RequestClient {
   Reader<v1::Answer> reader_;
   std::optional<Reader<v1::Answer>> direct_;
 };
+
+/// The functor that withdraws the request of the same asker and number, on agents/solve.
+inline constexpr const char* kWithdraw = "withdraw";
 
 v1::Argument number(const std::string& name, double value);
 v1::Argument text(const std::string& name, const std::string& value);

@@ -38,6 +38,8 @@ struct Trigger {
   std::string action;
   Arguments action_arguments;  ///< unbound ones are filled from the condition's result
   std::uint64_t times = 0;     ///< firings at most; 0: without end
+
+  bool operator==(const Trigger&) const = default;
 };
 
 /// An answer on its way to the asker, with the agent that gave it.
@@ -50,7 +52,7 @@ struct Solved {
 
 /// Matches requests with the agents that can answer them, collects the answers, and requests the
 /// actions of triggers (manual 2.2.8). A value without clock or bus: `now` is seconds of any clock
-/// that never goes back.
+/// that never goes back. Nothing is done twice, also over a restart with its memory.
 class Facilitator {
  public:
   /// self: the asker in requests of triggers. known: the time until which agents may be there that
@@ -61,12 +63,18 @@ class Facilitator {
   /// The agent's open requests go to another agent, or are answered with the reason.
   void leave(std::uint64_t agent);
 
+  /// A known trigger is set anew where it has changed; otherwise its firings still count.
   void set(const Trigger& trigger, double now);
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
+  /// The trigger's writer is not heard any more. Its firings count when it is heard again.
+  void miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) { triggers_.erase(trigger); }
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
-  /// A new request; a known one is ignored.
+  /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one.
   void ask(const Request& request, double now);
+  /// The asker no longer wants a request: no further agent gets it, and an agent that is at work on
+  /// an action is told. That agent's answer is the end.
+  void withdraw(std::uint64_t asker, std::uint64_t number);
   /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
             const Answer& answer, double now);
@@ -75,13 +83,22 @@ class Facilitator {
     std::vector<Request> requests;  ///< to agents, by their address
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
+    bool changed = false;  ///< the memory has changed: it is kept before the requests are sent
   };
   /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
   Outputs step(double now);
   /// The time at which step() has work without new input; none: no open work.
   std::optional<double> due() const;
 
+  /// The memory: firings of triggers with `times`, and the agents that were asked for actions.
+  std::string save() const;
+  /// Call before all others.
+  void restore(const std::string& text);
+
   std::size_t open() const { return open_.size(); }
+  bool is_open(std::uint64_t asker, std::uint64_t number) const {
+    return open_.contains({asker, number});
+  }
   std::size_t agents() const { return agents_.size(); }
 
  private:
@@ -103,11 +120,11 @@ class Facilitator {
     std::string troubler{};
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
     bool unmatched = false;       ///< waits for an agent that can answer it
+    bool withdrawn = false;
   };
   struct Armed {
     Trigger trigger;
     double next = 0.0;
-    std::uint64_t fired = 0;
     bool looked = false;               ///< the condition was answered
     std::optional<Arguments> found{};  ///< by the last answer; none: no value
   };
@@ -117,10 +134,15 @@ class Facilitator {
   void match(const Id& id, double now);
   void advance(const Id& id, double now);
   void send(Open& open, std::uint64_t agent, double now);
+  void tell(const Open& open, std::uint64_t agent);
   void give(const Id& id, const std::string& service, const Answer& answer);
   void end(const Id& id, const std::string& service, const Answer& answer);
   void looked(const Id& trigger, const Answer& answer);
   void fire(Armed& armed, const Arguments& found, double now);
+  bool is_spent(const Trigger& trigger) const;
+  std::optional<std::uint64_t> begun(const Id& id) const;
+  void note_begun(const Id& id, std::uint64_t agent);
+  void forget_begun(const Id& id);
   const Capability* capability(std::uint64_t agent, const std::string& functor) const;
 
   std::uint64_t self_;
@@ -131,6 +153,8 @@ class Facilitator {
   std::map<Id, Open> open_;
   std::vector<std::pair<Id, Solved>> ended_;  ///< newest ends, repeated on a repeated request
   std::map<Id, Armed> triggers_;
+  std::map<Id, std::uint64_t> fired_;                  ///< how often, of triggers with `times`
+  std::vector<std::pair<Id, std::uint64_t>> begun_{};  ///< actions and their agents, oldest first
   Outputs out_;
 };
 

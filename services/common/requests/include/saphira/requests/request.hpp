@@ -10,6 +10,9 @@
 
 namespace saphira {
 
+/// The functor that withdraws the request of the same asker and number.
+inline constexpr const char* kWithdraw = "withdraw";
+
 /// A request, for one action.
 struct Request {
   std::string functor;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "agents.h"
+#include "intention.h"
+#include "request.h"
+#include "saphira/mcp/session.hpp"
+
+/// The results of tools as JSON, and their forms: JSON Schema, which clients check them against.
+namespace saphira::mcp {
+
+Json json_of(const v1::GoalStatus& status);
+
+/// The results of an answer by name. Several results of one name are a list. A result of another
+/// kind than declared is left out.
+Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParameter>& declared);
+
+/// Of a tool that asks for a goal.
+Json goal_form();
+/// Of a permanent tool; null: there is none of this name.
+Json form_of(const std::string& tool);
+/// Of a capability: the parameters that an answer may fill. Of an action: a goal with these
+/// results.
+Json form_of(const v1::Capability& capability);
+
+}  // namespace saphira::mcp

@@ -1,0 +1,209 @@
+#include "saphira/mcp/results.hpp"
+
+#include <algorithm>
+
+#include "saphira/bus/goal_client.hpp"
+
+namespace saphira::mcp {
+
+namespace {
+
+Json object(Json properties, const std::vector<std::string>& required = {}) {
+  return {{"type", "object"}, {"properties", std::move(properties)}, {"required", Json(required)}};
+}
+
+Json list_of(Json items) {
+  return {{"type", "array"}, {"items", std::move(items)}};
+}
+
+Json of_type(const char* type) {
+  return {{"type", type}};
+}
+
+Json text() {
+  return of_type("string");
+}
+
+Json truth() {
+  return of_type("boolean");
+}
+
+/// JSON has no number for infinity and the like: null stands for them.
+Json number() {
+  return {{"type", {"number", "null"}}};
+}
+
+Json text_or_nothing() {
+  return {{"type", {"string", "null"}}};
+}
+
+Json pose() {
+  return object({{"x", number()}, {"y", number()}, {"heading", number()}}, {"x", "y", "heading"});
+}
+
+Json state() {
+  Json names = Json::array({"unknown"});
+  for (const v1::GoalState each :
+       {v1::GOAL_WAITING, v1::GOAL_REFUSED, v1::GOAL_UNDERWAY, v1::GOAL_SUSPENDED,
+        v1::GOAL_SUCCEEDED, v1::GOAL_FAILED, v1::GOAL_CANCELED})
+    names.push_back(bus::describe(each));
+  return {{"type", "string"}, {"enum", std::move(names)}};
+}
+
+Json goal_with(Json results) {
+  return object({{"goal", text()},
+                 {"what", text()},
+                 {"asked_by", text()},
+                 {"state", state()},
+                 {"step", text()},
+                 {"reason", text()},
+                 {"progress", number()},
+                 {"waits_for", text()},
+                 {"results", std::move(results)}},
+                {"goal", "state"});
+}
+
+Json form_of(v1::ArgumentKind kind) {
+  switch (kind) {
+    case v1::ARGUMENT_NUMBER:
+      return number();
+    case v1::ARGUMENT_TEXT:
+      return text();
+    case v1::ARGUMENT_POINT: {
+      Json point = pose();
+      point["properties"]["frame"] = text();
+      return point;
+    }
+    case v1::ARGUMENT_TRUTH:
+      return truth();
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  return Json::object();
+}
+
+Json json_of(const v1::Argument& argument) {
+  switch (argument.kind()) {
+    case v1::ARGUMENT_NUMBER:
+      return argument.number();
+    case v1::ARGUMENT_TEXT:
+      return argument.text();
+    case v1::ARGUMENT_POINT:
+      return {{"x", argument.point().x()},
+              {"y", argument.point().y()},
+              {"heading", argument.point().th()},
+              {"frame", argument.frame() == v1::FRAME_MAP    ? "map"
+                        : argument.frame() == v1::FRAME_ODOM ? "odom"
+                                                             : "robot"}};
+    case v1::ARGUMENT_TRUTH:
+      return argument.number() != 0.0;
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Json json_of(const v1::GoalStatus& status) {
+  Json json{{"goal", bus::describe(status.id())},
+            {"what", status.functor()},
+            {"asked_by", status.requester()},
+            {"state", bus::describe(status.state())},
+            {"step", status.step()},
+            {"reason", status.reason()},
+            {"progress", status.progress()}};
+  if (status.waits_for().writer() != 0)
+    json["waits_for"] = bus::describe(status.waits_for());
+  return json;
+}
+
+Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParameter>& declared) {
+  Json value = Json::object();
+  for (const v1::Argument& result : answer.results()) {
+    const auto parameter = std::find_if(
+        declared.begin(), declared.end(),
+        [&](const v1::CapabilityParameter& each) { return each.name() == result.name(); });
+    if (parameter != declared.end() && parameter->kind() != v1::ARGUMENT_UNBOUND &&
+        parameter->kind() != result.kind())
+      continue;
+    Json& place = value[result.name()];
+    if (place.is_null())
+      place = json_of(result);
+    else if (place.is_array())
+      place.push_back(json_of(result));
+    else
+      place = Json::array({place, json_of(result)});
+  }
+  return value;
+}
+
+Json goal_form() {
+  return goal_with(object(Json::object()));
+}
+
+Json form_of(const std::string& tool) {
+  const Json seen = object({{"what", text()},
+                            {"where", text()},
+                            {"distance", number()},
+                            {"x", number()},
+                            {"y", number()}},
+                           {"what", "where", "distance"});
+  const Json place = object({{"name", text()}, {"kind", text()}, {"x", number()}, {"y", number()}},
+                            {"name", "x", "y"});
+  const Json fact = object({{"number", of_type("integer")},
+                            {"what", text()},
+                            {"speaker", text()},
+                            {"time", text_or_nothing()},
+                            {"said", text()}},
+                           {"number", "what"});
+  if (tool == "robot_status")
+    return object({{"robot", text()},
+                   {"drive", text()},
+                   {"trouble", text()},
+                   {"pose_in_odom", pose()},
+                   {"velocity", number()},
+                   {"battery", number()},
+                   {"goals", list_of(goal_form())}},
+                  {"robot", "drive", "trouble", "goals"});
+  if (tool == "why")
+    return object({{"sentence", text()}}, {"sentence"});
+  if (tool == "map") {
+    Json robot = pose();
+    robot["properties"]["sigma"] = number();
+    robot["properties"]["in"] = text_or_nothing();
+    return object({{"map", text()},
+                   {"robot", std::move(robot)},
+                   {"places", list_of(place)},
+                   {"closed_doors", list_of(text())}});
+  }
+  if (tool == "look")
+    return object({{"seen", list_of(seen)}}, {"seen"});
+  if (tool == "knows")
+    return object({{"known", list_of(fact)}}, {"known"});
+  if (tool == "goals")
+    return object({{"goals", list_of(goal_form())}}, {"goals"});
+  if (tool == "goal")
+    return goal_form();
+  if (tool == "cancel")
+    return object({{"ended", truth()}, {"moves", truth()}}, {"ended", "moves"});
+  if (tool == "say")
+    return object({{"said", text()}}, {"said"});
+  if (tool == "emergency_stop")
+    return object({{"latched", truth()}, {"moves", truth()}}, {"latched", "moves"});
+  return nullptr;
+}
+
+Json form_of(const v1::Capability& capability) {
+  Json properties = Json::object();
+  for (const v1::CapabilityParameter& parameter : capability.parameters()) {
+    if (parameter.required())
+      continue;
+    const Json one = form_of(parameter.kind());
+    properties[parameter.name()] = {{"anyOf", Json::array({one, list_of(one)})}};
+  }
+  return capability.acts() ? goal_with(object(std::move(properties)))
+                           : object(std::move(properties));
+}
+
+}  // namespace saphira::mcp

@@ -1,0 +1,231 @@
+// The calls of a client, on a bus in memory. The test is the facilitator and its agent.
+#include <gtest/gtest.h>
+
+#include "door.hpp"
+#include "node_options.hpp"
+#include "saphira/bus/agent.hpp"
+
+namespace saphira::mcp {
+namespace {
+
+class DoorInMemory : public testing::Test {
+ protected:
+  DoorInMemory() {
+    v1::Agent agent;
+    agent.id(7);
+    agent.name("sweeper");
+    agent.capabilities({bus::action("sweep", "sweeps a room",
+                                    {bus::text_slot("room", "of the map", true),
+                                     bus::number_slot("dust", "[g] that was found")}),
+                        bus::capability("place_of", "where a person is",
+                                        {bus::text_slot("person", "a name", true),
+                                         bus::text_slot("place", "of the map")})});
+    agents.write(agent);
+    schemas.write(v1::ActivitySchemas());
+    turn();
+  }
+  void turn(double seconds = 0.0) {
+    now += seconds;
+    robot.poll();
+    door->turn(now);
+  }
+  void call(int id, const std::string& tool, const Json& arguments) {
+    session.take(Json{{"jsonrpc", "2.0"},
+                      {"id", id},
+                      {"method", "tools/call"},
+                      {"params", {{"name", tool}, {"arguments", arguments}}}}
+                     .dump());
+    turn();
+  }
+  /// The result of a call; null: it has none yet.
+  Json result(int id) {
+    for (const Line& line : session.take_lines()) {
+      const Json message = Json::parse(line.text);
+      if (message.contains("result"))
+        results[message["id"].get<int>()] = message["result"];
+    }
+    const auto found = results.find(id);
+    return found == results.end() ? Json() : found->second;
+  }
+  /// Asks for an action that is not done at once; its handle.
+  std::string begin_sweep() {
+    call(1, "sweep", {{"room", "kitchen"}, {"wait_s", 0}});
+    return result(1)["structuredContent"]["goal"];
+  }
+  v1::Request heard() {
+    const auto samples = solve.take();
+    EXPECT_EQ(samples.size(), 1U);
+    return samples.empty() ? v1::Request() : samples.front().data;
+  }
+  void say(const v1::Request& request, v1::AnswerCode code, const std::string& text,
+           const std::vector<v1::Argument>& found = {}) {
+    v1::Answer answer;
+    answer.asker(request.asker());
+    answer.number(request.number());
+    answer.service("sweeper");
+    answer.code(code);
+    answer.text(text);
+    answer.results(found);
+    solved.write(answer);
+    turn();
+  }
+  Json form(const std::string& tool) const {
+    for (const Tool& each : robot.tools())
+      if (each.name == tool)
+        return each.output;
+    return nullptr;
+  }
+
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Node other{test::memory_options("facilitator"), memory};
+  bus::Node node{test::memory_options("mcp"), memory};
+  bus::Writer<v1::Agent> agents = other.writer(bus::topics::kAgents);
+  bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
+  bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
+  bus::Writer<v1::Answer> solved = other.writer(bus::topics::kSolved);
+  Session session{"saphira", "1", "a robot"};
+  Robot robot{node};
+  std::unique_ptr<Door> door = std::make_unique<Door>(node, robot, session, "model");
+  std::map<int, Json> results;
+  double now = 100.0;
+};
+
+TEST_F(DoorInMemory, AnActionThatTakesMinutesHasAHandle) {
+  call(1, "sweep", {{"room", "kitchen"}, {"wait_s", 1}});
+  const v1::Request request = heard();
+  EXPECT_EQ(request.functor(), "sweep");
+  EXPECT_EQ(request.source(), "model");
+  EXPECT_EQ(request.deadline(), 600.0);
+  EXPECT_EQ(bus::text_of(request.arguments(), "room"), "kitchen");
+  say(request, v1::ANSWER_UNDERWAY, "half of it is clean");
+  EXPECT_TRUE(result(1).is_null());
+  turn(1.0);
+  const Json begun = result(1)["structuredContent"];
+  EXPECT_EQ(begun["state"], "underway");
+  EXPECT_EQ(begun["what"], "sweep");
+  EXPECT_EQ(begun["reason"], "sweeper: half of it is clean");
+  EXPECT_EQ(result(1)["isError"], false);
+  EXPECT_EQ(misfit(begun, form("sweep")), "");
+
+  turn(300.0);
+  call(2, "goal", {{"goal", begun["goal"]}});
+  EXPECT_TRUE(result(2).is_null());
+  say(request, v1::ANSWER_DONE, "", {bus::number("dust", 3.0)});
+  const Json ended = result(2)["structuredContent"];
+  EXPECT_EQ(ended["goal"], begun["goal"]);
+  EXPECT_EQ(ended["state"], "succeeded");
+  EXPECT_EQ(ended["results"], Json({{"dust", 3.0}}));
+  EXPECT_EQ(misfit(ended, form("sweep")), "");
+  call(3, "goals", Json::object());
+  EXPECT_EQ(result(3)["structuredContent"]["goals"], Json::array({ended}));
+}
+
+TEST_F(DoorInMemory, TheProgressOfAnActionIsTold) {
+  session.take(
+      R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"sweep",
+          "arguments":{"room":"kitchen"},"_meta":{"progressToken":"p"}}})");
+  turn();
+  session.take_lines();
+  say(heard(), v1::ANSWER_UNDERWAY, "half of it is clean");
+  const auto lines = session.take_lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(Json::parse(lines[0].text)["params"]["message"],
+            "underway: sweeper: half of it is clean");
+}
+
+TEST_F(DoorInMemory, AnActionIsCanceledByItsHandle) {
+  const std::string handle = begin_sweep();
+  const v1::Request request = heard();
+  call(2, "cancel", {{"goal", handle}});
+  const v1::Request withdrawal = heard();
+  EXPECT_EQ(withdrawal.functor(), bus::kWithdraw);
+  EXPECT_EQ(withdrawal.number(), request.number());
+  EXPECT_TRUE(result(2).is_null()) << "it has not ended yet";
+  say(request, v1::ANSWER_GIVEN_UP, "half of it is clean");
+  EXPECT_EQ(result(2)["content"][0]["text"], "withdrawn; the robot stands");
+  call(3, "goal", {{"goal", handle}});
+  EXPECT_EQ(result(3)["structuredContent"]["state"], "canceled");
+  call(4, "cancel", {{"goal", "7:1"}});
+  EXPECT_EQ(result(4)["isError"], true);
+}
+
+TEST_F(DoorInMemory, ACallThatIsGivenUpWithdrawsItsAction) {
+  call(1, "sweep", {{"room", "kitchen"}});
+  const v1::Request request = heard();
+  session.take(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":1}})");
+  turn();
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  EXPECT_TRUE(result(1).is_null());
+}
+
+TEST_F(DoorInMemory, AnActionEndsWithItsClient) {
+  begin_sweep();
+  heard();
+  door->close();
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  door.reset();
+  EXPECT_EQ(solve.take_lost().size(), 1U) << "by which the facilitator notices a death";
+}
+
+TEST_F(DoorInMemory, ARequestIsRepeatedForAFacilitatorThatStartsAnew) {
+  begin_sweep();
+  const v1::Request request = heard();
+  say(request, v1::ANSWER_UNDERWAY, "");
+  turn(1.0);
+  EXPECT_TRUE(solve.take().empty());
+  turn(1.0);
+  const v1::Request again = heard();
+  EXPECT_EQ(again.number(), request.number());
+  EXPECT_EQ(again.functor(), "sweep");
+  say(request, v1::ANSWER_LOST, "nobody knows");
+  turn(2.0);
+  EXPECT_TRUE(solve.take().empty());
+}
+
+TEST_F(DoorInMemory, AnActionWhoseEndIsNeverHeardIsNotSaidToBeDone) {
+  const std::string handle = begin_sweep();
+  EXPECT_EQ(result(1)["structuredContent"]["state"], "waiting");
+  turn(611.0);
+  call(2, "goal", {{"goal", handle}});
+  EXPECT_EQ(result(2)["isError"], true);
+  EXPECT_EQ(result(2)["structuredContent"]["reason"],
+            "its end was not heard in time; whether it was done is not known");
+}
+
+TEST_F(DoorInMemory, AtMostFourActionsAreUnderway) {
+  for (int id = 1; id <= 5; ++id)
+    call(id, "sweep", {{"room", "kitchen"}, {"wait_s", 0}});
+  EXPECT_EQ(result(4)["isError"], false);
+  EXPECT_EQ(result(5)["content"][0]["text"],
+            "not done: 4 goals of yours have not ended; cancel one, or wait");
+}
+
+TEST_F(DoorInMemory, AFactIsAnsweredByItsDeclaredResults) {
+  call(1, "place_of", {{"person", "karen"}});
+  const v1::Request request = heard();
+  EXPECT_EQ(request.deadline(), 10.0);
+  say(request, v1::ANSWER_DONE, "",
+      {bus::text("place", "library"), bus::number("place", 4.0), bus::truth("sure", true)});
+  const Json value = result(1)["structuredContent"];
+  EXPECT_EQ(value, Json({{"place", "library"}, {"sure", true}})) << "a place is a text";
+  EXPECT_EQ(misfit(value, form("place_of")), "");
+}
+
+// SDKs of clients refuse a result without the declared form.
+TEST_F(DoorInMemory, EachToolThatReadsHasTheFormThatItDeclares) {
+  begin_sweep();
+  int id = 10;
+  for (const char* const tool : {"robot_status", "why", "map", "goals"}) {
+    call(++id, tool, Json::object());
+    const Json json = result(id);
+    EXPECT_EQ(json["isError"], false) << tool;
+    ASSERT_TRUE(json["structuredContent"].is_object()) << tool;
+    EXPECT_TRUE(form(tool).is_object()) << tool;
+    EXPECT_EQ(misfit(json["structuredContent"], form(tool)), "") << tool;
+  }
+  for (const Tool& tool : robot.tools())
+    EXPECT_EQ(tool.output["type"], "object") << tool.name;
+}
+
+}  // namespace
+}  // namespace saphira::mcp
