@@ -32,10 +32,17 @@ class Bench {
   void dispose(std::uint64_t number) { event(GoalEvent::Kind::kDisposed, number); }
   void lose_writer(std::uint64_t number) { event(GoalEvent::Kind::kWriterLost, number); }
 
-  bool step() {
-    step_without_moving();
-    world.move(out.behaviors);
-    return true;
+  void step(int cycles = 1) {
+    for (int i = 0; i < cycles; ++i) {
+      step_without_moving();
+      world.move(out.behaviors);
+    }
+  }
+  /// Steps until the goal is no longer in that state, to that cycle at most.
+  void run(std::uint64_t number, std::uint64_t until, GoalState while_in = GoalState::kUnderway) {
+    do
+      step();
+    while (state(number) == while_in && cycle < until);
   }
   void step_without_moving() {
     ++cycle;

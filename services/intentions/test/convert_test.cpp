@@ -24,15 +24,14 @@ TEST(Convert, AGoalIsTakenWhole) {
   theirs.deadline(12.5);
   theirs.level(0.25);
   theirs.writer_lost(v1::WRITER_LOST_KEEP);
-  const Goal goal = from_bus(theirs);
-  EXPECT_EQ(goal.id, (GoalId{0xffffffffffffffffULL, 3}));
-  EXPECT_EQ(goal.requester, "somebody");
-  EXPECT_EQ(goal.functor, "go_to");
-  EXPECT_EQ(goal.arguments, all_kinds());
-  EXPECT_EQ(goal.priority, -7);
-  EXPECT_EQ(goal.deadline, 12.5);
-  EXPECT_EQ(goal.level, 0.25);
-  EXPECT_EQ(goal.writer_lost, WriterLost::kKeep);
+  EXPECT_EQ(from_bus(theirs), (Goal{{0xffffffffffffffffULL, 3},
+                                    "somebody",
+                                    "go_to",
+                                    all_kinds(),
+                                    -7,
+                                    12.5,
+                                    WriterLost::kKeep,
+                                    0.25}));
 }
 
 TEST(Convert, AStatusIsToldWhole) {

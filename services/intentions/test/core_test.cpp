@@ -146,14 +146,6 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   EXPECT_EQ(state(2), GoalState::kSucceeded);
 }
 
-TEST_F(CoreTest, AnIntentionIsFoundByItsSchemaToo) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
-  EXPECT_EQ(core_.ask("go_to", ProcessAction::interrupt, 0), "");
-  EXPECT_EQ(core_.ask("go_to", ProcessAction::resume, 0), "");
-  EXPECT_EQ(core_.ask("nothing", ProcessAction::interrupt, 0), std::nullopt);
-}
-
 TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   inputs_.heard.goals = {written(1, kKaren), written(2, kJohn)};
   step();
@@ -354,7 +346,7 @@ TEST_F(CoreTest, ASuspendedExecutionReleasesTheRobot) {
   EXPECT_FALSE(step().intended.behaviors.empty());
 }
 
-TEST_F(CoreTest, AnIntentionIsInterruptedByNameOrNumber) {
+TEST_F(CoreTest, AnIntentionIsInterruptedByItsNameNumberOrSchema) {
   inputs_.heard.goals = {written(1, kKaren)};
   const IntentionNode node = step().intended.nodes.at(0);
   EXPECT_EQ(core_.ask(node.name, ProcessAction::interrupt, 0), "");
@@ -362,6 +354,8 @@ TEST_F(CoreTest, AnIntentionIsInterruptedByNameOrNumber) {
   EXPECT_EQ(core_.ask("I" + std::to_string(node.id), ProcessAction::resume, 0), "");
   EXPECT_FALSE(step().intended.behaviors.empty());
   EXPECT_EQ(core_.ask(node.name, ProcessAction::resume, 0), node.name + " was not interrupted");
+  EXPECT_EQ(core_.ask("go_to", ProcessAction::interrupt, 0), "");
+  EXPECT_EQ(core_.ask("go_to", ProcessAction::resume, 0), "");
   EXPECT_NE(core_.ask(node.name, ProcessAction::interrupt, 5).value_or("").find("until"),
             std::string::npos);
   EXPECT_EQ(core_.ask("nothing", ProcessAction::interrupt, 0), std::nullopt);

@@ -29,7 +29,7 @@ TEST(GoTo, IntendsTheBehaviorsAndArrives) {
   EXPECT_EQ(find(parameters, "radius")->number, 0.15);
   EXPECT_EQ(bench.status(1).step, "driving to (2.00, 1.00)");
   double progress = 0.0;
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 300) {
+  for (bench.step(); bench.state(1) == GoalState::kUnderway && bench.cycle < 300; bench.step()) {
     EXPECT_GE(bench.status(1).progress, progress);
     progress = bench.status(1).progress;
   }
@@ -129,8 +129,7 @@ TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
   bench.step();
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
   bench.world.robot.odom_in_map.reset();
-  for (int i = 0; i < 40; ++i)
-    bench.step();
+  bench.step(40);
   EXPECT_EQ(bench.state(1), GoalState::kFailed);
   EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
 }
@@ -172,16 +171,14 @@ TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
     bench.step();
     for (int i = 0; i < 100 && bench.status(1).step != "moving about to confirm where it is"; ++i)
       bench.step();
-    for (int i = 0; i < 50; ++i)
-      bench.step();
+    bench.step(50);
     EXPECT_EQ(bench.state(1), GoalState::kUnderway);
     EXPECT_GT(bench.world.robot.pose_in_odom.x, 1.5) << "it moves about";
   };
   Bench bench;
   arrives(bench);
   bench.registration.confidence = 0.95;
-  for (int i = 0; i < 200; ++i)
-    bench.step();
+  bench.step(200);
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.0, 0.2);
 
@@ -226,12 +223,10 @@ TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
 TEST(GoTo, GivesUpWhenItComesNoNearer) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
-  for (int i = 0; i < 20; ++i)
-    bench.step();
+  bench.step(20);
   bench.world.held = true;
   const std::uint64_t held = bench.cycle;
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 300) {
-  }
+  bench.run(1, 300);
   EXPECT_EQ(bench.state(1), GoalState::kFailed);
   EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
   EXPECT_NEAR(static_cast<double>(bench.cycle - held), 50.0, 3.0);
@@ -263,8 +258,7 @@ TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   bench.step();
   EXPECT_EQ(schemas(bench.out.behaviors),
             (std::vector<std::string>{"AvoidCollision/0", "ConstantVelocity/2", "Stop/3"}));
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
-  }
+  bench.run(1, 100);
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   EXPECT_EQ(bench.status(1).elapsed, 3.0);
   EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
@@ -277,8 +271,7 @@ TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {
   bench.write(goal);
   bench.step();
   bench.ask(2, "drive", {number("speed", 0.1)}, 5);
-  for (int i = 0; i < 40; ++i)
-    bench.step();
+  bench.step(40);
   EXPECT_EQ(bench.state(1), GoalState::kFailed);
   EXPECT_EQ(bench.status(1).code, GoalCode::kDeadline);
 
@@ -286,8 +279,7 @@ TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {
   held.write(goal);
   held.step();
   ASSERT_TRUE(held.executor.interrupt(held.out.nodes.at(0).id));
-  for (int i = 0; i < 40; ++i)
-    held.step();
+  held.step(40);
   EXPECT_EQ(held.status(1).code, GoalCode::kDeadline);
 }
 
@@ -295,8 +287,7 @@ TEST(Drive, GivesUpWhenItDoesNotMove) {
   Bench bench;
   bench.world.held = true;
   bench.ask(1, "drive", {number("speed", 0.2)});
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 400) {
-  }
+  bench.run(1, 400);
   EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
   EXPECT_EQ(bench.cycle, 201U);
 }
@@ -304,8 +295,7 @@ TEST(Drive, GivesUpWhenItDoesNotMove) {
 TEST(Drive, AtNoSpeedIsNotBlocked) {
   Bench bench;
   bench.ask(1, "drive", {number("speed", 0.0)});
-  for (int i = 0; i < 400; ++i)
-    bench.step();
+  bench.step(400);
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
 }
 
@@ -318,8 +308,7 @@ TEST(TurnTo, TurnsToAHeading) {
   bench.step();
   EXPECT_EQ(bench.out.behaviors, first);
   EXPECT_EQ(bench.status(1).step, "turning to 115 degrees");
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
-  }
+  bench.run(1, 100);
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
   EXPECT_NEAR(bench.world.robot.pose_in_odom.th, 2.0, radians(5.0));
 }
@@ -327,8 +316,7 @@ TEST(TurnTo, TurnsToAHeading) {
 TEST(TurnTo, TurnsToAPositionTheShortWay) {
   Bench bench;
   bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::robot)});
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
-  }
+  bench.run(1, 100);
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
   EXPECT_NEAR(bench.world.robot.pose_in_odom.th, radians(-135.0), radians(5.0));
 }
@@ -338,8 +326,7 @@ TEST(TurnTo, GivesUp) {
   bench.world.held = true;
   bench.world.robot.has_power = false;
   bench.ask(1, "turn_to", {number("heading", 1.0), number("patience", 2.0)});
-  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
-  }
+  bench.run(1, 100);
   EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
   EXPECT_EQ(bench.status(1).reason,
             "no nearer for 2 s, 57 degrees off; the motors have no power (saphira device motors "

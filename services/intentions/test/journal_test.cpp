@@ -73,17 +73,6 @@ TEST(Journal, ALineBreakInAReasonIsNotOneInTheFile) {
   EXPECT_EQ(memory.endings[0].reason, "two lines");
 }
 
-TEST(Journal, ATornLastLineIsToldAndTheRestCounts) {
-  const std::string whole = write_line(kEnding);
-  for (std::size_t length = 1; length < whole.size(); ++length) {
-    std::vector<FileError> damaged;
-    const Memory memory = read_journal("memory", whole + whole.substr(0, length), damaged);
-    EXPECT_EQ(memory.endings.size(), 1U) << length;
-    ASSERT_EQ(damaged.size(), 1U) << length;
-    EXPECT_EQ(damaged[0].line(), 2);
-  }
-}
-
 // Each bit of a file flipped, and the file cut off at each letter: no remaining entry is wrong.
 TEST(Journal, WhatIsDamagedIsToldAndTheRestCounts) {
   const std::string first = write_line(kPlacement);

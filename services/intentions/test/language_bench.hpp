@@ -12,6 +12,13 @@
 
 namespace saphira::intentions {
 
+using Names = std::vector<std::string>;
+
+/// The activity :it with these goals.
+inline std::string activity(const std::string& goals, const std::string& rest = "") {
+  return "(defintention :it " + rest + " :goals '(" + goals + "))";
+}
+
 /// An executor with activities from a text, and an obedient world.
 class Stage {
  public:

@@ -9,12 +9,6 @@
 namespace saphira::intentions {
 namespace {
 
-using Names = std::vector<std::string>;
-
-std::string activity(const std::string& goals, const std::string& rest = "") {
-  return "(defintention :it " + rest + " :goals '(" + goals + "))";
-}
-
 TEST(Activities, OneGoalSetForACycle) {
   Stage stage(
       activity("(EXECUTE (say \"one\")) ((EXECUTE (say \"two\")) (EXECUTE (say \"more\")))"

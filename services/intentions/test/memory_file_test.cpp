@@ -129,18 +129,6 @@ TEST(MemoryFile, DoesNotGrowForEver) {
   EXPECT_EQ(kept.placements.size(), 1U) << "that goal has not ended";
 }
 
-TEST(MemoryFile, KeepsTheNewestEndings) {
-  const test::TempDir dir;
-  const std::string path = dir.path("goals.memory");
-  {
-    MemoryFile memory(path);
-    for (std::uint64_t i = 1; i <= 5; ++i)
-      memory.append(write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "arrived"}));
-  }
-  EXPECT_EQ(MemoryFile(path, 3).memory().endings.front().id.number, 3U);
-  EXPECT_EQ(MemoryFile(path).memory().endings.size(), 3U);
-}
-
 TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");

@@ -7,12 +7,6 @@
 namespace saphira::intentions {
 namespace {
 
-using Names = std::vector<std::string>;
-
-std::string activity(const std::string& goals, const std::string& rest = "") {
-  return "(defintention :it " + rest + " :goals '(" + goals + "))";
-}
-
 void claim(Stage& stage, const std::string& name, bool holds) {
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid,
                                  {9, name.size() > 1 ? std::uint64_t(name[1]) : 1U},

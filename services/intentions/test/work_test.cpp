@@ -153,26 +153,6 @@ TEST(Work, SaysWhereItCannotBeRead) {
   EXPECT_THROW(read_work("work", "(at x1 x2 x3 4)\nnonsense\n"), FileError);
 }
 
-TEST(Work, AHalfTurnIsAHalfTurnWheneverTheServiceIsKilled) {
-  Site whole(kAboutTurn, "about-turn");
-  std::uint64_t cycles = 0;
-  for (; !whole.over() && cycles < 200; ++cycles)
-    whole.step();
-  ASSERT_EQ(whole.status.state, GoalState::kSucceeded) << whole.status.reason;
-  EXPECT_NEAR(whole.turned, kPi, 0.11);
-  for (std::uint64_t at = 1; at < cycles; ++at) {
-    Site site(kAboutTurn, "about-turn");
-    for (std::uint64_t i = 0; !site.over() && i < 300; ++i) {
-      site.step();
-      if (i + 1 == at)
-        site.kill(3);
-    }
-    EXPECT_EQ(site.status.state, GoalState::kSucceeded) << at << " " << site.status.reason;
-    EXPECT_NEAR(site.turned, whole.turned, 0.11) << "killed at cycle " << at;
-    EXPECT_EQ(site.status.note, "") << at;
-  }
-}
-
 TEST(Work, AHalfTurnIsAHalfTurnHoweverOftenTheServiceIsKilled) {
   Site site(kAboutTurn, "about-turn");
   for (int i = 0; !site.over() && i < 300; ++i) {
