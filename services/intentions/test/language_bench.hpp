@@ -19,15 +19,26 @@ inline std::string activity(const std::string& goals, const std::string& rest = 
   return "(defintention :it " + rest + " :goals '(" + goals + "))";
 }
 
+inline std::string errors(const Loaded& loaded) {
+  std::string text;
+  for (const Diagnostic& trouble : loaded.troubles)
+    text += trouble.text() + "\n";
+  return text;
+}
+
+enum class MayFail { kNo, kYes };
+
 /// An executor with activities from a text, and an obedient world.
 class Stage {
  public:
   explicit Stage(const std::string& activities, const Functions& functions = core_functions(),
-                 std::size_t most = ForestOptions{}.max_intentions) {
+                 std::size_t most = ForestOptions{}.max_intentions,
+                 MayFail may_fail = MayFail::kNo) {
     options.forest.max_intentions = most;
     options.functions = std::make_shared<const Functions>(functions);
     Registry registry = built_in();
     loaded = load_text("test.act", activities, functions, registry);
+    EXPECT_TRUE(loaded.ok() || may_fail == MayFail::kYes) << errors(loaded);
     for (const Schema& schema : loaded.schemas)
       registry.add(schema);
     executor = std::make_unique<Executor>(std::move(registry), Memory{}, options);
@@ -109,12 +120,5 @@ class Stage {
   std::vector<std::string> messages;
   double level = 0.0;
 };
-
-inline std::string errors(const Loaded& loaded) {
-  std::string text;
-  for (const Diagnostic& trouble : loaded.troubles)
-    text += trouble.text() + "\n";
-  return text;
-}
 
 }  // namespace saphira::intentions

@@ -13,7 +13,6 @@ TEST(Activities, OneGoalSetForACycle) {
   Stage stage(
       activity("(EXECUTE (say \"one\")) ((EXECUTE (say \"two\")) (EXECUTE (say \"more\")))"
                "(:three (EXECUTE (say \"three\")))"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step();
   EXPECT_EQ(stage.messages, Names({"one"}));
@@ -30,7 +29,6 @@ TEST(Activities, ParametersVariablesAndConditions) {
       activity("(= double (* 2 n)) (IF (> double 5) (GOTO :large))"
                "(SUCCEED \"small ~a\" double) (:large (SUCCEED \"large ~a\" double))",
                ":params ((n :number 1 :low 0 :high 9))"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it", {number("n", 2.0)});
   stage.step(5);
   EXPECT_EQ(stage.status(1).reason, "small 4");
@@ -50,7 +48,6 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   Stage stage(
       activity("(INTEND :go-to-pos ((goal . (point 1 2)) (speed . 300mm/s)) :name first)"
                "(INTEND :TurnTo ((goal . (point 1 2))) :name second :priority 1)"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(5);
   ASSERT_EQ(stage.behaviors(), Names({"GoToPos"}));
@@ -73,7 +70,6 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
 
 TEST(Activities, WaitsThatLong) {
   Stage stage(activity("(WAIT 2s) (SUCCEED \"waited\")"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(19);
   EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
@@ -105,7 +101,6 @@ TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
       "(defintention :middle :goals '((INTEND :bottom ())))"
       "(defintention :bottom :goals '((INTEND :go-to-pos () :name go)))"
       "(defintention :stop-here :goals '((INTEND :halt () :name halt)))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "top");
   stage.step();
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "begun at once, three levels deep";
@@ -126,7 +121,6 @@ TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
       "  :goals '((ASK q place-of ((person . name)) :timeout 5 :else (GOTO :without))\n"
       "           (SUCCEED \"~a\" (answer q 'place))\n"
       "           (:without (SUCCEED \"not told: ~a\" (answer-text q)))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   std::map<std::uint64_t, Answer> answers;
   stage.inputs.around.answers = &answers;
   const auto asks = [&](std::uint64_t id, const std::string& functor) {
@@ -188,7 +182,6 @@ TEST(Activities, Figure9RunsFromItsFile) {
                (INTEND :follow () :name way)))
     (defintention :spoil :concurrent t :goals '((EXECUTE (setq *failed-execution* t)))))",
               functions);
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "plan_and_execute", {text("dest", "nowhere")});
   stage.step(6);
   EXPECT_TRUE(stage.messages.empty()) << "it does not know where it is";
@@ -232,7 +225,6 @@ TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
   functions.add(Function{"zones-on", 1, 1, [](const World&, Values) { return Value(); }, ""});
   functions.add(Function{"leg", 1, 1, [](const World&, Values) { return Value("done"); }, ""});
   Stage stage(read_file(folder + "figure-9.act") + read_file(folder + "navigation.act"), functions);
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.inputs.robot.odom_in_map = Pose{};
   stage.ask(1, "plan-and-execute", {text("dest", "lab")});
   stage.step(100);

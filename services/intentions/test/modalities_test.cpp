@@ -33,7 +33,6 @@ TEST(Modality, WhatFailsCanBeGoneAround) {
                "(FAIL \"not here\") (:other (TEST stalled :else (EXECUTE (say \"not stalled\"))))"
                "(SUCCEED \"~a\" (outcome))") +
       "(defintention :part :goals '((FAIL \"no way\")))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(5);
   EXPECT_EQ(stage.messages, Names({"because no way", "not stalled"}));
@@ -89,7 +88,6 @@ TEST(Modality, AndJoinsSplitDoesNot) {
               "          (IF (equal what 'b) (EXECUTE (setq *b* t)))"
               "          (IF (equal what 'c) (EXECUTE (setq *c* t)))"
               "          (IF (equal what 'd) (EXECUTE (setq *d* t)))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   auto put = [&, id = std::uint64_t{10}](const char* what) mutable {
     stage.ask(id++, "put", {text("what", what)});
     stage.step(8);
@@ -110,7 +108,6 @@ TEST(Modality, AndJoinsSplitDoesNot) {
 TEST(Modality, AReasonThatCannotBeComputedFails) {
   Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
               "(defintention :part :goals '((= x nil) (SUCCEED \"~a\" (+ 1 x))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(5);
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
@@ -173,7 +170,6 @@ TEST(Modality, ASplitGoesOnBehindTheGoalThatItStoodIn) {
                " (WAIT-FOR *x* :forever t))"
                "(PRESERVE (not stalled) (WAIT-FOR nil :forever t) :else (= y 2))"
                "(WAIT-FOR nil :forever t)"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(3);
   claim(stage, "*x*", true);
@@ -193,7 +189,6 @@ TEST(Modality, AGotoLeavesWhatItStandsIn) {
     SCOPED_TRACE(goal);
     Stage stage(activity(goal + "(EXECUTE (say \"joined\"))"
                                 "(:end (EXECUTE (say \"end\"))) (WAIT-FOR stalled :forever t)"));
-    ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
     stage.ask(1, "it");
     stage.step(2);
     EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
@@ -256,7 +251,6 @@ TEST(Modality, UnintendMeansTheNewestAsStateDoes) {
   Stage stage(activity(
       "((INTEND :Follow () :blocking nil :name way) (INTEND :Go () :blocking nil :name way)"
       " (UNINTEND 'way)) (WAIT-FOR nil :forever t)"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(2);
   EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
@@ -291,7 +285,6 @@ TEST(Modality, MaintainRestoresAndGoesOn) {
               "(defintention :walk :goals '((INTEND :GoToPos () :name go)"
               "                             (EXECUTE (say \"walked\"))))"
               "(defintention :back :goals '((INTEND :ConstantVelocity ((speed . -100mm/s)))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(3);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
@@ -473,7 +466,6 @@ TEST(Modality, ABeliefWhileAnIntentionLastsEndsWithIt) {
       "                             (WAIT-FOR stalled :forever t)))"
       "(defintention :other :concurrent t :goals"
       " '((EXECUTE (believe-while 'asking \"mine\")) (EXECUTE (believe 'asking \"all\"))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(3);
   EXPECT_EQ(stage.belief("asking"), Value("x"));
@@ -571,7 +563,6 @@ TEST(Modality, AConcurrentActivityDoesNotDrive) {
       "(defintention :within :concurrent t :goals '((INTEND :drives ())))"
       "(defintention :drives :goals '((INTEND :Follow ())))"
       "(defintention :functor :concurrent t :goals '((INTEND :drive ((speed . 0.1)))))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "behavior");
   stage.ask(2, "within");
   stage.ask(3, "functor");
@@ -621,7 +612,6 @@ TEST(Modality, HowMuchIsDoneIsItsOwnOrTheLevel) {
   Stage stage(activity("(= x 0.25) (WAIT-FOR stalled :forever t)", ":level x") +
               "(defintention :with :level 0.25 :progress (/ nothing 2) :concurrent t"
               " :goals '((= nothing 1.5) (WAIT-FOR stalled :forever t)))");
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.ask(2, "with");
   stage.step(12);
@@ -637,7 +627,6 @@ TEST(Modality, WhenABeliefWasSaid) {
                "(WAIT-FOR (and (belief-since name) (>= (belief-since name) since)) :timeout 60s)"
                "(EXECUTE (believe (format \"*~a*\" 'kept) (belief name)))"
                "(SUCCEED \"~a ~a ~a\" (yes (belief name)) *kept* (yes (belief 'other)))"));
-  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 1}, "a person", "answer", "yes"});
   stage.step(3);
   stage.ask(1, "it");
