@@ -165,16 +165,12 @@ TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
 TEST(Activities, Figure9RunsFromItsFile) {
   const std::string folder = std::getenv("SAPHIRA_SOURCE_DIR");
   Functions functions = core_functions();
-  functions.add(Function{"find-path", 2, 2,
-                         [](const World&, Values arguments) {
-                           return *arguments[1].text() == "nowhere"
-                                      ? Value()
-                                      : Value(Value::List{arguments[0], arguments[1]});
-                         },
-                         ""});
-  functions.add(Function{
-      "why-no-path", 2, 2,
-      [](const World&, Values arguments) { return "no way to " + *arguments[1].text(); }, ""});
+  functions.add("find-path", 2, 2, "", [](const World&, Values arguments) {
+    return *arguments[1].text() == "nowhere" ? Value()
+                                             : Value(Value::List{arguments[0], arguments[1]});
+  });
+  functions.add("why-no-path", 2, 2, "",
+                [](const World&, Values arguments) { return "no way to " + *arguments[1].text(); });
   Stage stage(read_file(folder + "/config/activities/figure-9.act") + R"(
     (defintention :follow-path
       :params (path)
@@ -216,14 +212,13 @@ TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
   const std::string folder = std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/config/activities/";
   Functions functions = *all_functions();
   bool forbidden = true;
-  functions.add(Function{
-      "find-path", 2, 2,
-      [](const World&, Values arguments) { return Value(Value::List{arguments[1]}); }, ""});
-  functions.add(Function{
-      "hazard-on", 1, 1,
-      [&](const World&, Values) { return forbidden ? Value("keep-out zone 7") : Value(); }, ""});
-  functions.add(Function{"zones-on", 1, 1, [](const World&, Values) { return Value(); }, ""});
-  functions.add(Function{"leg", 1, 1, [](const World&, Values) { return Value("done"); }, ""});
+  functions.add("find-path", 2, 2, "",
+                [](const World&, Values arguments) { return Value(Value::List{arguments[1]}); });
+  functions.add("hazard-on", 1, 1, "", [&](const World&, Values) {
+    return forbidden ? Value("keep-out zone 7") : Value();
+  });
+  functions.add("zones-on", 1, 1, "", [](const World&, Values) { return Value(); });
+  functions.add("leg", 1, 1, "", [](const World&, Values) { return Value("done"); });
   Stage stage(read_file(folder + "figure-9.act") + read_file(folder + "navigation.act"), functions);
   stage.inputs.robot.odom_in_map = Pose{};
   stage.ask(1, "plan-and-execute", {text("dest", "lab")});

@@ -34,34 +34,29 @@ Value ask_agents(Effects& effects, Values arguments) {
 void add_asking(Functions& functions) {
   functions.add(Action{"ask-agents", 1, 63, ask_agents,
                        "(ask-agents 'functor 'slot value ...) asks; the number of the question"});
-  functions.add(Function{"answered", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value::truth(answer_to(world, arguments, "answered") != nullptr);
-                         },
-                         "(answered QUESTION): whether an agent has answered"});
-  functions.add(Function{"answered-well", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Answer* const answer =
-                               answer_to(world, arguments, "answered-well");
-                           return Value::truth(answer != nullptr && well(answer->code));
-                         },
-                         "(answered-well QUESTION): whether it could and did"});
-  functions.add(Function{"answer-text", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Answer* const answer = answer_to(world, arguments, "answer-text");
-                           return Value(answer == nullptr ? "nobody has answered" : answer->text);
-                         },
-                         "(answer-text QUESTION): the answer in words"});
-  functions.add(Function{"answer", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const std::string& slot = text_of(arguments, 1, "answer");
-                           if (const Answer* const answer = answer_to(world, arguments, "answer"))
-                             for (const Argument& one : answer->results)
-                               if (normal(one.name) == normal(slot))
-                                 return value_of(one);
-                           return Value();
-                         },
-                         "(answer QUESTION 'slot): what the answer has there, or nil"});
+  functions.add("answered", 1, 1, "(answered QUESTION): whether an agent has answered",
+                [](const World& world, Values arguments) {
+                  return Value::truth(answer_to(world, arguments, "answered") != nullptr);
+                });
+  functions.add("answered-well", 1, 1, "(answered-well QUESTION): whether it could and did",
+                [](const World& world, Values arguments) {
+                  const Answer* const answer = answer_to(world, arguments, "answered-well");
+                  return Value::truth(answer != nullptr && well(answer->code));
+                });
+  functions.add("answer-text", 1, 1, "(answer-text QUESTION): the answer in words",
+                [](const World& world, Values arguments) {
+                  const Answer* const answer = answer_to(world, arguments, "answer-text");
+                  return Value(answer == nullptr ? "nobody has answered" : answer->text);
+                });
+  functions.add("answer", 2, 2, "(answer QUESTION 'slot): what the answer has there, or nil",
+                [](const World& world, Values arguments) {
+                  const std::string& slot = text_of(arguments, 1, "answer");
+                  if (const Answer* const answer = answer_to(world, arguments, "answer"))
+                    for (const Argument& one : answer->results)
+                      if (normal(one.name) == normal(slot))
+                        return value_of(one);
+                  return Value();
+                });
 }
 
 }  // namespace saphira::intentions

@@ -131,16 +131,15 @@ void add_numbers(Functions& functions) {
   functions.add(fold("/", "the quotient", [](double a, double b) { return a / b; }));
   functions.add(fold("min", "the smallest", [](double a, double b) { return std::min(a, b); }));
   functions.add(fold("max", "the largest", [](double a, double b) { return std::max(a, b); }));
-  functions.add(Function{"-", 1, 64,
-                         [](const World&, Values arguments) {
-                           double left = number_of(arguments, 0, "-");
-                           if (arguments.size() == 1)
-                             return Value(-left);
-                           for (std::size_t i = 1; i < arguments.size(); ++i)
-                             left -= number_of(arguments, i, "-");
-                           return keep(left, "-");
-                         },
-                         "the difference; of one number: its negation"});
+  functions.add("-", 1, 64, "the difference; of one number: its negation",
+                [](const World&, Values arguments) {
+                  double left = number_of(arguments, 0, "-");
+                  if (arguments.size() == 1)
+                    return Value(-left);
+                  for (std::size_t i = 1; i < arguments.size(); ++i)
+                    left -= number_of(arguments, i, "-");
+                  return keep(left, "-");
+                });
   functions.add(unary("abs", "the magnitude", [](double x) { return std::abs(x); }));
   functions.add(unary("sqrt", "the square root", [](double x) { return std::sqrt(x); }));
   functions.add(unary("sin", "of radians", [](double x) { return std::sin(x); }));
@@ -148,13 +147,12 @@ void add_numbers(Functions& functions) {
   functions.add(unary("floor", "the whole number below", [](double x) { return std::floor(x); }));
   functions.add(unary("norm-angle", "the same angle in -pi..pi",
                       [](double x) { return std::isfinite(x) ? norm2_angle(x) : x; }));
-  functions.add(Function{"mod", 2, 2,
-                         [](const World&, Values arguments) {
-                           const double b = number_of(arguments, 1, "mod");
-                           const double a = number_of(arguments, 0, "mod");
-                           return keep(a - b * std::floor(a / b), "mod");
-                         },
-                         "what is left of a division, of the sign of the divisor"});
+  functions.add("mod", 2, 2, "what is left of a division, of the sign of the divisor",
+                [](const World&, Values arguments) {
+                  const double b = number_of(arguments, 1, "mod");
+                  const double a = number_of(arguments, 0, "mod");
+                  return keep(a - b * std::floor(a / b), "mod");
+                });
   functions.add(compare("<", "smaller", [](double a, double b) { return a < b; }));
   functions.add(compare(">", "larger", [](double a, double b) { return a > b; }));
   functions.add(compare("<=", "not larger", [](double a, double b) { return a <= b; }));
@@ -164,40 +162,34 @@ void add_numbers(Functions& functions) {
 
   // Manual 7.5.1 and 7.5.2, in both of its spellings.
   for (const char* const name : {"straight-up", "up-straight"})
-    functions.add(Function{name, 3, 3,
-                           [name](const World&, Values a) {
-                             return Value(up(number_of(a, 0, name), number_of(a, 1, name),
-                                             number_of(a, 2, name)));
-                           },
-                           "(straight-up x low high) fuzzy: from 0 at low to 1 at high"});
+    functions.add(
+        name, 3, 3, "(straight-up x low high) fuzzy: from 0 at low to 1 at high",
+        [name](const World&, Values a) {
+          return Value(up(number_of(a, 0, name), number_of(a, 1, name), number_of(a, 2, name)));
+        });
   for (const char* const name : {"down-straight", "straight-down"})
-    functions.add(Function{name, 3, 3,
-                           [name](const World&, Values a) {
-                             return Value(1.0 - up(number_of(a, 0, name), number_of(a, 1, name),
-                                                   number_of(a, 2, name)));
-                           },
-                           "(down-straight x low high) fuzzy: from 1 at low to 0 at high"});
-  functions.add(Function{"f-greater", 3, 3,
-                         [](const World&, Values a) {
-                           const double c = number_of(a, 1, "f-greater");
-                           const double half = number_of(a, 2, "f-greater") / 2.0;
-                           return Value(up(number_of(a, 0, "f-greater"), c - half, c + half));
-                         },
-                         "(f-greater x c delta) fuzzy: one half at c"});
-  functions.add(Function{"f-smaller", 3, 3,
-                         [](const World&, Values a) {
-                           const double c = number_of(a, 1, "f-smaller");
-                           const double half = number_of(a, 2, "f-smaller") / 2.0;
-                           return Value(1.0 - up(number_of(a, 0, "f-smaller"), c - half, c + half));
-                         },
-                         "(f-smaller x c delta) fuzzy: one half at c"});
-  functions.add(Function{"f-eq", 3, 3,
-                         [](const World&, Values a) {
-                           const double off =
-                               std::abs(number_of(a, 0, "f-eq") - number_of(a, 1, "f-eq"));
-                           return Value(1.0 - up(off, 0.0, number_of(a, 2, "f-eq")));
-                         },
-                         "(f-eq x c delta) fuzzy: 1 at c, 0 from delta off"});
+    functions.add(name, 3, 3, "(down-straight x low high) fuzzy: from 1 at low to 0 at high",
+                  [name](const World&, Values a) {
+                    return Value(1.0 - up(number_of(a, 0, name), number_of(a, 1, name),
+                                          number_of(a, 2, name)));
+                  });
+  functions.add("f-greater", 3, 3, "(f-greater x c delta) fuzzy: one half at c",
+                [](const World&, Values a) {
+                  const double c = number_of(a, 1, "f-greater");
+                  const double half = number_of(a, 2, "f-greater") / 2.0;
+                  return Value(up(number_of(a, 0, "f-greater"), c - half, c + half));
+                });
+  functions.add("f-smaller", 3, 3, "(f-smaller x c delta) fuzzy: one half at c",
+                [](const World&, Values a) {
+                  const double c = number_of(a, 1, "f-smaller");
+                  const double half = number_of(a, 2, "f-smaller") / 2.0;
+                  return Value(1.0 - up(number_of(a, 0, "f-smaller"), c - half, c + half));
+                });
+  functions.add("f-eq", 3, 3, "(f-eq x c delta) fuzzy: 1 at c, 0 from delta off",
+                [](const World&, Values a) {
+                  const double off = std::abs(number_of(a, 0, "f-eq") - number_of(a, 1, "f-eq"));
+                  return Value(1.0 - up(off, 0.0, number_of(a, 2, "f-eq")));
+                });
   functions.add(
       fold("f-and", "fuzzy: the smallest", [](double a, double b) { return std::min(a, b); }));
   functions.add(
@@ -206,190 +198,154 @@ void add_numbers(Functions& functions) {
 }
 
 void add_lists(Functions& functions) {
-  functions.add(Function{"not", 1, 1,
-                         [](const World&, Values a) { return Value::truth(a[0].nil()); },
-                         "t of nil, nil of everything else"});
-  functions.add(Function{"null", 1, 1,
-                         [](const World&, Values a) { return Value::truth(a[0].nil()); },
-                         "whether it is nil, which is the empty list"});
+  functions.add("not", 1, 1, "t of nil, nil of everything else",
+                [](const World&, Values a) { return Value::truth(a[0].nil()); });
+  functions.add("null", 1, 1, "whether it is nil, which is the empty list",
+                [](const World&, Values a) { return Value::truth(a[0].nil()); });
   for (const char* const name : {"equal", "eq", "eql"})
-    functions.add(Function{name, 2, 2,
-                           [](const World&, Values a) { return Value::truth(a[0] == a[1]); },
-                           "whether both are the same"});
-  functions.add(Function{
-      "list", 0, 64, [](const World&, Values a) { return list(Value::List(a.begin(), a.end())); },
-      "a list of the arguments"});
-  functions.add(Function{"cons", 2, 2,
-                         [](const World&, Values a) {
-                           Value::List all = {a[0]};
-                           const Value::List& rest = list_of(a, 1, "cons");
-                           all.insert(all.end(), rest.begin(), rest.end());
-                           return list(std::move(all));
-                         },
-                         "the list with one more at its front"});
-  functions.add(Function{"append", 0, 64,
-                         [](const World&, Values a) {
-                           Value::List all;
-                           for (std::size_t i = 0; i < a.size(); ++i) {
-                             const Value::List& each = list_of(a, i, "append");
-                             all.insert(all.end(), each.begin(), each.end());
-                           }
-                           return list(std::move(all));
-                         },
-                         "the lists in one"});
+    functions.add(name, 2, 2, "whether both are the same",
+                  [](const World&, Values a) { return Value::truth(a[0] == a[1]); });
+  functions.add("list", 0, 64, "a list of the arguments",
+                [](const World&, Values a) { return list(Value::List(a.begin(), a.end())); });
+  functions.add("cons", 2, 2, "the list with one more at its front", [](const World&, Values a) {
+    Value::List all = {a[0]};
+    const Value::List& rest = list_of(a, 1, "cons");
+    all.insert(all.end(), rest.begin(), rest.end());
+    return list(std::move(all));
+  });
+  functions.add("append", 0, 64, "the lists in one", [](const World&, Values a) {
+    Value::List all;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const Value::List& each = list_of(a, i, "append");
+      all.insert(all.end(), each.begin(), each.end());
+    }
+    return list(std::move(all));
+  });
   for (const char* const name : {"first", "car"})
-    functions.add(Function{name, 1, 1,
-                           [name](const World&, Values a) {
-                             const Value::List& all = list_of(a, 0, name);
-                             return all.empty() ? Value() : all.front();
-                           },
-                           "the first of a list; nil of nil"});
-  functions.add(Function{"last", 1, 1,
-                         [](const World&, Values a) {
-                           const Value::List& all = list_of(a, 0, "last");
-                           return all.empty() ? Value() : all.back();
-                         },
-                         "the last of a list; nil of nil"});
+    functions.add(name, 1, 1, "the first of a list; nil of nil", [name](const World&, Values a) {
+      const Value::List& all = list_of(a, 0, name);
+      return all.empty() ? Value() : all.front();
+    });
+  functions.add("last", 1, 1, "the last of a list; nil of nil", [](const World&, Values a) {
+    const Value::List& all = list_of(a, 0, "last");
+    return all.empty() ? Value() : all.back();
+  });
   for (const char* const name : {"rest", "cdr"})
-    functions.add(Function{name, 1, 1,
-                           [name](const World&, Values a) {
-                             const Value::List& all = list_of(a, 0, name);
-                             if (all.empty())
-                               return Value();
-                             return Value(Value::List(all.begin() + 1, all.end()));
-                           },
-                           "the list without its first"});
-  functions.add(Function{"nth", 2, 2,
-                         [](const World&, Values a) {
-                           const double n = number_of(a, 0, "nth");
-                           const Value::List& all = list_of(a, 1, "nth");
-                           if (!(n >= 0.0) || n >= static_cast<double>(all.size()))
-                             return Value();
-                           return all[static_cast<std::size_t>(n)];
-                         },
-                         "(nth 0 list) is the first; nil beyond the end"});
-  functions.add(Function{"length", 1, 1,
-                         [](const World&, Values a) {
-                           return Value(static_cast<double>(list_of(a, 0, "length").size()));
-                         },
-                         "how many a list has"});
-  functions.add(Function{"reverse", 1, 1,
-                         [](const World&, Values a) {
-                           Value::List all = list_of(a, 0, "reverse");
-                           std::reverse(all.begin(), all.end());
-                           return Value(std::move(all));
-                         },
-                         "the list from its end"});
-  functions.add(Function{
-      "as-list", 1, 1,
-      [](const World&, Values a) { return a[0].nil() || a[0].is_list() ? a[0] : list({a[0]}); },
-      "a list as it is, and nil; the list of anything else alone"});
-  functions.add(Function{"member", 2, 2,
-                         [](const World&, Values a) {
-                           const Value::List& all = list_of(a, 1, "member");
-                           const auto found = std::find(all.begin(), all.end(), a[0]);
-                           return Value(Value::List(found, all.end()));
-                         },
-                         "the list from where it has the first argument; nil where it has not"});
-  functions.add(Function{"format", 1, 64,
-                         [](const World&, Values a) { return Value(format(a, "format")); },
-                         "(format \"to ~a\" x): the text with its arguments in the place of ~a"});
+    functions.add(name, 1, 1, "the list without its first", [name](const World&, Values a) {
+      const Value::List& all = list_of(a, 0, name);
+      if (all.empty())
+        return Value();
+      return Value(Value::List(all.begin() + 1, all.end()));
+    });
+  functions.add("nth", 2, 2, "(nth 0 list) is the first; nil beyond the end",
+                [](const World&, Values a) {
+                  const double n = number_of(a, 0, "nth");
+                  const Value::List& all = list_of(a, 1, "nth");
+                  if (!(n >= 0.0) || n >= static_cast<double>(all.size()))
+                    return Value();
+                  return all[static_cast<std::size_t>(n)];
+                });
+  functions.add("length", 1, 1, "how many a list has", [](const World&, Values a) {
+    return Value(static_cast<double>(list_of(a, 0, "length").size()));
+  });
+  functions.add("reverse", 1, 1, "the list from its end", [](const World&, Values a) {
+    Value::List all = list_of(a, 0, "reverse");
+    std::reverse(all.begin(), all.end());
+    return Value(std::move(all));
+  });
+  functions.add(
+      "as-list", 1, 1, "a list as it is, and nil; the list of anything else alone",
+      [](const World&, Values a) { return a[0].nil() || a[0].is_list() ? a[0] : list({a[0]}); });
+  functions.add("member", 2, 2,
+                "the list from where it has the first argument; nil where it has not",
+                [](const World&, Values a) {
+                  const Value::List& all = list_of(a, 1, "member");
+                  const auto found = std::find(all.begin(), all.end(), a[0]);
+                  return Value(Value::List(found, all.end()));
+                });
+  functions.add("format", 1, 64,
+                "(format \"to ~a\" x): the text with its arguments in the place of ~a",
+                [](const World&, Values a) { return Value(format(a, "format")); });
 }
 
 void add_points(Functions& functions) {
-  functions.add(
-      Function{"point", 2, 4,
-               [](const World&, Values a) {
-                 Point point;
-                 point.pose.x = number_of(a, 0, "point");
-                 point.pose.y = number_of(a, 1, "point");
-                 std::size_t next = 2;
-                 if (next < a.size() && a[next].number() != nullptr)
-                   point.pose.th = number_of(a, next++, "point");
-                 if (next < a.size())
-                   point.frame = frame_of(a, next, "point");
-                 return Value(point);
-               },
-               "(point x y [heading] ['robot|'odom|'map]) in odom where no frame is given"});
-  functions.add(Function{"x", 1, 1,
-                         [](const World&, Values a) { return Value(point_of(a, 0, "x").pose.x); },
-                         "of a point, in its frame"});
-  functions.add(Function{"y", 1, 1,
-                         [](const World&, Values a) { return Value(point_of(a, 0, "y").pose.y); },
-                         "of a point, in its frame"});
-  functions.add(
-      Function{"heading", 1, 1,
-               [](const World&, Values a) { return Value(point_of(a, 0, "heading").pose.th); },
-               "of a point, in its frame"});
-  functions.add(Function{"in-frame", 2, 2,
-                         [](const World& world, Values a) {
-                           const Frame frame = frame_of(a, 1, "in-frame");
-                           return Value(Point{pose_in(a, 0, frame, world, "in-frame"), frame});
-                         },
-                         "(in-frame point 'odom): the same point in another frame"});
-  functions.add(Function{"distance", 1, 2,
-                         [](const World& world, Values a) {
-                           const Pose p = pose_in(a, 0, Frame::robot, world, "distance");
-                           const Pose q = a.size() < 2
-                                              ? Pose{}
-                                              : pose_in(a, 1, Frame::robot, world, "distance");
-                           return Value((p.position() - q.position()).norm());
-                         },
-                         "from the robot, or between two points [m]"});
-  functions.add(Function{"bearing", 1, 1,
-                         [](const World& world, Values a) {
-                           const Pose p = pose_in(a, 0, Frame::robot, world, "bearing");
-                           return Value(std::atan2(p.y, p.x));
-                         },
-                         "where a point is from the robot's heading [rad, left is positive]"});
-  functions.add(Function{"robot", 0, 1,
-                         [](const World& world, Values a) {
-                           const Frame frame = a.empty() ? Frame::odom : frame_of(a, 0, "robot");
-                           const auto pose = in_frame({}, Frame::robot, frame, world.robot);
-                           return pose ? Value(Point{*pose, frame}) : Value();
-                         },
-                         "where the robot is, in odom or the frame that is named; nil: not known"});
-  functions.add(Function{"offset", 3, 4,
-                         [](const World&, Values a) {
-                           Point point = point_of(a, 0, "offset");
-                           const double th = a.size() < 4 ? 0.0 : number_of(a, 3, "offset");
-                           point.pose = compose(point.pose, {number_of(a, 1, "offset"),
-                                                             number_of(a, 2, "offset"), th});
-                           return Value(point);
-                         },
-                         "(offset point forward left [turn]): another, as seen from a point"});
+  functions.add("point", 2, 4,
+                "(point x y [heading] ['robot|'odom|'map]) in odom where no frame is given",
+                [](const World&, Values a) {
+                  Point point;
+                  point.pose.x = number_of(a, 0, "point");
+                  point.pose.y = number_of(a, 1, "point");
+                  std::size_t next = 2;
+                  if (next < a.size() && a[next].number() != nullptr)
+                    point.pose.th = number_of(a, next++, "point");
+                  if (next < a.size())
+                    point.frame = frame_of(a, next, "point");
+                  return Value(point);
+                });
+  functions.add("x", 1, 1, "of a point, in its frame",
+                [](const World&, Values a) { return Value(point_of(a, 0, "x").pose.x); });
+  functions.add("y", 1, 1, "of a point, in its frame",
+                [](const World&, Values a) { return Value(point_of(a, 0, "y").pose.y); });
+  functions.add("heading", 1, 1, "of a point, in its frame",
+                [](const World&, Values a) { return Value(point_of(a, 0, "heading").pose.th); });
+  functions.add("in-frame", 2, 2, "(in-frame point 'odom): the same point in another frame",
+                [](const World& world, Values a) {
+                  const Frame frame = frame_of(a, 1, "in-frame");
+                  return Value(Point{pose_in(a, 0, frame, world, "in-frame"), frame});
+                });
+  functions.add("distance", 1, 2, "from the robot, or between two points [m]",
+                [](const World& world, Values a) {
+                  const Pose p = pose_in(a, 0, Frame::robot, world, "distance");
+                  const Pose q =
+                      a.size() < 2 ? Pose{} : pose_in(a, 1, Frame::robot, world, "distance");
+                  return Value((p.position() - q.position()).norm());
+                });
+  functions.add("bearing", 1, 1,
+                "where a point is from the robot's heading [rad, left is positive]",
+                [](const World& world, Values a) {
+                  const Pose p = pose_in(a, 0, Frame::robot, world, "bearing");
+                  return Value(std::atan2(p.y, p.x));
+                });
+  functions.add("robot", 0, 1,
+                "where the robot is, in odom or the frame that is named; nil: not known",
+                [](const World& world, Values a) {
+                  const Frame frame = a.empty() ? Frame::odom : frame_of(a, 0, "robot");
+                  const auto pose = in_frame({}, Frame::robot, frame, world.robot);
+                  return pose ? Value(Point{*pose, frame}) : Value();
+                });
+  functions.add("offset", 3, 4, "(offset point forward left [turn]): another, as seen from a point",
+                [](const World&, Values a) {
+                  Point point = point_of(a, 0, "offset");
+                  const double th = a.size() < 4 ? 0.0 : number_of(a, 3, "offset");
+                  point.pose = compose(point.pose,
+                                       {number_of(a, 1, "offset"), number_of(a, 2, "offset"), th});
+                  return Value(point);
+                });
 }
 
 void add_beliefs(Functions& functions) {
-  functions.add(Function{"belief", 1, 1,
-                         [](const World& world, Values a) {
-                           return world.beliefs.get(normal(text_of(a, 0, "belief")), world);
-                         },
-                         "(belief 'name): what is known under that name, such as a claim"});
-  functions.add(Function{
-      "belief-since", 1, 1,
+  functions.add("belief", 1, 1, "(belief 'name): what is known under that name, such as a claim",
+                [](const World& world, Values a) {
+                  return world.beliefs.get(normal(text_of(a, 0, "belief")), world);
+                });
+  functions.add(
+      "belief-since", 1, 1, "(belief-since 'name): when it was said, as (now) [s]; nil: it was not",
       [](const World& world, Values a) {
         const Belief* const belief = world.beliefs.stored(normal(text_of(a, 0, "belief-since")));
         return belief == nullptr ? Value() : Value(kTick * static_cast<double>(belief->since));
-      },
-      "(belief-since 'name): when it was said, as (now) [s]; nil: it was not"});
-  functions.add(Function{"yes", 1, 1,
-                         [](const World&, Values a) {
-                           const std::string* const text = a[0].text();
-                           return Value::truth(a[0].is_t() ||
-                                               (text != nullptr && normal(*text) == "yes"));
-                         },
-                         "(yes answer): whether it is t or yes"});
-  functions.add(Function{
-      "now", 0, 0,
-      [](const World& world, Values) { return Value(kTick * static_cast<double>(world.now)); },
-      "(now): the robot's time since the service began [s]"});
+      });
+  functions.add("yes", 1, 1, "(yes answer): whether it is t or yes", [](const World&, Values a) {
+    const std::string* const text = a[0].text();
+    return Value::truth(a[0].is_t() || (text != nullptr && normal(*text) == "yes"));
+  });
+  functions.add(
+      "now", 0, 0, "(now): the robot's time since the service began [s]",
+      [](const World& world, Values) { return Value(kTick * static_cast<double>(world.now)); });
 }
 
 void add_conditions(Functions& functions) {
   const auto add = [&](const char* name, const char* summary, auto test) {
-    functions.add(
-        Condition{name, [test](const World& world) { return Value::truth(test(world)); }, summary});
+    functions.add(name, summary, [test](const World& world) { return Value::truth(test(world)); });
   };
   add("connected", "there is a robot", [](const World& w) { return w.robot.connected; });
   add("has-power", "its motors have power", [](const World& w) { return w.robot.has_power; });

@@ -197,87 +197,84 @@ Corridor corridor_of(const World& world, Values arguments, std::size_t index,
 }  // namespace
 
 void add_corridors(Functions& functions) {
+  functions.add("lane-of", 1, 2,
+                "(lane-of CORRIDOR [THING]): its middle, directed as the robot is, or from "
+                "the robot towards the thing",
+                [](const World& world, Values arguments) {
+                  const Corridor corridor = corridor_of(world, arguments, 0, "lane-of");
+                  Point middle = corridor.middle;
+                  const auto seen = in_robot(world, middle);
+                  const auto to = arguments.size() > 1
+                                      ? in_robot(world, point_at(world, arguments, 1, "lane-of"))
+                                      : std::nullopt;
+                  if (!seen)
+                    return Value(middle);
+                  // In the robot's direction, or towards the target.
+                  const bool back = to ? relative(*seen, *to).x < relative(*seen, Pose{}).x
+                                       : std::abs(seen->th) > kPi / 2;
+                  if (back)
+                    middle.pose.th = norm2_angle(middle.pose.th + kPi);
+                  return Value(middle);
+                });
+  functions.add("on-lane", 2, 2, "(on-lane REGION THING): the nearest point on the middle line",
+                [](const World& world, Values arguments) {
+                  const maps::Region& region = region_of(world, arguments, 0, "on-lane");
+                  const Point point = point_at(world, arguments, 1, "on-lane");
+                  const auto at = in_frame(point.pose, point.frame, Frame::map, world.robot);
+                  if (!at)
+                    return Value();
+                  const Vec2 on = maps::on_axis(region.area, at->position());
+                  return on_map(on, lane(region.area, at->position()).th);
+                });
+  functions.add("aligned-in-lane", 4, 4,
+                "(aligned-in-lane LANE TARGET LOW HIGH): 1 while the robot is turned off "
+                "the way to the target by less than LOW [rad], 0 from HIGH on (manual 8.1.3)",
+                [](const World& world, Values arguments) {
+                  const auto lane_at =
+                      in_robot(world, point_at(world, arguments, 0, "aligned-in-lane"));
+                  const auto to = in_robot(world, point_at(world, arguments, 1, "aligned-in-lane"));
+                  if (!lane_at || !to)
+                    return Value();
+                  const double low = number_of(arguments, 2, "aligned-in-lane");
+                  const double high = number_of(arguments, 3, "aligned-in-lane");
+                  const bool on = relative(*lane_at, *to).x >= relative(*lane_at, Pose{}).x;
+                  const double off = std::abs(norm2_angle(lane_at->th + (on ? 0.0 : kPi)));
+                  return Value(std::clamp((high - off) / std::max(1e-9, high - low), 0.0, 1.0));
+                });
   functions.add(
-      Function{"lane-of", 1, 2,
-               [](const World& world, Values arguments) {
-                 const Corridor corridor = corridor_of(world, arguments, 0, "lane-of");
-                 Point middle = corridor.middle;
-                 const auto seen = in_robot(world, middle);
-                 const auto to = arguments.size() > 1
-                                     ? in_robot(world, point_at(world, arguments, 1, "lane-of"))
-                                     : std::nullopt;
-                 if (!seen)
-                   return Value(middle);
-                 // In the robot's direction, or towards the target.
-                 const bool back = to ? relative(*seen, *to).x < relative(*seen, Pose{}).x
-                                      : std::abs(seen->th) > kPi / 2;
-                 if (back)
-                   middle.pose.th = norm2_angle(middle.pose.th + kPi);
-                 return Value(middle);
-               },
-               "(lane-of CORRIDOR [THING]): its middle, directed as the robot is, or from "
-               "the robot towards the thing"});
-  functions.add(Function{"on-lane", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const maps::Region& region = region_of(world, arguments, 0, "on-lane");
-                           const Point point = point_at(world, arguments, 1, "on-lane");
-                           const auto at =
-                               in_frame(point.pose, point.frame, Frame::map, world.robot);
-                           if (!at)
-                             return Value();
-                           const Vec2 on = maps::on_axis(region.area, at->position());
-                           return on_map(on, lane(region.area, at->position()).th);
-                         },
-                         "(on-lane REGION THING): the nearest point on the middle line"});
-  functions.add(Function{
-      "aligned-in-lane", 4, 4,
+      "lane-end", 1, 2, "(lane-end CORRIDOR [MARGIN]): where it ends, as the robot is turned",
       [](const World& world, Values arguments) {
-        const auto lane_at = in_robot(world, point_at(world, arguments, 0, "aligned-in-lane"));
-        const auto to = in_robot(world, point_at(world, arguments, 1, "aligned-in-lane"));
-        if (!lane_at || !to)
+        const Corridor corridor = corridor_of(world, arguments, 0, "lane-end");
+        const double margin = arguments.size() > 1 ? number_of(arguments, 1, "lane-end") : 1.0;
+        Point middle = corridor.middle;
+        const auto seen = in_robot(world, middle);
+        if (!seen)
           return Value();
-        const double low = number_of(arguments, 2, "aligned-in-lane");
-        const double high = number_of(arguments, 3, "aligned-in-lane");
-        const bool on = relative(*lane_at, *to).x >= relative(*lane_at, Pose{}).x;
-        const double off = std::abs(norm2_angle(lane_at->th + (on ? 0.0 : kPi)));
-        return Value(std::clamp((high - off) / std::max(1e-9, high - low), 0.0, 1.0));
-      },
-      "(aligned-in-lane LANE TARGET LOW HIGH): 1 while the robot is turned off "
-      "the way to the target by less than LOW [rad], 0 from HIGH on (manual 8.1.3)"});
-  functions.add(Function{"lane-end", 1, 2,
-                         [](const World& world, Values arguments) {
-                           const Corridor corridor = corridor_of(world, arguments, 0, "lane-end");
-                           const double margin =
-                               arguments.size() > 1 ? number_of(arguments, 1, "lane-end") : 1.0;
-                           Point middle = corridor.middle;
-                           const auto seen = in_robot(world, middle);
-                           if (!seen)
-                             return Value();
-                           if (std::abs(seen->th) > kPi / 2)
-                             middle.pose.th = norm2_angle(middle.pose.th + kPi);
-                           const double half = std::max(0.0, corridor.length / 2 - margin);
-                           middle.pose = compose(middle.pose, {half, 0.0, 0.0});
-                           return Value(middle);
-                         },
-                         "(lane-end CORRIDOR [MARGIN]): where it ends, as the robot is turned"});
-  functions.add(Function{"door-pose", 1, 1, door_pose,
-                         "(door-pose DOOR): as it is seen, or else by the map; directed out"});
-  functions.add(Function{"door-state", 1, 1, door_state,
-                         "(door-state DOOR): open, closed or unknown, as the sonars have it"});
-  functions.add(Function{"door-direction", 2, 2, door_direction,
-                         "(door-direction DOOR REGION): in or out, to get into the region"});
+        if (std::abs(seen->th) > kPi / 2)
+          middle.pose.th = norm2_angle(middle.pose.th + kPi);
+        const double half = std::max(0.0, corridor.length / 2 - margin);
+        middle.pose = compose(middle.pose, {half, 0.0, 0.0});
+        return Value(middle);
+      });
+  functions.add("door-pose", 1, 1,
+                "(door-pose DOOR): as it is seen, or else by the map; directed out", door_pose);
+  functions.add("door-state", 1, 1,
+                "(door-state DOOR): open, closed or unknown, as the sonars have it", door_state);
+  functions.add("door-direction", 2, 2,
+                "(door-direction DOOR REGION): in or out, to get into the region", door_direction);
+  functions.add("before-door", 2, 3,
+                "(before-door DOOR REGION [M]): the point on its line on that side (0.7 m)",
+                before_door);
+  functions.add("free-ahead", 0, 1,
+                "(free-ahead [RAD]): how far the robot could go in that direction [m]",
+                [](const World& world, Values arguments) {
+                  return Value(free_ahead(
+                      world, arguments.empty() ? 0.0 : number_of(arguments, 0, "free-ahead")));
+                });
   functions.add(
-      Function{"before-door", 2, 3, before_door,
-               "(before-door DOOR REGION [M]): the point on its line on that side (0.7 m)"});
-  functions.add(
-      Function{"free-ahead", 0, 1,
-               [](const World& world, Values arguments) {
-                 return Value(free_ahead(
-                     world, arguments.empty() ? 0.0 : number_of(arguments, 0, "free-ahead")));
-               },
-               "(free-ahead [RAD]): how far the robot could go in that direction [m]"});
-  functions.add(Function{
       "seen", 1, 1,
+      "(seen KIND): the nearest door, corridor, junction, wall, person, blob or blob-a to -c, "
+      "or nil",
       [](const World& world, Values arguments) {
         const std::string& what = text_of(arguments, 0, "seen");
         if (const std::optional<Value> thing = nearest_seen(world, what))
@@ -293,41 +290,32 @@ void add_corridors(Functions& functions) {
               "blob-c, found " +
               what);
         return seen_value(nearest(world, type, [](const auto&, const auto&) { return true; }));
-      },
-      "(seen KIND): the nearest door, corridor, junction, wall, person, blob or blob-a to -c, "
-      "or nil"});
-  functions.add(Function{"width-of", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Reference& reference = reference_of(arguments, 0, "width-of");
-                           return Value(reference.kind == Kind::kLink
-                                            ? link_of(world, arguments, 0, "width-of").width
-                                            : corridor_of(world, arguments, 0, "width-of").width);
-                         },
-                         "(width-of THING): of a region, corridor or door [m]"});
-  functions.add(Function{"length-of", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value(corridor_of(world, arguments, 0, "length-of").length);
-                         },
-                         "(length-of THING): of a region or corridor [m]"});
-  functions.add(Condition{"*corridor*", corridor_here,
-                          "the corridor that the robot is in, on the map or seen"});
-  functions.add(Condition{
-      "in-corridor", [](const World& world) { return Value::truth(corridor_here(world).truthy()); },
-      "whether it is in one"});
-  functions.add(Condition{"door-ahead",
-                          [](const World& world) {
-                            return seen_value(nearest(world, PointType::door,
-                                                      [](const lps::Percept& door, const Pose& in) {
-                                                        return !door.is_closed() && in.x > 0.0 &&
-                                                               std::hypot(in.x, in.y) < 2.5 &&
-                                                               std::abs(std::atan2(in.y, in.x)) <
-                                                                   radians(75.0);
-                                                      }));
-                          },
-                          "the nearest door that is seen within 2.5 m before the robot"});
-  functions.add(Condition{
-      "way-blocked", [](const World& world) { return Value::truth(free_ahead(world, 0.0) < 0.5); },
-      "whether something is within half a metre straight ahead"});
+      });
+  functions.add("width-of", 1, 1, "(width-of THING): of a region, corridor or door [m]",
+                [](const World& world, Values arguments) {
+                  const Reference& reference = reference_of(arguments, 0, "width-of");
+                  return Value(reference.kind == Kind::kLink
+                                   ? link_of(world, arguments, 0, "width-of").width
+                                   : corridor_of(world, arguments, 0, "width-of").width);
+                });
+  functions.add("length-of", 1, 1, "(length-of THING): of a region or corridor [m]",
+                [](const World& world, Values arguments) {
+                  return Value(corridor_of(world, arguments, 0, "length-of").length);
+                });
+  functions.add("*corridor*", "the corridor that the robot is in, on the map or seen",
+                corridor_here);
+  functions.add("in-corridor", "whether it is in one",
+                [](const World& world) { return Value::truth(corridor_here(world).truthy()); });
+  functions.add("door-ahead", "the nearest door that is seen within 2.5 m before the robot",
+                [](const World& world) {
+                  return seen_value(
+                      nearest(world, PointType::door, [](const lps::Percept& door, const Pose& in) {
+                        return !door.is_closed() && in.x > 0.0 && std::hypot(in.x, in.y) < 2.5 &&
+                               std::abs(std::atan2(in.y, in.x)) < radians(75.0);
+                      }));
+                });
+  functions.add("way-blocked", "whether something is within half a metre straight ahead",
+                [](const World& world) { return Value::truth(free_ahead(world, 0.0) < 0.5); });
 }
 
 }  // namespace saphira::intentions

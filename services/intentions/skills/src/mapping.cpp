@@ -145,18 +145,13 @@ void add_mapping(Functions& functions) {
                          return arguments[0];
                        },
                        "(add-features T): whether registration puts what is seen on the map"});
-  functions.add(Condition{
-      "adds-features",
-      [](const World& world) { return Value::truth(world.around.registration.adds_features); },
-      "whether registration puts what is seen on the map"});
-  functions.add(Condition{"map-size",
-                          [](const World& world) {
-                            return Value(
-                                world.around.map == nullptr
-                                    ? 0.0
-                                    : static_cast<double>(world.around.map->features.size()));
-                          },
-                          "how many artifacts the map has"});
+  functions.add(
+      "adds-features", "whether registration puts what is seen on the map",
+      [](const World& world) { return Value::truth(world.around.registration.adds_features); });
+  functions.add("map-size", "how many artifacts the map has", [](const World& world) {
+    return Value(
+        world.around.map == nullptr ? 0.0 : static_cast<double>(world.around.map->features.size()));
+  });
 }
 
 }  // namespace saphira::intentions

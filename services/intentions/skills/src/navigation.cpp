@@ -259,97 +259,90 @@ Value way_to_corridor(const World& world, Values) {
 }
 
 void add_paths(Functions& functions) {
-  functions.add(Function{"find-path", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const maps::RouteResult found = route(world, arguments[0], arguments[1]);
-                           return found.route ? path_of(world, *found.route, arguments[1])
-                                              : Value();
-                         },
-                         "(find-path FROM TO): the regions and ways out to go through, or nil"});
-  functions.add(Function{"why-no-path", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const maps::RouteResult found = route(world, arguments[0], arguments[1]);
-                           return found.route ? Value() : Value(found.reason);
-                         },
-                         "(why-no-path FROM TO): the reason why find-path gives nil, or nil"});
-  functions.add(Function{"could-be-opened", 2, 2,
-                         [](const World& world, Values arguments) {
-                           return Value::truth(
-                               route(world, arguments[0], arguments[1], true).route.has_value());
-                         },
-                         "(could-be-opened FROM TO): whether there would be a way if nothing were "
-                         "closed or blocked"});
-  functions.add(Function{"way-length", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const maps::RouteResult found = route(world, arguments[0], arguments[1]);
-                           return found.route ? Value(found.route->length) : Value();
-                         },
-                         "(way-length FROM TO): of the way that find-path finds [m], or nil"});
-  functions.add(Function{"path-current", 1, 1,
-                         [](const World& world, Values arguments) {
-                           for (const Value& each : arguments[0].list())
-                             if (each.reference() != nullptr && !current(world, *each.reference()))
-                               return Value();
-                           return Value::truth(true);
-                         },
-                         "(path-current PATH): whether the map is still the one that it is of"});
-  functions.add(Function{"hazard-on", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const std::string hazard = hazard_on(world, arguments[0]);
-                           return hazard.empty() ? Value() : Value(hazard);
-                         },
-                         "(hazard-on PATH): the zone, of the map or by advice, that forbids the "
-                         "rest of it, or nil"});
-  functions.add(Function{"keep-out-ahead", 0, 0,
-                         [](const World& world, Values) {
-                           const std::string zone = keep_out_ahead(world);
-                           return zone.empty() ? Value() : Value(zone);
-                         },
-                         "(keep-out-ahead): the zone before the robot that it may not enter, or "
-                         "nil"});
-  functions.add(Function{"zones-on", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Value::List& path = arguments[0].list();
-                           const std::string remark =
-                               path.empty() ? "" : route(world, Value(), path.back()).remark();
-                           return remark.empty() ? Value() : Value(remark);
-                         },
-                         "(zones-on PATH): the zones that it goes around or through, or nil"});
-  functions.add(Function{"path-text", 1, 1,
-                         [](const World& world, Values arguments) {
-                           std::string text;
-                           for (const Value& each : arguments[0].list()) {
-                             const Reference* const way = each.reference();
-                             if (way != nullptr && way->kind == Kind::kLink &&
-                                 current(world, *way) &&
-                                 world.around.topology->links()[way->id].kind == LinkKind::meeting)
-                               continue;
-                             text += (text.empty() ? "" : ", ") + name_of(world, each);
-                           }
-                           return Value(text);
-                         },
-                         "(path-text PATH): in words"});
-  functions.add(Function{"leg", 1, 1, leg_of,
-                         "(leg PATH): the name of the schema for its beginning, on, or done"});
-  functions.add(Function{"closed-ways-with", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Reference& way = reference_of(arguments, 0, "closed-ways-with");
-                           Value::List ways;
-                           for (const auto& [each, since] :
-                                closed_ways(world.beliefs.get(kClosedWays, world)))
-                             if (!(each == way) && seconds(world) - since < kForget)
-                               ways.push_back(Value(Value::List{Value(each), Value(since)}));
-                           ways.push_back(Value(Value::List{Value(way), Value(seconds(world))}));
-                           return Value(std::move(ways));
-                         },
-                         "(closed-ways-with WAY): *closed-ways* and that one, as of now"});
+  functions.add("find-path", 2, 2,
+                "(find-path FROM TO): the regions and ways out to go through, or nil",
+                [](const World& world, Values arguments) {
+                  const maps::RouteResult found = route(world, arguments[0], arguments[1]);
+                  return found.route ? path_of(world, *found.route, arguments[1]) : Value();
+                });
+  functions.add("why-no-path", 2, 2,
+                "(why-no-path FROM TO): the reason why find-path gives nil, or nil",
+                [](const World& world, Values arguments) {
+                  const maps::RouteResult found = route(world, arguments[0], arguments[1]);
+                  return found.route ? Value() : Value(found.reason);
+                });
   functions.add(
-      Function{"way-to-corridor", 0, 0, way_to_corridor,
-               "(way-to-corridor): where to go to find out where it is, by the best guess"});
+      "could-be-opened", 2, 2,
+      "(could-be-opened FROM TO): whether there would be a way if nothing were closed or blocked",
+      [](const World& world, Values arguments) {
+        return Value::truth(route(world, arguments[0], arguments[1], true).route.has_value());
+      });
+  functions.add("way-length", 2, 2,
+                "(way-length FROM TO): of the way that find-path finds [m], or nil",
+                [](const World& world, Values arguments) {
+                  const maps::RouteResult found = route(world, arguments[0], arguments[1]);
+                  return found.route ? Value(found.route->length) : Value();
+                });
+  functions.add("path-current", 1, 1,
+                "(path-current PATH): whether the map is still the one that it is of",
+                [](const World& world, Values arguments) {
+                  for (const Value& each : arguments[0].list())
+                    if (each.reference() != nullptr && !current(world, *each.reference()))
+                      return Value();
+                  return Value::truth(true);
+                });
+  functions.add("hazard-on", 1, 1,
+                "(hazard-on PATH): the zone, of the map or by advice, that forbids the "
+                "rest of it, or nil",
+                [](const World& world, Values arguments) {
+                  const std::string hazard = hazard_on(world, arguments[0]);
+                  return hazard.empty() ? Value() : Value(hazard);
+                });
+  functions.add("keep-out-ahead", 0, 0,
+                "(keep-out-ahead): the zone before the robot that it may not enter, or nil",
+                [](const World& world, Values) {
+                  const std::string zone = keep_out_ahead(world);
+                  return zone.empty() ? Value() : Value(zone);
+                });
   functions.add(
-      Function{"next-to-explore", 1, 2, next_to_explore,
-               "(next-to-explore VISITED [ROOMS]): the nearest end of a corridor (and room) "
-               "that is none of the points, or nil"});
+      "zones-on", 1, 1, "(zones-on PATH): the zones that it goes around or through, or nil",
+      [](const World& world, Values arguments) {
+        const Value::List& path = arguments[0].list();
+        const std::string remark = path.empty() ? "" : route(world, Value(), path.back()).remark();
+        return remark.empty() ? Value() : Value(remark);
+      });
+  functions.add("path-text", 1, 1, "(path-text PATH): in words",
+                [](const World& world, Values arguments) {
+                  std::string text;
+                  for (const Value& each : arguments[0].list()) {
+                    const Reference* const way = each.reference();
+                    if (way != nullptr && way->kind == Kind::kLink && current(world, *way) &&
+                        world.around.topology->links()[way->id].kind == LinkKind::meeting)
+                      continue;
+                    text += (text.empty() ? "" : ", ") + name_of(world, each);
+                  }
+                  return Value(text);
+                });
+  functions.add("leg", 1, 1, "(leg PATH): the name of the schema for its beginning, on, or done",
+                leg_of);
+  functions.add(
+      "closed-ways-with", 1, 1, "(closed-ways-with WAY): *closed-ways* and that one, as of now",
+      [](const World& world, Values arguments) {
+        const Reference& way = reference_of(arguments, 0, "closed-ways-with");
+        Value::List ways;
+        for (const auto& [each, since] : closed_ways(world.beliefs.get(kClosedWays, world)))
+          if (!(each == way) && seconds(world) - since < kForget)
+            ways.push_back(Value(Value::List{Value(each), Value(since)}));
+        ways.push_back(Value(Value::List{Value(way), Value(seconds(world))}));
+        return Value(std::move(ways));
+      });
+  functions.add("way-to-corridor", 0, 0,
+                "(way-to-corridor): where to go to find out where it is, by the best guess",
+                way_to_corridor);
+  functions.add("next-to-explore", 1, 2,
+                "(next-to-explore VISITED [ROOMS]): the nearest end of a corridor (and room) "
+                "that is none of the points, or nil",
+                next_to_explore);
 }
 
 /// True where the robot is at a place: in its region, as find-path sees it, and near its point
@@ -391,132 +384,105 @@ Value split(const std::string& text) {
 }
 
 void add_places(Functions& functions) {
-  functions.add(Function{"at-place", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value::truth(at_place(world, arguments[0]));
-                         },
-                         "(at-place PLACE): whether the robot is there"});
+  functions.add("at-place", 1, 1, "(at-place PLACE): whether the robot is there",
+                [](const World& world, Values arguments) {
+                  return Value::truth(at_place(world, arguments[0]));
+                });
   functions.add(
-      Function{"split", 1, 1,
-               [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); },
-               "(split TEXT): its words, between commas or blanks"});
-  functions.add(Function{"room-p", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Reference* const reference = arguments[0].reference();
-                           return Value::truth(
-                               reference != nullptr && reference->kind == Kind::kRegion &&
-                               current(world, *reference) &&
-                               region_of(world, arguments, 0, "room-p").kind == RegionKind::room);
-                         },
-                         "(room-p THING): whether it is a room of the map"});
-  functions.add(Function{"link-p", 1, 1,
-                         [](const World&, Values arguments) {
-                           const Reference* const reference = arguments[0].reference();
-                           return Value::truth(reference != nullptr &&
-                                               reference->kind == Kind::kLink);
-                         },
-                         "(link-p THING): whether it is a door or another way out"});
-  functions.add(Function{"place-known", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value::truth(world.around.topology != nullptr &&
-                                               (arguments[0].point() != nullptr ||
-                                                place_named(*world.around.topology, arguments[0])));
-                         },
-                         "(place-known NAME): whether the map has it"});
-  functions.add(Function{"why-no-place", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value(
-                               world.around.topology == nullptr
+      "split", 1, 1, "(split TEXT): its words, between commas or blanks",
+      [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); });
+  functions.add(
+      "room-p", 1, 1, "(room-p THING): whether it is a room of the map",
+      [](const World& world, Values arguments) {
+        const Reference* const reference = arguments[0].reference();
+        return Value::truth(reference != nullptr && reference->kind == Kind::kRegion &&
+                            current(world, *reference) &&
+                            region_of(world, arguments, 0, "room-p").kind == RegionKind::room);
+      });
+  functions.add("link-p", 1, 1, "(link-p THING): whether it is a door or another way out",
+                [](const World&, Values arguments) {
+                  const Reference* const reference = arguments[0].reference();
+                  return Value::truth(reference != nullptr && reference->kind == Kind::kLink);
+                });
+  functions.add("place-known", 1, 1, "(place-known NAME): whether the map has it",
+                [](const World& world, Values arguments) {
+                  return Value::truth(world.around.topology != nullptr &&
+                                      (arguments[0].point() != nullptr ||
+                                       place_named(*world.around.topology, arguments[0])));
+                });
+  functions.add("why-no-place", 1, 1,
+                "(why-no-place NAME): that the map does not have it, and what it has",
+                [](const World& world, Values arguments) {
+                  return Value(world.around.topology == nullptr
                                    ? "there is no map"
                                    : world.around.topology->no_place(spoken(arguments[0])));
-                         },
-                         "(why-no-place NAME): that the map does not have it, and what it has"});
-  functions.add(Function{
-      "name-of", 1, 1,
-      [](const World& world, Values arguments) { return Value(name_of(world, arguments[0])); },
-      "(name-of THING): what it is called"});
-  functions.add(Function{"region-at", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const Point point = point_at(world, arguments, 0, "region-at");
-                           const auto at =
-                               in_frame(point.pose, point.frame, Frame::map, world.robot);
-                           if (!at || world.around.topology == nullptr)
-                             return Value();
-                           const auto region =
-                               world.around.topology->region_at(at->position(), kAstray);
-                           return region ? region_value(world, *region) : Value();
-                         },
-                         "(region-at POINT): of the map, or nil"});
-  functions.add(Function{"in-region", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const maps::Region& region = region_of(world, arguments, 0, "in-region");
-                           const std::optional<Pose> robot = world.robot_in_map();
-                           return Value::truth(robot &&
-                                               maps::contains(region.area, robot->position()));
-                         },
-                         "(in-region REGION): whether the robot is"});
-  functions.add(Function{"place-of", 1, 1,
-                         [](const World& world, Values arguments) {
-                           return Value(point_at(world, arguments, 0, "place-of"));
-                         },
-                         "(place-of THING): its middle, directed, as a point"});
-  functions.add(Function{"here", 0, 0,
-                         [](const World& world, Values) {
-                           if (const auto robot = world.robot_in_map())
-                             return on_map(*robot);
-                           return Value(Point{world.robot.pose_in_odom, Frame::odom});
-                         },
-                         "(here): where the robot is: on the map, or else in odom"});
-  functions.add(Function{"distance-to", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const auto at =
-                               in_robot(world, point_at(world, arguments, 0, "distance-to"));
-                           return at ? Value(std::hypot(at->x, at->y)) : Value();
-                         },
-                         "(distance-to THING): from the robot to its middle [m]; nil if unknown"});
-  functions.add(Function{"bearing-of", 1, 1,
-                         [](const World& world, Values arguments) {
-                           const auto at =
-                               in_robot(world, point_at(world, arguments, 0, "bearing-of"));
-                           return at ? Value(std::atan2(at->y, at->x)) : Value();
-                         },
-                         "(bearing-of THING): from the robot's heading [rad], left positive"});
-  functions.add(Function{"distance-along", 2, 2,
-                         [](const World& world, Values arguments) {
-                           const auto lane_at =
-                               in_robot(world, point_at(world, arguments, 0, "distance-along"));
-                           const auto to =
-                               in_robot(world, point_at(world, arguments, 1, "distance-along"));
-                           if (!lane_at || !to)
-                             return Value();
-                           return Value(relative(*lane_at, *to).x - relative(*lane_at, Pose{}).x);
-                         },
-                         "(distance-along LANE THING): how far it is along the lane [m]"});
+                });
+  functions.add(
+      "name-of", 1, 1, "(name-of THING): what it is called",
+      [](const World& world, Values arguments) { return Value(name_of(world, arguments[0])); });
+  functions.add("region-at", 1, 1, "(region-at POINT): of the map, or nil",
+                [](const World& world, Values arguments) {
+                  const Point point = point_at(world, arguments, 0, "region-at");
+                  const auto at = in_frame(point.pose, point.frame, Frame::map, world.robot);
+                  if (!at || world.around.topology == nullptr)
+                    return Value();
+                  const auto region = world.around.topology->region_at(at->position(), kAstray);
+                  return region ? region_value(world, *region) : Value();
+                });
+  functions.add("in-region", 1, 1, "(in-region REGION): whether the robot is",
+                [](const World& world, Values arguments) {
+                  const maps::Region& region = region_of(world, arguments, 0, "in-region");
+                  const std::optional<Pose> robot = world.robot_in_map();
+                  return Value::truth(robot && maps::contains(region.area, robot->position()));
+                });
+  functions.add("place-of", 1, 1, "(place-of THING): its middle, directed, as a point",
+                [](const World& world, Values arguments) {
+                  return Value(point_at(world, arguments, 0, "place-of"));
+                });
+  functions.add("here", 0, 0, "(here): where the robot is: on the map, or else in odom",
+                [](const World& world, Values) {
+                  if (const auto robot = world.robot_in_map())
+                    return on_map(*robot);
+                  return Value(Point{world.robot.pose_in_odom, Frame::odom});
+                });
+  functions.add("distance-to", 1, 1,
+                "(distance-to THING): from the robot to its middle [m]; nil if unknown",
+                [](const World& world, Values arguments) {
+                  const auto at = in_robot(world, point_at(world, arguments, 0, "distance-to"));
+                  return at ? Value(std::hypot(at->x, at->y)) : Value();
+                });
+  functions.add("bearing-of", 1, 1,
+                "(bearing-of THING): from the robot's heading [rad], left positive",
+                [](const World& world, Values arguments) {
+                  const auto at = in_robot(world, point_at(world, arguments, 0, "bearing-of"));
+                  return at ? Value(std::atan2(at->y, at->x)) : Value();
+                });
+  functions.add(
+      "distance-along", 2, 2, "(distance-along LANE THING): how far it is along the lane [m]",
+      [](const World& world, Values arguments) {
+        const auto lane_at = in_robot(world, point_at(world, arguments, 0, "distance-along"));
+        const auto to = in_robot(world, point_at(world, arguments, 1, "distance-along"));
+        if (!lane_at || !to)
+          return Value();
+        return Value(relative(*lane_at, *to).x - relative(*lane_at, Pose{}).x);
+      });
 }
 
 void add_conditions(Functions& functions) {
-  functions.add(Condition{"*cur-region*",
-                          [](const World& world) {
-                            const auto region = region_here(world);
-                            return region ? region_value(world, *region) : Value();
-                          },
-                          "the region of the map that the robot is in"});
-  functions.add(Condition{"*cur-place*",
-                          [](const World& world) {
-                            const auto region = region_here(world);
-                            return region ? Value(world.around.topology->text(*region)) : Value();
-                          },
-                          "its name"});
-  functions.add(
-      Condition{"map-known",
-                [](const World& world) { return Value::truth(world.around.topology != nullptr); },
-                "whether there is a map"});
-  functions.add(Condition{"lost",
-                          [](const World& world) {
-                            return Value::truth(world.around.registration.state ==
-                                                Localization::kLost);
-                          },
-                          "whether it has found that it does not"});
+  functions.add("*cur-region*", "the region of the map that the robot is in",
+                [](const World& world) {
+                  const auto region = region_here(world);
+                  return region ? region_value(world, *region) : Value();
+                });
+  functions.add("*cur-place*", "its name", [](const World& world) {
+    const auto region = region_here(world);
+    return region ? Value(world.around.topology->text(*region)) : Value();
+  });
+  functions.add("map-known", "whether there is a map",
+                [](const World& world) { return Value::truth(world.around.topology != nullptr); });
+  functions.add("lost", "whether it has found that it does not", [](const World& world) {
+    return Value::truth(world.around.registration.state == Localization::kLost);
+  });
 }
 
 }  // namespace

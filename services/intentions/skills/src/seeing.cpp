@@ -109,17 +109,15 @@ void add_seeing(Functions& functions) {
   functions.add(of_thing(
       "range-known", "(range-known THING): whether its place is known, not only its direction",
       [](const World&, const SeenThing& thing) { return Value::truth(thing.range_known); }));
-  functions.add(Function{"predicted-place", 2, 2, place_in,
-                         "(predicted-place THING SECONDS): where it will be if it goes on as now"});
-  functions.add(Function{
-      "head-reach", 0, 0, [](const World& world, Values) { return Value(world.around.head_reach); },
-      "(head-reach): how far the cameras turn to either side [rad]; 0: they are fixed"});
-  functions.add(Function{"head", 0, 0,
-                         [](const World& world, Values) { return Value(world.robot.head); },
-                         "(head): the direction of the cameras in the robot [rad]"});
-  functions.add(Condition{
-      "can-see", [](const World& world) { return Value::truth(world.around.things != nullptr); },
-      "whether there is a camera and somebody who looks at its pictures"});
+  functions.add("predicted-place", 2, 2,
+                "(predicted-place THING SECONDS): where it will be if it goes on as now", place_in);
+  functions.add("head-reach", 0, 0,
+                "(head-reach): how far the cameras turn to either side [rad]; 0: they are fixed",
+                [](const World& world, Values) { return Value(world.around.head_reach); });
+  functions.add("head", 0, 0, "(head): the direction of the cameras in the robot [rad]",
+                [](const World& world, Values) { return Value(world.robot.head); });
+  functions.add("can-see", "whether there is a camera and somebody who looks at its pictures",
+                [](const World& world) { return Value::truth(world.around.things != nullptr); });
 }
 
 }  // namespace saphira::intentions

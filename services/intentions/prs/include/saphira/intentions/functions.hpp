@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
@@ -74,6 +75,14 @@ class Functions {
   void add(Function function);
   void add(Action action);
   void add(Condition condition);
+  /// A function or condition from its parts.
+  void add(std::string name, std::size_t fewest, std::size_t most, std::string summary,
+           std::function<Value(const World&, Values)> call) {
+    add(Function{std::move(name), fewest, most, std::move(call), std::move(summary)});
+  }
+  void add(std::string name, std::string summary, std::function<Value(const World&)> value) {
+    add(Condition{std::move(name), std::move(value), std::move(summary)});
+  }
   const Function* function(std::string_view name) const;
   const Action* action(std::string_view name) const;
   const Condition* condition(std::string_view name) const;
