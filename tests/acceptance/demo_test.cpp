@@ -59,12 +59,6 @@ TEST(Demo, SeedsDiffer) {
   EXPECT_NE(one.summary.at("trajectory_hash"), two.summary.at("trajectory_hash"));
 }
 
-TEST(Demo, SeparateProcessesAreTheSameEachTime) {
-  const std::vector<std::string> separate{"--lockstep", "--seed", "1"};
-  EXPECT_EQ(demo(separate).summary.at("trajectory_hash"),
-            demo(separate).summary.at("trajectory_hash"));
-}
-
 /// A folder of credentials for all programs of the demo.
 std::string credentials(const TempDir& folder) {
   const std::string authority = folder.path("authority");

@@ -102,9 +102,7 @@ std::string LockstepSystem::output() const {
 }
 
 void LockstepSystem::on_bus(std::vector<std::string> argv) {
-  for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"), domain(),
-                                  std::string("--lockstep")})
-    argv.push_back(word);
+  argv.insert(argv.end(), {"--robot", robot, "--domain", domain(), "--lockstep"});
   run(std::move(argv));
 }
 

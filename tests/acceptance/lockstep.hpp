@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "goals.hpp"
 #include "process.hpp"
-#include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/sim/trace.hpp"
 

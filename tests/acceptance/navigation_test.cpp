@@ -24,10 +24,7 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   Office system;
   auto intentions = system.node.reader(bus::topics::kIntentions);
   auto drawings = system.node.reader(bus::topics::kDrawings);
-  v1::Goal goal;
-  goal.functor("go-to-place");
-  goal.arguments({bus::text("place", "N2")});
-  const v1::GoalId id = system.ask(goal);
+  const v1::GoalId id = system.ask(goal("go-to-place", {bus::text("place", "N2")}));
   system.permit(1500);
   std::set<std::string> schemas;
   std::vector<v1::DrawnPoint> way;
@@ -72,15 +69,11 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
 // Wanted contact, with the guard on: the robot touches the wall, slowly.
 TEST(NavigationAcceptance, BumpAndGoBumps) {
   Office system;
-  v1::Goal goal;
-  goal.functor("turn_to");  // to the corridor's wall, 0.8 m away
-  goal.arguments({bus::number("heading", 1.57)});
-  const v1::GoalId turn = system.ask(goal);
+  // To the corridor's wall, 0.8 m away.
+  const v1::GoalId turn = system.ask(goal("turn_to", {bus::number("heading", 1.57)}));
   system.permit(200);
   ASSERT_TRUE(system.wait_end(turn)) << system.output();
-  goal.functor("bump-and-go");
-  goal.arguments({bus::number("bumps", 1.0)});
-  const v1::GoalId id = system.ask(goal);
+  const v1::GoalId id = system.ask(goal("bump-and-go", {bus::number("bumps", 1.0)}));
   system.permit(800);
   const std::optional<v1::GoalStatus> status = system.wait_end(id);
   ASSERT_TRUE(status) << system.output();

@@ -29,10 +29,8 @@ struct Drive {
 
 Drive drive(const std::string& world, unsigned seed) {
   LockstepSystem system({.world = world, .robot = "p3dx", .seed = seed});
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments({bus::point("position", kWay, 0.0, 0.0, v1::FRAME_ODOM)});
-  const v1::GoalId id = system.ask(goal);
+  const v1::GoalId id =
+      system.ask(goal("go_to", {bus::point("position", kWay, 0.0, 0.0, v1::FRAME_ODOM)}));
   system.permit(1500);
   Drive result;
   result.status = system.wait_end(id);

@@ -28,12 +28,7 @@ class Walker : public LockstepSystem {
                         .map = "office-floor",
                         .vision = true}) {}
 
-  v1::GoalId follow() {
-    v1::Goal goal;
-    goal.functor("follow-person");
-    goal.arguments({bus::number("seconds", 40.0)});
-    return ask(goal);
-  }
+  v1::GoalId follow() { return ask(goal("follow-person", {bus::number("seconds", 40.0)})); }
 
   bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);
 };

@@ -27,9 +27,7 @@ bool stays_still(const System& system, long cycles) {
 TEST(Stop, EndsAGoalOfAnyPriority) {
   System system;
   system.start_all();
-  v1::Goal wanted;
-  wanted.functor("go_to");
-  wanted.arguments({bus::point("position", 8.0, 0.0, 0.0, v1::FRAME_ODOM)});
+  v1::Goal wanted = test::goal("go_to", {bus::point("position", 8.0, 0.0, 0.0, v1::FRAME_ODOM)});
   wanted.priority(1000);
   const v1::GoalId goal = system.goals().ask(wanted);
   ASSERT_TRUE(system.wait_moving()) << system.output();

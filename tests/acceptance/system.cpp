@@ -23,31 +23,22 @@ System::System(std::string bridge_port)
 
 void System::start(const std::string& name) {
   std::vector<std::string> argv{name};
-  if (name == "saphira-sim") {
-    for (const std::string& word :
-         {std::string("--world"), source("config/worlds/office.wld"), std::string("--robot"),
-          source("config/robots/pioneer.p"), std::string("--socket"), simulator_socket(),
-          std::string("--trace"), folder_.path("trace.csv"), std::string("--seed"),
-          std::string("1")})
-      argv.push_back(word);
-  } else {
-    for (const std::string& word :
-         {std::string("--robot"), robot_, std::string("--domain"), domain()})
-      argv.push_back(word);
-  }
+  const auto add = [&](const std::vector<std::string>& words) {
+    argv.insert(argv.end(), words.begin(), words.end());
+  };
+  if (name == "saphira-sim")
+    add({"--world", source("config/worlds/office.wld"), "--robot",
+         source("config/robots/pioneer.p"), "--socket", simulator_socket(), "--trace",
+         folder_.path("trace.csv"), "--seed", "1"});
+  else
+    add({"--robot", robot_, "--domain", domain()});
   if (name == "saphira-bridge")
-    for (const std::string& word :
-         {std::string("--robot-port"), bridge_port_, std::string("--robots"),
-          source("config/robots"), std::string("--state"), folder_.path("bridge.state")})
-      argv.push_back(word);
-  if (name == "saphira-intentions") {
-    argv.emplace_back("--memory");
-    argv.push_back(folder_.path("goals"));
-  }
+    add({"--robot-port", bridge_port_, "--robots", source("config/robots"), "--state",
+         folder_.path("bridge.state")});
+  if (name == "saphira-intentions")
+    add({"--memory", folder_.path("goals")});
   if (name == "saphira-registration")
-    for (const std::string& word : {std::string("--map"), source("config/maps/office.map"),
-                                    std::string("--map-memory"), folder_.path("map.memory")})
-      argv.push_back(word);
+    add({"--map", source("config/maps/office.map"), "--map-memory", folder_.path("map.memory")});
   processes_.erase(name);
   processes_[name] = std::make_unique<Process>(argv, folder_.path(name + ".log"));
 }
@@ -59,10 +50,7 @@ void System::start_all() {
 }
 
 v1::GoalId System::go_to(double x, double y) {
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments({bus::point("position", x, y, 0.0, v1::FRAME_ODOM)});
-  return goals_.ask(goal);
+  return goals_.ask(goal("go_to", {bus::point("position", x, y, 0.0, v1::FRAME_ODOM)}));
 }
 
 std::optional<v1::GoalStatus> System::wait_end(const v1::GoalId& goal,

@@ -67,9 +67,7 @@ class IntentionsProgram : public testing::Test {
 
 TEST_F(IntentionsProgram, TakesGoalsToTheirEnd) {
   test::Process service(command(), dir.path("log"));
-  v1::Goal wrong;
-  wrong.functor("fly");
-  const v1::GoalId refused = goals.ask(wrong);
+  const v1::GoalId refused = goals.ask(test::goal("fly"));
   EXPECT_TRUE(goals.delivered(10000));
   EXPECT_TRUE(reaches(refused, v1::GOAL_REFUSED)) << told(refused);
   const v1::GoalId id = goals.ask(go_to(1.0, 0.0));
@@ -83,9 +81,7 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
   bus::Node node(test::node_options("robot", robot));
   ScriptedBus site(node);
   std::optional<test::Process> service(std::in_place, command(), dir.path("log"));
-  v1::Goal goal;
-  goal.functor("about-turn");
-  const v1::GoalId id = goals.ask(goal);
+  const v1::GoalId id = goals.ask(test::goal("about-turn"));
   double turned = 0.0;
   bool killed = false;
   EXPECT_TRUE(test::wait_until([&] {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "goals.hpp"
 #include "intention.h"
 #include "requests/shell/convert.hpp"
 #include "saphira/bus/node.hpp"
@@ -15,10 +16,7 @@ namespace saphira::intentions {
 
 /// The goal go_to of a place [m] in odom.
 inline v1::Goal go_to(double x, double y) {
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
-  return goal;
+  return test::goal("go_to", {bus::point("position", x, y, 0.0, v1::FRAME_ODOM)});
 }
 
 inline IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {

@@ -134,11 +134,9 @@ TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
   for (int i = 0; i < 50 && (!goals.status(first) || !bus::ended(state(first))); ++i)
     cycle();
   ASSERT_EQ(state(first), v1::GOAL_SUCCEEDED);
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments().push_back(bus::point("position", 2.0, 0.0, 0.0, v1::FRAME_ROBOT));
   const double begun = robot.world.robot.pose_in_odom.x;
-  const v1::GoalId second = goals.ask(goal);
+  const v1::GoalId second =
+      goals.ask(test::goal("go_to", {bus::point("position", 2.0, 0.0, 0.0, v1::FRAME_ROBOT)}));
   for (int i = 0; i < 20; ++i)
     cycle();
   ASSERT_EQ(state(second), v1::GOAL_UNDERWAY);
@@ -155,9 +153,7 @@ TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
 
 TEST_F(ShellTest, ARefusalReachesItsRequesterWithoutARobot) {
   start();
-  v1::Goal goal;
-  goal.functor("fly");
-  const v1::GoalId refused = goals.ask(goal);
+  const v1::GoalId refused = goals.ask(test::goal("fly"));
   const v1::GoalId waiting = goals.ask(go_to(1.0, 0.0));
   std::thread thread([&] { shell->run(stop); });
   EXPECT_TRUE(test::wait_until([&] {
@@ -185,9 +181,7 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
   auto messages = requester.reader(bus::topics::kMessages);
   auto schemas = requester.reader(bus::topics::kActivitySchemas);
   start();
-  v1::Goal goal;
-  goal.functor("greet");
-  goal.arguments().push_back(bus::text("who", "Karen"));
+  const v1::Goal goal = test::goal("greet", {bus::text("who", "Karen")});
   v1::GoalId id = goals.ask(goal);
   for (int i = 0; i < 20; ++i)
     cycle();
@@ -228,10 +222,7 @@ TEST_F(ShellTest, AnActivityAsksAgents) {
   auto asked = requester.reader<v1::Request>(bus::topics::kSolve);
   auto answers = requester.writer(bus::topics::kSolved);
   start();
-  v1::Goal goal;
-  goal.functor("where");
-  goal.arguments().push_back(bus::text("who", "karen"));
-  const v1::GoalId id = goals.ask(goal);
+  const v1::GoalId id = goals.ask(test::goal("where", {bus::text("who", "karen")}));
   for (int i = 0; i < 20; ++i) {
     cycle();
     for (const auto& sample : asked.take()) {
@@ -295,9 +286,7 @@ TEST_F(ShellTest, InLockstepItKnowsWhatBehaviorsThereAre) {
   std::ofstream(files.path("mine.act")) << "(defintention :mine :goals '((INTEND :Nonsense ())))";
   start();
   robot.have({"Follow"});
-  v1::Goal goal;
-  goal.functor("mine");
-  const v1::GoalId id = goals.ask(goal);
+  const v1::GoalId id = goals.ask(test::goal("mine"));
   for (int i = 0; i < 20; ++i)
     cycle();
   EXPECT_EQ(state(id), v1::GOAL_FAILED);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/bus/goal_client.hpp"
+
+namespace saphira::test {
+
+inline v1::Goal goal(const std::string& functor, std::vector<v1::Argument> arguments = {}) {
+  v1::Goal made;
+  made.functor(functor);
+  made.arguments(std::move(arguments));
+  return made;
+}
+
+}  // namespace saphira::test
