@@ -25,8 +25,8 @@ class DialogueOnTheBus : public testing::Test {
     service.emplace(test::memory_options("dialogue"), memory);
     dialogue = std::make_unique<DialogueShell>(*service, options);
   }
-  /// The robot's answer.
-  std::vector<std::string> say(const std::string& text, const std::string& speaker = "Alice") {
+  /// The robot's answer, in one line.
+  std::string say(const std::string& text, const std::string& speaker = "Alice") {
     v1::Utterance utterance;
     utterance.id().writer(5);
     utterance.id().number(++number);
@@ -37,11 +37,30 @@ class DialogueOnTheBus : public testing::Test {
     dialogue->step();
     return answers();
   }
-  std::vector<std::string> answers() {
-    std::vector<std::string> texts;
+  std::string answers() {
+    std::string all;
     for (const auto& sample : said.take())
-      texts.push_back(sample.data.text());
-    return texts;
+      all += (all.empty() ? "" : " / ") + sample.data.text();
+    return all;
+  }
+  /// The newest status of a goal; the robot's words then.
+  std::string tell(const v1::GoalId& goal, v1::GoalState state, const std::string& reason = {}) {
+    v1::GoalStatus status;
+    status.id(goal);
+    status.state(state);
+    status.reason(reason);
+    statuses.write(status);
+    dialogue->step();
+    return answers();
+  }
+  std::string message(std::uint64_t cycle, const std::string& text) {
+    v1::Message made;
+    made.stamp().epoch(3);
+    made.stamp().cycle(cycle);
+    made.text(text);
+    messages.write(made);
+    dialogue->step();
+    return answers();
   }
 
   test::TempDir folder;
@@ -91,35 +110,22 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   vision.stamp().cycle(100);
   vision.things({alice});
   visions.write(vision);
-  EXPECT_EQ(say("Flakey, this is Karen's office"),
-            std::vector<std::string>{"I know now that south is karen's office"});
+  EXPECT_EQ(say("Flakey, this is Karen's office"), "I know now that south is karen's office");
   registration.stamp().cycle(111);
   registrations.write(registration);
-  EXPECT_EQ(say("Flakey, this is Bob's office"),
-            std::vector<std::string>{"I know now that north is bob's office"});
+  EXPECT_EQ(say("Flakey, this is Bob's office"), "I know now that north is bob's office");
 }
 
 TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
-  EXPECT_EQ(say("Flakey, turn left"), std::vector<std::string>{"I turn 90 degrees to the left"});
+  EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].data.functor(), "turn_to");
   EXPECT_EQ(asked[0].data.requester(), "Alice (by words)");
-  v1::GoalStatus status;
-  status.id(asked[0].data.id());
-  status.functor("turn_to");
-  status.requester("dialogue");
-  status.state(v1::GOAL_SUSPENDED);
-  status.reason("a more important goal");
-  statuses.write(status);
-  dialogue->step();
+  tell(asked[0].data.id(), v1::GOAL_SUSPENDED, "a more important goal");
   EXPECT_EQ(say("Flakey, why are you standing?"),
-            std::vector<std::string>{"the turn for Alice is suspended: a more important goal"});
-  status.state(v1::GOAL_SUCCEEDED);
-  status.reason("turned");
-  statuses.write(status);
-  dialogue->step();
-  EXPECT_EQ(answers(), std::vector<std::string>{"done: turned"});
+            "the turn for Alice is suspended: a more important goal");
+  EXPECT_EQ(tell(asked[0].data.id(), v1::GOAL_SUCCEEDED, "turned"), "done: turned");
 }
 
 TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNothing) {
@@ -128,12 +134,12 @@ TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNot
   write("keyword: robot\nstop() \"I stop\"\n  stop\n");
   options.grammar = file;
   start();
-  EXPECT_EQ(say("robot, stop"), std::vector<std::string>{"I stop"});
-  EXPECT_EQ(say("robot, cease"), std::vector<std::string>{"what?"});
+  EXPECT_EQ(say("robot, stop"), "I stop");
+  EXPECT_EQ(say("robot, cease"), "what?");
   write("keyword: robot\nstop() \"I stop at once\"\n  stop | cease\n");
   ASSERT_TRUE(test::wait_until([&] {
     dialogue->reload();
-    return say("robot, cease") == std::vector<std::string>{"I stop at once"};
+    return say("robot, cease") == "I stop at once";
   }));
   auto logs = person.reader(bus::topics::kLog);
   write("keyword: robot\nstop( \"no end\"\n");
@@ -144,13 +150,13 @@ TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNot
       told += record.data.text();
     return told.find("own.grammar:2:") != std::string::npos;
   })) << told;
-  EXPECT_EQ(say("robot, cease"), std::vector<std::string>{"I stop at once"});
+  EXPECT_EQ(say("robot, cease"), "I stop at once");
 }
 
 TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
   say("Flakey, turn left");
   ASSERT_EQ(goals.take().size(), 1u);
-  std::vector<std::string> said_then;
+  std::string said_then;
   ASSERT_TRUE(test::wait_until(
       [&] {
         dialogue->step();
@@ -158,8 +164,7 @@ TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
         return !said_then.empty();
       },
       std::chrono::seconds(60)));
-  EXPECT_NE(said_then[0].find("no program has taken up the goal"), std::string::npos)
-      << said_then[0];
+  EXPECT_NE(said_then.find("no program has taken up the goal"), std::string::npos) << said_then;
   const auto withdrawn = goals.take();
   ASSERT_EQ(withdrawn.size(), 1u);
   EXPECT_TRUE(withdrawn[0].info.disposed);
@@ -185,24 +190,13 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].data.writer_lost(), v1::WRITER_LOST_KEEP);
-  v1::GoalStatus status;
-  status.id(asked[0].data.id());
-  status.state(v1::GOAL_UNDERWAY);
-  statuses.write(status);
-  v1::Message message;
-  message.stamp().epoch(3);
-  message.stamp().cycle(40);
-  message.text("Is anybody here?");
-  messages.write(message);
-  dialogue->step();
-  EXPECT_EQ(answers(), std::vector<std::string>{"Is anybody here?"});
+  tell(asked[0].data.id(), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(message(40, "Is anybody here?"), "Is anybody here?");
   // The writer keeps earlier sentences.
   start();
-  message.stamp().cycle(52);
-  message.text("Please give me the mail");
-  messages.write(message);
-  dialogue->step();
-  EXPECT_EQ(answers(), std::vector<std::string>{"Please give me the mail"});
+  EXPECT_EQ(message(52, "Please give me the mail"), "Please give me the mail");
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
   status.state(v1::GOAL_SUCCEEDED);
   status.reason("brought");
   statuses.write(status);
@@ -238,16 +232,15 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
   EXPECT_EQ(asked[0].data.priority(), 0);
   const v1::GoalId first = asked[0].data.id();
   EXPECT_EQ(say("Flakey, turn left", "Bob"),
-            std::vector<std::string>{
-                "I turn 90 degrees to the left, and then I go on with the mail for Alice"});
+            "I turn 90 degrees to the left, and then I go on with the mail for Alice");
   asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_FALSE(asked[0].info.disposed);
   EXPECT_EQ(asked[0].data.priority(), 1);
-  EXPECT_EQ(say("Flakey, explore", "Bob"),
-            std::vector<std::string>{"I am bringing the mail for Alice. Shall I drop that?"});
+  EXPECT_EQ(say("Flakey, explore", "Bob"), "I am bringing the mail for Alice. Shall I drop that?");
   EXPECT_TRUE(goals.take().empty());
-  EXPECT_EQ(say("yes", "Bob").size(), 3u);  // both drops, and the task
+  const std::string dropped = say("yes", "Bob");  // both drops, and the task
+  EXPECT_EQ(std::count(dropped.begin(), dropped.end(), '/'), 2) << dropped;
   asked = goals.take();
   ASSERT_EQ(asked.size(), 3u);
   EXPECT_TRUE(asked[0].info.disposed);
@@ -257,16 +250,11 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
 
 TEST_F(DialogueOnTheBus, TheNextStepBeginsWhereTheOneBeforeHasEnded) {
   EXPECT_EQ(say("Flakey, turn left and go forward"),
-            std::vector<std::string>{"I turn 90 degrees to the left, and then I go forward 1 m"});
+            "I turn 90 degrees to the left, and then I go forward 1 m");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  v1::GoalStatus status;
-  status.id(asked[0].data.id());
-  status.state(v1::GOAL_SUCCEEDED);
-  status.reason("turned");
-  statuses.write(status);
-  dialogue->step();
-  EXPECT_EQ(answers(), (std::vector<std::string>{"done: turned", "I go forward 1 m"}));
+  EXPECT_EQ(tell(asked[0].data.id(), v1::GOAL_SUCCEEDED, "turned"),
+            "done: turned / I go forward 1 m");
   const auto next = goals.take();
   ASSERT_FALSE(next.empty());
   EXPECT_EQ(next.back().data.functor(), "go_to");
@@ -278,7 +266,7 @@ TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
   asked.beliefs()[0].name("asking-about");
   asked.beliefs()[0].value("\"given\"");
   beliefs.write(asked);
-  EXPECT_EQ(say("here you are"), std::vector<std::string>{"thank you"});
+  EXPECT_EQ(say("here you are"), "thank you");
   const auto claimed = claims.take();
   ASSERT_EQ(claimed.size(), 1u);
   EXPECT_EQ(claimed[0].data.name(), "given");
@@ -300,15 +288,14 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   dialogue->step();
   beliefs.write(found);
   claims.take();
-  EXPECT_EQ(say("Flakey, where is Karen?"), std::vector<std::string>{"I found karen at EJ-231"});
+  EXPECT_EQ(say("Flakey, where is Karen?"), "I found karen at EJ-231");
   EXPECT_TRUE(claims.take().empty());
-  EXPECT_EQ(say("ask Karen"), std::vector<std::string>{"thank you"});
+  EXPECT_EQ(say("ask Karen"), "thank you");
   std::vector<std::string> told;
   for (const auto& sample : claims.take())
     told.push_back(sample.data.name() + " " + sample.data.value());
   EXPECT_EQ(told, (std::vector<std::string>{"answer \"karen\"", "knows-where-john (\"karen\")"}));
-  EXPECT_EQ(say("Flakey, Karen left"),
-            std::vector<std::string>{"I no longer believe that karen is at EJ-231"});
+  EXPECT_EQ(say("Flakey, Karen left"), "I no longer believe that karen is at EJ-231");
   std::vector<std::string> values;
   for (const auto& sample : claims.take())
     values.push_back(sample.info.disposed ? "disposed" : sample.data.value());
@@ -317,8 +304,7 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   start();
   dialogue->step();
   answers();
-  EXPECT_EQ(say("Flakey, where is Karen?"),
-            std::vector<std::string>{"nobody has told me where karen is"});
+  EXPECT_EQ(say("Flakey, where is Karen?"), "nobody has told me where karen is");
 }
 
 TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
