@@ -66,6 +66,10 @@ class CoreTest : public testing::Test {
     note(outputs.intended.news);
     return outputs;
   }
+  Core::Outputs ask(std::vector<Core::Heard::Goal> goals) {
+    inputs_.heard.goals = std::move(goals);
+    return step();
+  }
   void note(const News& news) {
     for (const GoalStatus& status : news.changed)
       statuses_[status.id] = status;
@@ -83,8 +87,7 @@ class CoreTest : public testing::Test {
 };
 
 TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  const Core::Outputs first = step();
+  const Core::Outputs first = ask({written(1, kKaren)});
   EXPECT_FALSE(first.intended.behaviors.empty());
   EXPECT_EQ(state(1), GoalState::kUnderway);
   EXPECT_TRUE(says(first.notes, "\"go_to\" of \"a test\": underway"));
@@ -93,8 +96,7 @@ TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
 
 // The robot does not come nearer, since nobody drives it.
 TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   step();
   const std::uint64_t heard = inputs_.behaviors_cycle;
   for (int i = 0; i < 1000 && !ended(state(1)); ++i) {
@@ -111,8 +113,7 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
 
 // A minute at the stick is no minute without progress: the goal's patience (20 s) does not run.
 TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   inputs_.heard.grants = {{false, "", "", "karen"}};
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), GoalState::kSuspended);
@@ -147,15 +148,13 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
 }
 
 TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
-  inputs_.heard.goals = {written(1, kKaren), written(2, kJohn)};
-  step();
+  ask({written(1, kKaren), written(2, kJohn)});
   inputs_.heard.lost_requesters = {kKaren};
   step();
   EXPECT_EQ(state(1), GoalState::kCanceled);
   EXPECT_FALSE(ended(state(2)));
   // Another writer has written it anew, and owns it from then on.
-  inputs_.heard.goals = {written(2, kKaren)};
-  step();
+  ask({written(2, kKaren)});
   inputs_.heard.lost_requesters = {kJohn};
   step();
   EXPECT_FALSE(ended(state(2)));
@@ -167,15 +166,13 @@ TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
     static std::uint64_t number = 0;
     Core::Heard::Goal goal = written(++number, asks);
     goal.event.goal.writer_lost = WriterLost::kKeep;
-    inputs_.heard.goals = {goal};
-    step();
+    ask({goal});
     if (gone)
       inputs_.heard.lost_requesters = {asks};
     step();
     goal.event.kind = GoalEvent::Kind::kDisposed;
     goal.writer = withdraws;
-    inputs_.heard.goals = {goal};
-    step();
+    ask({goal});
     EXPECT_EQ(state(number), GoalState::kCanceled);
     return statuses_.at({5, number}).reason;
   };
@@ -311,8 +308,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
 }
 
 TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   EXPECT_TRUE(core_.between({}, 0.9).news.changed.empty());
   note(core_.between({}, 1.1).news);
   EXPECT_EQ(statuses_.at({5, 1}).code, GoalCode::kNoRobot);
@@ -323,20 +319,17 @@ TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
 }
 
 TEST_F(CoreTest, AnEmergencyStopThatWasResetMeanwhileEndsGoalsAsWell) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   inputs_.heard.grants = {{true, "button"}, {false, ""}};
   step();
   EXPECT_EQ(state(1), GoalState::kCanceled);
   inputs_.heard.grants = {{false, ""}};
-  inputs_.heard.goals = {written(2, kKaren)};
-  step();
+  ask({written(2, kKaren)});
   EXPECT_EQ(state(2), GoalState::kUnderway);
 }
 
 TEST_F(CoreTest, ASuspendedExecutionReleasesTheRobot) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   core_.processes().find("execute-intentions")->suspend();
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), GoalState::kSuspended);
@@ -347,8 +340,7 @@ TEST_F(CoreTest, ASuspendedExecutionReleasesTheRobot) {
 }
 
 TEST_F(CoreTest, AnIntentionIsInterruptedByItsNameNumberOrSchema) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  const IntentionNode node = step().intended.nodes.at(0);
+  const IntentionNode node = ask({written(1, kKaren)}).intended.nodes.at(0);
   EXPECT_EQ(core_.ask(node.name, ProcessAction::interrupt, 0), "");
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(core_.ask("I" + std::to_string(node.id), ProcessAction::resume, 0), "");
@@ -388,14 +380,12 @@ TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
 }
 
 TEST_F(CoreTest, AnEmergencyStopSaysWhichProgramPressedIt) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   inputs_.heard.grants = {{true, "button"}};
   step();
   EXPECT_NE(statuses_.at({5, 1}).reason.find("button"), std::string::npos);
   inputs_.heard.grants = {{false, ""}};
-  inputs_.heard.goals = {written(2, kKaren)};
-  step();
+  ask({written(2, kKaren)});
   inputs_.heard.grants = {{true, ""}};
   step();
   EXPECT_NE(statuses_.at({5, 2}).reason.find("a program without a name"), std::string::npos);
@@ -484,8 +474,7 @@ TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
 }
 
 TEST_F(InLockstep, ASimulatorMayStandStillForAsLongAsItLikes) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  step();
+  ask({written(1, kKaren)});
   EXPECT_TRUE(core_.between({}, 100.0).news.changed.empty());
 }
 

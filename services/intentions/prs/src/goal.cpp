@@ -1,65 +1,36 @@
 #include "saphira/intentions/goal.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdio>
 
 namespace saphira::intentions {
 
+namespace {
+
+constexpr std::array<const char*, 7> kStates{"waiting",   "refused", "underway", "suspended",
+                                             "succeeded", "failed",  "canceled"};
+static_assert(kStates.size() == static_cast<std::size_t>(GoalState::kCanceled) + 1);
+constexpr std::array<const char*, 16> kCodes{
+    "none",     "unknown_functor", "bad_argument", "changed",     "too_many", "forgotten",
+    "deadline", "blocked",         "no_robot",     "no_position", "no_route", "activity",
+    "timeout",  "disposed",        "writer_lost",  "preempted"};
+static_assert(kCodes.size() == static_cast<std::size_t>(GoalCode::kPreempted) + 1);
+
+template <class Names, class Enum>
+const char* name_in(const Names& names, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < names.size() ? names[index] : "?";
+}
+
+}  // namespace
+
 const char* name_of(GoalState state) {
-  switch (state) {
-    case GoalState::kWaiting:
-      return "waiting";
-    case GoalState::kRefused:
-      return "refused";
-    case GoalState::kUnderway:
-      return "underway";
-    case GoalState::kSuspended:
-      return "suspended";
-    case GoalState::kSucceeded:
-      return "succeeded";
-    case GoalState::kFailed:
-      return "failed";
-    case GoalState::kCanceled:
-      return "canceled";
-  }
-  return "?";
+  return name_in(kStates, state);
 }
 
 const char* name_of(GoalCode code) {
-  switch (code) {
-    case GoalCode::kNone:
-      return "none";
-    case GoalCode::kUnknownFunctor:
-      return "unknown_functor";
-    case GoalCode::kBadArgument:
-      return "bad_argument";
-    case GoalCode::kChanged:
-      return "changed";
-    case GoalCode::kTooMany:
-      return "too_many";
-    case GoalCode::kForgotten:
-      return "forgotten";
-    case GoalCode::kDeadline:
-      return "deadline";
-    case GoalCode::kBlocked:
-      return "blocked";
-    case GoalCode::kNoRobot:
-      return "no_robot";
-    case GoalCode::kNoPosition:
-      return "no_position";
-    case GoalCode::kNoRoute:
-      return "no_route";
-    case GoalCode::kActivity:
-      return "activity";
-    case GoalCode::kTimeout:
-      return "timeout";
-    case GoalCode::kDisposed:
-      return "disposed";
-    case GoalCode::kWriterLost:
-      return "writer_lost";
-    case GoalCode::kPreempted:
-      return "preempted";
-  }
-  return "?";
+  return name_in(kCodes, code);
 }
 
 std::string describe(const GoalId& id) {
