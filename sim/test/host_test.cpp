@@ -410,7 +410,6 @@ TEST_F(HostTest, RunsAsFastAsItsClientReads) {
   start();
   Client client(*options_.socket);
   client.open();
-  protocol::DeadReckoning reckoning;
   const protocol::RobotParameters parameters = protocol::load_parameters(options_.robot);
   const auto begin = std::chrono::steady_clock::now();
   client.send(encode(protocol::RotationVelocity{0.5}));
@@ -418,7 +417,7 @@ TEST_F(HostTest, RunsAsFastAsItsClientReads) {
   double last = 0.0;
   constexpr int kPackets = 2000;
   for (int i = 0; i < kPackets; ++i) {
-    const double th = reckoning.update(client.information(), parameters).th;
+    const double th = interpret(client.information(), parameters).th;
     turned += norm2_angle(th - last);
     last = th;
     client.send(encode(protocol::Pulse{}));
