@@ -381,26 +381,5 @@ TEST(LaterServer, TheWatchdogIsTheFiles) {
   EXPECT_EQ(server.counters().watchdog_stops, 1U);
 }
 
-// The server survives every command number with every kind of argument, and counts unknown ones.
-TEST(LaterServer, EveryNumberIsSurvived) {
-  Bench b("p3dx-sh");
-  b.open();
-  for (int number = 3; number < 256; ++number) {
-    for (const Bytes& argument : {Bytes{}, Bytes{0x3B}, Bytes{0x3B, 1, 0}, Bytes{0x1B, 1, 0},
-                                  Bytes{0x2B, 1, 65}, Bytes{0x2B, 65, 0}, Bytes{0x99, 1}}) {
-      Bytes body{static_cast<std::uint8_t>(number)};
-      body.insert(body.end(), argument.begin(), argument.end());
-      b.server_.receive(protocol::frame(body));
-      if (!b.server_.is_open())
-        b.open();  // a reset
-      b.server_.take_output();
-    }
-  }
-  b.send(protocol::Polling{{0, 1}});
-  b.advance(1.0);
-  EXPECT_GT(b.server_.counters().unknown_commands, 100U);
-  EXPECT_GT(b.server_.counters().unsupported_commands, 10U);
-}
-
 }  // namespace
 }  // namespace saphira::sim

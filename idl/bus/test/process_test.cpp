@@ -165,16 +165,6 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   EXPECT_TRUE(reads.take().empty());
 }
 
-TEST_F(Processes, WriterThatEndsIsLostAtOnce) {
-  auto goals = node_->reader(topics::kGoals);
-  auto writer = peer("writer");
-  ASSERT_EQ(take_at_least(*node_, goals, 1).size(), 1U);
-  writer.signal(SIGTERM);
-  const auto asked = Clock::now();
-  EXPECT_TRUE(eventually(*node_, [&] { return !goals.take_lost().empty(); }));
-  EXPECT_LT(seconds_since(asked), 2.0);
-}
-
 TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {
   auto states = node_->reader(topics::kRobotState);
   for (int round = 0; round < 3; ++round) {
