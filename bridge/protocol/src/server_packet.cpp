@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "fields.hpp"
 
@@ -18,6 +19,39 @@ Bytes finish(Bytes body) {
   body.resize(std::min(body.size(), kMaxBody));
   return frame(body);
 }
+
+constexpr std::pair<PacketType, std::string_view> kNames[] = {
+    {PacketType::kConfig, "CONFIG"},
+    {PacketType::kNoPower, "information"},
+    {PacketType::kStopped, "information"},
+    {PacketType::kMoving, "information"},
+    {PacketType::kNoPower2, "information"},
+    {PacketType::kSimLaser, "simulated laser"},
+    {PacketType::kSimLaserExtended, "simulated laser, extended"},
+    {PacketType::kSimStatus, "SIMSTAT"},
+    {PacketType::kSimInfo, "SIMINFO"},
+    {PacketType::kSimMapChanged, "simulator's map changed"},
+    {PacketType::kAcceleration, "acceleration"},
+    {PacketType::kTorque, "torque"},
+    {PacketType::kVision, "vision"},
+    {PacketType::kEncoder, "ENCODER"},
+    {PacketType::kHeading, "heading"},
+    {PacketType::kGyro, "GYRO"},
+    {PacketType::kImu, "IMU"},
+    {PacketType::kArmStatus, "ARM status"},
+    {PacketType::kArmInfo, "ARM info"},
+    {PacketType::kAux1, "SERAUX"},
+    {PacketType::kAux2, "SERAUX2"},
+    {PacketType::kAux3, "SERAUX3"},
+    {PacketType::kCompass, "COMPASS"},
+    {PacketType::kPlaylist, "PLAYLIST"},
+    {PacketType::kGripper, "GRIPPER"},
+    {PacketType::kIo, "IO"},
+    {PacketType::kJoystick, "JOYSTICK"},
+    {PacketType::kBattery, "BATTERY"},
+    {PacketType::kReset1, "controller reset"},
+    {PacketType::kReset2, "controller reset"},
+};
 
 // ---- The fields of each packet: one list writes and reads them.
 
@@ -349,64 +383,9 @@ Bytes encode(const OtherPacket& packet) {
 }
 
 std::string_view packet_type_name(std::uint8_t type) {
-  switch (static_cast<PacketType>(type)) {
-    case PacketType::kConfig:
-      return "CONFIG";
-    case PacketType::kNoPower:
-    case PacketType::kStopped:
-    case PacketType::kMoving:
-    case PacketType::kNoPower2:
-      return "information";
-    case PacketType::kSimLaser:
-      return "simulated laser";
-    case PacketType::kSimLaserExtended:
-      return "simulated laser, extended";
-    case PacketType::kSimStatus:
-      return "SIMSTAT";
-    case PacketType::kSimInfo:
-      return "SIMINFO";
-    case PacketType::kSimMapChanged:
-      return "simulator's map changed";
-    case PacketType::kAcceleration:
-      return "acceleration";
-    case PacketType::kTorque:
-      return "torque";
-    case PacketType::kVision:
-      return "vision";
-    case PacketType::kEncoder:
-      return "ENCODER";
-    case PacketType::kHeading:
-      return "heading";
-    case PacketType::kGyro:
-      return "GYRO";
-    case PacketType::kImu:
-      return "IMU";
-    case PacketType::kArmStatus:
-      return "ARM status";
-    case PacketType::kArmInfo:
-      return "ARM info";
-    case PacketType::kAux1:
-      return "SERAUX";
-    case PacketType::kAux2:
-      return "SERAUX2";
-    case PacketType::kAux3:
-      return "SERAUX3";
-    case PacketType::kCompass:
-      return "COMPASS";
-    case PacketType::kPlaylist:
-      return "PLAYLIST";
-    case PacketType::kGripper:
-      return "GRIPPER";
-    case PacketType::kIo:
-      return "IO";
-    case PacketType::kJoystick:
-      return "JOYSTICK";
-    case PacketType::kBattery:
-      return "BATTERY";
-    case PacketType::kReset1:
-    case PacketType::kReset2:
-      return "controller reset";
-  }
+  for (const auto& [known, name] : kNames)
+    if (static_cast<std::uint8_t>(known) == type)
+      return name;
   return {};
 }
 
