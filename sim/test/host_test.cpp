@@ -272,21 +272,6 @@ TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
   EXPECT_NE(trouble().find("--position of robot 2: "), std::string::npos) << trouble();
 }
 
-TEST_F(HostTest, TheWatchdogWorksLive) {
-  options_.rate = 50.0;
-  start();
-  Client client(*options_.socket);
-  client.open();
-  client.send(encode(protocol::Velocity{0.2}));
-  protocol::InformationPacket packet;
-  for (int i = 0; i < 15; ++i)
-    packet = client.information();
-  EXPECT_EQ(packet.motors, protocol::Motors::kMoving);
-  for (int i = 0; i < 10; ++i)
-    packet = client.information();
-  EXPECT_EQ(packet.motors, protocol::Motors::kStopped);
-}
-
 TEST_F(HostTest, SingleStepsAndFlushesTheTrace) {
   options_.step = true;
   start();
@@ -396,6 +381,7 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
   const std::string bare = directory_ + "/bare.wld";
   std::ofstream(bare) << "width 1000 height 1000\n";
   EXPECT_NE(with([&](Options& o) { o.world = bare; }).find("position"), std::string::npos);
+  EXPECT_NE(with([](Options& o) { o.more.push_back({}); }).find("position"), std::string::npos);
 
   start();
   EXPECT_TRUE(logs("listening"));
@@ -410,7 +396,6 @@ TEST_F(HostTest, RunsAsFastAsItsClientReads) {
   start();
   Client client(*options_.socket);
   client.open();
-  protocol::DeadReckoning reckoning;
   const protocol::RobotParameters parameters = protocol::load_parameters(options_.robot);
   const auto begin = std::chrono::steady_clock::now();
   client.send(encode(protocol::RotationVelocity{0.5}));
@@ -418,7 +403,7 @@ TEST_F(HostTest, RunsAsFastAsItsClientReads) {
   double last = 0.0;
   constexpr int kPackets = 2000;
   for (int i = 0; i < kPackets; ++i) {
-    const double th = reckoning.update(client.information(), parameters).th;
+    const double th = interpret(client.information(), parameters).th;
     turned += norm2_angle(th - last);
     last = th;
     client.send(encode(protocol::Pulse{}));
@@ -457,16 +442,6 @@ TEST_F(HostTest, ServesSeveralRobotsInOneWorld) {
   const std::string third = directory_ + "/trace-3.csv";
   EXPECT_EQ(parse_trace(read_file(third), third).back().pose_in_world, (Pose{6.0, 7.0, 0.0}));
   EXPECT_FALSE(std::filesystem::exists(*options_.socket + "-3"));
-}
-
-TEST_F(HostTest, SeveralRobotsNeedSeveralPlaces) {
-  options_.more.push_back({});
-  try {
-    run(options_, stop_);
-    FAIL() << "no error";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("position"), std::string::npos) << error.what();
-  }
 }
 
 // One picture of a stream.

@@ -32,7 +32,6 @@ void decode_everything(const protocol::Bytes& body) {
       protocol::decode_command(protocol::ByteView(again).subspan(3, again.size() - 5)).index() ==
           command.index());
   protocol::decode_sync2_reply(body);
-  protocol::PacketCounters().count(body);
   std::visit(
       [](const auto& packet) {
         const protocol::Bytes bytes = protocol::encode(packet);
@@ -49,7 +48,6 @@ void decode_everything(const protocol::Bytes& body) {
       require(std::abs(in.velocity) <= 2.0 && std::abs(in.rotation_velocity) <= 7.0);
       require(std::abs(in.th) <= kPi && in.sonars.empty() && in.ptu <= protocol::kLongestPulse);
     }
-    protocol::DeadReckoning().update(*packet, parameters);
     const protocol::Bytes copy = protocol::encode(*packet);
     const auto back =
         protocol::decode_information(protocol::ByteView(copy).subspan(3, copy.size() - 5));

@@ -119,35 +119,6 @@ std::optional<Pose> read_pose(ByteView body) {
   return Pose{values[0] / 1000.0, values[1] / 1000.0, norm2_angle(radians(values[2]))};
 }
 
-// True where a command has a type of its own.
-bool is_typed(Number number) {
-  switch (number) {
-    case Number::kPolling:
-    case Number::kVelocity:
-    case Number::kHeading:
-    case Number::kDeltaHeading:
-    case Number::kRotationVelocity:
-    case Number::kWheelVelocities:
-    case Number::kDigitalOutput:
-    case Number::kTimer:
-    case Number::kGripper:
-    case Number::kPtu:
-    case Number::kEnable:
-    case Number::kAcceleration:
-    case Number::kMaxVelocity:
-    case Number::kMove:
-    case Number::kRotate:
-    case Number::kMaxRotationVelocity:
-    case Number::kRotationAcceleration:
-    case Number::kDeltaSetpoint:
-    case Number::kSonar:
-    case Number::kLateralVelocity:
-      return true;
-    default:
-      return false;
-  }
-}
-
 // A command that is a number and an argument.
 Command decode_plain(ByteView body) {
   const CommandRule* found = rule(body[0]);
@@ -176,6 +147,62 @@ Command decode_plain(ByteView body) {
   if (!text && (none || argument.kind == Argument::Kind::kInt))
     return Integer{number, argument.value};
   return Unknown{body[0]};
+}
+
+// A command with a type of its own whose argument is a number.
+std::optional<Command> decode_number(Number number, const Argument& argument, ByteView body,
+                                     double vel2_unit) {
+  const int value = argument.value;
+  // The devices' arguments are bit patterns or counts: no sign.
+  const auto word = static_cast<std::uint16_t>(value & 0xFFFF);
+  switch (number) {
+    case Number::kVelocity:
+      return Velocity{value / 1000.0};
+    case Number::kHeading:
+      return Heading{radians(value)};
+    case Number::kDeltaHeading:
+      return DeltaHeading{radians(value)};
+    case Number::kRotationVelocity:
+      return RotationVelocity{radians(value)};
+    case Number::kWheelVelocities: {
+      if (argument.kind != Argument::Kind::kInt)
+        return WheelVelocities{};
+      const auto right = static_cast<std::int8_t>(body[2]);
+      const auto left = static_cast<std::int8_t>(body[3]);
+      return WheelVelocities{left * vel2_unit, right * vel2_unit};
+    }
+    case Number::kDigitalOutput:
+      return DigitalOutput{static_cast<std::uint8_t>(word & 0xFFU),
+                           static_cast<std::uint8_t>(word >> 8U)};
+    case Number::kTimer:
+      return word < 8 ? Command{Timer{static_cast<std::uint8_t>(word)}} : Command{Unknown{body[0]}};
+    case Number::kGripper:
+      return Gripper{word};
+    case Number::kPtu:
+      return Ptu{word};
+    case Number::kEnable:
+      return Enable{value != 0};
+    case Number::kAcceleration:
+      return Acceleration{value / 1000.0};
+    case Number::kMaxVelocity:
+      return MaxVelocity{std::abs(value) / 1000.0};
+    case Number::kMove:
+      return Move{value / 1000.0};
+    case Number::kRotate:
+      return Rotate{radians(value)};
+    case Number::kMaxRotationVelocity:
+      return MaxRotationVelocity{radians(std::abs(value))};
+    case Number::kRotationAcceleration:
+      return RotationAcceleration{radians(value)};
+    case Number::kDeltaSetpoint:
+      return DeltaSetpoint{radians(value)};
+    case Number::kSonar:
+      return SonarSwitch{(word & 1U) != 0, static_cast<std::uint8_t>(word >> 1U & 0x7FU)};
+    case Number::kLateralVelocity:
+      return LateralVelocity{value / 1000.0};
+    default:
+      return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -288,7 +315,6 @@ Command decode_command(ByteView body, double vel2_unit) {
     return Unknown{};
   const Unknown unknown{body[0]};
   const Argument argument = read_argument(body, false);
-  const bool is_string = argument.kind == Argument::Kind::kString;
   const auto number = static_cast<Number>(body[0]);
   switch (number) {  // those whose argument has no meaning
     case Number::kPulse:
@@ -308,12 +334,8 @@ Command decode_command(ByteView body, double vel2_unit) {
     default:
       break;
   }
-  if (!is_typed(number))
-    return decode_plain(body);
-  if (argument.kind == Argument::Kind::kBroken)
-    return unknown;
   if (number == Number::kPolling) {
-    if (argument.kind == Argument::Kind::kInt)
+    if (argument.kind != Argument::Kind::kString && argument.kind != Argument::Kind::kNone)
       return unknown;
     Polling polling;
     for (const std::uint8_t byte : argument.text)
@@ -321,59 +343,12 @@ Command decode_command(ByteView body, double vel2_unit) {
         polling.sonars.push_back(static_cast<std::uint8_t>(byte - 1));
     return polling;
   }
-  if (is_string)
-    return unknown;
-  const int value = argument.value;
-  // The devices' arguments are bit patterns or counts: no sign.
-  const auto word = static_cast<std::uint16_t>(value & 0xFFFF);
-  switch (number) {
-    case Number::kVelocity:
-      return Velocity{value / 1000.0};
-    case Number::kHeading:
-      return Heading{radians(value)};
-    case Number::kDeltaHeading:
-      return DeltaHeading{radians(value)};
-    case Number::kRotationVelocity:
-      return RotationVelocity{radians(value)};
-    case Number::kWheelVelocities: {
-      if (argument.kind == Argument::Kind::kNone)
-        return WheelVelocities{};
-      const auto right = static_cast<std::int8_t>(body[2]);
-      const auto left = static_cast<std::int8_t>(body[3]);
-      return WheelVelocities{left * vel2_unit, right * vel2_unit};
-    }
-    case Number::kDigitalOutput:
-      return DigitalOutput{static_cast<std::uint8_t>(word & 0xFFU),
-                           static_cast<std::uint8_t>(word >> 8U)};
-    case Number::kTimer:
-      return word < 8 ? Command{Timer{static_cast<std::uint8_t>(word)}} : Command{unknown};
-    case Number::kGripper:
-      return Gripper{word};
-    case Number::kPtu:
-      return Ptu{word};
-    case Number::kEnable:
-      return Enable{value != 0};
-    case Number::kAcceleration:
-      return Acceleration{value / 1000.0};
-    case Number::kMaxVelocity:
-      return MaxVelocity{std::abs(value) / 1000.0};
-    case Number::kMove:
-      return Move{value / 1000.0};
-    case Number::kRotate:
-      return Rotate{radians(value)};
-    case Number::kMaxRotationVelocity:
-      return MaxRotationVelocity{radians(std::abs(value))};
-    case Number::kRotationAcceleration:
-      return RotationAcceleration{radians(value)};
-    case Number::kDeltaSetpoint:
-      return DeltaSetpoint{radians(value)};
-    case Number::kSonar:
-      return SonarSwitch{(word & 1U) != 0, static_cast<std::uint8_t>(word >> 1U & 0x7FU)};
-    case Number::kLateralVelocity:
-      return LateralVelocity{value / 1000.0};
-    default:
-      return unknown;
-  }
+  const std::optional<Command> typed = decode_number(number, argument, body, vel2_unit);
+  if (!typed)
+    return decode_plain(body);
+  return argument.kind == Argument::Kind::kInt || argument.kind == Argument::Kind::kNone
+             ? *typed
+             : Command{unknown};
 }
 
 Bytes encode_sync(int number) {

@@ -88,4 +88,25 @@ class Fields {
   bool ended_ = false;
 };
 
+/// Writes a field of any type; reads one. For lists of fields that do both.
+struct PutField {
+  Bytes& out;
+  void operator()(std::uint8_t value) const { put8(out, value); }
+  void operator()(std::int8_t value) const { put8(out, static_cast<std::uint8_t>(value)); }
+  void operator()(std::uint16_t value) const { put16(out, unsigned{value}); }
+  void operator()(std::int16_t value) const { put16(out, value); }
+  void operator()(std::uint32_t value) const { put32(out, value); }
+  void operator()(std::int32_t value) const { put32(out, value); }
+};
+
+struct GetField {
+  Fields& in;
+  void operator()(std::uint8_t& value) const { value = in.u8(); }
+  void operator()(std::int8_t& value) const { value = in.i8(); }
+  void operator()(std::uint16_t& value) const { value = in.u16(); }
+  void operator()(std::int16_t& value) const { value = in.i16(); }
+  void operator()(std::uint32_t& value) const { value = in.u32(); }
+  void operator()(std::int32_t& value) const { value = in.i32(); }
+};
+
 }  // namespace saphira::protocol

@@ -13,56 +13,28 @@ constexpr std::size_t kMinBody = 25;  // without sonars and trailing fields
 constexpr int kCompassTurn = 181;     // [2 deg] a whole turn; some servers count it from 1
 
 // In order, up to the first that is missing.
+void each_trailing(auto& more, const auto& visit) {
+  visit(more.battery) && visit(more.charge_state) && visit(more.rotation) && visit(more.faults) &&
+      visit(more.lateral) && visit(more.temperature) && visit(more.state_of_charge) &&
+      visit(more.time) && visit(more.flags3);
+}
+
 void put_trailing(Bytes& body, const TrailingFields& more) {
-  if (!more.battery)
-    return;
-  put16(body, unsigned{*more.battery});
-  if (!more.charge_state)
-    return;
-  put8(body, *more.charge_state);
-  if (!more.rotation)
-    return;
-  put16(body, *more.rotation);
-  if (!more.faults)
-    return;
-  put16(body, unsigned{*more.faults});
-  if (!more.lateral)
-    return;
-  put16(body, *more.lateral);
-  if (!more.temperature)
-    return;
-  put8(body, static_cast<std::uint8_t>(*more.temperature));
-  if (!more.state_of_charge)
-    return;
-  put8(body, *more.state_of_charge);
-  if (!more.time)
-    return;
-  put32(body, *more.time);
-  if (!more.flags3)
-    return;
-  put32(body, *more.flags3);
+  each_trailing(more, [&](const auto& field) {
+    if (field)
+      PutField{body}(*field);
+    return field.has_value();
+  });
 }
 
 TrailingFields read_trailing(Fields& in) {
   TrailingFields more;
-  if (in.left() >= 2)
-    more.battery = in.u16();
-  if (more.battery && in.left() >= 1)
-    more.charge_state = in.u8();
-  if (more.charge_state && in.left() >= 2)
-    more.rotation = in.i16();
-  if (more.rotation && in.left() >= 2)
-    more.faults = in.u16();
-  if (more.faults && in.left() >= 2)
-    more.lateral = in.i16();
-  if (more.lateral && in.left() >= 1)
-    more.temperature = in.i8();
-  if (more.temperature && in.left() >= 1)
-    more.state_of_charge = in.u8();
-  if (more.state_of_charge && in.left() >= 4)
-    more.time = in.u32();
-  if (more.time && in.left() >= 4)
-    more.flags3 = in.u32();
+  each_trailing(more, [&](auto& field) {
+    if (in.left() < sizeof *field)
+      return false;
+    GetField{in}(field.emplace());
+    return true;
+  });
   return more;
 }
 
@@ -220,22 +192,6 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
 int position_difference(std::uint16_t from, std::uint16_t to) {
   const auto forward = static_cast<int>((static_cast<unsigned>(to) - from) & kPositionMask);
   return forward > 0x3FFF ? forward - 0x8000 : forward;
-}
-
-Pose DeadReckoning::update(const InformationPacket& packet, const RobotParameters& parameters) {
-  if (known_) {
-    x_ += position_difference(last_x_, packet.x);
-    y_ += position_difference(last_y_, packet.y);
-  } else {
-    x_ = packet.x;
-    y_ = packet.y;
-    known_ = true;
-  }
-  last_x_ = packet.x;
-  last_y_ = packet.y;
-  return {static_cast<double>(x_) * parameters.distance_unit,
-          static_cast<double>(y_) * parameters.distance_unit,
-          norm2_angle(packet.th * parameters.angle_unit)};
 }
 
 }  // namespace saphira::protocol

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "fields.hpp"
 
@@ -18,26 +20,45 @@ Bytes finish(Bytes body) {
   return frame(body);
 }
 
-// ---- CONFIG is long; one list of its fields writes and reads it.
-
-struct Put {
-  Bytes& out;
-  void operator()(const std::string& text) const { put_string(out, text); }
-  void operator()(std::uint8_t value) const { put8(out, value); }
-  void operator()(std::uint16_t value) const { put16(out, unsigned{value}); }
-  void operator()(std::int16_t value) const { put16(out, value); }
+constexpr std::pair<PacketType, std::string_view> kNames[] = {
+    {PacketType::kConfig, "CONFIG"},
+    {PacketType::kNoPower, "information"},
+    {PacketType::kStopped, "information"},
+    {PacketType::kMoving, "information"},
+    {PacketType::kNoPower2, "information"},
+    {PacketType::kSimLaser, "simulated laser"},
+    {PacketType::kSimLaserExtended, "simulated laser, extended"},
+    {PacketType::kSimStatus, "SIMSTAT"},
+    {PacketType::kSimInfo, "SIMINFO"},
+    {PacketType::kSimMapChanged, "simulator's map changed"},
+    {PacketType::kAcceleration, "acceleration"},
+    {PacketType::kTorque, "torque"},
+    {PacketType::kVision, "vision"},
+    {PacketType::kEncoder, "ENCODER"},
+    {PacketType::kHeading, "heading"},
+    {PacketType::kGyro, "GYRO"},
+    {PacketType::kImu, "IMU"},
+    {PacketType::kArmStatus, "ARM status"},
+    {PacketType::kArmInfo, "ARM info"},
+    {PacketType::kAux1, "SERAUX"},
+    {PacketType::kAux2, "SERAUX2"},
+    {PacketType::kAux3, "SERAUX3"},
+    {PacketType::kCompass, "COMPASS"},
+    {PacketType::kPlaylist, "PLAYLIST"},
+    {PacketType::kGripper, "GRIPPER"},
+    {PacketType::kIo, "IO"},
+    {PacketType::kJoystick, "JOYSTICK"},
+    {PacketType::kBattery, "BATTERY"},
+    {PacketType::kReset1, "controller reset"},
+    {PacketType::kReset2, "controller reset"},
 };
 
-struct Get {
-  Fields& in;
-  void operator()(std::string& text) const { text = in.string(); }
-  void operator()(std::uint8_t& value) const { value = in.u8(); }
-  void operator()(std::uint16_t& value) const { value = in.u16(); }
-  void operator()(std::int16_t& value) const { value = in.i16(); }
-};
+// ---- The fields of each packet: one list writes and reads them.
 
-template <class Config, class Visit>
-void each_field(Config& c, const Visit& visit) {
+template <class T, class Packet>
+concept Is = std::is_same_v<std::remove_const_t<T>, Packet>;
+
+void fields(Is<ConfigPacket> auto& c, const auto& visit) {
   visit(c.robot_class);
   visit(c.subclass);
   visit(c.serial);
@@ -97,94 +118,145 @@ void each_field(Config& c, const Visit& visit) {
   visit(c.charge_threshold);
 }
 
-Bytes counted(Fields& in) {
-  const std::size_t count = in.u8();
-  Bytes out;
-  for (std::size_t i = 0; i < count && !in.ended(); ++i)
-    out.push_back(in.u8());
-  return out;
+void fields(Is<EncoderPacket> auto& p, const auto& visit) {
+  visit(p.left);
+  visit(p.right);
 }
 
-IoPacket read_io(Fields& in) {
-  IoPacket out;
-  out.digital_inputs = counted(in);
-  out.digital_outputs = counted(in);
-  const std::size_t count = in.u8();
-  for (std::size_t i = 0; i < count && !in.ended(); ++i)
-    out.analogs.push_back(in.u16());
-  return out;
+void fields(Is<IoPacket> auto& p, const auto& visit) {
+  visit(p.digital_inputs, 32);
+  visit(p.digital_outputs, 32);
+  visit(p.analogs, 64);
 }
 
-GyroPacket read_gyro(Fields& in) {
-  GyroPacket out;
-  const std::size_t count = in.u8();
-  for (std::size_t i = 0; i < count && !in.ended(); ++i) {
-    const std::uint16_t rate = in.u16();
-    out.readings.push_back({rate, in.u8()});
-  }
-  return out;
+void fields(Is<GripperPacket> auto& p, const auto& visit) {
+  visit(p.kind);
+  visit(p.state);
+  visit(p.grasp_time);
 }
 
-VisionPacket read_vision(Fields& in) {
+void fields(Is<GyroPacket> auto& p, const auto& visit) {
+  visit(p.readings, 64);
+}
+
+void fields(Is<JoystickPacket> auto& p, const auto& visit) {
+  visit(p.button1);
+  visit(p.button2);
+  visit(p.x);
+  visit(p.y);
+  visit(p.throttle);
+}
+
+void fields(Is<BatteryPacket> auto& p, const auto& visit) {
+  visit(p.batteries);
+  visit(p.bytes_each);
+  visit.rest(p.data);
+}
+
+void fields(Is<VisionPacket> auto& p, const auto& visit) {
   using Mode = VisionChannel::Mode;
-  VisionPacket out;
-  for (VisionChannel& channel : out.channels) {
-    const std::uint8_t mode = in.u8();
-    if (mode > 2) {
-      in.u8();  // unknown mode: the rest cannot be read
-      while (!in.ended())
-        in.u8();
-      return out;
-    }
-    channel.mode = static_cast<Mode>(mode);
-    channel.x = in.i16();
+  for (auto& channel : p.channels) {
+    visit(channel.mode);
+    visit(channel.x);
     if (channel.mode == Mode::kLine) {
-      channel.first = in.u16();
-      channel.count = in.u16();
+      visit(channel.first);
+      visit(channel.count);
       continue;
     }
-    channel.y = in.i16();
-    channel.area = in.u16();
+    visit(channel.y);
+    visit(channel.area);
     if (channel.mode == Mode::kBlobWithBox) {
-      channel.height = in.u16();
-      channel.width = in.u16();
+      visit(channel.height);
+      visit(channel.width);
     }
   }
+}
+
+void fields(Is<SimLaserPacket> auto& p, const auto& visit) {
+  visit(p.x);
+  visit(p.y);
+  visit(p.th);
+  visit(p.total);
+  visit(p.first);
+  visit(p.ranges, (kMaxBody - 12) / 2);
+}
+
+void fields(Is<SimStatusPacket> auto& p, const auto& visit) {
+  std::uint16_t unused = 0;
+  visit(unused);
+  visit(p.flags);
+  visit(p.sim_interval);
+  visit(p.real_interval);
+  visit(p.last_interval);
+  visit(p.true_x);
+  visit(p.true_y);
+  visit(p.true_z);
+  visit(p.true_th);
+  visit(p.latitude);
+  visit(p.longitude);
+  visit(p.altitude);
+  visit(p.gps);
+  visit(p.odometry_error_x);
+  visit(p.odometry_error_y);
+  visit(p.odometry_error_th);
+}
+
+struct Put : PutField {
+  using PutField::operator();
+  void operator()(const std::string& text) const { put_string(out, text); }
+  void operator()(VisionChannel::Mode mode) const { put8(out, static_cast<unsigned>(mode)); }
+  void operator()(const GyroPacket::Reading& reading) const {
+    (*this)(reading.rate);
+    (*this)(reading.temperature);
+  }
+  /// Behind their number; those that are too many are left out.
+  template <class T>
+  void operator()(const std::vector<T>& items, std::size_t most) const {
+    const std::size_t count = std::min(items.size(), most);
+    put8(out, static_cast<unsigned>(count));
+    for (std::size_t i = 0; i < count; ++i)
+      (*this)(items[i]);
+  }
+  void rest(const Bytes& bytes) const { out.insert(out.end(), bytes.begin(), bytes.end()); }
+};
+
+struct Get : GetField {
+  using GetField::operator();
+  void operator()(std::string& text) const { text = in.string(); }
+  void operator()(VisionChannel::Mode& mode) const {
+    const std::uint8_t value = in.u8();
+    if (value <= static_cast<unsigned>(VisionChannel::Mode::kBlobWithBox)) {
+      mode = static_cast<VisionChannel::Mode>(value);
+      return;
+    }
+    in.rest();  // unknown mode: the rest cannot be read
+    in.u8();
+  }
+  void operator()(GyroPacket::Reading& reading) const {
+    (*this)(reading.rate);
+    (*this)(reading.temperature);
+  }
+  template <class T>
+  void operator()(std::vector<T>& items, std::size_t /*most*/) const {
+    const std::size_t count = in.u8();
+    for (std::size_t i = 0; i < count && !in.ended(); ++i)
+      (*this)(items.emplace_back());
+  }
+  void rest(Bytes& bytes) const { bytes = in.rest(); }
+};
+
+template <class Packet>
+Packet read_packet(Fields& in) {
+  Packet out;
+  fields(out, Get{in});
   return out;
 }
 
-SimLaserPacket read_sim_laser(Fields& in) {
-  SimLaserPacket out;
-  out.x = in.i16();
-  out.y = in.i16();
-  out.th = in.i16();
-  out.total = in.u16();
-  out.first = in.u16();
-  const std::size_t count = in.u8();
-  for (std::size_t i = 0; i < count && !in.ended(); ++i)
-    out.ranges.push_back(in.u16());
-  return out;
-}
-
-SimStatusPacket read_sim_status(Fields& in) {
-  SimStatusPacket out;
-  in.u16();
-  out.flags = in.u32();
-  out.sim_interval = in.u16();
-  out.real_interval = in.u16();
-  out.last_interval = in.u16();
-  out.true_x = in.i32();
-  out.true_y = in.i32();
-  out.true_z = in.i32();
-  out.true_th = in.i32();
-  out.latitude = in.i32();
-  out.longitude = in.i32();
-  out.altitude = in.i32();
-  out.gps = in.i8();
-  out.odometry_error_x = in.i32();
-  out.odometry_error_y = in.i32();
-  out.odometry_error_th = in.i32();
-  return out;
+template <class Packet>
+Bytes write_packet(PacketType type, const Packet& packet) {
+  Bytes body = begin(type);
+  fields(packet, Put{body});
+  return finish(std::move(body));
 }
 
 std::optional<ServerPacket> decode_known(PacketType type, Fields& in) {
@@ -198,51 +270,30 @@ std::optional<ServerPacket> decode_known(PacketType type, Fields& in) {
         return std::nullopt;
       return out;
     }
-    case PacketType::kEncoder: {
-      EncoderPacket out;
-      out.left = in.i32();
-      out.right = in.i32();
-      return out;
-    }
-    case PacketType::kIo:
-      return read_io(in);
-    case PacketType::kGripper: {
-      GripperPacket out;
-      out.kind = in.u8();
-      out.state = in.u8();
-      out.grasp_time = in.u8();
-      return out;
-    }
     case PacketType::kAux1:
       return AuxPacket{1, in.rest()};
     case PacketType::kAux2:
       return AuxPacket{2, in.rest()};
     case PacketType::kAux3:
       return AuxPacket{3, in.rest()};
+    case PacketType::kEncoder:
+      return read_packet<EncoderPacket>(in);
+    case PacketType::kIo:
+      return read_packet<IoPacket>(in);
+    case PacketType::kGripper:
+      return read_packet<GripperPacket>(in);
     case PacketType::kGyro:
-      return read_gyro(in);
-    case PacketType::kJoystick: {
-      JoystickPacket out;
-      out.button1 = in.u8();
-      out.button2 = in.u8();
-      out.x = in.u16();
-      out.y = in.u16();
-      out.throttle = in.u16();
-      return out;
-    }
-    case PacketType::kBattery: {
-      BatteryPacket out;
-      out.batteries = in.u8();
-      out.bytes_each = in.u8();
-      out.data = in.rest();
-      return out;
-    }
+      return read_packet<GyroPacket>(in);
+    case PacketType::kJoystick:
+      return read_packet<JoystickPacket>(in);
+    case PacketType::kBattery:
+      return read_packet<BatteryPacket>(in);
     case PacketType::kVision:
-      return read_vision(in);
+      return read_packet<VisionPacket>(in);
     case PacketType::kSimLaser:
-      return read_sim_laser(in);
+      return read_packet<SimLaserPacket>(in);
     case PacketType::kSimStatus:
-      return read_sim_status(in);
+      return read_packet<SimStatusPacket>(in);
     default:
       return std::nullopt;
   }
@@ -265,7 +316,7 @@ ServerPacket decode_packet(ByteView body) {
     return OtherPacket{body[0], Bytes(body.begin() + 1, body.end())};
   if (auto* config = std::get_if<ConfigPacket>(&*packet)) {
     Fields all(body.subspan(1));
-    each_field(*config, Get{all});
+    fields(*config, Get{all});
   }
   return *std::move(packet);
 }
@@ -278,38 +329,43 @@ bool is_read(PacketType type) {
 }
 
 Bytes encode(const ConfigPacket& packet) {
-  Bytes body = begin(PacketType::kConfig);
-  each_field(packet, Put{body});
-  return finish(std::move(body));
+  return write_packet(PacketType::kConfig, packet);
 }
 
 Bytes encode(const EncoderPacket& packet) {
-  Bytes body = begin(PacketType::kEncoder);
-  put32(body, packet.left);
-  put32(body, packet.right);
-  return finish(std::move(body));
+  return write_packet(PacketType::kEncoder, packet);
 }
 
 Bytes encode(const IoPacket& packet) {
-  Bytes body = begin(PacketType::kIo);
-  for (const Bytes* bits : {&packet.digital_inputs, &packet.digital_outputs}) {
-    const std::size_t count = std::min<std::size_t>(bits->size(), 32);
-    put8(body, static_cast<unsigned>(count));
-    body.insert(body.end(), bits->begin(), bits->begin() + static_cast<std::ptrdiff_t>(count));
-  }
-  const std::size_t count = std::min<std::size_t>(packet.analogs.size(), 64);
-  put8(body, static_cast<unsigned>(count));
-  for (std::size_t i = 0; i < count; ++i)
-    put16(body, unsigned{packet.analogs[i]});
-  return finish(std::move(body));
+  return write_packet(PacketType::kIo, packet);
 }
 
 Bytes encode(const GripperPacket& packet) {
-  Bytes body = begin(PacketType::kGripper);
-  put8(body, packet.kind);
-  put8(body, packet.state);
-  put8(body, packet.grasp_time);
-  return finish(std::move(body));
+  return write_packet(PacketType::kGripper, packet);
+}
+
+Bytes encode(const GyroPacket& packet) {
+  return write_packet(PacketType::kGyro, packet);
+}
+
+Bytes encode(const JoystickPacket& packet) {
+  return write_packet(PacketType::kJoystick, packet);
+}
+
+Bytes encode(const BatteryPacket& packet) {
+  return write_packet(PacketType::kBattery, packet);
+}
+
+Bytes encode(const VisionPacket& packet) {
+  return write_packet(PacketType::kVision, packet);
+}
+
+Bytes encode(const SimLaserPacket& packet) {
+  return write_packet(PacketType::kSimLaser, packet);
+}
+
+Bytes encode(const SimStatusPacket& packet) {
+  return write_packet(PacketType::kSimStatus, packet);
 }
 
 Bytes encode(const AuxPacket& packet) {
@@ -320,87 +376,6 @@ Bytes encode(const AuxPacket& packet) {
   return finish(std::move(body));
 }
 
-Bytes encode(const GyroPacket& packet) {
-  Bytes body = begin(PacketType::kGyro);
-  const std::size_t count = std::min<std::size_t>(packet.readings.size(), 64);
-  put8(body, static_cast<unsigned>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    put16(body, unsigned{packet.readings[i].rate});
-    put8(body, packet.readings[i].temperature);
-  }
-  return finish(std::move(body));
-}
-
-Bytes encode(const JoystickPacket& packet) {
-  Bytes body = begin(PacketType::kJoystick);
-  put8(body, packet.button1);
-  put8(body, packet.button2);
-  put16(body, unsigned{packet.x});
-  put16(body, unsigned{packet.y});
-  put16(body, unsigned{packet.throttle});
-  return finish(std::move(body));
-}
-
-Bytes encode(const BatteryPacket& packet) {
-  Bytes body = begin(PacketType::kBattery);
-  put8(body, packet.batteries);
-  put8(body, packet.bytes_each);
-  body.insert(body.end(), packet.data.begin(), packet.data.end());
-  return finish(std::move(body));
-}
-
-Bytes encode(const VisionPacket& packet) {
-  using Mode = VisionChannel::Mode;
-  Bytes body = begin(PacketType::kVision);
-  for (const VisionChannel& channel : packet.channels) {
-    put8(body, static_cast<unsigned>(channel.mode));
-    put16(body, channel.x);
-    if (channel.mode == Mode::kLine) {
-      put16(body, unsigned{channel.first});
-      put16(body, unsigned{channel.count});
-      continue;
-    }
-    put16(body, channel.y);
-    put16(body, unsigned{channel.area});
-    if (channel.mode == Mode::kBlobWithBox) {
-      put16(body, unsigned{channel.height});
-      put16(body, unsigned{channel.width});
-    }
-  }
-  return finish(std::move(body));
-}
-
-Bytes encode(const SimLaserPacket& packet) {
-  Bytes body = begin(PacketType::kSimLaser);
-  put16(body, packet.x);
-  put16(body, packet.y);
-  put16(body, packet.th);
-  put16(body, unsigned{packet.total});
-  put16(body, unsigned{packet.first});
-  const std::size_t count = std::min<std::size_t>(packet.ranges.size(), (kMaxBody - 12) / 2);
-  put8(body, static_cast<unsigned>(count));
-  for (std::size_t i = 0; i < count; ++i)
-    put16(body, unsigned{packet.ranges[i]});
-  return finish(std::move(body));
-}
-
-Bytes encode(const SimStatusPacket& packet) {
-  Bytes body = begin(PacketType::kSimStatus);
-  put16(body, 0U);
-  put32(body, packet.flags);
-  put16(body, unsigned{packet.sim_interval});
-  put16(body, unsigned{packet.real_interval});
-  put16(body, unsigned{packet.last_interval});
-  for (const std::int32_t value : {packet.true_x, packet.true_y, packet.true_z, packet.true_th,
-                                   packet.latitude, packet.longitude, packet.altitude})
-    put32(body, value);
-  put8(body, static_cast<std::uint8_t>(packet.gps));
-  for (const std::int32_t value :
-       {packet.odometry_error_x, packet.odometry_error_y, packet.odometry_error_th})
-    put32(body, value);
-  return finish(std::move(body));
-}
-
 Bytes encode(const OtherPacket& packet) {
   Bytes body{packet.type};
   body.insert(body.end(), packet.data.begin(), packet.data.end());
@@ -408,78 +383,10 @@ Bytes encode(const OtherPacket& packet) {
 }
 
 std::string_view packet_type_name(std::uint8_t type) {
-  switch (static_cast<PacketType>(type)) {
-    case PacketType::kConfig:
-      return "CONFIG";
-    case PacketType::kNoPower:
-    case PacketType::kStopped:
-    case PacketType::kMoving:
-    case PacketType::kNoPower2:
-      return "information";
-    case PacketType::kSimLaser:
-      return "simulated laser";
-    case PacketType::kSimLaserExtended:
-      return "simulated laser, extended";
-    case PacketType::kSimStatus:
-      return "SIMSTAT";
-    case PacketType::kSimInfo:
-      return "SIMINFO";
-    case PacketType::kSimMapChanged:
-      return "simulator's map changed";
-    case PacketType::kAcceleration:
-      return "acceleration";
-    case PacketType::kTorque:
-      return "torque";
-    case PacketType::kVision:
-      return "vision";
-    case PacketType::kEncoder:
-      return "ENCODER";
-    case PacketType::kHeading:
-      return "heading";
-    case PacketType::kGyro:
-      return "GYRO";
-    case PacketType::kImu:
-      return "IMU";
-    case PacketType::kArmStatus:
-      return "ARM status";
-    case PacketType::kArmInfo:
-      return "ARM info";
-    case PacketType::kAux1:
-      return "SERAUX";
-    case PacketType::kAux2:
-      return "SERAUX2";
-    case PacketType::kAux3:
-      return "SERAUX3";
-    case PacketType::kCompass:
-      return "COMPASS";
-    case PacketType::kPlaylist:
-      return "PLAYLIST";
-    case PacketType::kGripper:
-      return "GRIPPER";
-    case PacketType::kIo:
-      return "IO";
-    case PacketType::kJoystick:
-      return "JOYSTICK";
-    case PacketType::kBattery:
-      return "BATTERY";
-    case PacketType::kReset1:
-    case PacketType::kReset2:
-      return "controller reset";
-  }
+  for (const auto& [known, name] : kNames)
+    if (static_cast<std::uint8_t>(known) == type)
+      return name;
   return {};
-}
-
-void PacketCounters::count(ByteView body) {
-  if (body.empty())
-    return;
-  ++all_[body[0]];
-  if (packet_type_name(body[0]).empty())
-    ++unknown_;
-}
-
-std::uint64_t PacketCounters::of(PacketType type) const {
-  const auto found = all_.find(static_cast<std::uint8_t>(type));
-  return found == all_.end() ? 0 : found->second;
 }
 
 ConfigPacket config_of(const RobotParameters& parameters, const std::string& name,

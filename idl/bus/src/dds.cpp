@@ -60,35 +60,111 @@ EndpointEntry own_entry(const std::string& robot, const char* topic, const TypeI
   return own;
 }
 
-/// In a session that is missing or cannot be made yet, an endpoint has no part.
-class DdsWriter : public RawWriter, public Endpoint {
+/// The part of a reader or writer in one session.
+template <class Listener>
+struct Part : Listener {
+  explicit Part(Ends::Side side) : ends(side) {}
+  void count(const WriterId& other, int change) {
+    if (change > 0)
+      bus->peers.match(ends, other);
+    else
+      bus->peers.unmatch(ends, other);
+  }
+
+  Bus* bus = nullptr;
+  const std::string* topic = nullptr;
+  Discovery* discovery = nullptr;
+  std::string id;
+  Ends ends;
+};
+
+struct WriterPart : Part<fdds::DataWriterListener> {
+  WriterPart() : Part(Ends::Side::readers) {}
+  void on_publication_matched(fdds::DataWriter* /*writer*/,
+                              const fdds::PublicationMatchedStatus& status) override {
+    count(to_id(status.last_subscription_handle), status.current_count_change);
+  }
+  void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
+                                   const fdds::OfferedIncompatibleQosStatus& status) override {
+    discovery->add_incompatible(*topic, true, status.last_policy_id);
+  }
+
+  fdds::DataWriter* writer = nullptr;
+};
+
+struct ReaderPart : Part<fdds::DataReaderListener> {
+  ReaderPart() : Part(Ends::Side::writers) {}
+  void on_data_available(fdds::DataReader* /*reader*/) override { bus->wake->signal(); }
+  void on_subscription_matched(fdds::DataReader* /*reader*/,
+                               const fdds::SubscriptionMatchedStatus& status) override {
+    count(to_id(status.last_publication_handle), status.current_count_change);
+  }
+  void on_requested_incompatible_qos(fdds::DataReader* /*reader*/,
+                                     const fdds::RequestedIncompatibleQosStatus& status) override {
+    discovery->add_incompatible(*topic, false, status.last_policy_id);
+  }
+
+  fdds::DataReader* reader = nullptr;
+};
+
+/// What readers and writers have in common. In a session that is missing or cannot be made yet, an
+/// endpoint has no part.
+template <class OnePart>
+class DdsEnd : public Endpoint {
+ protected:
+  DdsEnd(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
+         const TypeInfo& type, bool writer)
+      : bus_(std::move(bus)),
+        own_(own_entry(bus_->robot(), topic, type, policies, writer)),
+        policies_(policies),
+        type_(type) {
+    for (OnePart& part : parts_) {
+      part.bus = bus_.get();
+      part.topic = &own_.topic;
+      bus_->peers.add(part.ends);
+    }
+  }
+  ~DdsEnd() override {
+    for (OnePart& part : parts_)
+      bus_->peers.remove(part.ends);
+  }
+  DdsEnd(const DdsEnd&) = delete;
+  DdsEnd& operator=(const DdsEnd&) = delete;
+
+  OnePart& part_of(const Session& session) {
+    return parts_[static_cast<std::size_t>(session.side)];
+  }
+  void add_own(Session& session, OnePart& part, const rtps::GUID_t& guid) const {
+    EndpointEntry own = own_;
+    own.id = part.id = to_hex(to_id(guid));
+    session.discovery.add_own(own);
+  }
+  void remove_own(Session& session, OnePart& part) const {
+    session.discovery.remove_own(part.id);
+    bus_->peers.restart(part.ends);
+  }
+  std::size_t present() const { return parts_[0].ends.present() + parts_[1].ends.present(); }
+
+  const std::shared_ptr<Bus> bus_;
+  const EndpointEntry own_;
+  const Policies policies_;
+  const TypeInfo& type_;
+  std::array<OnePart, 2> parts_;  // by Side
+};
+
+class DdsWriter : public RawWriter, public DdsEnd<WriterPart> {
  public:
   DdsWriter(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
-      : bus_(std::move(bus)),
-        own_(own_entry(bus_->robot(), topic, type, policies, true)),
-        policies_(policies),
-        type_(type) {
-    for (Part& part : parts_) {
-      part.owner = this;
-      bus_->peers.add(part.ends);
-    }
-    try {
-      bus_->add(*this);
-    } catch (...) {
-      forget();
-      throw;
-    }
+      : DdsEnd(std::move(bus), topic, policies, type, true) {
+    bus_->add(*this);
   }
-  ~DdsWriter() override {
-    bus_->remove(*this);
-    forget();
-  }
+  ~DdsWriter() override { bus_->remove(*this); }
   DdsWriter(const DdsWriter&) = delete;
   DdsWriter& operator=(const DdsWriter&) = delete;
 
   void open(Session& session, bool after_sleep) override {
-    Part& part = part_of(session);
+    auto& part = part_of(session);
     part.discovery = &session.discovery;
     fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
     set_common_qos(qos, policies_, policies_.writer_depth);
@@ -105,20 +181,17 @@ class DdsWriter : public RawWriter, public Endpoint {
           fdds::StatusMask::publication_matched() << fdds::StatusMask::offered_incompatible_qos());
     if (part.writer == nullptr)
       throw std::runtime_error("no writer on topic " + own_.topic);
-    EndpointEntry own = own_;
-    own.id = part.id = to_hex(to_id(part.writer->guid()));
-    session.discovery.add_own(own);
+    add_own(session, part, part.writer->guid());
     if (!after_sleep || policies_.kept_by_session)
       kept_.each([&](const void* sample) { part.writer->write(const_cast<void*>(sample)); });
   }
   void close(Session& session) override {
-    Part& part = part_of(session);
+    auto& part = part_of(session);
     if (part.writer == nullptr)
       return;
     part.writer->set_listener(nullptr);
     session.publisher->delete_datawriter(part.writer);
-    session.discovery.remove_own(part.id);
-    bus_->peers.restart(part.ends);
+    remove_own(session, part);
     part.writer = nullptr;
   }
 
@@ -155,7 +228,7 @@ class DdsWriter : public RawWriter, public Endpoint {
             return writer.wait_for_acknowledgments(milliseconds(slice)) == ReturnCode_t::RETCODE_OK;
           }))
         return true;
-      const bool absent = std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+      const bool absent = std::any_of(parts_.begin(), parts_.end(), [&](const WriterPart& part) {
         return bus_->peers.any_absent(part.ends);
       });
       if (waited + slice >= kHeartbeats && matched() > 0 && absent)
@@ -163,34 +236,9 @@ class DdsWriter : public RawWriter, public Endpoint {
     }
     return false;
   }
-  std::size_t matched() const override {
-    return parts_[0].ends.present() + parts_[1].ends.present();
-  }
+  std::size_t matched() const override { return present(); }
 
  private:
-  /// The writer's part in one session.
-  struct Part : fdds::DataWriterListener {
-    void on_publication_matched(fdds::DataWriter* /*writer*/,
-                                const fdds::PublicationMatchedStatus& status) override {
-      const WriterId other = to_id(status.last_subscription_handle);
-      if (status.current_count_change > 0)
-        owner->bus_->peers.match(ends, other);
-      else
-        owner->bus_->peers.unmatch(ends, other);
-    }
-    void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
-                                     const fdds::OfferedIncompatibleQosStatus& status) override {
-      discovery->add_incompatible(owner->own_.topic, true, status.last_policy_id);
-    }
-
-    DdsWriter* owner = nullptr;
-    fdds::DataWriter* writer = nullptr;
-    Discovery* discovery = nullptr;
-    std::string id;
-    Ends ends{Ends::Side::readers};
-  };
-
-  Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
   /// True where a later session gets the stored samples again.
   bool keeps() const {
     return policies_.kept_by_session || (policies_.transient_local && policies_.writer_depth == 1);
@@ -199,53 +247,29 @@ class DdsWriter : public RawWriter, public Endpoint {
   template <class Do>
   bool each_part(Do&& act) {
     bool well = true;
-    for (Part& part : parts_)
+    for (WriterPart& part : parts_)
       if (part.writer != nullptr && !act(*part.writer))
         well = false;
     return well;
   }
-  void forget() {
-    for (Part& part : parts_)
-      bus_->peers.remove(part.ends);
-  }
 
-  std::shared_ptr<Bus> bus_;
-  const EndpointEntry own_;
-  const Policies policies_;
-  const TypeInfo& type_;
-  std::array<Part, 2> parts_;  // by Side
   Kept kept_;
 };
 
-class DdsReader : public RawReader, public Endpoint {
+class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
  public:
   DdsReader(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
-      : bus_(std::move(bus)),
-        own_(own_entry(bus_->robot(), topic, type, policies, false)),
-        policies_(policies),
-        type_(type),
+      : DdsEnd(std::move(bus), topic, policies, type, false),
         scratch_(type.create(), type.destroy) {
-    for (Part& part : parts_) {
-      part.owner = this;
-      bus_->peers.add(part.ends);
-    }
-    try {
-      bus_->add(*this);
-    } catch (...) {
-      forget();
-      throw;
-    }
+    bus_->add(*this);
   }
-  ~DdsReader() override {
-    bus_->remove(*this);
-    forget();
-  }
+  ~DdsReader() override { bus_->remove(*this); }
   DdsReader(const DdsReader&) = delete;
   DdsReader& operator=(const DdsReader&) = delete;
 
   void open(Session& session, bool /*after_sleep*/) override {
-    Part& part = part_of(session);
+    auto& part = part_of(session);
     part.discovery = &session.discovery;
     fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
     set_common_qos(qos, policies_, policies_.reader_depth);
@@ -262,18 +286,15 @@ class DdsReader : public RawReader, public Endpoint {
                                              << fdds::StatusMask::requested_incompatible_qos());
     if (part.reader == nullptr)
       throw std::runtime_error("no reader on topic " + own_.topic);
-    EndpointEntry own = own_;
-    own.id = part.id = to_hex(to_id(part.reader->guid()));
-    session.discovery.add_own(own);
+    add_own(session, part, part.reader->guid());
   }
   void close(Session& session) override {
-    Part& part = part_of(session);
+    auto& part = part_of(session);
     if (part.reader == nullptr)
       return;
     part.reader->set_listener(nullptr);
     session.subscriber->delete_datareader(part.reader);
-    session.discovery.remove_own(part.id);
-    bus_->peers.restart(part.ends);
+    remove_own(session, part);
     part.reader = nullptr;
     begun_anew_ = true;
   }
@@ -282,7 +303,7 @@ class DdsReader : public RawReader, public Endpoint {
     // Samples that were taken before a session ended are not taken again.
     if (begun_anew_.exchange(false))
       taken_before_ = taken_;
-    for (Part& part : parts_)
+    for (ReaderPart& part : parts_)
       take(part, each);
   }
 
@@ -292,43 +313,12 @@ class DdsReader : public RawReader, public Endpoint {
     lost.insert(lost.end(), more.begin(), more.end());
     return lost;
   }
-  std::size_t matched() const override {
-    return parts_[0].ends.present() + parts_[1].ends.present();
-  }
+  std::size_t matched() const override { return present(); }
 
  private:
   using Holder = std::unique_ptr<void, void (*)(void*)>;
 
-  /// The reader's part in one session.
-  struct Part : fdds::DataReaderListener {
-    void on_data_available(fdds::DataReader* /*reader*/) override { owner->bus_->wake->signal(); }
-    void on_subscription_matched(fdds::DataReader* /*reader*/,
-                                 const fdds::SubscriptionMatchedStatus& status) override {
-      const WriterId other = to_id(status.last_publication_handle);
-      if (status.current_count_change > 0)
-        owner->bus_->peers.match(ends, other);
-      else
-        owner->bus_->peers.unmatch(ends, other);
-    }
-    void on_requested_incompatible_qos(
-        fdds::DataReader* /*reader*/, const fdds::RequestedIncompatibleQosStatus& status) override {
-      discovery->add_incompatible(owner->own_.topic, false, status.last_policy_id);
-    }
-
-    DdsReader* owner = nullptr;
-    fdds::DataReader* reader = nullptr;
-    Discovery* discovery = nullptr;
-    std::string id;
-    Ends ends{Ends::Side::writers};
-  };
-
-  Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
-  void forget() {
-    for (Part& part : parts_)
-      bus_->peers.remove(part.ends);
-  }
-
-  void take(Part& part, const std::function<void(const void*, const SampleInfo&)>& each) {
+  void take(ReaderPart& part, const std::function<void(const void*, const SampleInfo&)>& each) {
     fdds::SampleInfo dds_info;
     SampleInfo info;
     bool malformed = false;
@@ -353,7 +343,7 @@ class DdsReader : public RawReader, public Endpoint {
   }
 
   // The session is held for this call alone: the caller may write between calls.
-  bool take_next(Part& part, fdds::SampleInfo& from, SampleInfo& info, bool& malformed) {
+  bool take_next(ReaderPart& part, fdds::SampleInfo& from, SampleInfo& info, bool& malformed) {
     const auto session = bus_->hold();
     if (part.reader == nullptr ||
         part.reader->take_next_sample(scratch_.get(), &from) != ReturnCode_t::RETCODE_OK)
@@ -395,11 +385,6 @@ class DdsReader : public RawReader, public Endpoint {
   // Writers come and go for months. A forgotten writer costs at most a sample that comes twice.
   static constexpr std::size_t kMostWriters = 1000;
 
-  std::shared_ptr<Bus> bus_;
-  const EndpointEntry own_;
-  const Policies policies_;
-  const TypeInfo& type_;
-  std::array<Part, 2> parts_;  // by Side
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Holder> last_;
   // For each writer the number of the sample that was taken last: now, and at the session's start.

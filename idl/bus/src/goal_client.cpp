@@ -138,18 +138,8 @@ bool GoalClient::delivered(int timeout_ms) {
 }
 
 bool ended(v1::GoalState state) {
-  switch (state) {
-    case v1::GOAL_WAITING:
-    case v1::GOAL_UNDERWAY:
-    case v1::GOAL_SUSPENDED:
-      return false;
-    case v1::GOAL_REFUSED:
-    case v1::GOAL_SUCCEEDED:
-    case v1::GOAL_FAILED:
-    case v1::GOAL_CANCELED:
-      return true;
-  }
-  return false;
+  return state == v1::GOAL_REFUSED || state == v1::GOAL_SUCCEEDED || state == v1::GOAL_FAILED ||
+         state == v1::GOAL_CANCELED;
 }
 
 std::string describe(v1::GoalState state) {

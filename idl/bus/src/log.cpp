@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string_view>
 
 namespace saphira::bus::internal {
 namespace {
@@ -21,6 +22,16 @@ spdlog::logger& logger() {
   }();
   return *instance;
 }
+
+struct Level {
+  v1::LogLevel ours;
+  std::string_view name;
+  spdlog::level::level_enum theirs;
+};
+constexpr Level kLevels[] = {{v1::LOG_DEBUG, "debug", spdlog::level::debug},
+                             {v1::LOG_INFO, "info", spdlog::level::info},
+                             {v1::LOG_WARNING, "warning", spdlog::level::warn},
+                             {v1::LOG_ERROR, "error", spdlog::level::err}};
 
 /// False while stderr would block: the terminal may be stopped, or the pipe unread, and a program
 /// that holds a robot must not wait. A pipe that can be written to takes a line at once.
@@ -40,34 +51,18 @@ void write_log(v1::LogLevel level, const std::string& text) {
   }
   if (const std::uint64_t lines = unwritten.exchange(0); lines > 0)
     logger().warn("{} lines are missing here: nobody read on", lines);
-  switch (level) {
-    case v1::LOG_DEBUG:
-      logger().log(spdlog::level::debug, text);
-      break;
-    case v1::LOG_INFO:
-      logger().log(spdlog::level::info, text);
-      break;
-    case v1::LOG_WARNING:
-      logger().log(spdlog::level::warn, text);
-      break;
-    case v1::LOG_ERROR:
-      logger().log(spdlog::level::err, text);
-      break;
-  }
+  for (const Level& known : kLevels)
+    if (known.ours == level)
+      logger().log(known.theirs, text);
 }
 
 bool set_log_level(const std::string& name) {
-  if (name == "debug")
-    logger().set_level(spdlog::level::debug);
-  else if (name == "info")
-    logger().set_level(spdlog::level::info);
-  else if (name == "warning")
-    logger().set_level(spdlog::level::warn);
-  else if (name == "error")
-    logger().set_level(spdlog::level::err);
-  else
-    return false;
-  return true;
+  for (const Level& known : kLevels)
+    if (known.name == name) {
+      logger().set_level(known.theirs);
+      return true;
+    }
+  return false;
 }
 
 }  // namespace saphira::bus::internal

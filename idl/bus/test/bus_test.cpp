@@ -410,9 +410,7 @@ TEST(Dds, WrongSettingsAreNamed) {
 
 // An address or a name may come later: until then the programs of this machine reach each other.
 TEST(Dds, WithoutItsAddressItWorksOnThisMachine) {
-  NodeOptions options;
-  options.domain = domain();
-  options.robot = robot("no address");
+  NodeOptions options = node_options("here", robot("no address"));
   options.profile = Profile::wan;
   options.interface = "203.0.113.7";
   options.peers = {"robot.invalid"};
@@ -435,10 +433,7 @@ TEST(Dds, WithoutItsAddressItWorksOnThisMachine) {
 }
 
 TEST(Dds, NodesAreFreedInAnyOrder) {
-  NodeOptions options;
-  options.domain = domain();
-  options.robot = robot("order");
-  auto node = std::make_unique<Node>(options);
+  auto node = std::make_unique<Node>(node_options("here", robot("order")));
   auto writer = node->writer(topics::kGoals);
   auto reader = node->reader(topics::kGoals);
   node.reset();

@@ -6,11 +6,7 @@ namespace saphira::bus::test {
 namespace {
 
 NodeOptions named(const std::string& name) {
-  NodeOptions options;
-  options.name = name;
-  options.robot = robot("gateway");
-  options.domain = domain();
-  return options;
+  return node_options(name, robot("gateway"));
 }
 
 /// A service on a bus within the process, and a person's program on the DDS bus.

@@ -4,57 +4,57 @@
 
 #include <set>
 
+#include "node_options.hpp"
+
 namespace saphira::bus {
 namespace {
 
-NodeOptions named(const std::string& name) {
-  NodeOptions options;
-  options.name = name;
-  return options;
-}
+using saphira::test::memory_options;
 
-TEST(GoalClient, AsksChangesAndCancels) {
-  const auto bus = make_memory_bus();
-  Node service(named("intentions"), bus);
-  auto goals = service.reader(topics::kGoals);
-  Node agent(named("agent"), bus);
-  GoalClient client(agent, "an agent");
+/// A service of goals, and an agent that asks for them.
+class GoalClients : public testing::Test {
+ protected:
+  const std::shared_ptr<MemoryBus> bus_ = make_memory_bus();
+  Node service_{memory_options("intentions"), bus_};
+  Reader<v1::Goal> goals_ = service_.reader(topics::kGoals);
+  Writer<v1::GoalStatus> statuses_ = service_.writer(topics::kGoalStatus);
+  Node agent_{memory_options("agent"), bus_};
+};
+
+TEST_F(GoalClients, AsksChangesAndCancels) {
+  GoalClient client(agent_, "an agent");
   v1::Goal goal;
   goal.functor("stop");
   const v1::GoalId id = client.ask(goal);
   EXPECT_TRUE(client.delivered(1000));
-  auto heard = goals.take();
+  auto heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_EQ(heard[0].data.id(), id);
   EXPECT_EQ(heard[0].data.requester(), "an agent");
   goal.priority(3);
   goal.requester("somebody else");
   client.change(id, goal);
-  heard = goals.take();
+  heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_EQ(heard[0].data.id(), id);
   EXPECT_EQ(heard[0].data.priority(), 3);
   EXPECT_EQ(heard[0].data.requester(), "somebody else");
   client.cancel(id);
-  heard = goals.take();
+  heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_TRUE(heard[0].info.disposed);
   EXPECT_EQ(heard[0].data.id(), id);
 }
 
 TEST(GoalClient, IsNotDeliveredWhereNobodyReads) {
-  Node agent(named("agent"), make_memory_bus());
+  Node agent(memory_options("agent"), make_memory_bus());
   GoalClient client(agent, "an agent");
   client.ask(v1::Goal());
   EXPECT_FALSE(client.delivered(10));
 }
 
-TEST(GoalClient, KnowsTheNewestStatusAndKeepsItsOwn) {
-  const auto bus = make_memory_bus();
-  Node service(named("intentions"), bus);
-  auto statuses = service.writer(topics::kGoalStatus);
-  Node agent(named("agent"), bus);
-  GoalClient client(agent, "an agent");
+TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
+  GoalClient client(agent_, "an agent");
   v1::GoalStatus own;
   own.id(client.ask(v1::Goal()));
   v1::GoalStatus foreign;
@@ -62,37 +62,33 @@ TEST(GoalClient, KnowsTheNewestStatusAndKeepsItsOwn) {
   foreign.id().number(8);
   EXPECT_FALSE(client.status(own.id()));
   for (v1::GoalStatus* const status : {&own, &foreign}) {
-    statuses.write(*status);
+    statuses_.write(*status);
     status->state(v1::GOAL_SUCCEEDED);
-    statuses.write(*status);
+    statuses_.write(*status);
   }
   client.poll();
   EXPECT_EQ(client.status(own.id())->state(), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(client.statuses().size(), 2U);
   // Withdrawn a minute after the end: the requester may still read the final state.
-  statuses.dispose(own);
-  statuses.dispose(foreign);
+  statuses_.dispose(own);
+  statuses_.dispose(foreign);
   client.poll();
   EXPECT_TRUE(client.status(own.id()));
   EXPECT_FALSE(client.status(foreign.id()));
 }
 
 // A program that is stopped for minutes misses the end, and the status is withdrawn meanwhile.
-TEST(GoalClient, AGoalWhoseEndWasMissedIsOver) {
-  const auto bus = make_memory_bus();
-  Node service(named("intentions"), bus);
-  auto statuses = service.writer(topics::kGoalStatus);
-  Node agent(named("agent"), bus);
-  GoalClient patient(agent, "an agent");
-  GoalClient hasty(agent, "an agent", std::chrono::milliseconds(0));
+TEST_F(GoalClients, AGoalWhoseEndWasMissedIsOver) {
+  GoalClient patient(agent_, "an agent");
+  GoalClient hasty(agent_, "an agent", std::chrono::milliseconds(0));
   v1::GoalStatus never_heard;
   never_heard.id(hasty.ask(v1::Goal()));
   v1::GoalStatus told_again;
   told_again.id(patient.ask(v1::Goal()));
   for (v1::GoalStatus* const status : {&never_heard, &told_again}) {
     status->state(v1::GOAL_UNDERWAY);
-    statuses.write(*status);
-    statuses.dispose(*status);
+    statuses_.write(*status);
+    statuses_.dispose(*status);
   }
   hasty.poll();
   ASSERT_TRUE(hasty.status(never_heard.id()));
@@ -102,51 +98,43 @@ TEST(GoalClient, AGoalWhoseEndWasMissedIsOver) {
   patient.poll();
   EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_UNDERWAY);
   told_again.state(v1::GOAL_SUCCEEDED);
-  statuses.write(told_again);
+  statuses_.write(told_again);
   patient.poll();
   EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_SUCCEEDED);
 }
 
-TEST(GoalClient, ForgetsWhatEndedLongAgo) {
-  const auto bus = make_memory_bus();
-  Node service(named("intentions"), bus);
-  auto goals = service.reader(topics::kGoals);
-  auto statuses = service.writer(topics::kGoalStatus);
-  Node agent(named("agent"), bus);
-  GoalClient client(agent, "an agent", std::chrono::milliseconds(0));
+TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
+  GoalClient client(agent_, "an agent", std::chrono::milliseconds(0));
   const v1::GoalId underway = client.ask(v1::Goal());
   const v1::GoalId done = client.ask(v1::Goal());
   const v1::GoalId canceled = client.ask(v1::Goal());
-  EXPECT_EQ(goals.take().size(), 3U);
+  EXPECT_EQ(goals_.take().size(), 3U);
   v1::GoalStatus status;
   status.id(underway);
   status.state(v1::GOAL_UNDERWAY);
-  statuses.write(status);
+  statuses_.write(status);
   status.id(done);
   status.state(v1::GOAL_SUCCEEDED);
-  statuses.write(status);
+  statuses_.write(status);
   client.cancel(canceled);
-  EXPECT_EQ(goals.take().size(), 1U);
+  EXPECT_EQ(goals_.take().size(), 1U);
   client.poll();
   EXPECT_TRUE(client.status(underway));
   EXPECT_FALSE(client.status(done));
   EXPECT_EQ(client.statuses().size(), 1U);
-  const auto withdrawn = goals.take();
+  const auto withdrawn = goals_.take();
   ASSERT_EQ(withdrawn.size(), 1U);
   EXPECT_TRUE(withdrawn[0].info.disposed);
   EXPECT_EQ(withdrawn[0].data.id(), done);
   // A forgotten goal is not withdrawn again.
   client.poll();
-  EXPECT_TRUE(goals.take().empty());
+  EXPECT_TRUE(goals_.take().empty());
 }
 
-TEST(GoalClient, NoTwoGoalsHaveTheSameId) {
-  const auto bus = make_memory_bus();
-  Node one(named("one"), bus);
-  Node two(named("two"), bus);
-  GoalClient first(one, "first");
-  GoalClient second(one, "second");
-  GoalClient third(two, "third");
+TEST_F(GoalClients, NoTwoGoalsHaveTheSameId) {
+  GoalClient first(agent_, "first");
+  GoalClient second(agent_, "second");
+  GoalClient third(service_, "third");
   std::set<std::string> ids;
   for (int i = 0; i < 10; ++i) {
     for (GoalClient* const client : {&first, &second, &third})

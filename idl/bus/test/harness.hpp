@@ -6,22 +6,18 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "internal.hpp"
+#include "node_options.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus::test {
 
+using saphira::test::node_options;
 using std::chrono::milliseconds;
-
-inline std::uint32_t domain() {
-  const char* text = std::getenv("SAPHIRA_DOMAIN");
-  return text == nullptr ? 19U : static_cast<std::uint32_t>(std::atoi(text));
-}
 
 /// A robot that no other test process has.
 inline std::string robot(const std::string& name) {
@@ -33,10 +29,7 @@ class OnEachBus : public testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Node> node(const std::string& name, const std::string& robot_name = "",
                              bool lockstep = false) {
-    NodeOptions options;
-    options.name = name;
-    options.robot = robot_name.empty() ? robot("a") : robot_name;
-    options.domain = domain();
+    NodeOptions options = node_options(name, robot_name.empty() ? robot("a") : robot_name);
     options.lockstep = lockstep;
     return GetParam() == "dds" ? std::make_unique<Node>(options)
                                : std::make_unique<Node>(options, memory_);

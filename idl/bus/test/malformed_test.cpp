@@ -31,25 +31,18 @@ std::vector<Bytes> malformed() {
 
 class MalformedSamples : public testing::Test {
  protected:
-  MalformedSamples() {
-    NodeOptions options;
-    options.name = "test";
-    options.robot = robot_;
-    options.domain = domain();
-    node_ = std::make_unique<Node>(options);
-  }
   std::uint64_t refused() {
     node_->health();
     return node_->status().refused_samples();
   }
 
-  std::string robot_ = robot("m");
-  std::unique_ptr<Node> node_;
+  const std::string robot_ = robot("m");
+  const std::unique_ptr<Node> node_ = std::make_unique<Node>(node_options("test", robot_));
 };
 
 TEST_F(MalformedSamples, AreCountedAndTheNextGoodOneIsRead) {
   auto reader = node_->reader(topics::kDriveTeleop);
-  RawWriter writer(domain(), robot_, topics::kDriveTeleop.name, "saphira::v1::MotorCommand", false);
+  RawWriter writer(robot_, topics::kDriveTeleop.name, "saphira::v1::MotorCommand", false);
   ASSERT_TRUE(eventually(*node_, [&] { return writer.matched() && reader.matched() == 1; }));
   std::uint64_t count = 0;
   for (int round = 0; round < 10; ++round) {
@@ -77,7 +70,7 @@ TEST_F(MalformedSamples, AreCountedAndTheNextGoodOneIsRead) {
 TEST_F(MalformedSamples, OfAKeyedTopicHurtNobody) {
   auto reader = node_->reader(topics::kGoals);
   {
-    RawWriter writer(domain(), robot_, topics::kGoals.name, "saphira::v1::Goal", true);
+    RawWriter writer(robot_, topics::kGoals.name, "saphira::v1::Goal", true);
     ASSERT_TRUE(eventually(*node_, [&] { return writer.matched() && reader.matched() == 1; }));
     for (const Bytes& bytes : malformed())
       ASSERT_TRUE(writer.write(bytes));
@@ -86,9 +79,7 @@ TEST_F(MalformedSamples, OfAKeyedTopicHurtNobody) {
       return refused() > 0;
     }));
   }
-  NodeOptions options = node_->options();
-  options.name = "other";
-  Node other(options);
+  Node other(node_options("other", robot_));
   auto goals = other.writer(topics::kGoals);
   goals.write(goal(7));
   const auto good = take_at_least(*node_, reader, 1);

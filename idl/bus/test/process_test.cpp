@@ -14,20 +14,12 @@ using Clock = std::chrono::steady_clock;
 
 class Processes : public testing::Test {
  protected:
-  Processes() : robot_(robot("p")) {
-    NodeOptions options;
-    options.name = "test";
-    options.robot = robot_;
-    options.domain = domain();
-    node_ = std::make_unique<Node>(options);
-  }
-
   saphira::test::Process peer(const std::string& role, std::vector<std::string> more = {}) {
     std::vector<std::string> argv{"saphira-bus-peer", "--robot", robot_, "--role", role};
     argv.insert(argv.end(), more.begin(), more.end());
     return {argv,
             folder_.path("peer" + std::to_string(++started_)),
-            {{"SAPHIRA_DOMAIN", std::to_string(domain())}, {"SAPHIRA_PROFILE", "host"}}};
+            {{"SAPHIRA_DOMAIN", saphira::test::domain()}, {"SAPHIRA_PROFILE", "host"}}};
   }
   static double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -41,8 +33,8 @@ class Processes : public testing::Test {
         [&](const EndpointEntry& entry) { return entry.pid == static_cast<std::uint32_t>(pid); }));
   }
 
-  std::string robot_;
-  std::unique_ptr<Node> node_;
+  const std::string robot_ = robot("p");
+  const std::unique_ptr<Node> node_ = std::make_unique<Node>(node_options("test", robot_));
   saphira::test::TempDir folder_;
   int started_ = 0;
 };
@@ -107,9 +99,7 @@ TEST_F(Processes, WriterThatNappedIsThereAgainWithoutAnotherMatch) {
 }
 
 TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
-  NodeOptions options = node_->options();
-  options.name = "sleeper";
-  Node sleeper(options);
+  Node sleeper(node_options("sleeper", robot_));
   auto tiles = sleeper.writer(topics::kGrid);
   auto wishes = sleeper.writer(topics::kGoals);
   auto log = node_->reader(topics::kMessages);
@@ -146,9 +136,7 @@ TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
 }
 
 TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
-  NodeOptions options = node_->options();
-  options.name = "sleeper";
-  Node sleeper(options);
+  Node sleeper(node_options("sleeper", robot_));
   auto said = node_->writer(topics::kMessages);
   auto wishes = node_->writer(topics::kGoals);
   auto hears = sleeper.reader(topics::kMessages);
@@ -175,26 +163,6 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   EXPECT_EQ(read[0].data.id().number(), 6U);
   EXPECT_TRUE(eventually(sleeper, [&] { return reads.take_lost().size() == 1; }));
   EXPECT_TRUE(reads.take().empty());
-}
-
-TEST_F(Processes, WriterThatEndsIsLostAtOnce) {
-  auto goals = node_->reader(topics::kGoals);
-  auto writer = peer("writer");
-  ASSERT_EQ(take_at_least(*node_, goals, 1).size(), 1U);
-  writer.signal(SIGTERM);
-  const auto asked = Clock::now();
-  EXPECT_TRUE(eventually(*node_, [&] { return !goals.take_lost().empty(); }));
-  EXPECT_LT(seconds_since(asked), 2.0);
-}
-
-TEST_F(Processes, RestartedReaderFindsTheGoalsOfLivingWriters) {
-  auto goals = node_->writer(topics::kGoals);
-  auto robot_writer = node_->writer(topics::kRobotState);
-  goals.write(goal(5));
-  for (int round = 0; round < 3; ++round) {
-    auto reader = peer("reader", {"--count", "0"});
-    EXPECT_EQ(reader.wait(), 0) << reader.output();
-  }
 }
 
 TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {

@@ -15,6 +15,7 @@
 
 #include "dds_network.hpp"
 #include "motionPubSubTypes.h"
+#include "node_options.hpp"
 
 namespace saphira::bus::test {
 
@@ -62,16 +63,15 @@ struct RawWriter::Impl {
   fdds::DataWriter* writer = nullptr;
 };
 
-RawWriter::RawWriter(std::uint32_t domain, const std::string& robot, const std::string& topic,
-                     const std::string& type, bool keyed)
+RawWriter::RawWriter(const std::string& robot, const std::string& topic, const std::string& type,
+                     bool keyed)
     : impl_(std::make_unique<Impl>()) {
   internal::set_up_library();
-  NodeOptions options;
-  options.name = "raw";
+  const NodeOptions options = saphira::test::node_options("raw", robot);
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   impl_->participant = factory->create_participant(
-      domain, internal::participant_qos(options, internal::Side::local,
-                                        std::make_shared<std::atomic<bool>>(false)));
+      options.domain, internal::participant_qos(options, internal::Side::local,
+                                                std::make_shared<std::atomic<bool>>(false)));
   fdds::TypeSupport(new AnyBytes(type, keyed)).register_type(impl_->participant);
   impl_->participant->enable();
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;

@@ -11,8 +11,8 @@ namespace saphira::bus::test {
 /// hostile program has it.
 class RawWriter {
  public:
-  RawWriter(std::uint32_t domain, const std::string& robot, const std::string& topic,
-            const std::string& type, bool keyed);
+  RawWriter(const std::string& robot, const std::string& topic, const std::string& type,
+            bool keyed);
   ~RawWriter();
   RawWriter(const RawWriter&) = delete;
   RawWriter& operator=(const RawWriter&) = delete;

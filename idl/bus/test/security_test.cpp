@@ -53,11 +53,8 @@ class Site {
   }
 
   NodeOptions options(const std::string& member, const std::string& of_robot = robot("s")) const {
-    NodeOptions options;
-    options.name = member;
+    NodeOptions options = node_options(member, of_robot);
     options.program = program_of(member);
-    options.robot = of_robot;
-    options.domain = domain();
     options.security = authority_->folder_of(member);
     return options;
   }
@@ -354,9 +351,7 @@ TEST(Security, CredentialsOfOneRobotAreForItAlone) {
 }
 
 TEST(Security, ABusWithoutItsCredentialsDoesNotBegin) {
-  NodeOptions options;
-  options.name = "a";
-  options.domain = domain();
+  NodeOptions options = node_options("a", robot("s"));
   options.security = "/nowhere";
   try {
     const Node node(options);

@@ -124,28 +124,11 @@ struct Information {
   std::optional<std::uint16_t> faults;
 };
 
-/// Everything but the position, which rolls over: see DeadReckoning.
+/// Everything but the position, which rolls over: see position_difference.
 Information interpret(const InformationPacket& packet, const RobotParameters& parameters);
 
 /// The way from one 15-bit coordinate to the next, in counts, the short way round. Correct if the
 /// robot moved less than half the range (0.8 m on a Pioneer 1) between the two.
 int position_difference(std::uint16_t from, std::uint16_t to);
-
-/// Follows the server's position over its roll-over.
-class DeadReckoning {
- public:
-  /// The first packet's position is taken as it is. Returns the pose in the server's coordinates,
-  /// position unwrapped [m], heading in (-pi, pi].
-  Pose update(const InformationPacket& packet, const RobotParameters& parameters);
-  /// Starts over with the next packet.
-  void reset() { known_ = false; }
-
- private:
-  bool known_ = false;
-  std::uint16_t last_x_ = 0;
-  std::uint16_t last_y_ = 0;
-  std::int64_t x_ = 0;  // counts
-  std::int64_t y_ = 0;
-};
 
 }  // namespace saphira::protocol

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -264,19 +263,6 @@ Bytes encode(const OtherPacket& packet);
 
 /// The name of the type; empty for a type without one.
 std::string_view packet_type_name(std::uint8_t type);
-
-/// The number of packets of each type, and of unknown types.
-class PacketCounters {
- public:
-  void count(ByteView body);
-  std::uint64_t of(PacketType type) const;
-  std::uint64_t unknown() const { return unknown_; }  ///< of types without a name
-  const std::map<std::uint8_t, std::uint64_t>& all() const { return all_; }
-
- private:
-  std::map<std::uint8_t, std::uint64_t> all_;
-  std::uint64_t unknown_ = 0;
-};
 
 /// The configuration packet of a robot with these parameters. host_baud as HOSTBAUD counts.
 ConfigPacket config_of(const RobotParameters& parameters, const std::string& name,
