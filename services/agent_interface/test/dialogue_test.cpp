@@ -681,7 +681,7 @@ TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
             "tell person=\"karen\" message=\"John's meeting isn't at five\" sender=\"Alice\" "
             "back=\"upper corridor\"");
   EXPECT_EQ(said("Flakey, ask John where Karen is"),
-            "I drop the message to karen / I ask john where Karen is");
+            "I drop the message to karen / I ask john where karen is");
   EXPECT_EQ(goals(),
             "inquire person=\"john\" question=\"where Karen is\" sender=\"Alice\" "
             "back=\"upper corridor\"");

@@ -29,8 +29,7 @@ double bearing_of(const World& world, const Vec2& place) {
 
 }  // namespace
 
-/// None where it is out of sight for good.
-std::optional<double> Gaze::wanted(const World& world) const {
+double Gaze::wanted(const World& world) const {
   const Belief* const belief = world.beliefs.stored("gaze");
   const Value value = belief == nullptr ? Value() : belief->value;
   const double reach = world.around.head_reach;
@@ -38,16 +37,12 @@ std::optional<double> Gaze::wanted(const World& world) const {
   if (const double* const number = value.number()) {
     bearing = norm2_angle(*number);
   } else if (const Point* const point = value.point()) {
-    const auto place = in_frame(point->pose, point->frame, Frame::odom, world.robot);
-    if (!place)
-      return std::nullopt;
-    bearing = bearing_of(world, place->position());
-  } else if (const Reference* const reference = value.reference()) {
-    const lps::SeenThing* const thing =
-        reference->kind == Reference::Kind::kThing ? seen_thing(world, reference->id) : nullptr;
-    if (thing == nullptr)
-      return std::nullopt;
-    bearing = bearing_of(world, thing->pose_in_odom.position() + kLead * thing->velocity_in_odom);
+    if (const auto place = in_frame(point->pose, point->frame, Frame::odom, world.robot))
+      bearing = bearing_of(world, place->position());
+  } else if (const Reference* const reference = value.reference();
+             reference != nullptr && reference->kind == Reference::Kind::kThing) {
+    if (const lps::SeenThing* const thing = seen_thing(world, reference->id))
+      bearing = bearing_of(world, thing->pose_in_odom.position() + kLead * thing->velocity_in_odom);
   }
   if (std::abs(bearing) <= reach)
     return bearing;
@@ -65,14 +60,12 @@ std::optional<double> Gaze::step(const World& world) {
   now_ = cycle;
   if (world.around.head_reach == 0.0 || cycle < at_ + kBetween)
     return std::nullopt;
-  const std::optional<double> bearing = wanted(world);
-  if (!bearing)
-    return std::nullopt;
-  const bool moved = std::abs(*bearing - asked_) > kStep;
+  const double bearing = wanted(world);
+  const bool moved = std::abs(bearing - asked_) > kStep;
   const bool missed = std::abs(world.robot.head - asked_) > kMissed && cycle >= at_ + kPatience;
   if (!moved && !missed)
     return std::nullopt;
-  asked_ = *bearing;
+  asked_ = bearing;
   at_ = cycle;
   return asked_;
 }

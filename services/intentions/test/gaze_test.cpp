@@ -100,12 +100,12 @@ TEST_F(GazeTest, StaysOnItsSideOfAPersonBehind) {
   EXPECT_NEAR(degrees_after(5), -90.0, 1e-9);
 }
 
-TEST_F(GazeTest, StaysWhereAPersonWasForgotten) {
+TEST_F(GazeTest, LooksAheadWhenThePersonIsForgotten) {
   watch(kPerson);
   things[0].pose_in_odom = {0.0, 2.0, 0.0};
   EXPECT_NEAR(degrees_after(5), 90.0, 1e-9);
   things.clear();
-  EXPECT_NEAR(degrees_after(5), 90.0, 1e-9);
+  EXPECT_NEAR(degrees_after(5), 0.0, 1e-9);
 }
 
 TEST_F(GazeTest, APointOnTheMapNeedsThePlaceOfTheRobot) {

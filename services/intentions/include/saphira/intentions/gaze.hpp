@@ -9,14 +9,14 @@ namespace saphira::intentions {
 
 /// Keeps the cameras on what activities want to see (the centering of paper 3.2.3), for a robot
 /// whose head can turn. The belief `gaze` is a direction in the robot [rad], a person, a colour or
-/// a point; without it the cameras look ahead.
+/// a point; without it, and when the person or colour is forgotten, the cameras look ahead.
 class Gaze {
  public:
   /// The direction to ask of the head [rad], where it has to turn.
   std::optional<double> step(const World& world);
 
  private:
-  std::optional<double> wanted(const World& world) const;
+  double wanted(const World& world) const;
 
   double asked_ = 0.0;     ///< [rad]
   std::uint64_t at_ = 0;   ///< cycle of the newest request
