@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <thread>
 
 #include "node_options.hpp"
@@ -33,6 +34,15 @@ v1::Answer library(const v1::Request&) {
 /// Agents of this process, and the program, on the bus.
 class OnTheBus : public testing::Test {
  protected:
+  OnTheBus() : robot(test::unique_robot()) { start(); }
+
+  void start() {
+    facilitator.reset();
+    facilitator = std::make_unique<test::Process>(
+        std::vector<std::string>{"saphira-facilitator"}, folder.path("log"),
+        std::map<std::string, std::string>{{"SAPHIRA_ROBOT", robot},
+                                           {"SAPHIRA_DOMAIN", test::domain()}});
+  }
   /// Asks until the answer has the wanted code: discovery of the agents takes a moment.
   v1::Answer ask_until(bus::Agent& asker, v1::AnswerCode code) {
     v1::Answer answer;
@@ -43,11 +53,9 @@ class OnTheBus : public testing::Test {
     return answer;
   }
 
-  std::string robot = test::unique_robot();
+  std::string robot;
   test::TempDir folder;
-  test::Process facilitator{{"saphira-facilitator"},
-                            folder.path("log"),
-                            {{"SAPHIRA_ROBOT", robot}, {"SAPHIRA_DOMAIN", test::domain()}}};
+  std::unique_ptr<test::Process> facilitator;
 };
 
 TEST_F(OnTheBus, ARequestIsRoutedAndWhatADeadAgentCouldDoIsForgotten) {
@@ -70,6 +78,23 @@ TEST_F(OnTheBus, ARequestIsRoutedAndWhatADeadAgentCouldDoIsForgotten) {
     stop.request();
   }
   EXPECT_EQ(ask_until(person, v1::ANSWER_NOBODY).text(), "no agent can do \"place_of\"");
+}
+
+TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
+  bus::Node node(test::node_options("person", robot));
+  bus::Agent person(node, "ann", "a person that knows itself");
+  int asked = 0;
+  person.can(place_of(), [&](const v1::Request& request) {
+    ++asked;
+    return library(request);
+  });
+  ask_until(person, v1::ANSWER_DONE);
+  facilitator->signal(SIGKILL);
+  start();
+  const v1::Answer answer = person.ask(where_is_karen(), 20.0);
+  EXPECT_EQ(answer.code(), v1::ANSWER_DONE) << "the first one: " << answer.text();
+  EXPECT_EQ(answer.service(), "ann");
+  EXPECT_GE(asked, 2);
 }
 
 /// The facilitator with an agent and an asker, on a bus in memory, with a clock that the test
@@ -153,6 +178,27 @@ TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
   first.reset();
   turn();
   EXPECT_EQ(stopped, std::vector<std::uint64_t>{number});
+}
+
+TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  const std::uint64_t number = asker.send(sweep());
+  turn();
+  int swept = 0;
+  bus::Agent broom(other, "broom", "comes first by its name");
+  broom.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request&) {
+    ++swept;
+    return bus::done({});
+  });
+  restart();
+  asker.again(number, sweep());
+  turn();
+  broom.poll();
+  EXPECT_EQ(swept, 0);
+  EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
+  worker.answer(begun_request, bus::done({}, "clean"));
+  turn();
+  EXPECT_EQ(asker.poll().back().text(), "clean");
 }
 
 TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
