@@ -248,13 +248,6 @@ TEST_F(OnBus, APortOfTheBusIsAsGoodAsTheEnvironment) {
   EXPECT_TRUE(system_.wait_moving(kPatience)) << program.output();
 }
 
-TEST_F(OnBus, PacketsOfTheRobotAreNotForIt) {
-  Process program = example("packet");
-  EXPECT_TRUE(program.wait(kPatience).has_value());
-  EXPECT_NE(program.output().find("there are no packets on the bus"), std::string::npos)
-      << program.output();
-}
-
 TEST(OnBusAlone, WithoutABridgeItSaysSo) {
   const test::TempDir dir;
   Process program({test::compiled(test::source("agents/saphira_c/examples/async.c"), dir, false)},
