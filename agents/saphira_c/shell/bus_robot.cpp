@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
 #include <map>
-#include <mutex>
 #include <set>
-#include <thread>
 #include <utility>
 
-#include "../src/robot.hpp"
+#include "../src/served_robot.hpp"
 #include "behaviors/shell/convert.hpp"
 #include "geometry/shell/convert.hpp"
 #include "lps/shell/convert.hpp"
@@ -28,11 +25,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTurn{20};
-constexpr double kSilent = 1.0;          // [s] of silence that ends the robot
-constexpr int kReleases = 4;             // repetitions of a release: the topic is best effort
-constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
-constexpr double kDrawnFor = 1.0;        // [s]
-constexpr double kPixel = 0.025;         // [m] size of a pixel of the manual's window
+constexpr double kSilent = 1.0;    // [s] of silence that ends the robot
+constexpr int kReleases = 4;       // repetitions of a release: the topic is best effort
+constexpr double kDrawnFor = 1.0;  // [s]
+constexpr double kPixel = 0.025;   // [m] size of a pixel of the manual's window
 
 bus::NodeOptions options_of(const std::string& robot) {
   bus::NodeOptions options = bus::options_of_environment();
@@ -300,7 +296,7 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
   }
 }
 
-class BusRobot final : public Robot {
+class BusRobot final : public ServedRobot {
  public:
   BusRobot(const std::string& name, Say say) : name_(name), say_(std::move(say)) {
     trouble_ = "no bridge of robot \"" + name + "\" is heard";
@@ -308,31 +304,6 @@ class BusRobot final : public Robot {
   }
   ~BusRobot() override { end(); }
 
-  std::uint64_t session() const override {
-    const std::lock_guard lock(mutex_);
-    return session_;
-  }
-  protocol::RobotParameters parameters() const override {
-    const std::lock_guard lock(mutex_);
-    return parameters_;
-  }
-  protocol::RobotIdentity identity() const override {
-    const std::lock_guard lock(mutex_);
-    return {parameters_.name, parameters_.robot_class, parameters_.subclass};
-  }
-  std::string trouble() const override {
-    const std::lock_guard lock(mutex_);
-    return trouble_;
-  }
-  std::optional<Reflected> next(int most) override {
-    std::unique_lock lock(mutex_);
-    came_.wait_for(lock, milliseconds(most), [this] { return fresh_ || ended_; });
-    if (!std::exchange(fresh_, false))
-      return std::nullopt;
-    Reflected now{session_, newest_};
-    now.state.information.sonars = std::exchange(readings_, {});
-    return now;
-  }
   void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
     const std::lock_guard lock(mutex_);
     wish_ = command_of(motion);
@@ -340,27 +311,6 @@ class BusRobot final : public Robot {
     wish_->stamp().cycle(cycle);
     wake();
   }
-  void send(protocol::Bytes packet) override {
-    const std::lock_guard lock(mutex_);
-    packets_.push_back(std::move(packet));
-    wake();
-  }
-  protocol::VisionPacket vision(std::uint64_t& count) const override {
-    const std::lock_guard lock(mutex_);
-    count = seen_count_;
-    return seen_;
-  }
-  void end() override {
-    {
-      std::unique_lock lock(mutex_);
-      ending_ = true;
-      wake();
-      came_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; });
-    }
-    if (thread_.joinable())
-      thread_.join();
-  }
-
   std::optional<Found> found() override {
     const std::lock_guard lock(mutex_);
     return found_;
@@ -439,7 +389,7 @@ class BusRobot final : public Robot {
     requests_.push_back(request);
     wake();
   }
-  void wake() {
+  void wake() override {
     if (node_ != nullptr)
       node_->wake();
   }
@@ -453,9 +403,7 @@ class BusRobot final : public Robot {
     }
     const std::lock_guard lock(mutex_);
     node_ = nullptr;
-    session_ = 0;
-    ended_ = true;
-    came_.notify_all();
+    thread_ended();
   }
 
   void serve() {
@@ -511,28 +459,19 @@ class BusRobot final : public Robot {
       const std::lock_guard lock(mutex_);
       if (session_ == 0 || epoch_ != stamp_.epoch())
         begin();
-      newest_ = state_of(robot);
-      note_sonars(newest_);
-      readings_.insert(readings_.end(), newest_.information.sonars.begin(),
-                       newest_.information.sonars.end());
-      if (readings_.size() > kMostKept)
-        readings_.erase(readings_.begin(),
-                        readings_.end() - static_cast<std::ptrdiff_t>(kMostKept));
-      fresh_ = true;
-      came_.notify_all();
+      reflector::State state = state_of(robot);
+      note_sonars(state);
+      cycle_began(state);
     }
     const std::lock_guard lock(mutex_);
-    if (session_ != 0 && BootClock::seconds() - heard_ > kSilent) {
-      session_ = 0;
-      fresh_ = false;
-      trouble_ = "the robot's bridge is not heard any more";
-      came_.notify_all();
-    }
+    if (session_ != 0 && BootClock::seconds() - heard_ > kSilent)
+      session_lost("the robot's bridge is not heard any more");
   }
 
   /// Call under the mutex.
   void begin() {
     parameters_ = parameters_of(*description_);
+    identity_ = {parameters_.name, parameters_.robot_class, parameters_.subclass};
     epoch_ = stamp_.epoch();
     session_ = ++sessions_;
     readings_.clear();
@@ -764,24 +703,13 @@ class BusRobot final : public Robot {
   std::string news_;
   std::map<std::string, bus::RequestClient> devices_;
 
-  // Members shared between the threads.
-  mutable std::mutex mutex_;
-  std::condition_variable came_;
+  // Shared with the program's thread, as those of ServedRobot.
   bus::Node* node_ = nullptr;
-  bool ending_ = false;
-  bool ended_ = false;
-  bool fresh_ = false;
-  std::uint64_t session_ = 0;
   std::uint64_t sessions_ = 0;
   std::uint64_t epoch_ = 0;
   std::uint64_t odom_ = 0;
-  protocol::RobotParameters parameters_;
-  std::string trouble_;
-  reflector::State newest_;
   std::map<int, reflector::Bucket> buckets_;
-  std::vector<protocol::Sonar> readings_;
   std::optional<v1::MotorCommand> wish_;
-  std::vector<protocol::Bytes> packets_;
   std::vector<v1::Request> requests_;
   std::vector<std::string> told_;
   std::vector<Drawn> drawn_;
@@ -792,9 +720,6 @@ class BusRobot final : public Robot {
   std::set<std::string> unanswered_;  // micro-tasks with an open request
   std::optional<Found> found_;
   std::shared_ptr<const maps::Map> map_;
-  protocol::VisionPacket seen_;
-  std::uint64_t seen_count_ = 0;
-  std::thread thread_;
 };
 
 }  // namespace
