@@ -10,6 +10,7 @@
 
 #include "../src/served_robot.hpp"
 #include "behaviors/shell/convert.hpp"
+#include "bridge/shell/enums.hpp"
 #include "geometry/shell/convert.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
@@ -59,17 +60,6 @@ protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
   return parameters;
 }
 
-protocol::Motors motors_of(v1::MotorStatus status) {
-  switch (status) {
-    case v1::MOTORS_MOVING:
-      return protocol::Motors::kMoving;
-    case v1::MOTORS_NO_POWER:
-      return protocol::Motors::kNoPower;
-    default:
-      return protocol::Motors::kStopped;
-  }
-}
-
 reflector::State state_of(const v1::RobotState& robot) {
   reflector::State state;
   state.cycle = robot.stamp().cycle();
@@ -80,7 +70,7 @@ reflector::State state_of(const v1::RobotState& robot) {
   state.motor_packets_per_s = robot.motor_packets_per_s();
   state.sonar_readings_per_s = robot.sonar_readings_per_s();
   protocol::Information& now = state.information;
-  now.motors = motors_of(robot.status());
+  now.motors = bridge::kMotors.ours(robot.status(), protocol::Motors::kStopped);
   now.th = state.pose_in_odom.th;
   now.velocity = robot.velocity();
   now.rotation_velocity = robot.rotation_velocity();
@@ -104,31 +94,8 @@ reflector::State state_of(const v1::RobotState& robot) {
 v1::MotorCommand command_of(const reflector::Motion& motion) {
   v1::MotorCommand command;
   command.active(true);
-  switch (motion.translation) {
-    case reflector::Translation::none:
-      command.translation(v1::TRANSLATION_NONE);
-      break;
-    case reflector::Translation::velocity:
-      command.translation(v1::TRANSLATION_VELOCITY);
-      break;
-    case reflector::Translation::position:
-      command.translation(v1::TRANSLATION_POSITION);
-      break;
-  }
-  switch (motion.rotation) {
-    case reflector::Rotation::none:
-      command.rotation(v1::ROTATION_NONE);
-      break;
-    case reflector::Rotation::velocity:
-      command.rotation(v1::ROTATION_VELOCITY);
-      break;
-    case reflector::Rotation::heading:
-      command.rotation(v1::ROTATION_HEADING);
-      break;
-    case reflector::Rotation::relative_heading:
-      command.rotation(v1::ROTATION_RELATIVE_HEADING);
-      break;
-  }
+  command.translation(bridge::kTranslations.theirs(motion.translation));
+  command.rotation(bridge::kRotations.theirs(motion.rotation));
   command.velocity(motion.velocity);
   command.distance(motion.distance);
   command.move(motion.move);
@@ -142,10 +109,7 @@ protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels().size()); ++i) {
     const v1::VisionChannel& from = channels.channels()[i];
     protocol::VisionChannel& to = seen.channels[i];
-    using Mode = protocol::VisionChannel::Mode;
-    to.mode = from.mode() == v1::VISION_LINE       ? Mode::kLine
-              : from.mode() == v1::VISION_BLOB_BOX ? Mode::kBlobWithBox
-                                                   : Mode::kBlob;
+    to.mode = bridge::kVisionModes.ours(from.mode(), protocol::VisionChannel::Mode::kBlob);
     to.x = from.x();
     to.y = from.y();
     to.area = from.area();
@@ -159,32 +123,13 @@ protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
 
 /// Manual Table 6-4.
 std::array<std::uint8_t, 3> color_of(int number) {
-  switch (number) {
-    case 0:
-      return {255, 215, 0};
-    case 3:
-      return {255, 240, 130};
-    case 5:
-      return {210, 0, 0};
-    case 8:
-      return {255, 110, 110};
-    case 10:
-      return {0, 190, 200};
-    case 11:
-      return {85, 107, 47};
-    case 12:
-      return {255, 69, 0};
-    case 13:
-      return {255, 0, 255};
-    case 15:
-      return {178, 60, 50};
-    case 100:
-      return {0, 0, 0};
-    case 101:
-      return {255, 255, 255};
-    default:
-      return {70, 130, 180};  // steel blue
-  }
+  static const std::map<int, std::array<std::uint8_t, 3>> colors{
+      {0, {255, 215, 0}},  {3, {255, 240, 130}}, {5, {210, 0, 0}},      {8, {255, 110, 110}},
+      {10, {0, 190, 200}}, {11, {85, 107, 47}},  {12, {255, 69, 0}},    {13, {255, 0, 255}},
+      {15, {178, 60, 50}}, {100, {0, 0, 0}},     {101, {255, 255, 255}}};
+  const auto found = colors.find(number);
+  return found == colors.end() ? std::array<std::uint8_t, 3>{70, 130, 180}  // steel blue
+                               : found->second;
 }
 
 v1::Drawing drawing_of(const Drawn& drawn) {
