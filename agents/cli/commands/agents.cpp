@@ -163,10 +163,8 @@ void add_agents(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
   command->footer(
       "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");
-  command->callback([&chosen] {
-    chosen.run = [](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return list_agents(node, stop);
-    };
+  chosen.when(command, [](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return list_agents(node, stop);
   });
 }
 

@@ -549,10 +549,8 @@ void add_demo(CLI::App& app, Chosen& chosen) {
   command->add_option("--trace", options->trace, "keep the true trajectory in this file (CSV)");
   command->add_flag("--verbose,-v", options->verbose, "show what the programs say");
   command->footer("Exit code 0: the robot arrived; 1: it did not, in the time that was given.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return Demo(*options, node).run(stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return Demo(*options, node).run(stop);
   });
 }
 

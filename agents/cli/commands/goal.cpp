@@ -316,17 +316,15 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
       "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      if (!options->words.empty() && options->words[0] == "cancel")
-        return cancel(*options, node, stop);
-      if (options->words == std::vector<std::string>{"list"})
-        return list_goals(node, stop);
-      if (!options->words.empty() &&
-          (options->words[0] == "activities" || options->words[0] == "schemas"))
-        return schemas(*options, node, stop);
-      return ask(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    if (!options->words.empty() && options->words[0] == "cancel")
+      return cancel(*options, node, stop);
+    if (options->words == std::vector<std::string>{"list"})
+      return list_goals(node, stop);
+    if (!options->words.empty() &&
+        (options->words[0] == "activities" || options->words[0] == "schemas"))
+      return schemas(*options, node, stop);
+    return ask(*options, node, stop);
   });
 }
 

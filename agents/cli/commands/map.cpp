@@ -509,10 +509,8 @@ void add_map(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->footer(kMapWords);
-  command->callback([words, seconds, &chosen] {
-    chosen.run = [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return map(*words, *seconds, node, stop);
-    };
+  chosen.when(command, [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return map(*words, *seconds, node, stop);
   });
 }
 

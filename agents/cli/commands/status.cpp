@@ -154,10 +154,8 @@ void add_status(CLI::App& app, Chosen& chosen) {
   command->add_flag("--watch,-w", *watch, "again each second, until Ctrl-C");
   command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
       ->excludes("--watch");
-  command->callback([watch, json, &chosen] {
-    chosen.run = [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return status(*watch, *json, node, stop);
-    };
+  chosen.when(command, [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return status(*watch, *json, node, stop);
   });
 }
 

@@ -72,10 +72,8 @@ void add_wiring(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("wiring", "Which program writes which topic and which reads it");
   command->add_option("--draw", options->drawing, "as a drawing (SVG) into this file");
   command->add_flag("--table", options->table, "as a table in Markdown, of the system at rest");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return wiring(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return wiring(*options, node, stop);
   });
 }
 
