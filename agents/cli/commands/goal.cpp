@@ -209,12 +209,10 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
-  const auto end = Clock::now() + milliseconds(1300);
-  while (!stop.requested() && Clock::now() < end) {
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  listen(node, milliseconds(1300), stop, [&] {
     deployments.poll();
     goals.poll();
-  }
+  });
   deployments.settle(stop);
   for (const v1::GoalStatus& status : goals.statuses())
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),

@@ -42,9 +42,7 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
 int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   const bus::Census census(node);
-  const auto end = Clock::now() + kDiscovery;
-  while (!stop.requested() && Clock::now() < end)
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  listen(node, kDiscovery, stop, [] {});
   const auto known = bus::known_topics();
   std::string topic;
   bool any = false;

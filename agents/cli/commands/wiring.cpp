@@ -40,9 +40,7 @@ int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
   }
   bus::Node node(node_options);
   Processes processes(node);
-  for (const auto end = Clock::now() + kListen; !stop.requested() && Clock::now() < end;
-       processes.poll())
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  listen(node, kListen, stop, [&] { processes.poll(); });
   const std::vector<SeenProcess> seen = processes.all();
   // Without a running system the table alone is printed.
   if (!seen.empty())
