@@ -209,7 +209,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
-  listen(node, milliseconds(1300), stop, [&] {
+  poll_for(node, milliseconds(1300), stop, [&] {
     deployments.poll();
     goals.poll();
   });

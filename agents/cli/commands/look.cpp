@@ -42,7 +42,7 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
 int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   const bus::Census census(node);
-  listen(node, kDiscovery, stop, [] {});
+  poll_for(node, kDiscovery, stop, [] {});
   const auto known = bus::known_topics();
   std::string topic;
   bool any = false;

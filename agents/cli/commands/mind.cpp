@@ -108,7 +108,7 @@ const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cy
 }
 
 void Mind::listen(std::chrono::milliseconds time, const bus::Stop& stop) {
-  cli::listen(node_, time, stop, [this] { poll(); });
+  poll_for(node_, time, stop, [this] { poll(); });
 }
 
 const v1::BehaviorSchema* Mind::schema(const std::string& name) const {

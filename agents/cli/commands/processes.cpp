@@ -39,10 +39,8 @@ int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bu
   bus::Node node(options);
   Mind mind(node, false);
   bus::RequestClient services(node, bus::topics::kProcessRequest, "saphira processes");
-  v1::Request request;
-  request.service(asked.words[1]);
-  request.functor(asked.words[0]);
-  request.arguments({bus::text("process", asked.words[2])});
+  v1::Request request =
+      bus::request(asked.words[0], {bus::text("process", asked.words[2])}, asked.words[1]);
   if (asked.words[0] == "suspend")
     request.arguments().push_back(bus::number("cycles", asked.cycles));
   const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { mind.poll(); });

@@ -117,8 +117,8 @@ class StatusView {
 int status(bool watch, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   StatusView view(node);
-  const auto poll = [&view] { view.poll(); };
-  listen(node, node.identity() ? kListenSecured : kListen, stop, poll);
+  const auto refresh = [&view] { view.poll(); };
+  poll_for(node, node.identity() ? kListenSecured : kListen, stop, refresh);
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
     return view.anybody() ? bus::kExitOk : bus::kExitFailed;
@@ -128,7 +128,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
     std::printf("%s%s%s", terminal ? "\x1b[H\x1b[2J" : "", view.text().c_str(),
                 terminal ? "" : "\n");
     std::fflush(stdout);
-    listen(node, std::chrono::seconds(1), stop, poll);
+    poll_for(node, std::chrono::seconds(1), stop, refresh);
   }
   if (!watch)
     std::fputs(view.text().c_str(), stdout);

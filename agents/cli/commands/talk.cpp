@@ -203,11 +203,9 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
     return bus::kExitUsage;
   }
   bus::RequestClient client(node, bus::topics::kSolve, "saphira knows");
-  v1::Request request;
-  request.functor("forget");
-  request.service("dialogue");
-  request.arguments({bus::number("number", number)});
-  const v1::Answer answer = client.ask(request, 10.0, &stop, [&] { processes.poll(); });
+  const v1::Answer answer =
+      client.ask(bus::request("forget", {bus::number("number", number)}, "dialogue"), 10.0, &stop,
+                 [&] { processes.poll(); });
   std::printf("%s\n", answer.text().c_str());
   return bus::well(answer.code()) ? bus::kExitOk : bus::kExitFailed;
 }

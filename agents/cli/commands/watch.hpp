@@ -20,7 +20,7 @@ inline double seconds_since(Clock::time_point when) {
 
 /// Waits for the node's samples and polls, for that time.
 template <class Poll>
-void listen(bus::Node& node, std::chrono::milliseconds time, const bus::Stop& stop, Poll poll) {
+void poll_for(bus::Node& node, std::chrono::milliseconds time, const bus::Stop& stop, Poll poll) {
   const auto end = Clock::now() + time;
   while (!stop.requested() && Clock::now() < end) {
     node.wait(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()), &stop);

@@ -40,7 +40,7 @@ int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
   }
   bus::Node node(node_options);
   Processes processes(node);
-  listen(node, kListen, stop, [&] { processes.poll(); });
+  poll_for(node, kListen, stop, [&] { processes.poll(); });
   const std::vector<SeenProcess> seen = processes.all();
   // Without a running system the table alone is printed.
   if (!seen.empty())

@@ -214,10 +214,7 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
   const int high = packet[kCommand + 3];
   const auto call = [](const bus::RequestTopic& topic, const char* functor,
                        std::vector<v1::Argument> arguments) {
-    v1::Request request;
-    request.functor(functor);
-    request.arguments(std::move(arguments));
-    return DeviceCall{topic, request};
+    return DeviceCall{topic, bus::request(functor, std::move(arguments))};
   };
   switch (static_cast<protocol::Number>(packet[kCommand])) {
     case protocol::Number::kDigitalOutput:
@@ -285,16 +282,10 @@ class BusRobot final : public ServedRobot {
     return std::exchange(pointed_out_, {});
   }
   void load_map(const std::string& text, const std::string& name) override {
-    v1::Request request;
-    request.functor("load");
-    request.arguments({bus::text("text", text), bus::text("name", name)});
-    ask(request);
+    ask(bus::request("load", {bus::text("text", text), bus::text("name", name)}));
   }
   void place(const Pose& robot) override {
-    v1::Request request;
-    request.functor("place");
-    request.arguments({bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)});
-    ask(request);
+    ask(bus::request("place", {bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)}));
   }
 
  private:

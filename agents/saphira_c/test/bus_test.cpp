@@ -71,11 +71,7 @@ class OnBus : public testing::Test {
   v1::AnswerCode ask(const std::string& functor, const std::string& service,
                      const std::string& process) {
     bus::RequestClient client(system_.node(), bus::topics::kProcessRequest, "test");
-    v1::Request request;
-    request.functor(functor);
-    request.service(service);
-    request.arguments({bus::text("process", process)});
-    return client.ask(request, 20.0).code();
+    return client.ask(bus::request(functor, {bus::text("process", process)}, service), 20.0).code();
   }
 
   test::System system_;

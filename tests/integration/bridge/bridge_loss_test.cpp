@@ -14,8 +14,7 @@ using std::chrono::milliseconds;
 
 /// A scene whose robot drives at 0.3 m/s.
 void start(Scene& scene) {
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.3);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();

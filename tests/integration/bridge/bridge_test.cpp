@@ -11,8 +11,7 @@ using std::chrono::milliseconds;
 
 TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
       << scene.bridge_log();
   EXPECT_EQ(scene.description->robot_class(), "Pioneer");
@@ -48,8 +47,7 @@ TEST(Bridge, DescribesTheRobotAndDrivesIt) {
 
 TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
   Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.4);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
@@ -70,8 +68,7 @@ TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
 TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   Scene scene(true);
   scene.world += "11500 8000 11500 12000\n";
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.4);
   scene.permit(150);
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 150; }))
