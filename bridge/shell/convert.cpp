@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "enums.hpp"
 #include "geometry/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
@@ -11,14 +12,6 @@ namespace saphira::bridge {
 
 namespace {
 
-constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{
-    {{
-        {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
-        {protocol::Motors::kMoving, v1::MOTORS_MOVING},
-        {protocol::Motors::kNoPower, v1::MOTORS_NO_POWER},
-    }},
-    {},
-    {v1::MOTORS_NOT_CONNECTED}};
 constexpr EnumPairs<authority::Role, v1::Role, 5> kRoles{{{
     {authority::Role::none, v1::ROLE_NONE},
     {authority::Role::estop, v1::ROLE_ESTOP},
@@ -32,17 +25,6 @@ constexpr EnumPairs<authority::GuardAction, v1::GuardAction, 4> kGuardActions{{{
     {authority::GuardAction::slow, v1::GUARD_SLOW},
     {authority::GuardAction::stop, v1::GUARD_STOP},
 }}};
-constexpr EnumPairs<reflector::Translation, v1::TranslationMode, 3> kTranslations{{{
-    {reflector::Translation::none, v1::TRANSLATION_NONE},
-    {reflector::Translation::velocity, v1::TRANSLATION_VELOCITY},
-    {reflector::Translation::position, v1::TRANSLATION_POSITION},
-}}};
-constexpr EnumPairs<reflector::Rotation, v1::RotationMode, 4> kRotations{{{
-    {reflector::Rotation::none, v1::ROTATION_NONE},
-    {reflector::Rotation::velocity, v1::ROTATION_VELOCITY},
-    {reflector::Rotation::heading, v1::ROTATION_HEADING},
-    {reflector::Rotation::relative_heading, v1::ROTATION_RELATIVE_HEADING},
-}}};
 constexpr EnumPairs<Health, v1::ServiceState, 3> kHealths{
     {{
         {Health::running, v1::SERVICE_RUNNING},
@@ -51,11 +33,6 @@ constexpr EnumPairs<Health, v1::ServiceState, 3> kHealths{
     }},
     {},
     {v1::SERVICE_STARTING, v1::SERVICE_STOPPING}};
-constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
-    {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
-    {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},
-    {protocol::VisionChannel::Mode::kLine, v1::VISION_LINE},
-}}};
 
 constexpr std::size_t kMostSonars = 64;  // the bound of the sequences
 

@@ -55,11 +55,6 @@ ForeignRobot::~ForeignRobot() {
   ::close(listener_);
 }
 
-std::map<int, int> ForeignRobot::commands() const {
-  const std::lock_guard lock(mutex_);
-  return commands_;
-}
-
 std::string ForeignRobot::trouble() const {
   const std::lock_guard lock(mutex_);
   std::string all = trouble_;
@@ -95,7 +90,6 @@ void ForeignRobot::run() {
       client_ = ::accept(listener_, nullptr, nullptr);
       received.clear();
       syncs_ = 0;
-      ignored_ = ignores_.exchange(false);
     }
     if (client_ >= 0 && fds[1].revents != 0) {
       std::uint8_t bytes[512];
@@ -106,7 +100,7 @@ void ForeignRobot::run() {
         open_ = false;
         const std::lock_guard lock(mutex_);
         checker_.disconnect();
-      } else if (!ignored_) {
+      } else {
         watch(protocol::Side::kClient, {bytes, bytes + size});
         received.insert(received.end(), bytes, bytes + size);
       }
@@ -200,10 +194,6 @@ void ForeignRobot::handle(const Wire& body) {
     const std::lock_guard lock(mutex_);
     trouble_ += "command " + std::to_string(body[0]) + " before the synchronization; ";
     return;
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    ++commands_[body[0]];
   }
   int value = 0;
   if (body.size() >= 4) {

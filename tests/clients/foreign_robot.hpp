@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -27,16 +26,10 @@ class ForeignRobot {
   double velocity() const { return velocity_; }  ///< [mm/s]
   double rotation() const { return rotation_; }  ///< [deg/s]
   double x() const { return x_; }                ///< [mm]
-  double th() const { return th_; }              ///< [deg]
   bool motors() const { return motors_; }
-  bool connected() const { return open_; }
-  /// Accepts the next client without ever answering; later ones are served.
-  void ignore_next_client() { ignores_ = true; }
   /// Changes the body of each following information packet before it is sent; the checker gets the
   /// unchanged packet.
   void spoil(std::function<void(std::vector<std::uint8_t>&)> how);
-  /// The number of each received command.
-  std::map<int, int> commands() const;
   /// Bytes outside of packets, and the strict checker's findings on both sides.
   std::string trouble() const;
 
@@ -55,8 +48,6 @@ class ForeignRobot {
   std::atomic<bool> stop_{false};
   std::atomic<bool> open_{false};
   std::atomic<bool> motors_{false};
-  std::atomic<bool> ignores_{false};
-  bool ignored_ = false;
   std::atomic<double> velocity_{0.0};
   std::atomic<double> rotation_{0.0};
   std::atomic<double> x_{0.0};
@@ -67,7 +58,6 @@ class ForeignRobot {
   int syncs_ = 0;
   mutable std::mutex mutex_;
   std::function<void(std::vector<std::uint8_t>&)> spoil_;
-  std::map<int, int> commands_;
   std::string trouble_;
   protocol::Checker checker_;
   std::thread thread_;

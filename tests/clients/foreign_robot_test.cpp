@@ -15,11 +15,18 @@ namespace {
 
 using std::chrono::seconds;
 
-TEST(ForeignRobotTest, IsDrivenByOurBridge) {
+class ForeignRobotTest : public ::testing::Test {
+ protected:
+  ForeignRobotTest() {
+    scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+    scene.start_bridge();
+  }
+
   ForeignRobot robot;
   Scene scene;
-  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
-  scene.start_bridge();
+};
+
+TEST_F(ForeignRobotTest, IsDrivenByOurBridge) {
   ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
       << scene.bridge_log();
   EXPECT_EQ(scene.description->robot_class(), "Pioneer");
@@ -46,11 +53,7 @@ TEST(ForeignRobotTest, IsDrivenByOurBridge) {
   EXPECT_EQ(scene.state.bad_packets(), 0U);
 }
 
-TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
-  ForeignRobot robot;
-  Scene scene;
-  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
-  scene.start_bridge();
+TEST_F(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   forward(scene.command, 0.2, 0.0);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << scene.bridge_log();
@@ -59,22 +62,8 @@ TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   EXPECT_EQ(robot.trouble(), "");
 }
 
-TEST(ForeignRobotTest, IsTriedAgainWhenItDoesNotAnswer) {
-  ForeignRobot robot;
-  robot.ignore_next_client();
-  Scene scene;
-  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  EXPECT_EQ(robot.trouble(), "");
-}
-
 // Impossible fields, with a right checksum.
-TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
-  ForeignRobot robot;
-  Scene scene;
-  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
-  scene.start_bridge();
+TEST_F(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   forward(scene.command, 0.2, 0.0);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.19; })) << scene.bridge_log();
@@ -105,39 +94,10 @@ TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << "and so does the drive";
 }
 
-TEST(ForeignRobotTest, WithASonarThatItsTableDoesNotHave) {
-  ForeignRobot robot;
-  Scene scene;
-  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.state.sonars().size() == 16; })) << scene.bridge_log();
-  EXPECT_EQ(scene.state.ptu(), 0) << "its flags stand there, and are no servo's width";
-  robot.spoil([](std::vector<std::uint8_t>& body) { body[20] = 40; });  // the first reading's
-  ASSERT_TRUE(scene.until([&] {
-    return scene.status.reason().find("the robot sends sonar number 40; its table has 16") == 0;
-  })) << scene.status.reason();
-  EXPECT_NE(scene.status.reason().find("/p3dx.p"), std::string::npos);
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_DEGRADED);
-  EXPECT_EQ(scene.state.sonars().size(), 15U);
-  EXPECT_GT(scene.state.bad_packets(), 0U);
-  // A wrong count makes all fields behind it meaningless.
-  robot.spoil([](std::vector<std::uint8_t>& body) { body[19] = 100; });
-  ASSERT_TRUE(scene.until([&] {
-    return scene.status.reason().find("ends within its sonar readings") != std::string::npos;
-  })) << scene.status.reason();
-  robot.spoil({});
-  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
-  for (const v1::RobotState& state : scene.states)
-    for (const v1::SonarReading& reading : state.sonars())
-      ASSERT_LT(reading.sonar(), 16);
-}
-
-class UnderTheChecker : public ::testing::TestWithParam<const char*> {};
-
 // All traffic between bridge and simulator, from the synchronization to the end.
-TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
+TEST(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   Scene scene;
-  scene.robot_file = std::string(GetParam()) + ".p";
+  scene.robot_file = "p3dx-sh.p";
   scene.start_simulator();
   ASSERT_TRUE(wait_until([&] { return ::access(scene.folder.path("robot").c_str(), F_OK) == 0; }));
   Process checker({"saphira-protocol-check", "--listen", scene.folder.path("watched"), "--server",
@@ -159,15 +119,6 @@ TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   EXPECT_NE(checker.output().find("x VEL (11)"), std::string::npos) << checker.output();
   EXPECT_NE(checker.output().find("0 violations"), std::string::npos) << checker.output();
 }
-
-INSTANTIATE_TEST_SUITE_P(Robots, UnderTheChecker, ::testing::Values("psos43m", "p3dx-sh"),
-                         [](const auto& robot) {
-                           std::string name = robot.param;
-                           for (char& c : name)
-                             if (c == '-')
-                               c = '_';
-                           return name;
-                         });
 
 }  // namespace
 }  // namespace saphira::test

@@ -52,6 +52,10 @@ class Scripted {
     const std::scoped_lock lock(mutex_);
     return teleop_;
   }
+  v1::MotorCommand newest() {
+    const auto all = teleop();
+    return all.empty() ? v1::MotorCommand() : all.back();
+  }
   int withdrawn() const { return withdrawn_; }
 
  private:
@@ -187,32 +191,6 @@ TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
       << "write it anew: saphira help > agents/cli/help.txt";
   EXPECT_TRUE(has(run({"help", "goal"}).text, "Send a goal and follow it to its end"));
   EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
-}
-
-TEST_F(Answers, WhatIsMistypedGetsAGuess) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
-      {{"gaol"}, "did you mean goal?"},
-      {{"help", "statsu"}, "did you mean status?"},
-      {{"--versoin"}, "did you mean --version?"},
-      {{"echo", "robot/stat"}, "did you mean robot/state?"},
-      {{"status", "--profile", "wifi"}, "{host,lan,wan}"}};
-  for (const auto& [words, part] : mistakes) {
-    const Outcome outcome = run(words);
-    EXPECT_EQ(outcome.code, 2) << outcome.text;
-    EXPECT_TRUE(has(outcome.text, part)) << outcome.text;
-  }
-}
-
-TEST_F(Answers, WhatIsWrongIsAUsageError) {
-  const std::vector<std::vector<std::string>> wrong{
-      {"fly"},        {"demo", "--seed", "x"}, {"demo", "--goal", "1"},       {"up"},
-      {"up", "dmeo"}, {"echo", "robot/stat"},  {"goal", "go", "1"},           {"bench", "nothing"},
-      {"drive"},      {"goal", "cancel", "x"}, {"demo", "--time-limit", "-1"}};
-  for (const auto& words : wrong) {
-    const Outcome outcome = run(words);
-    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(words) << outcome.text;
-    EXPECT_FALSE(outcome.text.empty());
-  }
 }
 
 /// The names in the help's list of commands, a line each.
@@ -524,21 +502,17 @@ TEST_F(CliTest, DriveIsADeadMan) {
     }
   });
   const auto press = [&](char key) { EXPECT_EQ(::write(terminal, &key, 1), 1); };
-  const auto newest = [&] {
-    const auto all = scripted.teleop();
-    return all.empty() ? v1::MotorCommand() : all.back();
-  };
   // Until its first command is received: it starts and is discovered meanwhile.
   EXPECT_TRUE(test::wait_until([&] {
     press('i');
     std::this_thread::sleep_for(milliseconds(50));
-    return newest().active() && newest().velocity() > 0.0;
+    return scripted.newest().active() && scripted.newest().velocity() > 0.0;
   }));
-  EXPECT_EQ(newest().stamp().epoch(), 7U);
-  EXPECT_GT(newest().stamp().cycle(), 0U);
+  EXPECT_EQ(scripted.newest().stamp().epoch(), 7U);
+  EXPECT_GT(scripted.newest().stamp().cycle(), 0U);
   // Without keys it releases the robot, and stops.
-  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
-  EXPECT_EQ(newest().velocity(), 0.0);
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
+  EXPECT_EQ(scripted.newest().velocity(), 0.0);
   // All numbers differ.
   std::uint64_t last = 0;
   for (const v1::MotorCommand& command : scripted.teleop()) {
@@ -546,7 +520,8 @@ TEST_F(CliTest, DriveIsADeadMan) {
     last = command.number();
   }
   press('k');
-  EXPECT_TRUE(test::wait_until([&] { return newest().active() && newest().velocity() == 0.0; }));
+  EXPECT_TRUE(test::wait_until(
+      [&] { return scripted.newest().active() && scripted.newest().velocity() == 0.0; }));
   const auto handed_back = [&] {
     const auto all = scripted.teleop();
     return std::any_of(all.begin(), all.end(), [](const v1::MotorCommand& command) {
@@ -560,7 +535,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
   int status = 0;
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
   // The terminal has its earlier settings.
   termios after{};
   EXPECT_EQ(tcgetattr(terminal, &after), 0);
@@ -589,20 +564,16 @@ TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
   const int frozen = open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(frozen, 0);
   ASSERT_EQ(tcflow(frozen, TCOOFF), 0);
-  const auto newest = [&] {
-    const auto all = scripted.teleop();
-    return all.empty() ? v1::MotorCommand() : all.back();
-  };
   EXPECT_TRUE(test::wait_until([&] {
     const char key = 'i';
     EXPECT_EQ(::write(terminal, &key, 1), 1);
     std::this_thread::sleep_for(milliseconds(50));
-    return newest().active() && newest().velocity() > 0.1;
+    return scripted.newest().active() && scripted.newest().velocity() > 0.1;
   }));
   // And when the keys stop as well, the robot is released.
-  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
-  const std::uint64_t released = newest().number();
-  EXPECT_TRUE(test::wait_until([&] { return newest().number() > released + 10; }))
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
+  const std::uint64_t released = scripted.newest().number();
+  EXPECT_TRUE(test::wait_until([&] { return scripted.newest().number() > released + 10; }))
       << "it goes on saying that it does not drive";
   const char quit = 'q';
   EXPECT_EQ(::write(terminal, &quit, 1), 1);

@@ -13,6 +13,7 @@ namespace {
 struct Mistake {
   std::vector<std::string> words;  ///< after `saphira`
   std::vector<std::string> said;   ///< parts of the answer: the error, and the advice
+  int code = 2;
 };
 
 const std::vector<Mistake>& mistakes() {
@@ -26,9 +27,10 @@ const std::vector<Mistake>& mistakes() {
       {{"status", "now"}, {"now"}},
       {{"status", "--jsn"}, {"--jsn", "--json"}},
       {{"status", "--json", "--watch"}, {"--json", "--watch"}},
+      {{"--versoin"}, {"did you mean --version?"}},
       {{"--profile", "wifi", "status"}, {"wifi", "host"}},
       {{"--domain", "300", "status"}, {"300", "231"}},
-      {{"stop", "nothing"}, {"no deployment"}},
+      {{"stop", "nothing"}, {"no deployment"}, 1},
       {{"bench", "nothing"}, {"no benchmark", "nothing"}},
       // echo and log
       {{"echo"}, {"topic is required"}},
@@ -66,7 +68,10 @@ const std::vector<Mistake>& mistakes() {
       {{"why", "--cycle", "now"}, {"--cycle", "now"}},
       // deployments
       {{"up"}, {"deployment is required"}},
-      {{"up", "nothing"}, {"nothing", "demo"}},
+      {{"up", "dmeo"}, {"no \"dmeo\"", "did you mean demo?"}},
+      {{"demo", "--seed", "x"}, {"--seed", "x"}},
+      {{"demo", "--goal", "1"}, {"--goal", "2 required"}},
+      {{"demo", "--time-limit", "-1"}, {"--time-limit", "-1"}},
       {{"up", "demo", "--set", "x"}, {"\"x\" sets nothing", "world="}},
       {{"up", "demo", "--set", "nothing=1"}, {"nothing"}},
       {{"up", "demo", "-d", "--set", "nothing=1"}, {"nothing"}},
@@ -124,7 +129,7 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   const std::optional<int> code = process.wait();
   const std::string said = process.output();
   const std::string typed = testing::PrintToString(mistake.words);
-  EXPECT_TRUE(code == 1 || code == 2) << typed << ": " << said;
+  EXPECT_EQ(code, mistake.code) << typed << ": " << said;
   for (const std::string& part : mistake.said)
     EXPECT_NE(said.find(part), std::string::npos) << typed << ": " << said;
   // The answer names the mistake, and does not list all valid forms.

@@ -98,16 +98,9 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   auto triggers = node.reader(bus::topics::kTriggers);
   std::map<std::uint64_t, v1::Agent> known;
   std::map<std::pair<std::uint64_t, std::uint64_t>, bus::Sample<v1::Trigger>> set;
-  const auto end = Clock::now() + milliseconds(1300);
-  while (!stop.requested() && Clock::now() < end) {
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  poll_for(node, milliseconds(1300), stop, [&] {
     processes.poll();
-    for (const auto& sample : agents.take()) {
-      if (sample.info.disposed)
-        known.erase(sample.data.id());
-      else
-        known[sample.data.id()] = sample.data;
-    }
+    keep_newest(agents, known, [](const v1::Agent& agent) { return agent.id(); });
     for (const auto& sample : triggers.take()) {
       const std::pair<std::uint64_t, std::uint64_t> id{sample.data.id().writer(),
                                                        sample.data.id().number()};
@@ -116,7 +109,7 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
       else
         set[id] = sample;
     }
-  }
+  });
   for (const auto& [id, agent] : known)
     std::fputs(describe(agent).c_str(), stdout);
   for (const auto& [id, trigger] : set) {
@@ -163,10 +156,8 @@ void add_agents(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
   command->footer(
       "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");
-  command->callback([&chosen] {
-    chosen.run = [](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return list_agents(node, stop);
-    };
+  chosen.when(command, [](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return list_agents(node, stop);
   });
 }
 

@@ -105,10 +105,8 @@ void add_check(CLI::App& app, Chosen& chosen) {
       ->take_all()
       ->type_size(1);
   command->footer("Nothing is started, and what runs is not touched. Exit code 0: it would start.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop&) {
-      return check(options->deployment, options->set, node);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop&) {
+    return check(options->deployment, options->set, node);
   });
 }
 

@@ -12,7 +12,12 @@ namespace saphira::cli {
 
 /// The chosen subcommand; set by its callback.
 struct Chosen {
-  std::function<int(const bus::NodeOptions&, const bus::Stop&)> run;
+  using Run = std::function<int(const bus::NodeOptions&, const bus::Stop&)>;
+  Run run;
+  /// Runs `what` where the command is chosen.
+  void when(CLI::App* command, Run what) {
+    command->callback([this, what = std::move(what)] { run = what; });
+  }
 };
 
 /// A validator of numbers; expected: the words for its error message.

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -28,6 +27,7 @@
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/maps/topology.hpp"
+#include "saphira/situation/format.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -164,12 +164,10 @@ class Watcher {
   std::string line(const std::optional<v1::GoalStatus>& status) const {
     if (!robot_)
       return "no robot yet";
-    const Pose pose = pose_of(*robot_);
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
-                  pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
-    std::string line = text.data();
+    const Pose pose = lps::from_bus(robot_->pose_in_odom());
+    std::string line =
+        situation::format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(),
+                          pose.x, pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
     line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
     if (grant_ && !latched(*grant_).empty())
       line += ", " + latched(*grant_);
@@ -190,10 +188,6 @@ class Watcher {
     std::uint64_t cycle = 0;
     double range = 0.0;
   };
-
-  static Pose pose_of(const v1::RobotState& robot) {
-    return {robot.pose_in_odom().x(), robot.pose_in_odom().y(), robot.pose_in_odom().th()};
-  }
 
   /// The map in odom, by the robot's registration.
   void place_walls() {
@@ -216,7 +210,7 @@ class Watcher {
   }
 
   void take_echoes(const v1::RobotState& robot) {
-    const Pose pose = pose_of(robot);
+    const Pose pose = lps::from_bus(robot.pose_in_odom());
     picture_.move_robot(pose);
     for (const v1::SonarReading& reading : robot.sonars()) {
       if (!reading.echo()) {
@@ -227,12 +221,9 @@ class Watcher {
       if (!description_)
         continue;
       for (const v1::SonarPose& sonar : description_->sonars())
-        if (sonar.sonar() == reading.sonar()) {
-          const Pose in_robot{sonar.pose_in_robot().x(), sonar.pose_in_robot().y(),
-                              sonar.pose_in_robot().th()};
-          picture_.add_echo(
-              transform(compose(pose, in_robot), Vec2(static_cast<double>(reading.range()), 0.0)));
-        }
+        if (sonar.sonar() == reading.sonar())
+          picture_.add_echo(transform(compose(pose, lps::from_bus(sonar.pose_in_robot())),
+                                      Vec2(static_cast<double>(reading.range()), 0.0)));
     }
   }
 
@@ -244,10 +235,8 @@ class Watcher {
         range = reading.range;
         sonar = index;
       }
-    std::array<char, 64> text{};
-    if (std::isfinite(range))
-      std::snprintf(text.data(), text.size(), "  nearest %.2f m (sonar %d)", range, sonar);
-    return text.data();
+    return std::isfinite(range) ? situation::format("  nearest %.2f m (sonar %d)", range, sonar)
+                                : std::string();
   }
 
   Vec2 goal_;
@@ -549,10 +538,8 @@ void add_demo(CLI::App& app, Chosen& chosen) {
   command->add_option("--trace", options->trace, "keep the true trajectory in this file (CSV)");
   command->add_flag("--verbose,-v", options->verbose, "show what the programs say");
   command->footer("Exit code 0: the robot arrived; 1: it did not, in the time that was given.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return Demo(*options, node).run(stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return Demo(*options, node).run(stop);
   });
 }
 

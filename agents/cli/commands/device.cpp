@@ -163,15 +163,13 @@ void add_device(CLI::App& app, Chosen& chosen) {
   command->add_option("--answer", *answer, "serial: so many bytes are asked for afterwards");
   command->footer(std::string(kDeviceWords) +
                   "Exit code 0: the robot shows it, or no packet would; 1: it does not.");
-  command->callback([words, answer, &chosen] {
-    chosen.run = [words, answer](const bus::NodeOptions& node, const bus::Stop& stop) {
-      std::vector<std::string> all = *words;
-      if (*answer > 0) {
-        all.emplace_back("--answer");
-        all.push_back(std::to_string(*answer));
-      }
-      return device(all, node, stop);
-    };
+  chosen.when(command, [words, answer](const bus::NodeOptions& node, const bus::Stop& stop) {
+    std::vector<std::string> all = *words;
+    if (*answer > 0) {
+      all.emplace_back("--answer");
+      all.push_back(std::to_string(*answer));
+    }
+    return device(all, node, stop);
   });
 }
 

@@ -181,16 +181,14 @@ CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, 
       "The robot stops when this ends. The guard beside it holds; a person's keyboard is "
       "stronger,\n"
       "goals are weaker. Exit code 0: done.");
-  command->callback([options, kind, name, &chosen] {
-    chosen.run = [=](const bus::NodeOptions& node, const bus::Stop& stop) -> int {
-      const double wish = kind == Move::Kind::turn ? radians(options->value) : options->value;
-      const Move wanted{kind, name, wish, options->speed};
-      if (const std::string wrong = trouble_of(wanted); !wrong.empty()) {
-        std::cerr << "saphira: " << wrong << '\n';
-        return bus::kExitUsage;
-      }
-      return move(wanted, options->seconds, node, stop);
-    };
+  chosen.when(command, [=](const bus::NodeOptions& node, const bus::Stop& stop) -> int {
+    const double wish = kind == Move::Kind::turn ? radians(options->value) : options->value;
+    const Move wanted{kind, name, wish, options->speed};
+    if (const std::string wrong = trouble_of(wanted); !wrong.empty()) {
+      std::cerr << "saphira: " << wrong << '\n';
+      return bus::kExitUsage;
+    }
+    return move(wanted, options->seconds, node, stop);
   });
   return command;
 }

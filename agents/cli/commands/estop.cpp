@@ -56,9 +56,8 @@ class Button {
   }
 
   int reset(const bus::Stop& stop) {
-    v1::Request request;
-    request.functor("reset");
-    const v1::Answer answer = resets_.ask(request, kResetLimit, &stop, [this] { poll(); });
+    const v1::Answer answer =
+        resets_.ask(bus::request("reset"), kResetLimit, &stop, [this] { poll(); });
     if (!bus::well(answer.code())) {
       complain("saphira: not reset: %s\n", answer.code() == v1::ANSWER_NOBODY
                                                ? ("no bridge is heard; " + why_nobody()).c_str()

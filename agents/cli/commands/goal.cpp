@@ -209,12 +209,10 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
-  const auto end = Clock::now() + milliseconds(1300);
-  while (!stop.requested() && Clock::now() < end) {
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  poll_for(node, milliseconds(1300), stop, [&] {
     deployments.poll();
     goals.poll();
-  }
+  });
   deployments.settle(stop);
   for (const v1::GoalStatus& status : goals.statuses())
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),
@@ -316,17 +314,15 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
       "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      if (!options->words.empty() && options->words[0] == "cancel")
-        return cancel(*options, node, stop);
-      if (options->words == std::vector<std::string>{"list"})
-        return list_goals(node, stop);
-      if (!options->words.empty() &&
-          (options->words[0] == "activities" || options->words[0] == "schemas"))
-        return schemas(*options, node, stop);
-      return ask(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    if (!options->words.empty() && options->words[0] == "cancel")
+      return cancel(*options, node, stop);
+    if (options->words == std::vector<std::string>{"list"})
+      return list_goals(node, stop);
+    if (!options->words.empty() &&
+        (options->words[0] == "activities" || options->words[0] == "schemas"))
+      return schemas(*options, node, stop);
+    return ask(*options, node, stop);
   });
 }
 

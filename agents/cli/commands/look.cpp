@@ -42,9 +42,7 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
 int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   const bus::Census census(node);
-  const auto end = Clock::now() + kDiscovery;
-  while (!stop.requested() && Clock::now() < end)
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  poll_for(node, kDiscovery, stop, [] {});
   const auto known = bus::known_topics();
   std::string topic;
   bool any = false;
@@ -117,8 +115,9 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
 }  // namespace
 
 void add_list(CLI::App& app, Chosen& chosen) {
-  app.add_subcommand("list", "Topics, types, writers and readers with their QoS, and mismatches")
-      ->callback([&chosen] { chosen.run = list_topics; });
+  chosen.when(app.add_subcommand(
+                  "list", "Topics, types, writers and readers with their QoS, and mismatches"),
+              list_topics);
 }
 
 void add_echo(CLI::App& app, Chosen& chosen) {
@@ -137,10 +136,8 @@ void add_echo(CLI::App& app, Chosen& chosen) {
   command->add_flag("--once", options->once, "end after one")->excludes(count);
   command->add_option("--timeout", options->timeout, "[s] end then; exit code 1: it came to less")
       ->check(above_zero());
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return echo(options->topic, options->once ? 1 : options->count, options->timeout, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return echo(options->topic, options->once ? 1 : options->count, options->timeout, node, stop);
   });
 }
 

@@ -277,20 +277,10 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   std::map<std::uint32_t, Pose> percepts;
   const auto began = Clock::now();
   do {
-    for (const auto& tile : grid.take()) {
-      const std::pair key{tile.data.column(), tile.data.row()};
-      if (tile.info.disposed)
-        tiles.erase(key);
-      else
-        tiles[key] = tile.data;
-    }
-    for (const auto& sample : drawings.take()) {
-      const std::pair key{sample.data.instance(), sample.data.number()};
-      if (sample.info.disposed)
-        drawn.erase(key);
-      else
-        drawn[key] = sample.data;
-    }
+    keep_newest(grid, tiles,
+                [](const v1::GridTile& tile) { return std::pair(tile.column(), tile.row()); });
+    keep_newest(drawings, drawn,
+                [](const v1::Drawing& one) { return std::pair(one.instance(), one.number()); });
     if (const auto seen = perceptions.take_newest())
       for (const v1::Percept& percept : seen->percepts())
         percepts[percept.id()] = lps::from_bus(percept.pose_in_odom());
@@ -509,10 +499,8 @@ void add_map(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->footer(kMapWords);
-  command->callback([words, seconds, &chosen] {
-    chosen.run = [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return map(*words, *seconds, node, stop);
-    };
+  chosen.when(command, [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return map(*words, *seconds, node, stop);
   });
 }
 

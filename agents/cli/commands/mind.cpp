@@ -64,19 +64,11 @@ void Mind::poll() {
   for (const auto& sample : goal_reader_.take())
     if (!sample.info.disposed)
       goals_[{sample.data.id().writer(), sample.data.id().number()}] = sample.data;
-  for (const auto& sample : status_reader_.take()) {
-    const Key key{sample.data.id().writer(), sample.data.id().number()};
-    if (sample.info.disposed)
-      statuses_.erase(key);
-    else
-      statuses_[key] = sample.data;
-  }
-  for (const auto& sample : process_reader_.take()) {
-    if (sample.info.disposed)
-      services_.erase(sample.data.instance());
-    else
-      services_[sample.data.instance()] = sample.data;
-  }
+  keep_newest(status_reader_, statuses_, [](const v1::GoalStatus& status) {
+    return Key{status.id().writer(), status.id().number()};
+  });
+  keep_newest(process_reader_, services_,
+              [](const v1::ProcessSet& service) { return service.instance(); });
   for (const auto& sample : program_reader_.take()) {
     if (sample.info.disposed)
       programs_.erase(sample.data.instance());
@@ -116,11 +108,7 @@ const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cy
 }
 
 void Mind::listen(std::chrono::milliseconds time, const bus::Stop& stop) {
-  const auto end = Clock::now() + time;
-  while (!stop.requested() && Clock::now() < end) {
-    node_.wait(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()), &stop);
-    poll();
-  }
+  poll_for(node_, time, stop, [this] { poll(); });
 }
 
 const v1::BehaviorSchema* Mind::schema(const std::string& name) const {
@@ -235,12 +223,17 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
       registration_->stamp().cycle() + kSaidLately >= robots_.known().newest)
     now.registration = registration_;
   now.programs = processes_.all();
-  for (const SeenProcess& program : now.programs) {
-    const auto found = services_.find(program.status.instance());
-    if (found != services_.end() && program.age <= kLostAge)
-      now.processes.push_back(found->second);
-  }
+  now.processes = services();
   return now;
+}
+
+std::vector<v1::ProcessSet> Mind::services() const {
+  std::vector<v1::ProcessSet> heard;
+  for (const SeenProcess& program : processes_.all())
+    if (const auto found = services_.find(program.status.instance());
+        found != services_.end() && program.age <= kLostAge)
+      heard.push_back(found->second);
+  return heard;
 }
 
 }  // namespace saphira::cli

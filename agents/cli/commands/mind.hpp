@@ -70,6 +70,8 @@ class Mind {
   const v1::BehaviorSchema* schema(const std::string& name) const;
   const v1::BehaviorSchemas* schemas() const { return schemas_ ? &*schemas_ : nullptr; }
   const v1::BeliefSet* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
+  /// The micro-tasks of programs that are heard.
+  std::vector<v1::ProcessSet> services() const;
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
   const Processes& processes() const { return processes_; }
 

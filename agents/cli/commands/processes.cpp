@@ -1,12 +1,11 @@
 // processes: the micro-tasks of the services (manual 2.3.7 and 6.5).
 #include <cstdio>
 #include <iostream>
-#include <map>
 
 #include "commands.hpp"
+#include "mind.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/displays.hpp"
-#include "watch.hpp"
 
 namespace saphira::cli {
 
@@ -22,53 +21,14 @@ struct ProcessesOptions {
   std::uint32_t cycles = 0;
 };
 
-class Watch {
- public:
-  explicit Watch(bus::Node& node)
-      : node_(node), programs_(node), reader_(node.reader(bus::topics::kProcesses)) {}
-
-  void listen(milliseconds time, const bus::Stop& stop) {
-    const auto end = Clock::now() + time;
-    while (!stop.requested() && Clock::now() < end) {
-      node_.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
-      poll();
-    }
-  }
-  void poll() {
-    programs_.poll();
-    for (const auto& sample : reader_.take()) {
-      if (sample.info.disposed)
-        services_.erase(sample.data.instance());
-      else
-        services_[sample.data.instance()] = sample.data;
-    }
-  }
-  /// The processes of living programs.
-  std::vector<v1::ProcessSet> services() const {
-    std::vector<v1::ProcessSet> all;
-    for (const SeenProcess& program : programs_.all())
-      if (const auto found = services_.find(program.status.instance());
-          found != services_.end() && program.age <= kLostAge)
-        all.push_back(found->second);
-    return all;
-  }
-  const Processes& programs() const { return programs_; }
-
- private:
-  bus::Node& node_;
-  Processes programs_;
-  bus::Reader<v1::ProcessSet> reader_;
-  std::map<std::uint64_t, v1::ProcessSet> services_;
-};
-
 int list_processes(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
-  Watch watch(node);
-  watch.listen(kProcessesListen, stop);
-  const std::string text = processes_table(watch.services());
+  Mind mind(node, false);
+  mind.listen(kProcessesListen, stop);
+  const std::string text = processes_table(mind.services());
   if (text.empty()) {
     std::cerr << "saphira: no service tells its processes; "
-              << who_is_there(options, watch.programs()) << '\n';
+              << who_is_there(options, mind.processes()) << '\n';
     return bus::kExitFailed;
   }
   std::fputs(text.c_str(), stdout);
@@ -77,24 +37,22 @@ int list_processes(const bus::NodeOptions& options, const bus::Stop& stop) {
 
 int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
-  Watch watch(node);
+  Mind mind(node, false);
   bus::RequestClient services(node, bus::topics::kProcessRequest, "saphira processes");
-  v1::Request request;
-  request.service(asked.words[1]);
-  request.functor(asked.words[0]);
-  request.arguments({bus::text("process", asked.words[2])});
+  v1::Request request =
+      bus::request(asked.words[0], {bus::text("process", asked.words[2])}, asked.words[1]);
   if (asked.words[0] == "suspend")
     request.arguments().push_back(bus::number("cycles", asked.cycles));
-  const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { watch.poll(); });
+  const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { mind.poll(); });
   if (bus::well(answer.code())) {
     // Its state is published in the cycle after that.
-    watch.listen(milliseconds(300), stop);
-    std::fputs(processes_table(watch.services()).c_str(), stdout);
+    mind.listen(milliseconds(300), stop);
+    std::fputs(processes_table(mind.services()).c_str(), stdout);
     return bus::kExitOk;
   }
   std::string names;
   bool there = !answer.service().empty();  // it may answer before its processes are discovered
-  for (const v1::ProcessSet& service : watch.services()) {
+  for (const v1::ProcessSet& service : mind.services()) {
     names += (names.empty() ? "" : ", ") + service.service();
     there = there || service.service() == request.service();
   }
@@ -132,10 +90,8 @@ void add_processes(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Of the service intentions also an intention, by its name or number (saphira intentions).\n"
       "An interrupted process cleans up and waits until it is resumed.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return processes(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return processes(*options, node, stop);
   });
 }
 

@@ -146,15 +146,13 @@ CLI::App* add(CLI::App& log, Chosen& chosen, const char* name, const char* what,
   command->add_option("log", options->log, "the log in CARMEN's format, packed (.gz) or not")
       ->required()
       ->check(CLI::ExistingFile);
-  command->callback([options, run, &chosen] {
-    chosen.run = [options, run](const bus::NodeOptions&, const bus::Stop& stop) -> int {
-      try {
-        return run(*options, stop);
-      } catch (const std::runtime_error& error) {
-        std::cerr << "saphira: " << error.what() << '\n';
-        return bus::kExitUsage;
-      }
-    };
+  chosen.when(command, [options, run](const bus::NodeOptions&, const bus::Stop& stop) -> int {
+    try {
+      return run(*options, stop);
+    } catch (const std::runtime_error& error) {
+      std::cerr << "saphira: " << error.what() << '\n';
+      return bus::kExitUsage;
+    }
   });
   return command;
 }

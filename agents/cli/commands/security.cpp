@@ -154,9 +154,8 @@ void add_security(CLI::App& app, Chosen& chosen) {
     one->add_option("--authority", words->folder, "folder of the authority")
         ->envname("SAPHIRA_AUTHORITY")
         ->capture_default_str();
-    one->callback([words, run, &chosen] {
-      chosen.run = [words, run](const bus::NodeOptions&, const bus::Stop&) { return run(*words); };
-    });
+    chosen.when(one,
+                [words, run](const bus::NodeOptions&, const bus::Stop&) { return run(*words); });
     return one;
   };
   const auto add_days = [&](CLI::App* one) {
@@ -188,10 +187,8 @@ void add_security(CLI::App& app, Chosen& chosen) {
   one = command->add_subcommand("check", "Check that a folder of credentials is whole and valid");
   one->add_option("folder", words->credentials, "the folder [that of this user or machine]");
   one->add_option("--program", words->program, "for which program")->capture_default_str();
-  one->callback([words, &chosen] {
-    chosen.run = [words](const bus::NodeOptions& options, const bus::Stop&) {
-      return check(*words, options);
-    };
+  chosen.when(one, [words](const bus::NodeOptions& options, const bus::Stop&) {
+    return check(*words, options);
   });
 }
 

@@ -44,13 +44,9 @@ class StatusView {
       behaved_ = behaviors->stamp();
     if (const auto intentions = intentions_.take_newest())
       intended_ = intentions->stamp();
-    for (const auto& sample : goals_.take()) {
-      const std::pair id{sample.data.id().writer(), sample.data.id().number()};
-      if (sample.info.disposed)
-        statuses_.erase(id);
-      else
-        statuses_[id] = sample.data;
-    }
+    keep_newest(goals_, statuses_, [](const v1::GoalStatus& goal) {
+      return std::pair(goal.id().writer(), goal.id().number());
+    });
     for (const auto& sample : log_.take())
       if (sample.data.text().starts_with(kStartedAgain))
         started_again_[sample.data.instance()] = sample.data.name() + " was " + sample.data.text();
@@ -121,14 +117,8 @@ class StatusView {
 int status(bool watch, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   StatusView view(node);
-  const auto listen = [&](milliseconds time) {
-    const auto end = Clock::now() + time;
-    while (!stop.requested() && Clock::now() < end) {
-      node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
-      view.poll();
-    }
-  };
-  listen(node.identity() ? kListenSecured : kListen);
+  const auto refresh = [&view] { view.poll(); };
+  poll_for(node, node.identity() ? kListenSecured : kListen, stop, refresh);
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
     return view.anybody() ? bus::kExitOk : bus::kExitFailed;
@@ -138,7 +128,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
     std::printf("%s%s%s", terminal ? "\x1b[H\x1b[2J" : "", view.text().c_str(),
                 terminal ? "" : "\n");
     std::fflush(stdout);
-    listen(std::chrono::seconds(1));
+    poll_for(node, std::chrono::seconds(1), stop, refresh);
   }
   if (!watch)
     std::fputs(view.text().c_str(), stdout);
@@ -154,10 +144,8 @@ void add_status(CLI::App& app, Chosen& chosen) {
   command->add_flag("--watch,-w", *watch, "again each second, until Ctrl-C");
   command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
       ->excludes("--watch");
-  command->callback([watch, json, &chosen] {
-    chosen.run = [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return status(*watch, *json, node, stop);
-    };
+  chosen.when(command, [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return status(*watch, *json, node, stop);
   });
 }
 

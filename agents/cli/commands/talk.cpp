@@ -203,11 +203,9 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
     return bus::kExitUsage;
   }
   bus::RequestClient client(node, bus::topics::kSolve, "saphira knows");
-  v1::Request request;
-  request.functor("forget");
-  request.service("dialogue");
-  request.arguments({bus::number("number", number)});
-  const v1::Answer answer = client.ask(request, 10.0, &stop, [&] { processes.poll(); });
+  const v1::Answer answer =
+      client.ask(bus::request("forget", {bus::number("number", number)}, "dialogue"), 10.0, &stop,
+                 [&] { processes.poll(); });
   std::printf("%s\n", answer.text().c_str());
   return bus::well(answer.code()) ? bus::kExitOk : bus::kExitFailed;
 }
@@ -225,10 +223,8 @@ void add_say(CLI::App& app, Chosen& chosen) {
       "Sentences that are understood: config/grammars/flakey.grammar. Exit code 0: it was "
       "understood; 1: not.\n"
       "Ctrl-C ends the command, not what the robot does: say \"Flakey, stop\" for that.");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return say(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return say(*options, node, stop);
   });
 }
 
@@ -263,10 +259,8 @@ void add_knows(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("knows", "Facts that the robot was told, and by whom");
   command->add_option("words", *words, "forget NUMBER: takes one back");
-  command->callback([words, &chosen] {
-    chosen.run = [words](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return knows(*words, node, stop);
-    };
+  chosen.when(command, [words](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return knows(*words, node, stop);
   });
 }
 

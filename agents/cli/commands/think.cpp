@@ -403,10 +403,8 @@ void add_intentions(CLI::App& app, Chosen& chosen) {
       "* waits for what is below it, o goes on beside it; then the schema, (the instance), and "
       "the\n"
       "state that comes next, or B for a behavior.");
-  command->callback([watch, &chosen] {
-    chosen.run = [watch](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return intentions(*watch, node, stop);
-    };
+  chosen.when(command, [watch](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return intentions(*watch, node, stop);
   });
 }
 
@@ -420,10 +418,8 @@ void add_behaviors(CLI::App& app, Chosen& chosen) {
       "* runs, o does not. On both channels the bar = is how active a behavior is, and < or > "
       "which\n"
       "way it wants to turn, or back or ahead; at the bottom what the robot is told.");
-  command->callback([watch, name, &chosen] {
-    chosen.run = [watch, name](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return behaviors(*name, *watch, node, stop);
-    };
+  chosen.when(command, [watch, name](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return behaviors(*name, *watch, node, stop);
   });
 }
 
@@ -436,10 +432,8 @@ void add_why(CLI::App& app, Chosen& chosen) {
   command->add_option("--cycle", options->cycle,
                       "of the last minute: its number, or -N for N cycles ago");
   command->add_flag("--json", options->json, "one JSON object");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return why(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return why(*options, node, stop);
   });
 }
 
@@ -450,10 +444,8 @@ void add_beliefs(CLI::App& app, Chosen& chosen) {
   command->add_flag("--hold", options->hold, "set: until Ctrl-C, and then take it back");
   add_watch_options(*command, options->watch);
   command->footer("Values as in activities: t, nil, 2.5, \"text\", (a b).");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return beliefs(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return beliefs(*options, node, stop);
   });
 }
 

@@ -310,10 +310,8 @@ void add_stop(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("stop", "Stop a deployment that saphira up has started");
   command->add_option("deployment", *name, "such as demo; needed where several run");
-  command->callback([name, &chosen] {
-    chosen.run = [name](const bus::NodeOptions&, const bus::Stop& stop) {
-      return stop_running(*name, stop);
-    };
+  chosen.when(command, [name](const bus::NodeOptions&, const bus::Stop& stop) {
+    return stop_running(*name, stop);
   });
 }
 
@@ -322,9 +320,8 @@ void add_renew(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "renew", "Let a deployment take in new versions of its programs, one after the other");
   command->add_option("deployment", *name, "such as demo; needed where several run");
-  command->callback([name, &chosen] {
-    chosen.run = [name](const bus::NodeOptions&, const bus::Stop&) { return renew_running(*name); };
-  });
+  chosen.when(command,
+              [name](const bus::NodeOptions&, const bus::Stop&) { return renew_running(*name); });
 }
 
 void add_up(CLI::App& app, Chosen& chosen) {
@@ -341,17 +338,15 @@ void add_up(CLI::App& app, Chosen& chosen) {
       ->take_all()
       ->type_size(1);
   command->add_flag("--detach,-d", options->detached, "in the background; saphira stop ends it");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      try {
-        if (options->detached)
-          return detach(options->deployment, options->set, node, stop);
-        return up(options->deployment, options->set, node, stop);
-      } catch (const std::invalid_argument& error) {
-        std::cerr << "saphira: " << error.what() << '\n';
-        return static_cast<int>(bus::kExitUsage);
-      }
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    try {
+      if (options->detached)
+        return detach(options->deployment, options->set, node, stop);
+      return up(options->deployment, options->set, node, stop);
+    } catch (const std::invalid_argument& error) {
+      std::cerr << "saphira: " << error.what() << '\n';
+      return static_cast<int>(bus::kExitUsage);
+    }
   });
 }
 

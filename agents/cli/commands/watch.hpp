@@ -18,6 +18,27 @@ inline double seconds_since(Clock::time_point when) {
   return std::chrono::duration<double>(Clock::now() - when).count();
 }
 
+/// Waits for the node's samples and polls, for that time.
+template <class Poll>
+void poll_for(bus::Node& node, std::chrono::milliseconds time, const bus::Stop& stop, Poll poll) {
+  const auto end = Clock::now() + time;
+  while (!stop.requested() && Clock::now() < end) {
+    node.wait(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()), &stop);
+    poll();
+  }
+}
+
+/// Takes the reader's samples: of each instance that is there the newest, by `key` of the sample.
+template <class T, class Samples, class Key>
+void keep_newest(bus::Reader<T>& reader, Samples& samples, Key key) {
+  for (const auto& sample : reader.take()) {
+    if (sample.info.disposed)
+      samples.erase(key(sample.data));
+    else
+      samples[key(sample.data)] = sample.data;
+  }
+}
+
 /// Keeps the newest status of every process.
 class Processes {
  public:

@@ -40,9 +40,7 @@ int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
   }
   bus::Node node(node_options);
   Processes processes(node);
-  for (const auto end = Clock::now() + kListen; !stop.requested() && Clock::now() < end;
-       processes.poll())
-    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  poll_for(node, kListen, stop, [&] { processes.poll(); });
   const std::vector<SeenProcess> seen = processes.all();
   // Without a running system the table alone is printed.
   if (!seen.empty())
@@ -72,10 +70,8 @@ void add_wiring(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("wiring", "Which program writes which topic and which reads it");
   command->add_option("--draw", options->drawing, "as a drawing (SVG) into this file");
   command->add_flag("--table", options->table, "as a table in Markdown, of the system at rest");
-  command->callback([options, &chosen] {
-    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return wiring(*options, node, stop);
-    };
+  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return wiring(*options, node, stop);
   });
 }
 

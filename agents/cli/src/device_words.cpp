@@ -1,14 +1,16 @@
 #include "saphira/cli/device_words.hpp"
 
 #include <array>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/geometry/pose.hpp"
+#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
+
+using situation::format;
 
 const char* const kDeviceWords =
     "  servo WIDTH                    pulse width [us]\n"
@@ -61,12 +63,6 @@ long whole(const std::string& word, long low, long high, const std::string& what
 
 std::uint8_t byte(const std::string& word, const std::string& what, long high = 255) {
   return static_cast<std::uint8_t>(whole(word, 0, high, what));
-}
-
-std::string hex(std::uint8_t value) {
-  std::array<char, 4> digits{};
-  std::snprintf(digits.data(), digits.size(), "%02x", value);
-  return digits.data();
 }
 
 bool on_off(const std::string& word) {
@@ -160,10 +156,10 @@ Request serial(Words& words) {
       if (word.size() % 2 != 0)
         fail("two digits a byte", word);
       for (std::size_t i = 2; i < word.size(); i += 2)
-        data += hex(byte("0x" + word.substr(i, 2), "a byte"));
+        data += format("%02x", byte("0x" + word.substr(i, 2), "a byte"));
     } else {
       for (const char c : word)
-        data += hex(static_cast<std::uint8_t>(c));
+        data += format("%02x", static_cast<std::uint8_t>(c));
     }
   }
   if (data.size() > 360)
@@ -231,12 +227,6 @@ DeviceCommand parse(const std::string& device, Words& words) {
       device);
 }
 
-std::string text(const char* format, double value) {
-  std::array<char, 64> out{};
-  std::snprintf(out.data(), out.size(), format, value);
-  return out.data();
-}
-
 std::string bits(unsigned value) {
   std::string out = "0b";
   for (int i = 7; i >= 0; --i)
@@ -286,9 +276,9 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
     rows.push_back({name, value});
   };
   const auto& d = devices;
-  std::string battery = text("%.1f V", robot.battery());
+  std::string battery = format("%.1f V", robot.battery());
   if (d && d->has_charge())
-    battery += text(", %.0f %% charged", d->charge() * 100.0);
+    battery += format(", %.0f %% charged", d->charge() * 100.0);
   if (d && d->charging() != 0)
     battery += ", charging";
   add("battery", battery);
@@ -303,10 +293,10 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
   add("servo", std::to_string(robot.ptu()) + " us" +
                    (robot.head() == 0.0
                         ? ""
-                        : text(", the cameras look to %.0f degrees", degrees(robot.head()))));
+                        : format(", the cameras look to %.0f degrees", degrees(robot.head()))));
   add("digital input", bits(robot.digital_input()));
   add("digital output", bits(robot.digital_output()));
-  add("analog", text("%.2f V", robot.analog() * 5.0 / 255.0));
+  add("analog", format("%.2f V", robot.analog() * 5.0 / 255.0));
   add("timer", std::to_string(robot.timer()));
   if (!d)
     return rows;
@@ -323,20 +313,17 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
     add("encoders",
         std::to_string(d->left_encoder()) + " " + std::to_string(d->right_encoder()) + " ticks");
   if (d->has_compass())
-    add("compass", text("%.0f deg", degrees(d->compass())));
+    add("compass", format("%.0f deg", degrees(d->compass())));
   if (d->has_temperature())
-    add("temperature", text("%.0f C", d->temperature()));
+    add("temperature", format("%.0f C", d->temperature()));
   if (d->faults() != 0)
     add("faults", bits(d->faults() >> 8U) + " " + bits(d->faults() & 0xFFU));
   if (d->has_configuration())
     add("controller", "serial number " + d->serial_number() +
                           (d->firmware().empty() ? "" : ", firmware " + d->firmware()) +
                           ", watchdog " + std::to_string(d->watchdog()) + " ms");
-  for (const v1::PacketCount& packets : d->unread_packets()) {
-    std::array<char, 16> type{};
-    std::snprintf(type.data(), type.size(), "0x%02X", packets.type());
-    add("unread packets", std::string(type.data()) + ": " + std::to_string(packets.count()));
-  }
+  for (const v1::PacketCount& packets : d->unread_packets())
+    add("unread packets", format("0x%02X: ", packets.type()) + std::to_string(packets.count()));
   for (const v1::DeviceRequest& request : d->requests())
     add("request", request.answer().text() + " (" + request.source() + ")");
   return rows;

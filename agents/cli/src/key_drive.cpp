@@ -1,6 +1,7 @@
 #include "saphira/cli/key_drive.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace saphira::cli {
@@ -8,21 +9,16 @@ namespace saphira::cli {
 namespace {
 
 std::optional<DriveKey> plain_key(char c) {
-  switch (c) {
+  switch (std::tolower(static_cast<unsigned char>(c))) {
     case 'i':
-    case 'I':
       return DriveKey::faster;
     case 'm':
-    case 'M':
       return DriveKey::slower;
     case 'j':
-    case 'J':
       return DriveKey::left;
     case 'l':
-    case 'L':
       return DriveKey::right;
     case 'k':
-    case 'K':
     case ' ':
       return DriveKey::stop;
     case '.':
@@ -30,16 +26,12 @@ std::optional<DriveKey> plain_key(char c) {
     case '\n':
       return DriveKey::keep;
     case 'g':
-    case 'G':
       return DriveKey::constant;
     case 'c':
-    case 'C':
       return DriveKey::avoidance;
     case 'h':
-    case 'H':
       return DriveKey::hand_back;
     case 'q':
-    case 'Q':
     case '\x03':
     case '\x04':
       return DriveKey::quit;

@@ -1,12 +1,12 @@
 #include "saphira/cli/talk_words.hpp"
 
 #include <array>
-#include <cstdio>
 #include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "requests/shell/convert.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/words.hpp"
@@ -14,55 +14,29 @@
 namespace saphira::cli {
 namespace {
 
-const char* word(v1::AnswerCode code) {
-  switch (code) {
-    case v1::ANSWER_UNDERWAY:
-    case v1::ANSWER_DONE:
-    case v1::ANSWER_SENT:
-      return "";
-    case v1::ANSWER_REFUSED:
-      return "refused";
-    case v1::ANSWER_UNKNOWN_FUNCTOR:
-      return "not known";
-    case v1::ANSWER_BAD_ARGUMENT:
-      return "bad argument";
-    case v1::ANSWER_NOBODY:
-      return "nobody can";
-    case v1::ANSWER_TOO_LATE:
-      return "too late";
-    case v1::ANSWER_GIVEN_UP:
-      return "given up";
-    case v1::ANSWER_LOST:
-      return "lost";
-  }
-  return "?";
-}
+struct CodeWords {
+  v1::AnswerCode code;
+  const char* name;  ///< for programs
+  const char* word;  ///< for people; empty where the text says it
+};
+constexpr std::array<CodeWords, 10> kCodes{
+    {{v1::ANSWER_UNDERWAY, "underway", ""},
+     {v1::ANSWER_DONE, "done", ""},
+     {v1::ANSWER_SENT, "sent", ""},
+     {v1::ANSWER_REFUSED, "refused", "refused"},
+     {v1::ANSWER_UNKNOWN_FUNCTOR, "unknown_functor", "not known"},
+     {v1::ANSWER_BAD_ARGUMENT, "bad_argument", "bad argument"},
+     {v1::ANSWER_NOBODY, "nobody", "nobody can"},
+     {v1::ANSWER_TOO_LATE, "too_late", "too late"},
+     {v1::ANSWER_GIVEN_UP, "given_up", "given up"},
+     {v1::ANSWER_LOST, "lost", "lost"}}};
+static_assert(kCodes.size() == kEnumerators<v1::AnswerCode>.size());
 
-/// The code for programs.
-const char* code_name(v1::AnswerCode code) {
-  switch (code) {
-    case v1::ANSWER_UNDERWAY:
-      return "underway";
-    case v1::ANSWER_DONE:
-      return "done";
-    case v1::ANSWER_SENT:
-      return "sent";
-    case v1::ANSWER_REFUSED:
-      return "refused";
-    case v1::ANSWER_UNKNOWN_FUNCTOR:
-      return "unknown_functor";
-    case v1::ANSWER_BAD_ARGUMENT:
-      return "bad_argument";
-    case v1::ANSWER_NOBODY:
-      return "nobody";
-    case v1::ANSWER_TOO_LATE:
-      return "too_late";
-    case v1::ANSWER_GIVEN_UP:
-      return "given_up";
-    case v1::ANSWER_LOST:
-      return "lost";
-  }
-  return "?";
+CodeWords words_of(v1::AnswerCode code) {
+  for (const CodeWords& known : kCodes)
+    if (known.code == code)
+      return known;
+  return {code, "?", "?"};
 }
 
 const char* frame_name(v1::Frame frame) {
@@ -118,7 +92,7 @@ std::string line_of(const v1::Utterance& utterance, const std::string& robot) {
 }
 
 std::string line_of(const v1::Answer& answer) {
-  const std::string code = word(answer.code());
+  const std::string code = words_of(answer.code()).word;
   std::string line = answer.service() + ":";
   if (!code.empty())
     line += " " + code + (answer.text().empty() ? "" : ":");
@@ -131,7 +105,7 @@ std::string line_of(const v1::Answer& answer) {
 
 std::string to_json(const v1::Answer& answer) {
   nlohmann::ordered_json json{{"agent", answer.service()},
-                              {"code", code_name(answer.code())},
+                              {"code", words_of(answer.code()).name},
                               {"text", answer.text()},
                               {"values", nlohmann::ordered_json::object()}};
   std::map<std::string, int> count;

@@ -1,21 +1,11 @@
 #include "saphira/cli/words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstdio>
+
+#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
-
-namespace {
-
-std::string fixed(double value, int digits) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
-}  // namespace
 
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
@@ -54,11 +44,12 @@ std::string status_table(std::vector<SeenProcess> processes) {
   for (const auto& [status, age, namesake] : processes) {
     const bool lost = age > kLostAge;
     rows.push_back(
-        {status.name(), lost ? "lost" : name_of(status.state()), fixed(age, 1),
+        {status.name(), lost ? "lost" : name_of(status.state()), situation::format("%.1f", age),
          std::to_string(status.stamp().epoch()), std::to_string(status.stamp().cycle()),
-         std::to_string(status.late_cycles()), fixed(status.step_ms_mean(), 2),
-         fixed(status.step_ms_max(), 2), fixed(status.cpu_percent(), 1), fixed(status.rss_mb(), 1),
-         status.host(), std::to_string(status.pid()),
+         std::to_string(status.late_cycles()), situation::format("%.2f", status.step_ms_mean()),
+         situation::format("%.2f", status.step_ms_max()),
+         situation::format("%.1f", status.cpu_percent()),
+         situation::format("%.1f", status.rss_mb()), status.host(), std::to_string(status.pid()),
          lost ? "not heard any more; its last words: " + std::string(name_of(status.state())) +
                     (status.reason().empty() ? "" : ", " + status.reason())
               : status.reason()});

@@ -207,28 +207,24 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     control_.release(connection);
   else if (std::holds_alternative<HandBack>(message))
     hand_back(connection);
-  else if (std::holds_alternative<ResetEmergencyStop>(message)) {
-    v1::Request request;
-    request.functor("reset");
-    send(resets_, request, connection, 0);
-  } else if (const auto* goal = std::get_if<AskGoal>(&message))
+  else if (std::holds_alternative<ResetEmergencyStop>(message))
+    send(resets_, bus::request("reset"), connection, 0);
+  else if (const auto* goal = std::get_if<AskGoal>(&message))
     ask_goal(connection, page, *goal);
   else if (const auto* cancel = std::get_if<CancelGoal>(&message))
     cancel_goal(connection, *cancel);
   else if (const auto* words = std::get_if<Say>(&message))
     hear(page, *words);
-  else if (const auto* process = std::get_if<AskProcess>(&message)) {
-    v1::Request request;
-    request.service(process->service);
-    request.functor(process->functor);
-    request.arguments({bus::text("process", process->process)});
-    send(processes_, request, connection, process->reference);
-  } else if (const auto* place = std::get_if<PlaceRobot>(&message)) {
-    v1::Request request;
-    request.functor("place");
-    request.arguments({bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)});
-    send(registration_, request, connection, place->reference);
-  } else if (const auto* out = std::get_if<PointOut>(&message)) {
+  else if (const auto* process = std::get_if<AskProcess>(&message))
+    send(processes_,
+         bus::request(process->functor, {bus::text("process", process->process)}, process->service),
+         connection, process->reference);
+  else if (const auto* place = std::get_if<PlaceRobot>(&message))
+    send(registration_,
+         bus::request("place",
+                      {bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)}),
+         connection, place->reference);
+  else if (const auto* out = std::get_if<PointOut>(&message)) {
     v1::AgentEvent event;
     event.stamp(stamp_);
     event.source(operator_of(page.name));

@@ -102,6 +102,7 @@ TEST(CarmenBeams, LieAsUsualLasersHaveThem) {
   for (const auto& [beams, first, step] :
        std::vector<std::tuple<int, double, double>>{{180, -90.0, 1.0},
                                                     {181, -90.0, 1.0},
+                                                    {360, -90.0, 0.5},
                                                     {361, -90.0, 0.5},
                                                     {401, -50.0, 0.25},
                                                     {541, -135.0, 0.5},

@@ -3,35 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "saphira/base/random.hpp"
 #include "saphira/logs/virtual_sonar.hpp"
+#include "scan_room.hpp"
 
 namespace saphira::logs {
 namespace {
 
-/// [m] To the nearest wall of a room of 8 by 6 m with a partition.
-double range_from(const Pose& sensor) {
-  const struct {
-    Vec2 from, to;
-  } walls[] = {
-      {{0, 0}, {8, 0}}, {{8, 0}, {8, 6}}, {{8, 6}, {0, 6}}, {{0, 6}, {0, 0}}, {{4, 0}, {4, 2.5}}};
-  double nearest = 30.0;
-  const Vec2 ray = sensor.direction();
-  for (const auto& wall : walls) {
-    const Vec2 way = wall.to - wall.from;
-    const double cross = ray.x() * way.y() - ray.y() * way.x();
-    if (std::abs(cross) < 1e-9)
-      continue;
-    const Vec2 off = wall.from - sensor.position();
-    const double range = (off.x() * way.y() - off.y() * way.x()) / cross;
-    const double along = (off.x() * ray.y() - off.y() * ray.x()) / cross;
-    if (range > 0.0 && along >= 0.0 && along <= 1.0)
-      nearest = std::min(nearest, range);
-  }
-  return nearest;
-}
+/// A room of 8 by 6 m with a partition.
+const std::vector<test::Piece> kRoom{
+    {{0, 0}, {8, 0}}, {{8, 0}, {8, 6}}, {{8, 6}, {0, 6}}, {{0, 6}, {0, 0}}, {{4, 0}, {4, 2.5}}};
 
 struct Round {
   DataSet log;
@@ -57,9 +38,9 @@ Round drive_round() {
     reference.push_back({time, truth});
     std::vector<double> ranges;
     for (int beam = 0; beam <= 180; ++beam)
-      ranges.push_back(
-          range_from({truth.x, truth.y, truth.th + beams.first_angle + beam * beams.step}) +
-          random.normal(0.0, 0.005));
+      ranges.push_back(test::range_to(truth.position(),
+                                      truth.th + beams.first_angle + beam * beams.step, kRoom) +
+                       random.normal(0.0, 0.005));
     log.times.push_back(time);
     log.poses_in_odom.push_back(odom);
     log.scans.push_back(make_scan(ranges, beams));

@@ -42,17 +42,6 @@ TEST(Carmen, NewLaserMessagesSayWhatTheLaserIs) {
   EXPECT_TRUE(log.damaged.empty());
 }
 
-TEST(Carmen, BeamsLieByTheirNumber) {
-  for (const auto& [beams, step] : {std::pair(180, 1.0), {181, 1.0}, {360, 0.5}, {361, 0.5}}) {
-    std::string line = "FLASER " + std::to_string(beams);
-    for (int i = 0; i < beams; ++i)
-      line += " 1";
-    const CarmenLog log = parse_carmen(line + " 0 0 0 0 0 0 1 h 1\n", "a.log");
-    EXPECT_NEAR(degrees(log.scans[0].first_angle), -90.0, 1e-9);
-    EXPECT_NEAR(degrees(log.scans[0].step), step, 1e-9);
-  }
-}
-
 TEST(Carmen, ADamagedLineIsNamedAndPassedOver) {
   const CarmenLog log = parse_carmen(
       "FLASER 2 1 1 0 0 0 0 0 0 1 h 1\nFLASER 2 1 x 0 0 0 0 0 0 2 h 2\nFLASER 5 1 1\n", "a.log");

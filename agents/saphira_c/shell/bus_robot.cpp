@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
 #include <map>
-#include <mutex>
 #include <set>
-#include <thread>
 #include <utility>
 
-#include "../src/robot.hpp"
+#include "../src/served_robot.hpp"
 #include "behaviors/shell/convert.hpp"
+#include "bridge/shell/enums.hpp"
 #include "geometry/shell/convert.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
@@ -28,11 +26,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTurn{20};
-constexpr double kSilent = 1.0;          // [s] of silence that ends the robot
-constexpr int kReleases = 4;             // repetitions of a release: the topic is best effort
-constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
-constexpr double kDrawnFor = 1.0;        // [s]
-constexpr double kPixel = 0.025;         // [m] size of a pixel of the manual's window
+constexpr double kSilent = 1.0;    // [s] of silence that ends the robot
+constexpr int kReleases = 4;       // repetitions of a release: the topic is best effort
+constexpr double kDrawnFor = 1.0;  // [s]
+constexpr double kPixel = 0.025;   // [m] size of a pixel of the manual's window
 
 bus::NodeOptions options_of(const std::string& robot) {
   bus::NodeOptions options = bus::options_of_environment();
@@ -63,17 +60,6 @@ protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
   return parameters;
 }
 
-protocol::Motors motors_of(v1::MotorStatus status) {
-  switch (status) {
-    case v1::MOTORS_MOVING:
-      return protocol::Motors::kMoving;
-    case v1::MOTORS_NO_POWER:
-      return protocol::Motors::kNoPower;
-    default:
-      return protocol::Motors::kStopped;
-  }
-}
-
 reflector::State state_of(const v1::RobotState& robot) {
   reflector::State state;
   state.cycle = robot.stamp().cycle();
@@ -84,7 +70,7 @@ reflector::State state_of(const v1::RobotState& robot) {
   state.motor_packets_per_s = robot.motor_packets_per_s();
   state.sonar_readings_per_s = robot.sonar_readings_per_s();
   protocol::Information& now = state.information;
-  now.motors = motors_of(robot.status());
+  now.motors = bridge::kMotors.ours(robot.status(), protocol::Motors::kStopped);
   now.th = state.pose_in_odom.th;
   now.velocity = robot.velocity();
   now.rotation_velocity = robot.rotation_velocity();
@@ -108,31 +94,8 @@ reflector::State state_of(const v1::RobotState& robot) {
 v1::MotorCommand command_of(const reflector::Motion& motion) {
   v1::MotorCommand command;
   command.active(true);
-  switch (motion.translation) {
-    case reflector::Translation::none:
-      command.translation(v1::TRANSLATION_NONE);
-      break;
-    case reflector::Translation::velocity:
-      command.translation(v1::TRANSLATION_VELOCITY);
-      break;
-    case reflector::Translation::position:
-      command.translation(v1::TRANSLATION_POSITION);
-      break;
-  }
-  switch (motion.rotation) {
-    case reflector::Rotation::none:
-      command.rotation(v1::ROTATION_NONE);
-      break;
-    case reflector::Rotation::velocity:
-      command.rotation(v1::ROTATION_VELOCITY);
-      break;
-    case reflector::Rotation::heading:
-      command.rotation(v1::ROTATION_HEADING);
-      break;
-    case reflector::Rotation::relative_heading:
-      command.rotation(v1::ROTATION_RELATIVE_HEADING);
-      break;
-  }
+  command.translation(bridge::kTranslations.theirs(motion.translation));
+  command.rotation(bridge::kRotations.theirs(motion.rotation));
   command.velocity(motion.velocity);
   command.distance(motion.distance);
   command.move(motion.move);
@@ -146,10 +109,7 @@ protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels().size()); ++i) {
     const v1::VisionChannel& from = channels.channels()[i];
     protocol::VisionChannel& to = seen.channels[i];
-    using Mode = protocol::VisionChannel::Mode;
-    to.mode = from.mode() == v1::VISION_LINE       ? Mode::kLine
-              : from.mode() == v1::VISION_BLOB_BOX ? Mode::kBlobWithBox
-                                                   : Mode::kBlob;
+    to.mode = bridge::kVisionModes.ours(from.mode(), protocol::VisionChannel::Mode::kBlob);
     to.x = from.x();
     to.y = from.y();
     to.area = from.area();
@@ -163,32 +123,13 @@ protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
 
 /// Manual Table 6-4.
 std::array<std::uint8_t, 3> color_of(int number) {
-  switch (number) {
-    case 0:
-      return {255, 215, 0};
-    case 3:
-      return {255, 240, 130};
-    case 5:
-      return {210, 0, 0};
-    case 8:
-      return {255, 110, 110};
-    case 10:
-      return {0, 190, 200};
-    case 11:
-      return {85, 107, 47};
-    case 12:
-      return {255, 69, 0};
-    case 13:
-      return {255, 0, 255};
-    case 15:
-      return {178, 60, 50};
-    case 100:
-      return {0, 0, 0};
-    case 101:
-      return {255, 255, 255};
-    default:
-      return {70, 130, 180};  // steel blue
-  }
+  static const std::map<int, std::array<std::uint8_t, 3>> colors{
+      {0, {255, 215, 0}},  {3, {255, 240, 130}}, {5, {210, 0, 0}},      {8, {255, 110, 110}},
+      {10, {0, 190, 200}}, {11, {85, 107, 47}},  {12, {255, 69, 0}},    {13, {255, 0, 255}},
+      {15, {178, 60, 50}}, {100, {0, 0, 0}},     {101, {255, 255, 255}}};
+  const auto found = colors.find(number);
+  return found == colors.end() ? std::array<std::uint8_t, 3>{70, 130, 180}  // steel blue
+                               : found->second;
 }
 
 v1::Drawing drawing_of(const Drawn& drawn) {
@@ -273,10 +214,7 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
   const int high = packet[kCommand + 3];
   const auto call = [](const bus::RequestTopic& topic, const char* functor,
                        std::vector<v1::Argument> arguments) {
-    v1::Request request;
-    request.functor(functor);
-    request.arguments(std::move(arguments));
-    return DeviceCall{topic, request};
+    return DeviceCall{topic, bus::request(functor, std::move(arguments))};
   };
   switch (static_cast<protocol::Number>(packet[kCommand])) {
     case protocol::Number::kDigitalOutput:
@@ -300,7 +238,7 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
   }
 }
 
-class BusRobot final : public Robot {
+class BusRobot final : public ServedRobot {
  public:
   BusRobot(const std::string& name, Say say) : name_(name), say_(std::move(say)) {
     trouble_ = "no bridge of robot \"" + name + "\" is heard";
@@ -308,31 +246,6 @@ class BusRobot final : public Robot {
   }
   ~BusRobot() override { end(); }
 
-  std::uint64_t session() const override {
-    const std::lock_guard lock(mutex_);
-    return session_;
-  }
-  protocol::RobotParameters parameters() const override {
-    const std::lock_guard lock(mutex_);
-    return parameters_;
-  }
-  protocol::RobotIdentity identity() const override {
-    const std::lock_guard lock(mutex_);
-    return {parameters_.name, parameters_.robot_class, parameters_.subclass};
-  }
-  std::string trouble() const override {
-    const std::lock_guard lock(mutex_);
-    return trouble_;
-  }
-  std::optional<Reflected> next(int most) override {
-    std::unique_lock lock(mutex_);
-    came_.wait_for(lock, milliseconds(most), [this] { return fresh_ || ended_; });
-    if (!std::exchange(fresh_, false))
-      return std::nullopt;
-    Reflected now{session_, newest_};
-    now.state.information.sonars = std::exchange(readings_, {});
-    return now;
-  }
   void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
     const std::lock_guard lock(mutex_);
     wish_ = command_of(motion);
@@ -340,27 +253,6 @@ class BusRobot final : public Robot {
     wish_->stamp().cycle(cycle);
     wake();
   }
-  void send(protocol::Bytes packet) override {
-    const std::lock_guard lock(mutex_);
-    packets_.push_back(std::move(packet));
-    wake();
-  }
-  protocol::VisionPacket vision(std::uint64_t& count) const override {
-    const std::lock_guard lock(mutex_);
-    count = seen_count_;
-    return seen_;
-  }
-  void end() override {
-    {
-      std::unique_lock lock(mutex_);
-      ending_ = true;
-      wake();
-      came_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; });
-    }
-    if (thread_.joinable())
-      thread_.join();
-  }
-
   std::optional<Found> found() override {
     const std::lock_guard lock(mutex_);
     return found_;
@@ -390,16 +282,10 @@ class BusRobot final : public Robot {
     return std::exchange(pointed_out_, {});
   }
   void load_map(const std::string& text, const std::string& name) override {
-    v1::Request request;
-    request.functor("load");
-    request.arguments({bus::text("text", text), bus::text("name", name)});
-    ask(request);
+    ask(bus::request("load", {bus::text("text", text), bus::text("name", name)}));
   }
   void place(const Pose& robot) override {
-    v1::Request request;
-    request.functor("place");
-    request.arguments({bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)});
-    ask(request);
+    ask(bus::request("place", {bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)}));
   }
 
  private:
@@ -439,7 +325,7 @@ class BusRobot final : public Robot {
     requests_.push_back(request);
     wake();
   }
-  void wake() {
+  void wake() override {
     if (node_ != nullptr)
       node_->wake();
   }
@@ -453,9 +339,7 @@ class BusRobot final : public Robot {
     }
     const std::lock_guard lock(mutex_);
     node_ = nullptr;
-    session_ = 0;
-    ended_ = true;
-    came_.notify_all();
+    thread_ended();
   }
 
   void serve() {
@@ -511,28 +395,19 @@ class BusRobot final : public Robot {
       const std::lock_guard lock(mutex_);
       if (session_ == 0 || epoch_ != stamp_.epoch())
         begin();
-      newest_ = state_of(robot);
-      note_sonars(newest_);
-      readings_.insert(readings_.end(), newest_.information.sonars.begin(),
-                       newest_.information.sonars.end());
-      if (readings_.size() > kMostKept)
-        readings_.erase(readings_.begin(),
-                        readings_.end() - static_cast<std::ptrdiff_t>(kMostKept));
-      fresh_ = true;
-      came_.notify_all();
+      reflector::State state = state_of(robot);
+      note_sonars(state);
+      cycle_began(state);
     }
     const std::lock_guard lock(mutex_);
-    if (session_ != 0 && BootClock::seconds() - heard_ > kSilent) {
-      session_ = 0;
-      fresh_ = false;
-      trouble_ = "the robot's bridge is not heard any more";
-      came_.notify_all();
-    }
+    if (session_ != 0 && BootClock::seconds() - heard_ > kSilent)
+      session_lost("the robot's bridge is not heard any more");
   }
 
   /// Call under the mutex.
   void begin() {
     parameters_ = parameters_of(*description_);
+    identity_ = {parameters_.name, parameters_.robot_class, parameters_.subclass};
     epoch_ = stamp_.epoch();
     session_ = ++sessions_;
     readings_.clear();
@@ -764,24 +639,13 @@ class BusRobot final : public Robot {
   std::string news_;
   std::map<std::string, bus::RequestClient> devices_;
 
-  // Members shared between the threads.
-  mutable std::mutex mutex_;
-  std::condition_variable came_;
+  // Shared with the program's thread, as those of ServedRobot.
   bus::Node* node_ = nullptr;
-  bool ending_ = false;
-  bool ended_ = false;
-  bool fresh_ = false;
-  std::uint64_t session_ = 0;
   std::uint64_t sessions_ = 0;
   std::uint64_t epoch_ = 0;
   std::uint64_t odom_ = 0;
-  protocol::RobotParameters parameters_;
-  std::string trouble_;
-  reflector::State newest_;
   std::map<int, reflector::Bucket> buckets_;
-  std::vector<protocol::Sonar> readings_;
   std::optional<v1::MotorCommand> wish_;
-  std::vector<protocol::Bytes> packets_;
   std::vector<v1::Request> requests_;
   std::vector<std::string> told_;
   std::vector<Drawn> drawn_;
@@ -792,9 +656,6 @@ class BusRobot final : public Robot {
   std::set<std::string> unanswered_;  // micro-tasks with an open request
   std::optional<Found> found_;
   std::shared_ptr<const maps::Map> map_;
-  protocol::VisionPacket seen_;
-  std::uint64_t seen_count_ = 0;
-  std::thread thread_;
 };
 
 }  // namespace

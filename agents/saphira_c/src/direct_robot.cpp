@@ -5,27 +5,22 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 #include <utility>
 #include <variant>
 
-#include "robot.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/transport/keeper.hpp"
 #include "saphira/transport/link.hpp"
+#include "served_robot.hpp"
 
 namespace saphira::c {
 namespace {
 
-constexpr double kBeat = 0.05;           // [s] of the keeper
-constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
+constexpr double kBeat = 0.05;  // [s] of the keeper
 
-class DirectRobot final : public Robot {
+class DirectRobot final : public ServedRobot {
  public:
   DirectRobot(const std::string& address, Say say)
       : say_(std::move(say)),
@@ -44,34 +39,6 @@ class DirectRobot final : public Robot {
   }
   ~DirectRobot() override { end(); }
 
-  std::uint64_t session() const override {
-    const std::lock_guard lock(mutex_);
-    return session_;
-  }
-  protocol::RobotParameters parameters() const override {
-    const std::lock_guard lock(mutex_);
-    return parameters_;
-  }
-  protocol::RobotIdentity identity() const override {
-    const std::lock_guard lock(mutex_);
-    return identity_;
-  }
-  std::string trouble() const override {
-    const std::lock_guard lock(mutex_);
-    return trouble_;
-  }
-
-  std::optional<Reflected> next(int milliseconds) override {
-    std::unique_lock lock(mutex_);
-    came_.wait_for(lock, std::chrono::milliseconds(milliseconds),
-                   [this] { return fresh_ || ended_; });
-    if (!fresh_)
-      return std::nullopt;
-    fresh_ = false;
-    Reflected now{session_, newest_};
-    now.state.information.sonars = std::exchange(readings_, {});
-    return now;
-  }
   void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
     bridge::DriveCommand wish;
     wish.command.role = authority::Role::direct;
@@ -83,32 +50,15 @@ class DirectRobot final : public Robot {
     wish_ = wish;
     wake();
   }
-  void send(protocol::Bytes packet) override {
-    const std::lock_guard lock(mutex_);
-    packets_.push_back(std::move(packet));
-    wake();
-  }
-  protocol::VisionPacket vision(std::uint64_t& count) const override {
-    const std::lock_guard lock(mutex_);
-    count = seen_count_;
-    return seen_;
-  }
   void end() override {
-    {
-      std::unique_lock lock(mutex_);
-      ending_ = true;
-      wake();
-      came_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; });
-    }
-    if (thread_.joinable())
-      thread_.join();
+    ServedRobot::end();
     keeper_.reset();
     if (wake_ >= 0)
       ::close(std::exchange(wake_, -1));
   }
 
  private:
-  void wake() {
+  void wake() override {
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = ::write(wake_, &one, sizeof one);
   }
@@ -131,9 +81,7 @@ class DirectRobot final : public Robot {
     deliver();
     link_.close("the program ends");
     const std::lock_guard lock(mutex_);
-    session_ = 0;
-    ended_ = true;
-    came_.notify_all();
+    thread_ended();
   }
 
   /// Carries out the program's pending command and packets. False where it ends.
@@ -250,13 +198,7 @@ class DirectRobot final : public Robot {
   void perform(const bridge::CycleBegan& cycle) {
     const std::lock_guard lock(mutex_);
     session_ = next_session_;  // with the first packet: then there is a state
-    newest_ = cycle.state;
-    const auto& readings = cycle.state.information.sonars;
-    readings_.insert(readings_.end(), readings.begin(), readings.end());
-    if (readings_.size() > kMostKept)
-      readings_.erase(readings_.begin(), readings_.end() - static_cast<std::ptrdiff_t>(kMostKept));
-    fresh_ = true;
-    came_.notify_all();
+    cycle_began(cycle.state);
   }
   void perform(const bridge::OtherPacket& other) {
     const auto* const seen = std::get_if<protocol::VisionPacket>(&other.packet);
@@ -282,10 +224,7 @@ class DirectRobot final : public Robot {
       keeper_->unwatch();
     link_.close(close.why, BootClock::seconds());
     const std::lock_guard lock(mutex_);
-    session_ = 0;
-    fresh_ = false;
-    trouble_ = close.why;
-    came_.notify_all();
+    session_lost(close.why);
   }
   void perform(const bridge::KeepLatches&) {}
   void perform(const bridge::KeepOdometry&) {}
@@ -306,25 +245,10 @@ class DirectRobot final : public Robot {
   std::uint64_t number_ = 0;
   bool guarded_ = false;
 
-  // Members shared between the threads.
-  mutable std::mutex mutex_;
-  std::condition_variable came_;
+  // Shared with the program's thread, as those of ServedRobot.
   int wake_ = -1;
-  bool ending_ = false;
-  bool ended_ = false;
-  bool fresh_ = false;
-  std::uint64_t session_ = 0;
   std::uint64_t next_session_ = 0;
-  protocol::RobotParameters parameters_;
-  protocol::RobotIdentity identity_;
-  std::string trouble_;
-  reflector::State newest_;
-  std::vector<protocol::Sonar> readings_;
   std::optional<bridge::DriveCommand> wish_;
-  std::vector<protocol::Bytes> packets_;
-  protocol::VisionPacket seen_;
-  std::uint64_t seen_count_ = 0;
-  std::thread thread_;
 };
 
 }  // namespace

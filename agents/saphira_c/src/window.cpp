@@ -94,6 +94,14 @@ void set(int Pen::*what, int value) {
   pen.*what = value;
 }
 
+/// [m] in the global frame, of a pixel.
+saphira::Vec2 world_at(int x, int y) {
+  const std::lock_guard lock(Os::get().mutex);
+  return transform(Os::get().robot_in_global(),
+                   saphira::Vec2((kHalfScreen - static_cast<float>(y)) * kMmPerPixel / 1000.0F,
+                                 (kHalfScreen - static_cast<float>(x)) * kMmPerPixel / 1000.0F));
+}
+
 }  // namespace
 
 extern "C" {
@@ -136,20 +144,10 @@ void sfButtonProcFn(int (*fn)(int x, int y, int b)) {
   on_button = fn;
 }
 float sfScreenToWorldX(int x, int y) {
-  const std::lock_guard lock(Os::get().mutex);
-  const saphira::Vec2 at =
-      transform(Os::get().robot_in_global(),
-                saphira::Vec2((kHalfScreen - static_cast<float>(y)) * kMmPerPixel / 1000.0F,
-                              (kHalfScreen - static_cast<float>(x)) * kMmPerPixel / 1000.0F));
-  return static_cast<float>(at.x() * 1000.0);
+  return static_cast<float>(world_at(x, y).x() * 1000.0);
 }
 float sfScreenToWorldY(int x, int y) {
-  const std::lock_guard lock(Os::get().mutex);
-  const saphira::Vec2 at =
-      transform(Os::get().robot_in_global(),
-                saphira::Vec2((kHalfScreen - static_cast<float>(y)) * kMmPerPixel / 1000.0F,
-                              (kHalfScreen - static_cast<float>(x)) * kMmPerPixel / 1000.0F));
-  return static_cast<float>(at.y() * 1000.0);
+  return static_cast<float>(world_at(x, y).y() * 1000.0);
 }
 
 void set_vector_buffer(int w) {

@@ -71,11 +71,7 @@ class OnBus : public testing::Test {
   v1::AnswerCode ask(const std::string& functor, const std::string& service,
                      const std::string& process) {
     bus::RequestClient client(system_.node(), bus::topics::kProcessRequest, "test");
-    v1::Request request;
-    request.functor(functor);
-    request.service(service);
-    request.arguments({bus::text("process", process)});
-    return client.ask(request, 20.0).code();
+    return client.ask(bus::request(functor, {bus::text("process", process)}, service), 20.0).code();
   }
 
   test::System system_;
@@ -246,13 +242,6 @@ TEST_F(OnBus, APortOfTheBusIsAsGoodAsTheEnvironment) {
   Process program({test::compiled(path, system_.folder(), false)}, system_.folder().path("out"));
   EXPECT_TRUE(drives("program")) << program.output();
   EXPECT_TRUE(system_.wait_moving(kPatience)) << program.output();
-}
-
-TEST_F(OnBus, PacketsOfTheRobotAreNotForIt) {
-  Process program = example("packet");
-  EXPECT_TRUE(program.wait(kPatience).has_value());
-  EXPECT_NE(program.output().find("there are no packets on the bus"), std::string::npos)
-      << program.output();
 }
 
 TEST(OnBusAlone, WithoutABridgeItSaysSo) {

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 
-#include "process.hpp"
+#include "printed.hpp"
 
 namespace saphira {
 namespace {
@@ -36,12 +35,6 @@ std::string header() {
   return std::regex_replace(text, std::regex(R"(/\*[^*]*\*+([^/*][^*]*\*+)*/)"), " ");
 }
 
-/// $SAPHIRA_MANUAL, or the file beside the source tree.
-std::string manual_path() {
-  const char* const given = std::getenv("SAPHIRA_MANUAL");
-  return given != nullptr ? given : test::source("../shared/seeds/saphira-manual-5.3.txt");
-}
-
 TEST(Names, EachOfTheHeaderIsInTheTable) {
   const std::set<std::string> named =
       all(read(test::source("docs/c-api.md")), "`(?:struct )?(\\w+)`");
@@ -63,9 +56,9 @@ TEST(Names, EachOfTheTableIsInTheHeader) {
 }
 
 TEST(Names, EachOfTheManualIsInTheHeaderOrDiffers) {
-  const std::string manual = read(manual_path());
+  const std::string manual = test::manual();
   if (manual.empty())
-    GTEST_SKIP() << "the manual is not there: " << manual_path();
+    GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";
   std::set<std::string> there = all(header(), R"(\b(\w+)\b)");
   there.merge(all(read(test::source("docs/c-api.md")), "`(\\w+)`"));
   std::set<std::string> named = all(manual, R"(\b(sf[A-Za-z0-9_]+)\b)");

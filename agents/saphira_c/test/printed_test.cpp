@@ -82,7 +82,7 @@ TEST_F(Printed, Nowin) {
 }
 
 TEST_F(Printed, Packet) {
-  simulate_on_line("19000 19000 0");
+  simulate("19000 19000 0", "simple", "", "4", "--pty");
   Process program = start(built(printed(
       "4.3.5. The Packet", "5. Saphira Servers",
       {kMain, kSmallBrace, {"sfDisconnectFromRobot();", "sfDisconnectFromRobot(); return 0; }"}})));

@@ -52,22 +52,14 @@ inline std::string compiled(const std::string& file, const TempDir& dir, bool cp
 /// A simulator and a program that drives in it.
 class Programs : public testing::Test {
  protected:
-  void simulate_on_line(const std::string& position) {
-    simulator_.emplace(
-        std::vector<std::string>{"saphira-sim", "--world", "simple", "--position", position,
-                                 "--pty", socket(), "--trace", dir_.path("trace.csv"), "--seed",
-                                 "3", "--rate", "4"},
-        dir_.path("sim"));
-    ASSERT_TRUE(wait_until([this] { return ::access(socket().c_str(), F_OK) == 0; }));
-  }
   /// `things`: further things in the world, in the form of its file.
-  /// `rate`: times real time.
+  /// `rate`: times real time. `line`: the option for its end of the line.
   void simulate(const std::string& position = "19000 19000 0", const std::string& world = "simple",
-                const std::string& things = "", const std::string& rate = "4") {
+                const std::string& things = "", const std::string& rate = "4",
+                const std::string& line = "--socket") {
     std::vector<std::string> argv{
-        "saphira-sim", "--world", world,     "--position",           position,
-        "--socket",    socket(),  "--trace", dir_.path("trace.csv"), "--seed",
-        "3",           "--rate",  rate};
+        "saphira-sim",          "--world", world, "--position", position, line, socket(), "--trace",
+        dir_.path("trace.csv"), "--seed",  "3",   "--rate",     rate};
     if (!things.empty()) {
       std::ofstream(dir_.path("things.wld")) << things << "\n";
       argv.insert(argv.end(), {"--things", dir_.path("things.wld")});

@@ -35,15 +35,6 @@ TEST(Condition, LateIsHeardAndHungIsNot) {
   EXPECT_FALSE(condition(s, "behaviors").heard());
 }
 
-TEST(Condition, IsNotJudgedBeforeSomebodyHasListened) {
-  Situation s;
-  s.listened = 0.5;
-  EXPECT_EQ(trouble(s), "");
-  s.listened = 1.5;
-  EXPECT_EQ(trouble(s),
-            "bridge, behaviors and intentions are not heard (not running, hung, or cut off)");
-}
-
 TEST(MissingServices, AreNamed) {
   EXPECT_EQ(missing_services({}), "bridge, behaviors and intentions");
   Program silent = program("intentions");

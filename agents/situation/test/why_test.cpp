@@ -24,15 +24,6 @@ class WhyTest : public ::testing::Test {
   Situation scene = test::driving();
 };
 
-const std::string kPurpose = "for go_to of saphira goal.";
-
-TEST_F(WhyTest, NamesBehaviorsRulesIntentionAndGoal) {
-  EXPECT_EQ(sentence(),
-            "The robot is told to drive ahead at 0.30 m/s and to turn 11 degrees to the left: "
-            "GoToPos wants 0.30 m/s and 10 degrees to the right, KeepOff wants 20 degrees to the "
-            "left; for go_to of saphira goal.");
-}
-
 // The intentions service has its behaviors in the tree, as leaves.
 TEST_F(WhyTest, ABehaviorIsNotItsOwnPurpose) {
   const std::string before = sentence();
@@ -154,38 +145,6 @@ TEST_F(WhyTest, GoesUpTheWholeChainOfIntentions) {
       << to_text(why(scene));
 }
 
-TEST_F(WhyTest, TellsWhatItDoesWhereThatIsNotWhatItIsTold) {
-  scene.robot->velocity(0.1);
-  EXPECT_NE(sentence().find("11 degrees to the left (now it does 0.10 m/s): "), std::string::npos)
-      << sentence();
-}
-
-TEST_F(WhyTest, MotorsThatAreOffComeFirst) {
-  keep_off().running(false);
-  go().recommends_turn(false);
-  scene.behaviors->turning(false);
-  scene.robot->velocity(0.0);
-  scene.robot->status(v1::MOTORS_NO_POWER);
-  EXPECT_EQ(sentence(),
-            "The robot is told to drive ahead at 0.30 m/s, straight on (now it does 0.00 m/s): its "
-            "motors are off (saphira device motors on), GoToPos wants 0.30 m/s; for go_to of "
-            "saphira goal.");
-}
-
-TEST_F(WhyTest, TheGuardComesFirst) {
-  scene.grant->guard(v1::GUARD_STOP);
-  scene.grant->guard_reason("something 0.12 m ahead: stopped (margin 0.20 m)");
-  scene.grant->velocity(0.0);
-  scene.robot->velocity(0.0);
-  EXPECT_TRUE(sentence().starts_with(
-      "The robot is told to turn on the spot, 11 degrees to the left: the guard beside the robot "
-      "stops it (something 0.12 m ahead: stopped (margin 0.20 m))"))
-      << sentence();
-  EXPECT_EQ(sentence(Wish::faster),
-            "It does not go faster because the guard beside the robot stops it (something 0.12 m "
-            "ahead: stopped (margin 0.20 m)); the behaviors want 0.30 m/s.");
-}
-
 TEST_F(WhyTest, ZonesAreNamed) {
   scene.behaviors->speed_limit(0.1);
   scene.behaviors->limit_reason("slow zone \"kitchen\"");
@@ -229,26 +188,6 @@ TEST_F(WhyTest, ASlowNetworkIsSaidAndHowSlow) {
   EXPECT_EQ(to_text(why(scene)).find("slow"), std::string::npos);
 }
 
-TEST_F(WhyTest, NobodyDrives) {
-  test::stand(scene);
-  scene.intentions->nodes().clear();
-  scene.intentions->behaviors().clear();
-  scene.statuses = {test::goal_status(v1::GOAL_SUCCEEDED, "arrived, 0.10 m from the point")};
-  const std::string stands =
-      "The robot stands: no goal is underway; the newest, go_to(position=(3, 1) in odom) of "
-      "saphira goal: succeeded, arrived, 0.10 m from the point.";
-  EXPECT_EQ(sentence(), stands);
-  EXPECT_EQ(sentence(Wish::turn_left), "It does not turn left. " + stands);
-}
-
-TEST_F(WhyTest, APersonDrives) {
-  test::by_keyboard(scene, 0.2, 0.0);
-  EXPECT_EQ(sentence(),
-            "The robot is told to drive ahead at 0.20 m/s, straight on: keyboard of ann drives it "
-            "(teleop).");
-  EXPECT_EQ(sentence(Wish::slower), "It does not go slower. " + sentence());
-}
-
 TEST_F(WhyTest, NotKnown) {
   const Situation nothing;
   EXPECT_EQ(why(nothing).sentence, "Nothing is known of this cycle.");
@@ -285,12 +224,6 @@ TEST_F(WhyTest, SentencesAreShort) {
     for (const Wish wish : {Wish::turn_left, Wish::turn_right, Wish::faster, Wish::slower})
       EXPECT_LT(sentence(wish).size(), kLongestSentence);
   }
-}
-
-TEST_F(WhyTest, NotSinceTheOtherWeighsMore) {
-  EXPECT_EQ(sentence(Wish::turn_right),
-            "It does not turn right: GoToPos would (rule Right, 10 degrees to the right), but "
-            "KeepOff wants 20 degrees to the left (rule Obstacle-Right).");
 }
 
 TEST_F(WhyTest, NotSinceNothingCallsForIt) {
@@ -351,21 +284,12 @@ TEST_F(WhyTest, BehaviorsAreNamedAsShortAsCanBe) {
 }
 
 TEST_F(WhyTest, NotSinceNoRuleWould) {
-  EXPECT_EQ(sentence(Wish::faster),
-            "It does not go faster: no running behavior wants that; GoToPos wants 0.30 m/s (rule "
-            "Fast).");
   keep_off().rules().clear();
   go().rules({rule("Left", 1.0, v1::CONTROL_TURN_LEFT, radians(10.0))});
   EXPECT_TRUE(
       sentence(Wish::turn_right)
           .starts_with("It does not turn right: no running behavior has a rule that would; "))
       << sentence(Wish::turn_right);
-}
-
-TEST_F(WhyTest, ButItDoes) {
-  EXPECT_TRUE(sentence(Wish::turn_left).starts_with("It does turn left. The robot is told to"));
-  scene.robot->velocity(0.1);
-  EXPECT_TRUE(sentence(Wish::faster).starts_with("It does go faster. The robot is told to"));
 }
 
 TEST(Wish, IsReadFromWords) {

@@ -5,15 +5,12 @@
 namespace saphira::speech {
 namespace {
 
-class ConversationTest : public WithModel {
+class ConversationTest : public WithRecognizer {
  protected:
   void SetUp() override {
-    WithModel::SetUp();
-    if (IsSkipped())
-      return;
-    recognizer =
-        std::make_unique<Recognizer>(RecognizerSettings{}, pronunciations(), "pronunciations");
-    conversation = std::make_unique<Conversation>(*recognizer, shipped_grammar());
+    WithRecognizer::SetUp();
+    if (recognizer)
+      conversation = std::make_unique<Conversation>(*recognizer, shipped_grammar());
   }
   /// In pieces of 0.1 s, as from a device.
   std::vector<std::string> hear(const Sound& sound, bool speaking = false) {
@@ -30,9 +27,7 @@ class ConversationTest : public WithModel {
     }
     return all;
   }
-  using Texts = std::vector<std::string>;
 
-  std::unique_ptr<Recognizer> recognizer;
   std::unique_ptr<Conversation> conversation;
   int ums = 0;
 };

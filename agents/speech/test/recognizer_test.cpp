@@ -5,14 +5,12 @@
 namespace saphira::speech {
 namespace {
 
-class RecognizerTest : public WithModel {
+class RecognizerTest : public WithRecognizer {
  protected:
   void SetUp() override {
-    WithModel::SetUp();
-    if (IsSkipped())
+    WithRecognizer::SetUp();
+    if (!recognizer)
       return;
-    recognizer =
-        std::make_unique<Recognizer>(RecognizerSettings{}, pronunciations(), "pronunciations");
     std::vector<std::string> names = grammar.names();
     names.emplace_back("ej-231");
     recognizer->listen_for(grammar.graph(names, false));
@@ -28,10 +26,8 @@ class RecognizerTest : public WithModel {
         out.push_back(word(event.heard.outcome) + std::string(": ") + event.heard.text);
     return out;
   }
-  using Texts = std::vector<std::string>;
 
   agent_interface::Grammar grammar = shipped_grammar();
-  std::unique_ptr<Recognizer> recognizer;
 };
 
 TEST_F(RecognizerTest, CommandsAreUnderstoodWithTheNamesThatItListensFor) {

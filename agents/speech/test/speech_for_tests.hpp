@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
@@ -48,6 +50,19 @@ class WithModel : public testing::Test {
   static std::string pronunciations() {
     return read_file(test::source("config/speech/pronunciations.dict"));
   }
+};
+
+class WithRecognizer : public WithModel {
+ protected:
+  void SetUp() override {
+    WithModel::SetUp();
+    if (!IsSkipped())
+      recognizer =
+          std::make_unique<Recognizer>(RecognizerSettings{}, pronunciations(), "pronunciations");
+  }
+  using Texts = std::vector<std::string>;
+
+  std::unique_ptr<Recognizer> recognizer;
 };
 
 }  // namespace saphira::speech

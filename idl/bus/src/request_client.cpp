@@ -131,6 +131,15 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
   return newest;
 }
 
+v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments,
+                    const std::string& service) {
+  v1::Request made;
+  made.functor(functor);
+  made.arguments(std::move(arguments));
+  made.service(service);
+  return made;
+}
+
 v1::Argument number(const std::string& name, double value) {
   v1::Argument argument;
   argument.name(name);

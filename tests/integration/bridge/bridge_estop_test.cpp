@@ -29,8 +29,7 @@ class Button {
 struct Driving : Scene {
   Driving() {
     bridge_options = {"--state", folder.path("state")};
-    start_simulator();
-    start_bridge();
+    start();
     forward(command, 0.3);
     drives = true;
   }
@@ -88,8 +87,7 @@ TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
 double way_to_standstill(const std::string& robot_file) {
   Scene scene(true);
   scene.robot_file = robot_file;
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.4);
   Button button(scene);
   scene.permit(50);

@@ -14,8 +14,7 @@ using std::chrono::milliseconds;
 
 /// A scene whose robot drives at 0.3 m/s.
 void start(Scene& scene) {
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.3);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
@@ -82,21 +81,6 @@ TEST(BridgeLoss, AKilledBridgeStopsTheRobotAndGoesOnWhereItWas) {
   scene.watch(milliseconds(300));
   // The world is 20 m wide, the start in the middle; the simulated odometry is accurate enough.
   EXPECT_NEAR(scene.state.pose_in_odom().x(), scene.trace().back().pose_in_world.x - 10.0, 0.1);
-}
-
-TEST(BridgeLoss, AKilledSimulatorComesBackUnderTheSameBridge) {
-  Scene scene;
-  start(scene);
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  const std::uint64_t odom = scene.state.odom();
-  scene.simulator->signal(SIGKILL);
-  ASSERT_TRUE(scene.until([&] { return scene.status.reason().find("robot link") == 0; }))
-      << scene.status.reason();
-  scene.start_simulator();
-  ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
-  })) << scene.bridge_log();
-  EXPECT_NE(scene.state.odom(), odom) << "a robot that was switched off begins anew";
 }
 
 }  // namespace

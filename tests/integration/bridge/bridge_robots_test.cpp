@@ -20,8 +20,7 @@ TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
   scene.world =
       "width 20000 height 20000\nposition 10000 10000 0\n8000 8500 12000 8500\n"
       "8000 11500 12000 11500\n";
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.description.has_value(); })) << scene.bridge_log();
   EXPECT_TRUE(scene.description->parameter_file().ends_with("/" + scene.robot_file))
       << scene.description->parameter_file();
@@ -73,8 +72,7 @@ INSTANTIATE_TEST_SUITE_P(All, BridgeRobots,
 TEST(BridgeDevices, OfALaterRobot) {
   Scene scene;
   scene.robot_file = "p3dx-sh.p";
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   const auto report = [&](const char* packet, const char* often) {
     return scene
         .ask(bus::topics::kServer, "report",
@@ -132,8 +130,7 @@ TEST(BridgeDevices, OfALaterRobot) {
 TEST(BridgeDevices, FromTheCommandLine) {
   Scene scene;
   scene.robot_file = "p3dx-sh.p";
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
   int runs = 0;
   const auto run = [&](const std::vector<std::string>& words, int code) {

@@ -11,8 +11,7 @@ using std::chrono::milliseconds;
 
 TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
       << scene.bridge_log();
   EXPECT_EQ(scene.description->robot_class(), "Pioneer");
@@ -48,8 +47,7 @@ TEST(Bridge, DescribesTheRobotAndDrivesIt) {
 
 TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
   Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.4);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
@@ -70,8 +68,7 @@ TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
 TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   Scene scene(true);
   scene.world += "11500 8000 11500 12000\n";
-  scene.start_simulator();
-  scene.start_bridge();
+  scene.start();
   forward(scene.command, 0.4);
   scene.permit(150);
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 150; }))
@@ -90,30 +87,6 @@ TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   // Room for a person, who reaches farther than the shin's echo.
   EXPECT_GT(rows.back().clearance, 0.2);
   EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
-}
-
-// In lockstep: the distance is sent once, and a pause of the machine would end it.
-TEST(BridgeInLockstep, DrivesADistanceAndTurnsToAHeading) {
-  Scene scene(true);
-  scene.start_simulator();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.description.has_value(); })) << scene.bridge_log();
-  scene.command.translation(v1::TRANSLATION_POSITION);
-  scene.command.distance(0.8);
-  scene.command.velocity(0.3);
-  scene.command.move(1);
-  scene.command.rotation(v1::ROTATION_RELATIVE_HEADING);
-  scene.command.heading(0.0);
-  scene.permit(1000);
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.7; }));
-  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
-  EXPECT_NEAR(scene.state.pose_in_odom().x(), 0.8, 0.03);
-  scene.command.move(2);
-  scene.command.distance(-0.3);
-  scene.command.heading(kPi / 2);
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().th() > 1.4; }));
-  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
-  EXPECT_NEAR(scene.state.pose_in_odom().th(), kPi / 2, radians(2.0));
 }
 
 TEST(Bridge, SaysWhichParameterFilesItLookedFor) {

@@ -132,14 +132,12 @@ void Scene::watch(milliseconds time) {
 
 v1::Answer Scene::ask(const bus::RequestTopic& topic, const std::string& functor,
                       const std::vector<v1::Argument>& arguments) {
-  v1::Request request;
-  request.functor(functor);
-  request.arguments(arguments);
-  return bus::RequestClient(node, topic, "test").ask(request, 30.0, nullptr, [this] {
-    take();
-    if (drives)
-      publish();
-  });
+  return bus::RequestClient(node, topic, "test")
+      .ask(bus::request(functor, arguments), 30.0, nullptr, [this] {
+        take();
+        if (drives)
+          publish();
+      });
 }
 
 bool Scene::rests() const {

@@ -29,6 +29,10 @@ class Scene {
 
   void start_simulator();
   void start_bridge();
+  void start() {
+    start_simulator();
+    start_bridge();
+  }
 
   // ---- The driver. It publishes `command` on `role`'s topic, every 50 ms while the scene watches
   // and

@@ -57,6 +57,8 @@ class RequestClient {
 /// The functor that withdraws the request of the same asker and number, on agents/solve.
 inline constexpr const char* kWithdraw = "withdraw";
 
+v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments = {},
+                    const std::string& service = {});
 v1::Argument number(const std::string& name, double value);
 v1::Argument text(const std::string& name, const std::string& value);
 /// x, y [m], th [rad], in the frame.

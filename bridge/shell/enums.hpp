@@ -1,0 +1,38 @@
+#pragma once
+
+#include "motion.h"
+#include "robot.h"
+#include "saphira/base/enum_pairs.hpp"
+#include "saphira/protocol/server_packet.hpp"
+#include "saphira/reflector/reflector.hpp"
+#include "vision.h"
+
+/// Enumerations of the robot's packets and motion, and those of the bus with the same meaning.
+namespace saphira::bridge {
+
+inline constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{
+    {{
+        {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
+        {protocol::Motors::kMoving, v1::MOTORS_MOVING},
+        {protocol::Motors::kNoPower, v1::MOTORS_NO_POWER},
+    }},
+    {},
+    {v1::MOTORS_NOT_CONNECTED}};
+inline constexpr EnumPairs<reflector::Translation, v1::TranslationMode, 3> kTranslations{{{
+    {reflector::Translation::none, v1::TRANSLATION_NONE},
+    {reflector::Translation::velocity, v1::TRANSLATION_VELOCITY},
+    {reflector::Translation::position, v1::TRANSLATION_POSITION},
+}}};
+inline constexpr EnumPairs<reflector::Rotation, v1::RotationMode, 4> kRotations{{{
+    {reflector::Rotation::none, v1::ROTATION_NONE},
+    {reflector::Rotation::velocity, v1::ROTATION_VELOCITY},
+    {reflector::Rotation::heading, v1::ROTATION_HEADING},
+    {reflector::Rotation::relative_heading, v1::ROTATION_RELATIVE_HEADING},
+}}};
+inline constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
+    {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
+    {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},
+    {protocol::VisionChannel::Mode::kLine, v1::VISION_LINE},
+}}};
+
+}  // namespace saphira::bridge
