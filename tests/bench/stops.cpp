@@ -218,12 +218,8 @@ int main(int argc, char** argv) {
     return *code;
   try {
     const std::string folder = config_folder() + "/robots";
-    if (names.empty()) {
-      for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".p")
-          names.push_back(entry.path().stem().string());
-      std::sort(names.begin(), names.end());
-    }
+    if (names.empty())
+      names = names_in(folder, ".p");
     nlohmann::json robots = nlohmann::json::array();
     double worst[kLosses.size()] = {};
     for (const std::string& name : names) {

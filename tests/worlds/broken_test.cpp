@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "floor_plan.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira {
@@ -26,7 +27,7 @@ std::vector<std::string> words_of(const std::string& text) {
 // is read in part.
 TEST(BrokenFiles, EachWorldThatIsCutOffWithinALineIsRefused) {
   const std::string path = ::testing::TempDir() + "cut-off-" + std::to_string(getpid()) + ".wld";
-  for (const std::string& stem : test::stems("config/worlds", ".wld")) {
+  for (const std::string& stem : names_in(test::source("config/worlds"), ".wld")) {
     const std::string text = read_file(test::source("config/worlds/" + stem + ".wld"));
     ASSERT_TRUE(text.ends_with('\n')) << stem;
     const std::vector<std::string> whole = words_of(text);
