@@ -15,6 +15,7 @@
 #include "bench.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/node_options.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -37,11 +38,7 @@ constexpr unsigned kProcesses = 4;  // processes for the agents
 constexpr unsigned kTold = 50;      // percentage of triggers that are of time, and fire
 
 bus::NodeOptions options(const std::string& name) {
-  bus::NodeOptions made;
-  made.name = name;
-  made.robot = std::getenv("SAPHIRA_ROBOT");
-  made.domain = static_cast<std::uint32_t>(std::atoi(std::getenv("SAPHIRA_DOMAIN")));
-  return made;
+  return test::node_options(name, std::getenv("SAPHIRA_ROBOT"));
 }
 
 std::string functor(unsigned agent, unsigned capability) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,7 +19,10 @@
 #include "bench.hpp"
 #include "network/slow_link.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/sim/trace.hpp"
+#include "support/process.hpp"
 
 using namespace saphira;
 namespace fs = std::filesystem;
@@ -41,30 +43,15 @@ struct Options {
   double seconds = 20.0;
 };
 
-/// A cycle of the simulator's trace.
-struct Row {
-  double x = 0.0;
-  double y = 0.0;
-  double velocity = 0.0;
-  double rotation = 0.0;
-};
-
-std::vector<Row> read_trace(const std::string& path) {
-  std::vector<Row> rows;
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line) && !in.eof();) {
-    Row row;
-    double cycle = 0.0, heading = 0.0;
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &cycle, &row.x, &row.y, &heading,
-                    &row.velocity, &row.rotation) == 6)
-      rows.push_back(row);
-  }
-  return rows;
+std::vector<sim::TraceRow> read_trace(const std::string& path) {
+  if (!fs::exists(path))
+    return {};
+  return sim::parse_trace(read_file(path), path);
 }
 
 /// Reads the trace until the condition holds, for that time at most; true where it held.
 bool wait_for(const std::string& trace, double seconds,
-              const std::function<bool(const std::vector<Row>&)>& what) {
+              const std::function<bool(const std::vector<sim::TraceRow>&)>& what) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (std::chrono::steady_clock::now() < end) {
     if (what(read_trace(trace)))
@@ -99,67 +86,63 @@ class Host {
 };
 
 Result drive(test::SlowLink& link, const Options& options, double delay, double loss) {
-  std::string folder = "/tmp/saphira-bench-delay-XXXXXX";
-  if (mkdtemp(folder.data()) == nullptr)
-    throw std::system_error(errno, std::generic_category(), folder);
-  const std::string trace = folder + "/trace.csv";
-  const std::string socket = folder + "/robot";
+  const test::TempDir folder;
+  const std::string trace = folder.path("trace.csv");
+  const std::string socket = folder.path("robot");
   Result result;
-  {
-    link.cut(false);
-    link.set(delay, loss);
-    const Host robot(link, 0);
-    const Host laptop(link, 1);
-    const std::string config = config_folder();
-    const bench::Child sim =
-        robot.start({"saphira-sim", "--world", config + "/worlds/office.wld", "--robot-file",
-                     config + "/robots/pioneer.p", "--socket", socket, "--trace", trace});
-    const bench::Child bridge =
-        robot.start({"saphira-bridge", "--link", socket, "--robots", config + "/robots"});
-    const bench::Child behaviors =
-        (options.behaviors == "robot" ? robot : laptop).start({"saphira-behaviors"});
-    const bench::Child intentions =
-        laptop.start({"saphira-intentions", "--no-registration", "--no-interpretation"});
-    const bench::Child goal = laptop.start({"saphira", "goal", "go", "16", "1"});
+  link.cut(false);
+  link.set(delay, loss);
+  const Host robot(link, 0);
+  const Host laptop(link, 1);
+  const std::string config = config_folder();
+  const bench::Child simulator =
+      robot.start({"saphira-sim", "--world", config + "/worlds/office.wld", "--robot-file",
+                   config + "/robots/pioneer.p", "--socket", socket, "--trace", trace});
+  const bench::Child bridge =
+      robot.start({"saphira-bridge", "--link", socket, "--robots", config + "/robots"});
+  const bench::Child behaviors =
+      (options.behaviors == "robot" ? robot : laptop).start({"saphira-behaviors"});
+  const bench::Child intentions =
+      laptop.start({"saphira-intentions", "--no-registration", "--no-interpretation"});
+  const bench::Child goal = laptop.start({"saphira", "goal", "go", "16", "1"});
 
-    const auto moves = [](const std::vector<Row>& rows) {
-      return !rows.empty() && rows.back().velocity > kMoves;
-    };
-    std::size_t begin = 0;
-    wait_for(trace, 30.0, moves);
-    begin = read_trace(trace).size();
-    const auto cycles = static_cast<std::size_t>(std::lround(options.seconds / kCycle));
-    if (options.why) {
-      wait_for(trace, options.seconds, [&](const auto& rows) { return rows.size() > begin + 50; });
-      try {
-        result.why = laptop.ask({"saphira", "why"});
-      } catch (const std::exception& error) {
-        result.why = error.what();
-      }
+  const auto moves = [](const std::vector<sim::TraceRow>& rows) {
+    return !rows.empty() && rows.back().velocity > kMoves;
+  };
+  std::size_t begin = 0;
+  wait_for(trace, 30.0, moves);
+  begin = read_trace(trace).size();
+  const auto cycles = static_cast<std::size_t>(std::lround(options.seconds / kCycle));
+  if (options.why) {
+    wait_for(trace, options.seconds, [&](const auto& rows) { return rows.size() > begin + 50; });
+    try {
+      result.why = laptop.ask({"saphira", "why"});
+    } catch (const std::exception& error) {
+      result.why = error.what();
     }
-    wait_for(trace, 2.0 * options.seconds,
-             [&](const auto& rows) { return rows.size() > begin + cycles; });
-    link.cut(true);
-    const std::vector<Row> rows = read_trace(trace);
-    std::size_t stood = 0;
-    for (std::size_t i = begin + 1; i < std::min(rows.size(), begin + cycles + 1); ++i) {
-      result.meters += std::hypot(rows[i].x - rows[i - 1].x, rows[i].y - rows[i - 1].y);
-      stood += std::abs(rows[i].velocity) < kStands ? 1 : 0;
-    }
-    result.stood = static_cast<double>(stood) / static_cast<double>(cycles);
-    // The standstill counts after a second.
-    const std::size_t cut = rows.size();
-    wait_for(trace, 10.0, [&](const std::vector<Row>& all) {
-      std::size_t still = 0;
-      for (std::size_t i = cut; i < all.size(); ++i) {
-        still = std::abs(all[i].velocity) < kStands ? still + 1 : 0;
-        if (still == 10)
-          result.stand_s = kCycle * static_cast<double>(i - 9 - cut);
-      }
-      return result.stand_s.has_value();
-    });
   }
-  fs::remove_all(folder);
+  wait_for(trace, 2.0 * options.seconds,
+           [&](const auto& rows) { return rows.size() > begin + cycles; });
+  link.cut(true);
+  const std::vector<sim::TraceRow> rows = read_trace(trace);
+  std::size_t stood = 0;
+  for (std::size_t i = begin + 1; i < std::min(rows.size(), begin + cycles + 1); ++i) {
+    result.meters +=
+        (rows[i].pose_in_world.position() - rows[i - 1].pose_in_world.position()).norm();
+    stood += std::abs(rows[i].velocity) < kStands ? 1 : 0;
+  }
+  result.stood = static_cast<double>(stood) / static_cast<double>(cycles);
+  // The standstill counts after a second.
+  const std::size_t cut = rows.size();
+  wait_for(trace, 10.0, [&](const std::vector<sim::TraceRow>& all) {
+    std::size_t still = 0;
+    for (std::size_t i = cut; i < all.size(); ++i) {
+      still = std::abs(all[i].velocity) < kStands ? still + 1 : 0;
+      if (still == 10)
+        result.stand_s = kCycle * static_cast<double>(i - 9 - cut);
+    }
+    return result.stand_s.has_value();
+  });
   return result;
 }
 

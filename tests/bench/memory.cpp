@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bench.hpp"
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
@@ -52,8 +53,7 @@ constexpr const char* kRunaway =
 
 class Misuse {
  public:
-  Misuse(const Options& options, pid_t intentions)
-      : options_(options), intentions_(intentions), node_(node_options(options)) {}
+  Misuse(const Options& options, pid_t intentions) : options_(options), intentions_(intentions) {}
 
   /// Sends goals that are all refused; they have ended when it returns.
   void refused() {
@@ -90,13 +90,6 @@ class Misuse {
   }
 
  private:
-  static bus::NodeOptions node_options(const Options& options) {
-    bus::NodeOptions node;
-    node.name = "bench";
-    node.robot = "bench-memory";
-    node.domain = options.domain;
-    return node;
-  }
   static v1::Goal goal(const std::string& functor) {
     v1::Goal goal;
     goal.functor(functor);
@@ -119,7 +112,7 @@ class Misuse {
 
   const Options options_;
   const pid_t intentions_;
-  bus::Node node_;
+  bus::Node node_{test::node_options("bench", "bench-memory")};
 };
 
 pid_t find(pid_t parent, const std::string& name) {

@@ -27,6 +27,7 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "serial_line.hpp"
+#include "support/node_options.hpp"
 #include "support/quantile.hpp"
 
 using namespace saphira;
@@ -244,11 +245,7 @@ int main(int argc, char** argv) {
     const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
     robot.connect();
 
-    bus::NodeOptions options;
-    options.name = "bench";
-    options.robot = name;
-    options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-    bus::Node node(options);
+    bus::Node node(test::node_options("bench", name, domain));
     Reaction reaction(node, robot, line ? 95000.0 : 50000.0);
 
     const auto period = std::chrono::duration<double>(1.0 / hz);

@@ -19,6 +19,7 @@
 #include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/security/authority.hpp"
+#include "support/process.hpp"
 
 using namespace saphira;
 using std::chrono::milliseconds;
@@ -106,29 +107,15 @@ class RoundTrip {
   std::vector<double> times_;
 };
 
-/// The folders of credentials of a site, for the benchmark's duration.
-class Site {
- public:
-  Site()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("saphira-bench-secure-" + std::to_string(getpid()))) {
-    const std::string roles = config_folder() + "/security/roles.yaml";
-    const std::int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
-                                 std::chrono::system_clock::now().time_since_epoch())
-                                 .count();
-    credentials_ =
-        security::Authority::make(folder_.string(), "bench", read_file(roles), roles, now)
-            .add("bench", {"bridge", "services", "operator"}, "", 1, now);
-  }
-  ~Site() { std::filesystem::remove_all(folder_); }
-  Site(const Site&) = delete;
-  Site& operator=(const Site&) = delete;
-  const std::string& credentials() const { return credentials_; }
-
- private:
-  const std::filesystem::path folder_;
-  std::string credentials_;
-};
+/// Makes a site below that folder; returns the folder of the benchmark's credentials.
+std::string credentials_in(const std::string& folder) {
+  const std::string roles = config_folder() + "/security/roles.yaml";
+  const std::int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
+                               std::chrono::system_clock::now().time_since_epoch())
+                               .count();
+  return security::Authority::make(folder, "bench", read_file(roles), roles, now)
+      .add("bench", {"bridge", "services", "operator"}, "", 1, now);
+}
 
 double idle_cpu_percent(const std::string& security, unsigned seconds) {
   setenv("SAPHIRA_DOMAIN", std::to_string(kDomain - 1).c_str(), 1);
@@ -167,12 +154,13 @@ int main(int argc, char** argv) {
   if (!answering.empty())
     echo(answering);
 
-  const Site site;
+  const test::TempDir folder;
+  const std::string credentials = credentials_in(folder.path("site"));
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   nlohmann::json result;
   {
     RoundTrip open(self, bus::kOpenBus);
-    RoundTrip secured(self, site.credentials());
+    RoundTrip secured(self, credentials);
     for (int i = 0; i < pings; ++i) {
       open.measure();
       secured.measure();
@@ -190,7 +178,7 @@ int main(int argc, char** argv) {
     std::printf("ratio    p50 %6.2f\n", secured.quantile(0.5) / open.quantile(0.5));
   }
   if (seconds > 0) {
-    const double idle = idle_cpu_percent(site.credentials(), seconds);
+    const double idle = idle_cpu_percent(credentials, seconds);
     std::printf("idle demo, secured: %.2f %% of a core\n", idle);
     result["idle_cpu_percent"] = idle;
   }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bench.hpp"
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -58,11 +59,7 @@ Run demo(int baud, const std::string& seed) {
   const bench::Child behaviors(with_bus({"saphira-behaviors"}));
   const bench::Child intentions(with_bus({"saphira-intentions"}));
 
-  bus::NodeOptions options;
-  options.name = "bench";
-  options.robot = name;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-  bus::Node node(options);
+  bus::Node node(test::node_options("bench", name, domain));
   auto states = node.reader(bus::topics::kRobotState);
   bus::GoalClient goals(node, "bench");
   v1::Goal goal;

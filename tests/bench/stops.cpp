@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "bench.hpp"
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -52,7 +53,7 @@ struct Roll {
 class Ride {
  public:
   Ride(std::string robot_file, double velocity)
-      : robot_file_(std::move(robot_file)), velocity_(velocity), node_(options()) {
+      : robot_file_(std::move(robot_file)), velocity_(velocity) {
     std::ofstream(folder_.path("floor.wld"))
         << "width 100000 height 20000\nposition 2000 10000 0\n";
     simulator_ = std::make_unique<bench::Child>(std::vector<std::string>{
@@ -96,14 +97,6 @@ class Ride {
   }
 
  private:
-  bus::NodeOptions options() const {
-    bus::NodeOptions out;
-    out.name = "bench";
-    out.robot = robot_;
-    out.domain = static_cast<std::uint32_t>(std::stoul(kDomain));
-    return out;
-  }
-
   void start_bridge() {
     bridge_.reset();
     bridge_ = std::make_unique<bench::Child>(std::vector<std::string>{
@@ -168,7 +161,7 @@ class Ride {
   double velocity_;
   std::string robot_ = "stops" + std::to_string(getpid());
   test::TempDir folder_;
-  bus::Node node_;
+  bus::Node node_{test::node_options("bench", robot_, kDomain)};
   bus::Writer<v1::MotorCommand> driver_ = node_.writer(bus::topics::kDriveDirect);
   bus::Writer<v1::MotorCommand> button_ = node_.writer(bus::topics::kDriveEstop);
   bus::Reader<v1::RobotState> states_ = node_.reader(bus::topics::kRobotState);
@@ -218,12 +211,8 @@ int main(int argc, char** argv) {
     return *code;
   try {
     const std::string folder = config_folder() + "/robots";
-    if (names.empty()) {
-      for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".p")
-          names.push_back(entry.path().stem().string());
-      std::sort(names.begin(), names.end());
-    }
+    if (names.empty())
+      names = names_in(folder, ".p");
     nlohmann::json robots = nlohmann::json::array();
     double worst[kLosses.size()] = {};
     for (const std::string& name : names) {

@@ -16,12 +16,13 @@ inline bus::NodeOptions memory_options(const std::string& name, bool lockstep = 
   return options;
 }
 
-/// For a node of a test on the test's own domain.
-inline bus::NodeOptions node_options(const std::string& name, const std::string& robot) {
+/// For a node on a domain: the test's own, unless another is given.
+inline bus::NodeOptions node_options(const std::string& name, const std::string& robot,
+                                     const std::string& on_domain = domain()) {
   bus::NodeOptions options;
   options.name = name;
   options.robot = robot;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
+  options.domain = static_cast<std::uint32_t>(std::stoul(on_domain));
   return options;
 }
 

@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
 namespace saphira::test {
 
 std::string source(const std::string& path) {
   const char* root = std::getenv("SAPHIRA_SOURCE_DIR");
   return std::string(root == nullptr ? SAPHIRA_TESTED_SOURCE : root) + "/" + path;
-}
-
-std::vector<std::string> stems(const std::string& folder, const std::string& extension) {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(source(folder)))
-    if (entry.path().extension() == extension)
-      found.push_back(entry.path().stem().string());
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 Reach::Reach(const sim::World& world, double radius)

@@ -12,9 +12,6 @@ namespace saphira::test {
 
 std::string source(const std::string& path);
 
-/// The stems of the shipped files with that extension, sorted: worlds(".wld") of config/worlds.
-std::vector<std::string> stems(const std::string& folder, const std::string& extension);
-
 /// The places that the middle of a robot can reach from the start of a world: a flood over a grid,
 /// over the cells that are farther than `radius` [m] from every segment.
 class Reach {

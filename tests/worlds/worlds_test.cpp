@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "floor_plan.hpp"
+#include "saphira/base/places.hpp"
 
 namespace saphira {
 namespace {
@@ -40,7 +41,7 @@ class ShippedWorld : public ::testing::TestWithParam<std::string> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Worlds, ShippedWorld,
-                         ::testing::ValuesIn(test::stems("config/worlds", ".wld")),
+                         ::testing::ValuesIn(names_in(test::source("config/worlds"), ".wld")),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-', '_');
@@ -48,8 +49,9 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ShippedWorld,
                          });
 
 TEST(ShippedFiles, EveryWorldHasAMapAndEveryMapAWorld) {
-  EXPECT_EQ(test::stems("config/worlds", ".wld"), test::stems("config/maps", ".map"));
-  EXPECT_GE(test::stems("config/worlds", ".wld").size(), 7U);
+  EXPECT_EQ(names_in(test::source("config/worlds"), ".wld"),
+            names_in(test::source("config/maps"), ".map"));
+  EXPECT_GE(names_in(test::source("config/worlds"), ".wld").size(), 7U);
 }
 
 TEST(ShippedFiles, TheOfficeFloorHasWhatAFloorHas) {

@@ -35,7 +35,6 @@ struct DriveResult {
   double min_clearance = 1e9;  ///< [m]
   double path = 0.0;           ///< [m]
   int swings = 0;              ///< turns of more than 5 degrees, one way and then the other
-  double still = 0.0;          ///< [s] at less than 2 cm/s
   Pose end_in_world;
 };
 
@@ -93,8 +92,6 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
     }
     swing += turned;
     last = pose;
-    if (std::abs(robot.velocity()) < 0.02)
-      run.still += 0.1;
 
     intent.cycle = run.cycles - 1;
     Inputs inputs{run.cycles,

@@ -19,13 +19,6 @@ TEST(Fuzzy, DownStraight) {
   EXPECT_EQ(down_straight(4.0, 1.0, 3.0), 0.0);
 }
 
-TEST(Fuzzy, FrontLeftBlockedOfThePaper) {
-  // Completely blocked at 10 cm, unblocked from 100 cm on.
-  EXPECT_EQ(down_straight(0.1, 0.1, 1.0), 1.0);
-  EXPECT_NEAR(down_straight(0.55, 0.1, 1.0), 0.5, 1e-12);
-  EXPECT_EQ(down_straight(1.0, 0.1, 1.0), 0.0);
-}
-
 TEST(Fuzzy, Comparisons) {
   EXPECT_EQ(f_greater(2.0, 2.0, 1.0), 0.5);
   EXPECT_EQ(f_greater(2.5, 2.0, 1.0), 1.0);

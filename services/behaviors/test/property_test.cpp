@@ -16,7 +16,7 @@ Rule rule(Random& random) {
                                  Action::decelerate, Action::speed};
   Rule out;
   out.action = kActions[random.next() % 5];
-  out.strength = random.chance(0.2) ? 1.0 : random.uniform(0.0, 1.0);
+  out.strength = random.chance(0.2) ? 0.0 : random.chance(0.2) ? 1.0 : random.uniform(0.0, 1.0);
   out.value = out.action == Action::speed ? random.uniform(-0.5, 0.5) : random.uniform(0.0, 1.0);
   return out;
 }
@@ -68,7 +68,7 @@ TEST(BlendProperty, LiesWithinTheHullOfWhatIsRecommended) {
         if (turns(r)) {
           turn_low = std::min(turn_low, value);
           turn_high = std::max(turn_high, value);
-        } else {
+        } else if (r.strength > 0.0) {
           speed_low = std::min(speed_low, value);
           speed_high = std::max(speed_high, value);
         }

@@ -276,12 +276,7 @@ TEST(InterpretationTasks, ChangeNothingWhileAllWork) {
   for (double x = 0.5; x < 6.0; x += 0.5) {
     const Output& one = with.drive(x);
     const Output& other = without.drive(x);
-    ASSERT_EQ(one.percepts.size(), other.percepts.size());
-    for (std::size_t i = 0; i < one.percepts.size(); ++i) {
-      EXPECT_EQ(one.percepts[i].id, other.percepts[i].id);
-      EXPECT_EQ(one.percepts[i].pose_in_odom.x, other.percepts[i].pose_in_odom.x);
-      EXPECT_EQ(one.percepts[i].confidence, other.percepts[i].confidence);
-    }
+    ASSERT_EQ(one.percepts, other.percepts);
     EXPECT_EQ(one.changed_tiles.size(), other.changed_tiles.size());
   }
   EXPECT_EQ(with.ids(), without.ids());

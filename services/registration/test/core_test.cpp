@@ -161,26 +161,22 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-void expect_same(const Core::Outputs& a, const Core::Outputs& b, int cycle) {
-  ASSERT_EQ(a.state, b.state) << cycle;
-  ASSERT_EQ(a.reason, b.reason) << cycle;
-  ASSERT_EQ(a.pose_in_map, b.pose_in_map) << cycle;
-  ASSERT_EQ(a.covariance, b.covariance) << cycle;
-  ASSERT_EQ(a.confidence, b.confidence) << cycle;
-  ASSERT_EQ(a.environment, b.environment) << cycle;
-  ASSERT_EQ(a.closed_doors, b.closed_doors) << cycle;
-  ASSERT_EQ(a.notes.lines(), b.notes.lines()) << cycle;
-  ASSERT_EQ(a.matches.size(), b.matches.size()) << cycle;
-  for (std::size_t i = 0; i < a.matches.size(); ++i) {
-    ASSERT_EQ(a.matches[i].percept, b.matches[i].percept) << cycle;
-    ASSERT_EQ(a.matches[i].accepted, b.matches[i].accepted) << cycle;
-    ASSERT_EQ(a.matches[i].off, b.matches[i].off) << cycle;
+/// A robot in the hall, whose map is loaded.
+class RegistrationInAHall : public testing::Test {
+ protected:
+  /// So many steps on its way; returns the outputs of the last one.
+  Core::Outputs drive(int steps) {
+    Core::Outputs last;
+    for (int i = 0; i < steps; ++i)
+      last = robot.step(core);
+    return last;
   }
-}
 
-TEST(RegistrationCore, RegistersFromTheStartOfTheMapAndSaysItOnce) {
-  Core core(settings());
+  Core core{settings()};
   Robot robot;
+};
+
+TEST_F(RegistrationInAHall, RegistersFromTheStartOfTheMapAndSaysItOnce) {
   const Core::Outputs first = robot.stand(core);
   EXPECT_EQ(first.state, State::tracking);
   EXPECT_TRUE(says(first.notes, "tracking"));
@@ -213,9 +209,7 @@ TEST(RegistrationCore, WhatNeedsARobotIsRefusedBeforeThereIsOne) {
   EXPECT_EQ(core.act(request("delete")).text, "");
 }
 
-TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
   robot.stand(core);
   const std::uint64_t revision = core.map_revision();
   EXPECT_TRUE(
@@ -233,12 +227,8 @@ TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
   EXPECT_EQ(robot.stand(core).environment, 7U);
 }
 
-TEST(RegistrationCore, OnAnotherMapThePoseIsAGuess) {
-  Core core(settings());
-  Robot robot;
-  Core::Outputs before;
-  for (int i = 0; i < 100; ++i)
-    before = robot.step(core);
+TEST_F(RegistrationInAHall, OnAnotherMapThePoseIsAGuess) {
+  const Core::Outputs before = drive(100);
   ASSERT_GT(before.confidence, 0.9);
   // The same place on it by chance: the readings confirm the guess.
   EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
@@ -247,18 +237,13 @@ TEST(RegistrationCore, OnAnotherMapThePoseIsAGuess) {
   EXPECT_NEAR(guess.pose_in_map.x, before.pose_in_map.x, 0.1);
   EXPECT_LE(guess.confidence, 0.5);
   EXPECT_TRUE(contains(guess.reason, "another map was loaded")) << guess.reason;
-  Core::Outputs later = guess;
-  for (int i = 0; i < 100; ++i)
-    later = robot.step(core);
+  const Core::Outputs later = drive(100);
   EXPECT_GT(later.confidence, 0.9);
   EXPECT_FALSE(contains(later.reason, "another map")) << later.reason;
 }
 
-TEST(RegistrationCore, OffAnotherMapThePoseIsForgotten) {
-  Core core(settings());
-  Robot robot;
-  for (int i = 0; i < 100; ++i)
-    robot.step(core);
+TEST_F(RegistrationInAHall, OffAnotherMapThePoseIsForgotten) {
+  drive(100);
   EXPECT_EQ(core.act(load("CORRIDOR (7) 60000, 0, 0, 20000, 2000\n")).text, "");
   const Core::Outputs after = robot.stand(core);
   EXPECT_EQ(after.state, State::unplaced);
@@ -267,11 +252,8 @@ TEST(RegistrationCore, OffAnotherMapThePoseIsForgotten) {
   EXPECT_FALSE(core.remembered()->memory.placed);
 }
 
-TEST(RegistrationCore, AnEditOfTheMapLeavesThePoseInPeace) {
-  Core core(settings());
-  Robot robot;
-  for (int i = 0; i < 100; ++i)
-    robot.step(core);
+TEST_F(RegistrationInAHall, AnEditOfTheMapLeavesThePoseInPeace) {
+  drive(100);
   const std::uint32_t id = id_of(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})));
   EXPECT_GT(robot.step(core).confidence, 0.9);
   Request gone = request("remove");
@@ -280,9 +262,7 @@ TEST(RegistrationCore, AnEditOfTheMapLeavesThePoseInPeace) {
   EXPECT_GT(robot.step(core).confidence, 0.9);
 }
 
-TEST(RegistrationCore, DeletesTheMap) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, DeletesTheMap) {
   robot.stand(core);
   EXPECT_EQ(core.act(request("delete")).text, "");
   EXPECT_TRUE(core.map().features.empty());
@@ -290,9 +270,7 @@ TEST(RegistrationCore, DeletesTheMap) {
   EXPECT_FALSE(core.adds_features()) << "that is asked for, or of an empty map at the start";
 }
 
-TEST(RegistrationCore, PutsAndRemovesArtifacts) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, PutsAndRemovesArtifacts) {
   robot.stand(core);
   const Answer made = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
   EXPECT_EQ(made.text, "");
@@ -311,9 +289,7 @@ TEST(RegistrationCore, PutsAndRemovesArtifacts) {
   EXPECT_EQ(maps::find(core.map(), 2), nullptr);
 }
 
-TEST(RegistrationCore, PlacesTheRobotWhereItCanBe) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, PlacesTheRobotWhereItCanBe) {
   robot.stand(core);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pose& wrong : {Pose{nan, 0.0, 0.0}, Pose{5.0, 1e13, 0.0}, Pose{5.0, 0.0, nan}})
@@ -324,9 +300,7 @@ TEST(RegistrationCore, PlacesTheRobotWhereItCanBe) {
   EXPECT_NEAR(robot.stand(core).pose_in_map.x, 8.0, 0.1);
 }
 
-TEST(RegistrationCore, FindsAndSwitches) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, FindsAndSwitches) {
   robot.stand(core);
   EXPECT_EQ(core.act(request("switch", false)).text, "");
   EXPECT_EQ(robot.stand(core).state, State::off);
@@ -336,9 +310,7 @@ TEST(RegistrationCore, FindsAndSwitches) {
   EXPECT_EQ(robot.stand(core).state, State::unplaced);
 }
 
-TEST(RegistrationCore, AddsFeaturesAndSnapsAsItIsAsked) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, AddsFeaturesAndSnapsAsItIsAsked) {
   robot.stand(core);
   EXPECT_FALSE(core.adds_features());
   EXPECT_TRUE(core.snaps());
@@ -402,9 +374,7 @@ TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {
 
 // Links, frames and micro-tasks.
 
-TEST(RegistrationCore, WhatWasAskedForOutlastsTheLink) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, WhatWasAskedForOutlastsTheLink) {
   robot.stand(core);
   core.act(request("switch", false));
   EXPECT_EQ(robot.stand(core).state, State::off);
@@ -417,11 +387,8 @@ TEST(RegistrationCore, WhatWasAskedForOutlastsTheLink) {
   EXPECT_EQ(robot.stand(core).state, State::unplaced) << "it may be far from the start";
 }
 
-TEST(RegistrationCore, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
-  Core core(settings());
-  Robot robot;
-  for (int i = 0; i < 100; ++i)
-    robot.step(core);
+TEST_F(RegistrationInAHall, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
+  drive(100);
   const Pose before = robot.stand(core).pose_in_map;
   EXPECT_GT(before.x, 5.5);
   robot.reconnect();
@@ -430,11 +397,8 @@ TEST(RegistrationCore, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
-TEST(RegistrationCore, InAnotherOdometryFrameThePoseIsAGuessUntilTheReadingsFitIt) {
-  Core core(settings());
-  Robot robot;
-  for (int i = 0; i < 100; ++i)
-    robot.step(core);
+TEST_F(RegistrationInAHall, InAnotherOdometryFrameThePoseIsAGuessUntilTheReadingsFitIt) {
+  drive(100);
   const Core::Outputs before = robot.stand(core);
   robot.new_frame();
   const Core::Outputs after = robot.stand(core);
@@ -465,22 +429,16 @@ TEST(RegistrationCore, AZoneIsPutWithItsRule) {
   EXPECT_TRUE(contains(core.act(zone).text, "a speed of a slow zone"));
 }
 
-TEST(RegistrationCore, APoseThatWasOnlyToldIsHalfTrusted) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, APoseThatWasOnlyToldIsHalfTrusted) {
   const Core::Outputs told = robot.stand(core);
   EXPECT_EQ(told.state, State::tracking);
   EXPECT_LE(told.confidence, 0.5);
   EXPECT_NE(told.reason.find("as it was told"), std::string::npos) << told.reason;
-  Core::Outputs later = told;
-  for (int i = 0; i < 100; ++i)
-    later = robot.step(core);
+  const Core::Outputs later = drive(100);
   EXPECT_GT(later.confidence, 0.9);
 }
 
-TEST(RegistrationCore, ASuspendedProcessDoesNothingUntilItIsResumed) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, ASuspendedProcessDoesNothingUntilItIsResumed) {
   const auto ask = [&](const char* process, ProcessAction action) {
     EXPECT_EQ(core.processes().request(process, action), "");
     return robot.stand(core);
@@ -496,12 +454,9 @@ TEST(RegistrationCore, ASuspendedProcessDoesNothingUntilItIsResumed) {
 
 // State that outlives the core.
 
-TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
-  Core core(settings());
+TEST_F(RegistrationInAHall, ARestartGoesOnFromWhatWasRemembered) {
   EXPECT_FALSE(core.remembered()) << "before the first robot there is nothing";
-  Robot robot;
-  for (int i = 0; i < 100; ++i)
-    robot.step(core);
+  drive(100);
   const std::uint32_t id = id_of(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})));
   const Pose before = robot.stand(core).pose_in_map;
   Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
@@ -513,9 +468,7 @@ TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
-TEST(RegistrationCore, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDoubt) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDoubt) {
   robot.stand(core);
   Core next(settings(), core.remembered());
   robot.reconnect();
@@ -525,9 +478,7 @@ TEST(RegistrationCore, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDoubt) 
   EXPECT_LE(after.confidence, 0.5);
 }
 
-TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   robot.stand(core);
   core.act(load("CORRIDOR (5) 0, 0, 0, 30000, 2000\n", "a;b  c.map"));
   core.act(request("find"));
@@ -539,9 +490,7 @@ TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   EXPECT_EQ(robot.stand(next).state, State::unplaced);
 }
 
-TEST(RegistrationCore, ARestartKnowsThatTheMapWasDeleted) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, ARestartKnowsThatTheMapWasDeleted) {
   robot.stand(core);
   core.act(request("delete"));
   robot.stand(core);
@@ -550,9 +499,7 @@ TEST(RegistrationCore, ARestartKnowsThatTheMapWasDeleted) {
   EXPECT_TRUE(next.map().features.empty());
 }
 
-TEST(RegistrationCore, WhatWasRememberedOfAnotherMapDoesNotCount) {
-  Core core(settings());
-  Robot robot;
+TEST_F(RegistrationInAHall, WhatWasRememberedOfAnotherMapDoesNotCount) {
   robot.stand(core);
   core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
   Core::Settings other = settings();
@@ -613,7 +560,7 @@ void expect_no_difference(const std::string& map, const std::function<void(Core&
   for (int i = 0; i < 320; ++i) {
     happen(i, a, robot_a);
     happen(i, b, robot_b);
-    ASSERT_NO_FATAL_FAILURE(expect_same(robot_a.step(a), robot_b.step(b), i));
+    ASSERT_EQ(robot_a.step(a), robot_b.step(b)) << i;
     ASSERT_EQ(a.map(), b.map()) << i;
     ASSERT_EQ(a.map_revision(), b.map_revision()) << i;
     ASSERT_EQ(to_text(*a.remembered()), to_text(*b.remembered())) << i;

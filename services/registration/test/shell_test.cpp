@@ -14,6 +14,7 @@
 #include "interpretation/shell/service.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "node_options.hpp"
 #include "registration/shell/service.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
@@ -48,31 +49,9 @@ extern "C" int fsync(int fd) {
 namespace saphira::registration {
 namespace {
 
-bus::NodeOptions named(const std::string& name) {
-  bus::NodeOptions options;
-  options.name = name;
-  options.lockstep = true;
-  return options;
-}
-
 std::string map_path(const std::string& name) {
   return config_folder() + "/maps/" + name + ".map";
 }
-
-/// Files of one test, gone after it.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("saphira-registration-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 class RegistrationShell : public testing::Test {
  protected:
@@ -91,7 +70,7 @@ class RegistrationShell : public testing::Test {
   }
 
   void start(const Options& options) {
-    service.emplace(named("registration"), memory);
+    service.emplace(test::memory_options("registration", true), memory);
     shell.emplace(*service, [options](runtime::Ports& ports) {
       return std::make_unique<Service>(ports, options);
     });
@@ -168,21 +147,15 @@ class RegistrationShell : public testing::Test {
     return from_bus(*answer);
   }
   bool done(const Request& asked) { return ask(asked).code == AnswerCode::done; }
-  static Request on_or_off(const char* functor, bool on) { return {functor, {{"on", on}}}; }
   static Request load(const std::string& name, const std::string& text) {
     return {"load", {{"name", name}, {"text", text}}};
   }
-  static Request place(const Pose& pose_in_map) {
-    return {"place", {{"position", PlacedPoint{pose_in_map, Frame::map}}}};
-  }
-  static Request put(const char* type, const Pose& pose_in_map, double size,
-                     const std::string& name = "") {
+  static Request put(const char* type, const Pose& pose_in_map, double size) {
     return {"put",
             {{"type", std::string(type)},
              {"position", PlacedPoint{pose_in_map, Frame::map}},
              {"length", size},
-             {"width", size},
-             {"name", name}}};
+             {"width", size}}};
   }
   static std::uint32_t id_of(const Answer& answer) {
     return static_cast<std::uint32_t>(number_of(answer.results, "id"));
@@ -221,18 +194,18 @@ class RegistrationShell : public testing::Test {
     return nullptr;
   }
 
-  Folder folder;
+  const test::TempDir folder;
   test::Drive drive{options()};
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Stop stop;
-  bus::Node bridge{named("bridge"), memory};
+  bus::Node bridge{test::memory_options("bridge", true), memory};
   bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
   bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
   bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kRegistrationRequest)};
   bus::Reader<v1::Registration> registrations{bridge.reader(bus::topics::kRegistration)};
   bus::Reader<v1::Answer> answers{bridge.reader(bus::topics::kRegistrationAnswers)};
   bus::Reader<v1::FloorMap> maps{bridge.reader(bus::topics::kMap)};
-  bus::Node eyes{named("interpretation"), memory};
+  bus::Node eyes{test::memory_options("interpretation", true), memory};
   runtime::Shell eyes_shell{eyes, interpretation::component().make};
   std::optional<bus::Node> service;
   std::optional<runtime::Shell> shell;
@@ -326,68 +299,6 @@ TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
   EXPECT_TRUE(registration.closed_doors().empty());
 }
 
-TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
-  const Options options{map_path("office"), "start", folder.path("memory")};
-  start(options);
-  cycle();
-  test::Tour there({{8.0, 7.0}}, false);
-  tour(there, 100);
-  const std::uint32_t id = id_of(ask(put("POS", {5.0, 0.0, 0.0}, 0.0, "printer")));
-  EXPECT_NE(id, 0U);
-  // The memory is written once a second.
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  const auto holds_printer = [&] {
-    return std::filesystem::exists(options.memory_file) &&
-           read_file(options.memory_file).find("printer") != std::string::npos;
-  };
-  while (!holds_printer() && std::chrono::steady_clock::now() < limit)
-    cycle();
-  shell.reset();
-  service.reset();
-  const Memory kept = parse_remembered(read_file(options.memory_file), "memory").memory;
-  const Pose before = compose(kept.pose_in_map, relative(kept.pose_in_odom, Pose{}));
-  start(options);
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-  const Vec2 moved = drive.seen().true_pose_in_world.position();
-  EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() - moved).norm(), 0.4);
-  // Without a jump: odom has the same place on the map.
-  EXPECT_NEAR(registration.odom_in_map().x(), before.x, 0.1);
-  EXPECT_NEAR(registration.odom_in_map().y(), before.y, 0.1);
-  EXPECT_NEAR(registration.odom_in_map().th(), before.th, 0.03);
-  const auto map = maps.take_newest();
-  ASSERT_TRUE(map);
-  EXPECT_TRUE(map->changed());
-  const maps::Map now = maps::from_bus(*map);
-  const auto places = maps::named(now, lps::PointType::position, "printer");
-  ASSERT_EQ(places.size(), 1U);
-  EXPECT_EQ(places.front()->id, id);
-}
-
-TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
-  start({map_path("office"), "start", ""});
-  cycle();
-  const Answer refused = ask(load("wrong.map", "CORRIDOR (1) 0, 0, 0, 10000\n"));
-  EXPECT_EQ(refused.code, AnswerCode::refused);
-  EXPECT_NE(refused.text.find("wrong.map:1:"), std::string::npos) << refused.text;
-  // A bad map does not replace the good one.
-  EXPECT_GT(maps.take_newest()->artifacts().size(), 10U);
-  EXPECT_EQ(ask({"remove", {{"id", 4711.0}}}).text, "no artifact (4711) in the map");
-  EXPECT_TRUE(done({"remove", {{"id", 111.0}}}));
-  const auto map = maps.take_newest();
-  ASSERT_TRUE(map);
-  EXPECT_EQ(maps::find(maps::from_bus(*map), 111), nullptr);
-  EXPECT_TRUE(done(on_or_off("switch", false)));
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  EXPECT_TRUE(done(on_or_off("switch", true)));
-  EXPECT_TRUE(done(place({5.0, 7.0, 1.0})));
-  EXPECT_NEAR(registration.pose_in_map().x(), 5.0, 0.05);
-  EXPECT_NEAR(registration.pose_in_map().th(), 1.0, 0.05);
-  EXPECT_TRUE(done({"delete"}));
-  EXPECT_TRUE(maps.take_newest()->artifacts().empty());
-}
-
 TEST_F(RegistrationShell, ABadMemoryIsNone) {
   const std::string option = "option " + map_path("office") + "\n";
   for (const std::string& text : {std::string(), option + "odom 99999999999999999999999\nmap\n",
@@ -420,7 +331,7 @@ TEST(StartPose, IsAPlaceOrAPose) {
 }
 
 TEST(MemoryFile, ReadsWhatItWrote) {
-  Folder folder;
+  const test::TempDir folder;
   Remembered a;
   a.memory.odom = 12;
   a.memory.pose_in_odom = {1.0, 2.0, 0.1};
@@ -435,41 +346,15 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   a.map = maps::load_map(map_path("office"));
   a.map.features.back().learned = true;
   a.closed_doors = {112, 115};
-  const std::optional<Remembered> b = parse_remembered(to_text(a), "memory");
-  EXPECT_EQ(b->memory.odom, a.memory.odom);
-  EXPECT_EQ(b->memory.pose_in_odom, a.memory.pose_in_odom);
-  EXPECT_EQ(b->memory.pose_in_map, a.memory.pose_in_map);
-  EXPECT_EQ(b->memory.covariance, a.memory.covariance);
-  EXPECT_EQ(b->memory.drift, a.memory.drift);
-  EXPECT_EQ(b->memory.confidence, a.memory.confidence);
-  EXPECT_EQ(b->memory.placed, a.memory.placed);
-  EXPECT_EQ(b->option, a.option);
-  EXPECT_EQ(b->source, a.source);
-  EXPECT_EQ(b->changed, a.changed);
-  EXPECT_EQ(b->map, a.map);
-  EXPECT_EQ(b->closed_doors, a.closed_doors);
+  EXPECT_EQ(parse_remembered(to_text(a), "memory"), a);
   EXPECT_THROW(parse_remembered(sealed("odom 1\nnonsense 2\nmap\n"), "m"), FileError);
   EXPECT_THROW(parse_remembered(sealed("odom 1\n"), "m"), FileError);
   EXPECT_THROW(parse_remembered(sealed("odom x\nmap\n"), "m"), FileError);
   EXPECT_THROW(parse_remembered(sealed("source a%2\nmap\n"), "m"), FileError);
 }
 
-TEST(MemoryFile, WhatIsDamagedIsNotTakenForAnother) {
-  Remembered a;
-  a.option = "a.map";
-  const std::string whole = to_text(a);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const int bit : {0, 3, 6}) {
-      std::string damaged = whole;
-      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
-      EXPECT_THROW(parse_remembered(damaged, "m"), FileError) << i << " " << bit;
-    }
-    EXPECT_THROW(parse_remembered(whole.substr(0, i), "m"), FileError) << i;
-  }
-}
-
 TEST(MemoryFile, IsOnTheDiskBeforeItReplacesTheOldOne) {
-  Folder folder;
+  const test::TempDir folder;
   const std::string path = folder.path("memory");
   ASSERT_TRUE(replace_file(path, "old\n", true));
   watched = path;

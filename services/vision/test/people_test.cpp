@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <iostream>
 
 #include "seen.hpp"
 
@@ -12,12 +10,7 @@ namespace saphira::vision {
 namespace {
 
 std::vector<Sight> people_in(const std::string& things, const Pose& robot = {2.0, 3.0, 0.0}) {
-  const sim::World world = room(things);
-  sim::Scene scene(world);
-  scene.add_robot({}, robot, 1);
-  Random random(5);
-  Census census;
-  return find_people(bands(census, picture(scene, random)));
+  return find_people(bands_of(things, robot));
 }
 
 TEST(People, AreFoundWhereTheyStand) {
@@ -37,14 +30,8 @@ TEST(People, AreFoundWhereTheyStand) {
 TEST(People, AreFoundAsNearAsTheyCanBeExpected) {
   for (const double away : {0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4})
     for (const double aside : {-0.5, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.5}) {
-      const sim::World world =
-          room("person ann " + std::to_string(2000 + std::lround(1000 * away)) + " " +
-               std::to_string(3000 + std::lround(1000 * aside)));
-      sim::Scene scene(world);
-      scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
-      Random random(5);
-      Census census;
-      const Bands seen = bands(census, picture(scene, random));
+      const Bands seen = bands_of("person ann " + std::to_string(2000 + std::lround(1000 * away)) +
+                                  " " + std::to_string(3000 + std::lround(1000 * aside)));
       const bool expected = in_view(seen, {away, aside});
       const std::vector<Sight> found = find_people(seen);
       EXPECT_LE(expected ? 1U : 0U, found.size()) << away << " m away, " << aside << " m aside";
@@ -82,37 +69,12 @@ TEST(People, WhatIsNoneIsNoPerson) {
 }
 
 TEST(People, WhoIsBehindSomethingIsNotInView) {
-  const sim::World world =
-      room("person ann 7000 3000 box cupboard 4000 3000 0 300 1200 50 tall 2000");
-  sim::Scene scene(world);
-  scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
-  Random random(5);
-  Census census;
-  const Bands seen = bands(census, picture(scene, random));
+  const Bands seen =
+      bands_of("person ann 7000 3000 box cupboard 4000 3000 0 300 1200 50 tall 2000");
   EXPECT_FALSE(in_view(seen, {5.0, 0.0}));
   EXPECT_TRUE(in_view(seen, {4.0, 1.5}));
   EXPECT_FALSE(in_view(seen, {4.0, 4.0}));
   EXPECT_FALSE(in_view(seen, {-2.0, 0.0}));
-}
-
-// Not a limit that a busy machine could miss, only a check against very slow frames.
-TEST(People, APairIsQuicklyDone) {
-  const sim::World world = room("person ann 5000 3000");
-  sim::Scene scene(world);
-  scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
-  Random random(5);
-  const StereoPicture pair = picture(scene, random);
-  Census census;
-  double least = 1e9;
-  for (int i = 0; i < 10; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    EXPECT_EQ(find_people(bands(census, pair)).size(), 1U);
-    least = std::min(
-        least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  }
-  RecordProperty("milliseconds", static_cast<int>(1000.0 * least));
-  std::cout << "people in a pair: " << 1000.0 * least << " ms\n";
-  EXPECT_LT(least, 1.0);
 }
 
 }  // namespace

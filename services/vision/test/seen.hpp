@@ -34,4 +34,14 @@ inline Bands bands(Census& census, const StereoPicture& picture) {
                   picture.rows);
 }
 
+/// What a robot in such a room sees.
+inline Bands bands_of(const std::string& things, const Pose& robot = {2.0, 3.0, 0.0}) {
+  const sim::World world = room(things);
+  sim::Scene scene(world);
+  scene.add_robot({}, robot, 1);
+  Random random(5);
+  Census census;
+  return bands(census, picture(scene, random));
+}
+
 }  // namespace saphira::vision

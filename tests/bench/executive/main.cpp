@@ -2,21 +2,17 @@
 
 #include <cstdio>
 #include <exception>
-#include <string_view>
 
 #include "executive_bench.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira::bench;
   bool json = false;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--json") {
-      json = true;
-    } else {
-      std::fprintf(stderr, "usage: saphira bench executive [--json]\n");
-      return 2;
-    }
-  }
+  saphira::CommandLine app{"CPU time of behaviors and intentions in one cycle, without the bus"};
+  app.add_flag("--json", json, "one JSON object");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const double intentions_12 = intentions_12_ms();
     const double behaviors_10 = behaviors_10_ms();

@@ -59,15 +59,6 @@ TEST(Localization, OnPatrolThePoseStaysWithinAHandOfTheTruth) {
   EXPECT_GT(quantile(result.reckoned.position, 0.95), 1.0);
 }
 
-TEST(Localization, TheSameSeedGivesTheSamePoseToTheLastBit) {
-  Drive a(on_office(doubled(3)));
-  Drive b(on_office(doubled(3)));
-  patrol(a, office_tour(), 1500);
-  patrol(b, office_tour(), 1500);
-  EXPECT_EQ(a.believed(), b.believed());
-  EXPECT_EQ(a.registered().covariance, b.registered().covariance);
-}
-
 TEST(Localization, DeadReckoningThatTurnsByAConstantTooMuchDoesNotLoseIt) {
   // As much as that of the Intel log's robot (agents/logs/README.md).
   for (const double turn : {radians(3.4), radians(-3.4)}) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <string>
 
 #include "localization/patrol.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -210,26 +210,14 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    const bool value = i + 1 < argc;
-    if (option == "--json")
-      options.json = true;
-    else if (option == "--corridors")
-      options.corridors = true;
-    else if (option == "--seeds" && value)
-      options.seeds = std::atoi(argv[++i]);
-    else if (option == "--hours" && value)
-      options.hours = std::atof(argv[++i]);
-    else if (option == "--errors" && value)
-      options.errors = std::atof(argv[++i]);
-    else {
-      std::fprintf(stderr,
-                   "usage: saphira-bench-localization [--seeds N] [--hours H] [--errors FACTOR] "
-                   "[--corridors] [--json]\n");
-      return option == "--help" ? 0 : 2;
-    }
-  }
+  CommandLine app{"Patrols of the office floor by an estimated pose, and the rates of finding it"};
+  app.add_option("--seeds", options.seeds, "patrols, each with its own seed");
+  app.add_option("--hours", options.hours, "of each patrol");
+  app.add_option("--errors", options.errors, "factor on the errors of dead reckoning");
+  app.add_flag("--corridors", options.corridors, "not through the library");
+  app.add_flag("--json", options.json, "one JSON object");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -21,15 +20,6 @@ struct Run {
   double length = 0.0;
   CrossingResult result;
 };
-
-std::vector<std::string> names_in(const std::string& folder, const std::string& extension) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(config_folder() + "/" + folder))
-    if (entry.path().extension() == extension)
-      names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 protocol::RobotParameters parameters_of(const std::string& robot) {
   return protocol::load_parameters(find_file(config_folder() + "/robots", robot, ".p"));
@@ -93,11 +83,11 @@ int main(int argc, char** argv) {
     return *code;
   try {
     if (robots.empty())
-      for (const std::string& name : names_in("robots", ".p"))
+      for (const std::string& name : names_in(config_folder() + "/robots", ".p"))
         if (!parameters_of(name).sonars.empty())
           robots.push_back(name);
     if (worlds.empty())
-      worlds = names_in("worlds", ".wld");
+      worlds = names_in(config_folder() + "/worlds", ".wld");
     std::vector<Run> runs;
     for (const std::string& robot : robots)
       for (const std::string& world : worlds)

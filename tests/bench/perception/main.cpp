@@ -4,11 +4,10 @@
 #include <array>
 #include <cstdio>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "perception/score.hpp"
-#include "saphira/base/numbers.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
 // saphira-bench-perception: percepts and grids against the ground truth, and the cost of a cycle.
@@ -18,17 +17,6 @@ namespace {
 using namespace saphira;
 using namespace saphira::test;
 
-constexpr const char* kUsage =
-    R"(saphira-bench-perception: tours of simulated worlds; percepts and grids against the truth, and the
-cost of a cycle. Builds and runs without the bus.
-  --json          one line of JSON instead of text
-  --seeds N       tours, each with its own seed [5]
-  --seconds S     of the robot's time for each [900]
-  --errors E      factor on the errors of dead reckoning [2]
-  --world NAME    office-floor, loop, small-office, visitors or cluttered [office-floor]
-  --verbose       lists what was wrong and what was missed
-)";
-
 struct Options {
   bool json = false;
   bool verbose = false;
@@ -37,38 +25,6 @@ struct Options {
   double seconds = 900.0;
   std::string world = "office-floor";
 };
-
-template <class Number>
-bool read(std::string_view word, Number& number) {
-  const auto found = number_in<Number>(word);
-  number = found.value_or(number);
-  return found.has_value();
-}
-
-// False for invalid words.
-bool parse(const std::vector<std::string>& words, Options& options) {
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--json") {
-      options.json = true;
-      continue;
-    }
-    if (words[i] == "--verbose") {
-      options.verbose = true;
-      continue;
-    }
-    if (i + 1 == words.size())
-      return false;
-    const std::string& option = words[i];
-    const std::string& value = words[++i];
-    if (option == "--world")
-      options.world = value;
-    else if (!(option == "--seeds" && read(value, options.seeds)) &&
-             !(option == "--seconds" && read(value, options.seconds)) &&
-             !(option == "--errors" && read(value, options.errors)))
-      return false;
-  }
-  return options.seeds > 0 && !patrol(options.world).empty();
-}
 
 // CPU time of this thread, without other work on the machine.
 double cpu_seconds() {
@@ -225,16 +181,18 @@ void print(const Options& options, const Result& result) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  if (!words.empty() && (words[0] == "--help" || words[0] == "-h")) {
-    std::fputs(kUsage, stdout);
-    return 0;
-  }
-  if (!parse(words, options)) {
-    std::fputs(kUsage, stderr);
-    return 2;
-  }
+  CommandLine app{
+      "Tours of simulated worlds: percepts and grids against the truth, and the cost of a cycle"};
+  app.add_flag("--json", options.json, "one line of JSON instead of text");
+  app.add_option("--seeds", options.seeds, "tours, each with its own seed").in_range(1, 1000000);
+  app.add_option("--seconds", options.seconds, "of the robot's time for each");
+  app.add_option("--errors", options.errors, "factor on the errors of dead reckoning");
+  app.add_option("--world", options.world, "the world of the tours")
+      .one_of({"office-floor", "loop", "small-office", "visitors", "cluttered"});
+  app.add_flag("--verbose", options.verbose, "lists what was wrong and what was missed");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   Result result;
   for (int seed = 1; seed <= options.seeds; ++seed)
     percepts(options, seed, result);

@@ -176,33 +176,6 @@ TEST(Perception, DrivingObliquelyIsNoHindrance) {
   EXPECT_GE(total.found, 0.8 * total.passed);
 }
 
-TEST(Perception, IsTheSameEachTimeToTheLastBit) {
-  const auto once = [] {
-    DriveOptions options;
-    options.interpretation = true;
-    options.seed = 7;
-    Drive drive(options);
-    Tour tour(patrol("office-floor"), true);
-    std::vector<double> values;
-    while (drive.seen().cycle < 1500) {
-      tour.act(drive, drive.seen().true_pose_in_world);
-      drive.advance();
-      for (const lps::Percept& p : drive.cores().said().percepts)
-        for (const double value : {p.pose_in_odom.x, p.pose_in_odom.y, p.pose_in_odom.th,
-                                   p.sigma_across, p.confidence, static_cast<double>(p.id)})
-          values.push_back(value);
-    }
-    const interpretation::Grid& grid = drive.cores().interpretation().grid();
-    for (const interpretation::TileKey& key : grid.tiles())
-      for (const std::uint8_t cell : grid.cells(key))
-        values.push_back(cell);
-    return values;
-  };
-  const std::vector<double> first = once();
-  EXPECT_GT(first.size(), 10000U);
-  EXPECT_EQ(first, once());
-}
-
 TEST(Perception, TheGridKeepsWallsAndDoorways) {
   const auto [ours, theirs] = compare_grids({}, 3000);
   EXPECT_GT(ours.walls, 0.85);

@@ -155,30 +155,26 @@ bool Score::is_real(const lps::Percept& percept, const Pose& at) {
 
 void Score::look(const Drive& drive) {
   const Seen& seen = drive.seen();
-  look({seen.cycle, seen.pose_in_odom, seen.true_pose_in_world, seen.velocity},
-       drive.cores().said().percepts);
-}
-
-void Score::look(const Moment& moment, const std::vector<lps::Percept>& percepts) {
-  odom_in_world_[moment.cycle] =
-      compose(moment.true_pose_in_world, relative(moment.pose_in_odom, Pose{}));
+  const std::vector<lps::Percept>& percepts = drive.cores().said().percepts;
+  odom_in_world_[seen.cycle] =
+      compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}));
   for (const lps::Percept& percept : percepts) {
     const auto known = judged_.find(percept.id);
-    if (known != judged_.end() && percept.seen != moment.cycle)
+    if (known != judged_.end() && percept.seen != seen.cycle)
       continue;
     const Pose at = in_world(percept);
     Judged& judged = judged_[percept.id];
     judged.type = percept.type;
     if (!is_real(percept, at)) {
       if (judged.real)
-        mistakes_.push_back({percept, at, moment.cycle});
+        mistakes_.push_back({percept, at, seen.cycle});
       judged.real = false;
     }
   }
-  pass(moment, percepts);
+  pass(seen, percepts);
 }
 
-void Score::pass(const Moment& seen, const std::vector<lps::Percept>& percepts) {
+void Score::pass(const Seen& seen, const std::vector<lps::Percept>& percepts) {
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& door = map_.features[i];
     if (door.type != PointType::door)

@@ -29,14 +29,6 @@ struct Mistake {
   std::uint64_t cycle = 0;
 };
 
-/// A moment of the robot's way.
-struct Moment {
-  std::uint64_t cycle = 0;
-  Pose pose_in_odom;
-  Pose true_pose_in_world;
-  double velocity = 0.0;
-};
-
 /// A door that the robot passed.
 struct Passage {
   std::uint32_t door = 0;   ///< its id in the map
@@ -57,7 +49,6 @@ class Score {
   /// In a simulated world. The drive outlives the score.
   Score(Drive& drive, maps::Map map);
 
-  void look(const Moment& moment, const std::vector<lps::Percept>& percepts);
   /// Judges interpretation's newest output.
   void look(const Drive& drive);
 
@@ -86,7 +77,7 @@ class Score {
   bool is_real(const lps::Percept& percept, const Pose& in_world);
   bool is_surface(const sim::Things& things, const Pose& middle, const lps::Percept& wall) const;
   const maps::Feature* door_at(const Pose& in_world, double width) const;
-  void pass(const Moment& moment, const std::vector<lps::Percept>& percepts);
+  void pass(const Seen& seen, const std::vector<lps::Percept>& percepts);
 
   maps::Map map_;
   std::function<sim::Things(const Vec2& about)> surfaces_;  // the present ones, near a place

@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
-#include <vector>
 
 #include "saphira/base/guess.hpp"
 
@@ -42,6 +41,16 @@ std::string folder_of(const std::string& file) {
   return folder.empty() ? "." : folder;
 }
 
+std::vector<std::string> names_in(const std::string& folder, const std::string& extension) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == extension)
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 std::string find_file(const std::string& folder, const std::string& name,
                       const std::string& extension) {
   std::error_code error;
@@ -50,11 +59,7 @@ std::string find_file(const std::string& folder, const std::string& name,
   for (const fs::path& path : {fs::path(folder) / name, fs::path(folder) / (name + extension)})
     if (fs::is_regular_file(path, error))
       return path.string();
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == extension)
-      names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
+  const std::vector<std::string> names = names_in(folder, extension);
   std::string list;
   for (const std::string& known : names)
     list += " " + known;

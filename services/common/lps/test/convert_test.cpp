@@ -23,20 +23,7 @@ TEST(Convert, PerceptsRoundTrip) {
     for (const Side side : {Side::none, Side::left, Side::right}) {
       percept.type = type;
       percept.side = side;
-      const Percept back = from_bus(to_bus(percept));
-      EXPECT_EQ(back.id, percept.id);
-      EXPECT_EQ(back.type, type);
-      EXPECT_EQ(back.side, side);
-      EXPECT_EQ(back.pose_in_odom, percept.pose_in_odom);
-      EXPECT_EQ(back.length, percept.length);
-      EXPECT_EQ(back.width, percept.width);
-      EXPECT_EQ(back.sigma_along, percept.sigma_along);
-      EXPECT_EQ(back.sigma_across, percept.sigma_across);
-      EXPECT_EQ(back.sigma_heading, percept.sigma_heading);
-      EXPECT_EQ(back.confidence, percept.confidence);
-      EXPECT_EQ(back.since, percept.since);
-      EXPECT_EQ(back.seen, percept.seen);
-      EXPECT_EQ(back.readings, percept.readings);
+      EXPECT_EQ(from_bus(to_bus(percept)), percept);
     }
 }
 
@@ -58,22 +45,7 @@ TEST(Convert, SeenThings) {
   for (const int channel : {-1, 0, 1, 2}) {
     thing.kind = channel < 0 ? SeenThing::Kind::person : SeenThing::Kind::blob;
     thing.channel = channel;
-    const SeenThing back = from_bus(to_bus(thing));
-    EXPECT_EQ(back.id, thing.id);
-    EXPECT_EQ(back.kind, thing.kind);
-    EXPECT_EQ(back.channel, thing.channel);
-    EXPECT_EQ(back.pose_in_odom, thing.pose_in_odom);
-    EXPECT_EQ(back.velocity_in_odom, thing.velocity_in_odom);
-    EXPECT_EQ(back.range_known, thing.range_known);
-    EXPECT_EQ(back.sigma, thing.sigma);
-    EXPECT_EQ(back.width, thing.width);
-    EXPECT_EQ(back.height, thing.height);
-    EXPECT_EQ(back.area, thing.area);
-    EXPECT_EQ(back.confidence, thing.confidence);
-    EXPECT_EQ(back.since, thing.since);
-    EXPECT_EQ(back.seen, thing.seen);
-    EXPECT_EQ(back.points_in_odom, thing.points_in_odom);
-    EXPECT_EQ(back.pointed, thing.pointed);
+    EXPECT_EQ(from_bus(to_bus(thing)), thing);
   }
 }
 

@@ -152,18 +152,19 @@ constexpr const char* kByCentral =
     "corridor 1 (upper corridor), junction 11, corridor 2 (central corridor), junction 12, "
     "corridor 3 (lower corridor), door 1271, room 271 (EJ-271)";
 
-TEST(Zones, AWayDoesNotEnterAKeepOut) {
-  const RouteResult found =
-      with_zones("ZONE (900) 26000, 16000, 0, 3000, 1000 keep-out \"lab\"", kUpper, "EJ-271");
+void expect_way(const RouteResult& found, const std::string& way, const std::string& remark = "") {
   ASSERT_TRUE(found.route) << found.reason;
-  EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "around keep-out zone \"lab\"");
+  EXPECT_EQ(text(floor(), *found.route), way);
+  EXPECT_EQ(found.remark(), remark);
+}
+
+TEST(Zones, AWayDoesNotEnterAKeepOut) {
+  expect_way(
+      with_zones("ZONE (900) 26000, 16000, 0, 3000, 1000 keep-out \"lab\"", kUpper, "EJ-271"),
+      kByCentral, "around keep-out zone \"lab\"");
   // One that is not on the way does not matter.
-  const RouteResult other =
-      with_zones("ZONE (900) 3000, 16000, 0, 3000, 1000 keep-out", kUpper, "EJ-271");
-  ASSERT_TRUE(other.route);
-  EXPECT_EQ(text(floor(), *other.route), kByEast);
-  EXPECT_EQ(other.remark(), "");
+  expect_way(with_zones("ZONE (900) 3000, 16000, 0, 3000, 1000 keep-out", kUpper, "EJ-271"),
+             kByEast);
 }
 
 TEST(Zones, AGoalInAKeepOutHasNoRoute) {
@@ -196,57 +197,42 @@ TEST(Zones, TheRobotMayLeaveAKeepOut) {
 }
 
 TEST(Zones, ASlowZoneIsLonger) {
-  const RouteResult around =
-      with_zones("ZONE (900) 26000, 16000, 0, 3000, 12000 slow 50", kUpper, "EJ-271");
-  ASSERT_TRUE(around.route);
-  EXPECT_EQ(text(floor(), *around.route), kByCentral);
-  EXPECT_EQ(around.remark(), "around slow zone 900");
-  const RouteResult through =
-      with_zones("ZONE (900) 26000, 16000, 0, 3000, 500 slow 150 \"k\"", kUpper, "EJ-271");
-  ASSERT_TRUE(through.route);
-  EXPECT_EQ(text(floor(), *through.route), kByEast);
-  EXPECT_EQ(through.remark(), "through slow zone \"k\"");
+  expect_way(with_zones("ZONE (900) 26000, 16000, 0, 3000, 12000 slow 50", kUpper, "EJ-271"),
+             kByCentral, "around slow zone 900");
+  expect_way(with_zones("ZONE (900) 26000, 16000, 0, 3000, 500 slow 150 \"k\"", kUpper, "EJ-271"),
+             kByEast, "through slow zone \"k\"");
 }
 
 TEST(Zones, OneWayHoldsAlongItsHeading) {
-  const RouteResult along =
-      with_zones("ZONE (900) 26000, 16000, -90, 2000, 3000 one-way", kUpper, "EJ-271");
-  ASSERT_TRUE(along.route);
-  EXPECT_EQ(text(floor(), *along.route), kByEast);
-  EXPECT_EQ(along.remark(), "");
-  const RouteResult against =
-      with_zones("ZONE (900) 26000, 16000, 90, 2000, 3000 one-way", kUpper, "EJ-271");
-  ASSERT_TRUE(against.route);
-  EXPECT_EQ(text(floor(), *against.route), kByCentral);
-  EXPECT_EQ(against.remark(), "around one-way zone 900");
+  expect_way(with_zones("ZONE (900) 26000, 16000, -90, 2000, 3000 one-way", kUpper, "EJ-271"),
+             kByEast);
+  expect_way(with_zones("ZONE (900) 26000, 16000, 90, 2000, 3000 one-way", kUpper, "EJ-271"),
+             kByCentral, "around one-way zone 900");
 }
 
 TEST(Zones, APreferredWayCountsHalf) {
-  const RouteResult found =
-      with_zones("ZONE (900) 17600, 16000, 0, 3000, 17000 preferred", Vec2(20.5, 25.0), "EJ-271");
-  ASSERT_TRUE(found.route);
-  EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "through preferred zone 900");
+  expect_way(
+      with_zones("ZONE (900) 17600, 16000, 0, 3000, 17000 preferred", Vec2(20.5, 25.0), "EJ-271"),
+      kByCentral, "through preferred zone 900");
 }
 
 TEST(Zones, ByAdviceTheyAreRegions) {
-  RouteResult found = with_zones("", kUpper, "EJ-271", "keep-out at east corridor",
-                                 "Charlie said \"keep out of the east corridor\"");
-  ASSERT_TRUE(found.route) << found.reason;
-  EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(), "around east corridor, which Charlie told me to keep out of");
-  found = with_zones("", kUpper, "EJ-271", "leak at lab; keep-out at EJ-271",
-                     "Karen said \"x\"; Charlie said \"y\"");
-  EXPECT_EQ(found.reason, "room 271 (EJ-271) is in a place that Charlie told me to keep out of");
-  found = with_zones("", kUpper, "EJ-271", "water leak at EJ-271");
-  EXPECT_EQ(found.reason, "room 271 (EJ-271) is where people warn of: water leak at EJ-271");
-  found = with_zones("", kUpper, "EJ-271", "preferred at central corridor; slow at east corridor");
-  ASSERT_TRUE(found.route) << found.reason;
-  EXPECT_EQ(text(floor(), *found.route), kByCentral);
-  EXPECT_EQ(found.remark(),
-            "around east corridor, where people told me to go slowly, and through central "
-            "corridor, which people told me to prefer");
-  found = with_zones("", Vec2(17.6, 14.0), "EJ-265", "wet floor at central corridor");
+  expect_way(with_zones("", kUpper, "EJ-271", "keep-out at east corridor",
+                        "Charlie said \"keep out of the east corridor\""),
+             kByCentral, "around east corridor, which Charlie told me to keep out of");
+  EXPECT_EQ(with_zones("", kUpper, "EJ-271", "leak at lab; keep-out at EJ-271",
+                       "Karen said \"x\"; Charlie said \"y\"")
+                .reason,
+            "room 271 (EJ-271) is in a place that Charlie told me to keep out of");
+  EXPECT_EQ(with_zones("", kUpper, "EJ-271", "water leak at EJ-271").reason,
+            "room 271 (EJ-271) is where people warn of: water leak at EJ-271");
+  expect_way(
+      with_zones("", kUpper, "EJ-271", "preferred at central corridor; slow at east corridor"),
+      kByCentral,
+      "around east corridor, where people told me to go slowly, and through central "
+      "corridor, which people told me to prefer");
+  const RouteResult found =
+      with_zones("", Vec2(17.6, 14.0), "EJ-265", "wet floor at central corridor");
   ASSERT_TRUE(found.route) << found.reason;
   EXPECT_EQ(found.remark(), "through wet floor at central corridor");
 }

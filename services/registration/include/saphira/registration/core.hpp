@@ -92,6 +92,8 @@ class Core {
     std::string reason;   ///< why it was not accepted
     Vec2 off{0.0, 0.0};   ///< [m] seen minus expected, along the artifact and across it
     double turned = 0.0;  ///< [rad]
+
+    bool operator==(const Matched&) const = default;
   };
   struct Outputs {
     State state = State::unplaced;
@@ -103,6 +105,8 @@ class Core {
     std::vector<Matched> matches;
     std::vector<std::uint32_t> closed_doors;
     Notes notes;
+
+    bool operator==(const Outputs&) const = default;
   };
   /// The first step has to bring a robot.
   Outputs step(const Inputs& inputs);

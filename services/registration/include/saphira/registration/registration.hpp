@@ -122,6 +122,8 @@ struct Memory {
   double drift = 0.0;                                    ///< [rad/m] of dead reckoning
   double confidence = 0.0;
   bool placed = false;
+
+  bool operator==(const Memory&) const = default;
 };
 
 struct RegistrationState;

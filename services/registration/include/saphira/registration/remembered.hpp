@@ -18,6 +18,8 @@ struct Remembered {
   bool changed = false;  ///< since its origin
   maps::Map map;
   std::set<std::uint32_t> closed_doors;
+
+  bool operator==(const Remembered&) const = default;
 };
 
 /// With its checksum. std::invalid_argument where no file can hold the map.

@@ -24,6 +24,7 @@ class Notes {
 
   const std::vector<Note>& lines() const { return lines_; }
   bool empty() const { return lines_.empty(); }
+  bool operator==(const Notes&) const = default;
 
  private:
   std::vector<Note> lines_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace saphira {
 
@@ -17,6 +18,10 @@ std::string user_folder();
 
 /// The folder of a file; "." for a name without a folder.
 std::string folder_of(const std::string& file);
+
+/// The names of a folder's files with that extension (".wld"), without it and sorted; none where
+/// there is no such folder.
+std::vector<std::string> names_in(const std::string& folder, const std::string& extension);
 
 /// The file of that name: a path, or a file of `folder`, with or without its `extension` (".wld").
 /// std::invalid_argument that lists the existing files where it is neither.

@@ -47,6 +47,8 @@ struct Percept {
   std::uint64_t seen = 0;   ///< cycle of the newest reading that made it
   std::vector<ReadingId> readings;
 
+  bool operator==(const Percept&) const = default;
+
   /// A door that is closed.
   bool is_closed() const { return type == PointType::door && length > 0.0; }
   /// A hypothesis of an object, not only a feature.

@@ -32,6 +32,8 @@ struct SeenThing {
   /// [rad] Direction of a person's arm, when it was stretched out to a side last, in odom.
   double points_in_odom = 0.0;
   std::uint64_t pointed = 0;  ///< cycle in which that was seen last; 0: never
+
+  bool operator==(const SeenThing&) const = default;
 };
 
 }  // namespace saphira::lps
