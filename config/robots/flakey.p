@@ -33,7 +33,7 @@ AngleDrift       0.003
 Battery           24.0      ; V
 
 ;; A head that turns the stereo cameras, on the position servo
-HeadReach        150        ; degrees to either side
+HeadReach        165        ; degrees to either side
 HeadPulse        6          ; us a degree, around HeadCenter (1500)
 HeadSpeed        120        ; degrees/s, in simulation
 

@@ -34,7 +34,7 @@ AngleDrift       0.003       ; change of angle with forward movement
 Battery          12.6        ; V, in simulation
 
 ;; A head that turns the stereo cameras, on the position servo
-HeadReach        150        ; degrees to either side
+HeadReach        165        ; degrees to either side
 HeadPulse        6          ; us a degree, around HeadCenter (1500)
 HeadSpeed        120        ; degrees/s, in simulation
 

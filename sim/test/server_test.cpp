@@ -204,10 +204,10 @@ TEST_F(HeadTest, TurnsAtItsSpeedWithinItsReach) {
   EXPECT_EQ(packets().back().ptu, 2400);
   send(protocol::Ptu{500});
   server_.advance(300);
-  EXPECT_EQ(packets().back().ptu, 600) << "the end stop";
+  EXPECT_EQ(packets().back().ptu, 510) << "the end stop";
   send(protocol::Ptu{0});
   server_.advance(100);
-  EXPECT_EQ(packets().back().ptu, 600) << "no pulse: it stays";
+  EXPECT_EQ(packets().back().ptu, 510) << "no pulse: it stays";
 }
 
 TEST_F(ServerTest, UnknownCommandsAreIgnoredAndCounted) {

@@ -750,6 +750,9 @@ std::vector<Scenario> scenarios() {
   search.options.sees = true_eyes({"red"});
   search.options.drive.start_in_world = Pose{17.5, 14.0, kPi / 2};
   all.push_back(search);
+  Scenario look{"look", office(), "look", {saphira::number("angle", -1.0)}};
+  look.options.drive.robot = "pioneer-head";
+  all.push_back(look);
   Scenario build{"build-map", {}, "build-map", {}, 9000};
   build.options.drive.world = "loop";
   all.push_back(build);

@@ -148,9 +148,9 @@ TEST(Parameters, ClassesWithoutSubclass) {
 TEST(Parameters, AHeadTurnsByPulses) {
   const auto p = load_parameters(source("config/robots/flakey.p"));
   EXPECT_EQ(pulse_of_head(p, 0.0), 1500);
-  EXPECT_EQ(pulse_of_head(p, radians(150.0)), 2400);
+  EXPECT_EQ(pulse_of_head(p, radians(165.0)), 2490);
   EXPECT_EQ(pulse_of_head(p, radians(-90.0)), 960);
-  EXPECT_EQ(pulse_of_head(p, radians(151.0)), 0) << "beyond its reach";
+  EXPECT_EQ(pulse_of_head(p, radians(166.0)), 0) << "beyond its reach";
   EXPECT_NEAR(angle_of_head(p, 960), radians(-90.0), 1e-9);
   EXPECT_EQ(angle_of_head(p, 0), 0.0);
   const auto fixed = load_parameters(source("config/robots/pioneer.p"));
@@ -161,7 +161,7 @@ TEST(Parameters, AHeadTurnsByPulses) {
 // The Pioneer with a head is the Pioneer otherwise.
 TEST(Parameters, ThePioneerWithAHead) {
   auto p = load_parameters(source("config/robots/pioneer-head.p"));
-  EXPECT_EQ(p.head_reach, radians(150.0));
+  EXPECT_DOUBLE_EQ(p.head_reach, radians(165.0));
   const auto pioneer = load_parameters(source("config/robots/pioneer.p"));
   p.head_reach = pioneer.head_reach;
   p.file = pioneer.file;

@@ -637,10 +637,10 @@ TEST_F(DialogueTest, ItLooksWithItsHeadOrTurns) {
   EXPECT_EQ(said("Flakey, look ahead"), "my cameras always look ahead");
   EXPECT_TRUE(last.goals.empty());
   situation.turns_cameras = true;
-  EXPECT_EQ(said("Flakey, look behind you"), "I look back");
+  EXPECT_EQ(said("Flakey, look behind you"), "I drop the look / I look back");
   EXPECT_EQ(last.goals.at(0).functor, "look");
   EXPECT_DOUBLE_EQ(last.goals.at(0).arguments.at(0).number, std::numbers::pi);
-  EXPECT_EQ(said("Flakey, look to the right"), "I look right");
+  EXPECT_EQ(said("Flakey, look to the right"), "I drop the look / I look right");
   EXPECT_DOUBLE_EQ(last.goals.at(0).arguments.at(0).number, -std::numbers::pi / 2.0);
 }
 

@@ -27,10 +27,10 @@ std::string names(const std::vector<Line::End>& ends, const std::vector<Unit>& u
 
 // Topics that people and other programs outside the robot write.
 const std::set<std::string> kFromOutside{
-    "drive/estop",   "drive/estop/reset", "drive/teleop", "drive/direct",   "lockstep/permit",
-    "goals",         "beliefs/said",      "device/servo", "device/gripper", "device/output",
-    "device/analog", "device/timer",      "device/sonar", "device/sound",   "device/server",
-    "device/serial", "device/vision",     "agents/solved"};
+    "drive/estop",   "drive/estop/reset", "drive/teleop",   "drive/direct",  "lockstep/permit",
+    "goals",         "beliefs/said",      "device/gripper", "device/output", "device/analog",
+    "device/timer",  "device/sonar",      "device/sound",   "device/server", "device/serial",
+    "device/vision", "agents/solved"};
 
 TEST(System, EveryTopicThatIsReadIsWrittenByOne) {
   const std::vector<Unit> all = units();
