@@ -62,7 +62,11 @@ std::optional<double> Gaze::step(const World& world) {
     return std::nullopt;
   const double bearing = wanted(world);
   const bool moved = std::abs(bearing - asked_) > kStep;
-  const bool missed = std::abs(world.robot.head - asked_) > kMissed && cycle >= at_ + kPatience;
+  // Where nothing is watched, another program may turn the head.
+  const Belief* const belief = world.beliefs.stored("gaze");
+  const bool watches = belief != nullptr && !belief->value.nil();
+  const bool missed =
+      watches && std::abs(world.robot.head - asked_) > kMissed && cycle >= at_ + kPatience;
   if (!moved && !missed)
     return std::nullopt;
   asked_ = bearing;

@@ -124,6 +124,18 @@ TEST_F(GazeTest, AHeadThatHasNotTurnedIsAskedAgain) {
   EXPECT_EQ(asked, 3);
 }
 
+TEST_F(GazeTest, OthersMayTurnTheHeadWhileNothingIsWatched) {
+  watch(radians(30.0));
+  step();
+  step();
+  watch({});
+  EXPECT_EQ(degrees_after(5), 0.0);
+  robot.head = radians(60.0);
+  EXPECT_NEAR(degrees_after(50), 60.0, 1e-9);
+  watch(0.0);
+  EXPECT_EQ(degrees_after(50), 0.0);
+}
+
 TEST_F(GazeTest, AnotherEpochBeginsWithTheHeadAsItIs) {
   watch(radians(90.0));
   EXPECT_NEAR(degrees_after(5), 90.0, 1e-9);
