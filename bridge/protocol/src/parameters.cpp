@@ -443,8 +443,8 @@ class Parser {
 }  // namespace
 
 std::uint16_t pulse_of_head(const RobotParameters& p, double angle) {
-  constexpr double kRounding = 1e-6;  // [rad]
-  if (p.head_reach == 0.0 || !(std::abs(angle) <= p.head_reach + kRounding))
+  const double rounding = 1e-6;  // [rad]
+  if (p.head_reach == 0.0 || !(std::abs(angle) <= p.head_reach + rounding))
     return 0;
   return static_cast<std::uint16_t>(std::lround(p.head_center + angle * p.head_pulse));
 }

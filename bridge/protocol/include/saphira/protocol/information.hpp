@@ -101,8 +101,8 @@ struct Information {
   bool right_stalled = false;
   std::uint16_t bumpers = 0;  ///< both stall bytes as they came, the left one low
   double control = 0.0;       ///< [rad] in (-pi, pi], the server's heading setpoint
+  double head = 0.0;          ///< [rad] the direction of the cameras, by ptu
   std::uint16_t ptu = 0;      ///< [us]
-  double head = 0.0;          ///< [rad] the direction of the cameras at that pulse
   std::uint8_t say = 0;
   std::vector<Sonar> sonars;
   std::uint16_t timer = 0;
