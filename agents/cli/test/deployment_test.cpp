@@ -234,7 +234,7 @@ TEST(ShippedDeployments, AreAllGood) {
   EXPECT_GE(count, 5);
 }
 
-// Speech is beside each dialogue, off, and knows what the dialogue understands.
+// Each deployment with a dialogue has speech, switched off, with the grammar of the dialogue.
 TEST(ShippedDeployments, HearAndSpeakWhereTheyUnderstandSentences) {
   const test::TempDir bin;
   const Places places{bin.path(), test::source("config"), "/tmp"};

@@ -115,7 +115,7 @@ void Door::turn(double now) {
   note();
 }
 
-/// Writes what is due of the actions.
+/// Writes the due requests of the actions.
 void Door::write_due() {
   for (const v1::Request& request : actions_.due(now_))
     requests_.again(request.number(), request);

@@ -107,7 +107,7 @@ struct ReaderPart : Part<fdds::DataReaderListener> {
   fdds::DataReader* reader = nullptr;
 };
 
-/// What readers and writers have in common. In a session that is missing or cannot be made yet, an
+/// The common part of readers and writers. In a session that is missing or cannot be made yet, an
 /// endpoint has no part.
 template <class OnePart>
 class DdsEnd : public Endpoint {

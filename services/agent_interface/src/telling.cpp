@@ -226,7 +226,7 @@ void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* bec
   const bool knows = forgotten->kind == Advice::Kind::knows_where;
   const std::string name =
       hazard ? maps::kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
-  // What activities believe of the person is withdrawn, too.
+  // Claims about the person end, too.
   if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
     if (gone_.size() >= kMostGone)
       gone_.erase(gone_.begin());

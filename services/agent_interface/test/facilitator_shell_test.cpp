@@ -125,7 +125,7 @@ class FacilitatorInMemory : public testing::Test {
     hub.emplace(test::memory_options("facilitator"), memory);
     facilitator = std::make_unique<FacilitatorShell>(*hub, now, folder.path("memory"));
   }
-  /// Lets everybody take what has come.
+  /// Every program takes its samples.
   void turn() {
     for (int i = 0; i < 3; ++i) {
       facilitator->step(now += 0.01);

@@ -96,6 +96,9 @@ std::string Service::missing() {
   // A request to an undiscovered registration would be lost.
   if (registration_ != nullptr && !map_requests_.is_taken())
     return std::string("registration, for ") + bus::topics::kRegistrationRequest.name;
+  // The robot of the first step says that it has a head; nothing asks for it before the second.
+  if (robot_turns_head_ && !servo_.is_taken())
+    return std::string("bridge, for ") + bus::topics::kServo.name;
   take_maps();
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
@@ -138,6 +141,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   inputs.robot_radius = turn.description.radius();
   inputs.deceleration = turn.description.deceleration();
   inputs.head_reach = turn.description.head_reach();
+  robot_turns_head_ = inputs.head_reach > 0.0;
   inputs.new_frame = turn.new_frame;
   inputs.robot = from_bus(turn.robot);
   inputs.readings = lps::sonars_from_bus(turn.robot);

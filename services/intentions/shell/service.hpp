@@ -82,6 +82,7 @@ class Service final : public runtime::Service {
   runtime::Output<v1::Drawing> drawings_;
   runtime::Asker map_requests_;
   runtime::Asker servo_;
+  bool robot_turns_head_ = false;
   runtime::Asker agents_;
   bus::Reader<v1::Answer> answers_;
   std::map<std::uint64_t, std::uint64_t> questions_;  ///< the core's number, by the bus's

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "saphira/intentions/beliefs.hpp"
-#include "saphira/intentions/value.hpp"
 #include "saphira/lps/seen_thing.hpp"
 
 namespace saphira::intentions {
@@ -29,17 +28,15 @@ double bearing_of(const World& world, const Vec2& place) {
 
 }  // namespace
 
-double Gaze::wanted(const World& world) const {
-  const Belief* const belief = world.beliefs.stored("gaze");
-  const Value value = belief == nullptr ? Value() : belief->value;
+double Gaze::wanted(const World& world, const Value& watched) const {
   const double reach = world.around.head_reach;
   double bearing = 0.0;
-  if (const double* const number = value.number()) {
+  if (const double* const number = watched.number()) {
     bearing = norm2_angle(*number);
-  } else if (const Point* const point = value.point()) {
+  } else if (const Point* const point = watched.point()) {
     if (const auto place = in_frame(point->pose, point->frame, Frame::odom, world.robot))
       bearing = bearing_of(world, place->position());
-  } else if (const Reference* const reference = value.reference();
+  } else if (const Reference* const reference = watched.reference();
              reference != nullptr && reference->kind == Reference::Kind::kThing) {
     if (const lps::SeenThing* const thing = seen_thing(world, reference->id))
       bearing = bearing_of(world, thing->pose_in_odom.position() + kLead * thing->velocity_in_odom);
@@ -60,13 +57,13 @@ std::optional<double> Gaze::step(const World& world) {
   now_ = cycle;
   if (world.around.head_reach == 0.0 || cycle < at_ + kBetween)
     return std::nullopt;
-  const double bearing = wanted(world);
+  const Belief* const belief = world.beliefs.stored("gaze");
+  const Value watched = belief == nullptr ? Value() : belief->value;
+  const double bearing = wanted(world, watched);
   const bool moved = std::abs(bearing - asked_) > kStep;
   // Where nothing is watched, another program may turn the head.
-  const Belief* const belief = world.beliefs.stored("gaze");
-  const bool watches = belief != nullptr && !belief->value.nil();
   const bool missed =
-      watches && std::abs(world.robot.head - asked_) > kMissed && cycle >= at_ + kPatience;
+      watched.truthy() && std::abs(world.robot.head - asked_) > kMissed && cycle >= at_ + kPatience;
   if (!moved && !missed)
     return std::nullopt;
   asked_ = bearing;

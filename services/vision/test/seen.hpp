@@ -34,7 +34,7 @@ inline Bands bands(Census& census, const StereoPicture& picture) {
                   picture.rows);
 }
 
-/// What a robot in such a room sees.
+/// The ranges that a robot in such a room measures.
 inline Bands bands_of(const std::string& things, const Pose& robot = {2.0, 3.0, 0.0}) {
   const sim::World world = room(things);
   sim::Scene scene(world);

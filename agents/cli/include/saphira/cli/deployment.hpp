@@ -40,7 +40,7 @@ struct Program {
   std::optional<Placed> when{};
 };
 
-/// What to do where there is no saphira-speech.
+/// The advice where saphira-speech is missing.
 inline constexpr const char* kInstallSpeech =
     "install the package saphira-speech, or build where Debian's libpocketsphinx-dev, "
     "pocketsphinx-en-us, flite1-dev and libasound2-dev are installed";

@@ -163,7 +163,8 @@ class Core {
   /// While suspended, nothing is intended: the goals are suspended, and the robot is released.
   Process& execution_ =
       processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
-  Process& centering_ = processes_.add("center-cameras", "keeps the cameras on what is watched");
+  Process& centering_ = processes_.add(
+      "center-cameras", "keeps the cameras on the person or point of the belief gaze");
   Gaze gaze_;
   std::string refusal_;  ///< why the bridge does not let the behaviors drive
   std::string person_;   ///< why goals that drive wait for a person

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
 
 namespace saphira::intentions {
@@ -16,7 +17,7 @@ class Gaze {
   std::optional<double> step(const World& world);
 
  private:
-  double wanted(const World& world) const;
+  double wanted(const World& world, const Value& watched) const;
 
   double asked_ = 0.0;     ///< [rad]
   std::uint64_t at_ = 0;   ///< cycle of the newest request
