@@ -566,7 +566,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     correct(readings);
     look_around(readings);
     look_elsewhere(readings, percepts);
-    if (now_.standing.step(now_.moved, inputs.readings))
+    if (now_.standing.step(now_.moved, readings))
       suspect_it_was_carried();
     if (now_.state == State::tracking && (now_.search.own_score < settings_.lost ||
                                           now_.search.own_recent < settings_.recently_lost))

@@ -8,15 +8,18 @@ namespace {
 constexpr int kSonars = 8;
 
 /// Each sonar hears `range`, except `changed` of them, which hear the other one.
-std::vector<lps::SonarReading> around(double range, int changed = 0, double other = 0.0) {
-  std::vector<lps::SonarReading> readings;
+std::vector<PlacedReading> around(double range, int changed = 0, double other = 0.0) {
+  std::vector<PlacedReading> readings;
   for (int sonar = 0; sonar < kSonars; ++sonar)
-    readings.push_back({sonar, sonar < changed ? other : range + 0.1 * sonar, true});
+    readings.push_back({{0.0, 0.0, 2.0 * kPi * sonar / kSonars},
+                        sonar < changed ? other : range + 0.1 * sonar,
+                        true,
+                        sonar});
   return readings;
 }
 
 /// The number of cycles in which it reports that the robot was carried.
-int carried(Standing& standing, const std::vector<lps::SonarReading>& readings, int cycles,
+int carried(Standing& standing, const std::vector<PlacedReading>& readings, int cycles,
             const Pose& moved = {}) {
   int times = 0;
   for (int i = 0; i < cycles; ++i)
@@ -37,11 +40,27 @@ TEST(Standing, OnePersonBesideItIsNoOtherPlace) {
   EXPECT_EQ(carried(standing, around(2.0), 300), 0) << "goes";
 }
 
+/// The seven sonars of a Pioneer: five look ahead, one to each side.
+std::vector<PlacedReading> of_pioneer(double ahead, double left, double right) {
+  std::vector<PlacedReading> readings{{{0.0, 0.0, radians(90.0)}, left, true, 0}};
+  for (int sonar = 1; sonar <= 5; ++sonar)
+    readings.push_back({{0.0, 0.0, radians(45.0 - 15.0 * sonar)}, ahead, true, sonar});
+  readings.push_back({{0.0, 0.0, radians(-90.0)}, right, true, 6});
+  return readings;
+}
+
+TEST(Standing, APersonWhoLeavesFromBeforeAPioneerChangesOneSideOfItsSonars) {
+  Standing standing;
+  EXPECT_EQ(carried(standing, of_pioneer(0.8, 1.5, 2.0), 20), 0);
+  EXPECT_EQ(carried(standing, of_pioneer(4.0, 1.5, 2.0), 300), 0);
+  EXPECT_EQ(carried(standing, of_pioneer(2.0, 3.0, 0.9), 50), 1) << "another place";
+}
+
 TEST(Standing, WhatIsHeardBesidesFromTimeToTimeIsNothingNew) {
   Standing standing;
   for (int i = 0; i < 200; ++i) {
-    std::vector<lps::SonarReading> readings = around(1.5);
-    for (lps::SonarReading& reading : readings)
+    std::vector<PlacedReading> readings = around(1.5);
+    for (PlacedReading& reading : readings)
       reading.echo = (i + reading.sonar) % 3 != 0;
     EXPECT_FALSE(standing.step({}, readings)) << i;
   }
