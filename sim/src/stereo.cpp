@@ -53,8 +53,12 @@ struct Meeting {
 
 class Faces {
  public:
-  Faces(const Scene& scene, RobotNumber self, const Vec2& eye, const StereoRig& rig)
-      : eye_(eye), range_(rig.range), pixel_(1.0 / rig.focal()) {
+  Faces(const Scene& scene, RobotNumber self, const Pose& eye, const StereoRig& rig)
+      : eye_(eye.position()),
+        ahead_(eye.direction()),
+        edge_(0.5 * rig.columns / rig.focal() + 1e-6),
+        range_(rig.range),
+        pixel_(1.0 / rig.focal()) {
     std::uint32_t seed = 1;
     for (const Segment& segment : scene.world().segments)
       add(segment, 0.0, kWallHeight, kWallGrey, seed++, ++things_);
@@ -111,9 +115,25 @@ class Faces {
   static double grey(std::uint32_t seed) { return 80.0 + hash(seed, 3, 7) % 110U; }
   static double light(const Vec2& normal) { return 18.0 * (0.8 * normal.x() + 0.6 * normal.y()); }
 
+  /// Both points are this far outside of the same side of the view, or behind it: no column meets
+  /// what is between them.
+  bool is_outside(const Vec2& from, const Vec2& to, double margin) const {
+    const auto all = [&](double ahead, double aside, double length) {
+      const auto beyond = [&](const Vec2& point) {
+        const Vec2 way = point - eye_;
+        return ahead * way.dot(ahead_) + aside * way.dot(Vec2(-ahead_.y(), ahead_.x())) >
+               margin * length;
+      };
+      return beyond(from) && beyond(to);
+    };
+    const double slant = std::hypot(1.0, edge_);
+    return all(-1.0, 0.0, 1.0) || all(-edge_, 1.0, slant) || all(-edge_, -1.0, slant);
+  }
+
   void add(const Segment& segment, double low, double high, double grey, std::uint32_t seed,
            int thing) {
-    if ((nearest_point(segment, eye_) - eye_).norm() > range_)
+    if ((nearest_point(segment, eye_) - eye_).norm() > range_ ||
+        is_outside(segment.from, segment.to, 0.0))
       return;
     Face face;
     face.segment = segment;
@@ -127,7 +147,8 @@ class Faces {
   void add(const Disc& disc, double low, double high, double grey, std::uint32_t seed,
            double turned, double belt) {
     ++things_;
-    if ((disc.centre - eye_).norm() > range_ + disc.radius)
+    if ((disc.centre - eye_).norm() > range_ + disc.radius ||
+        is_outside(disc.centre, disc.centre, disc.radius))
       return;
     Face face;
     face.round = true;
@@ -177,6 +198,8 @@ class Faces {
   }
 
   Vec2 eye_;
+  Vec2 ahead_;
+  double edge_;  // half the width of the view at a depth of 1 m
   double range_;
   double pixel_;  // [m] width of a pixel at a depth of 1 m
   std::vector<Face> faces_;
@@ -235,7 +258,7 @@ GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, do
   const Pose middle = compose(scene.robot(robot).pose_in_world(), rig.pose_in_robot);
   const Vec2 ahead(std::cos(middle.th), std::sin(middle.th));
   const Vec2 aside(-ahead.y(), ahead.x());
-  const Faces faces(scene, robot, middle.position() + aside * left, rig);
+  const Faces faces(scene, robot, compose(middle, {0.0, left, 0.0}), rig);
   const std::vector<Row> rows = rows_of(rig);
   const double focal = rig.focal();
   const double noise = rig.noise * std::sqrt(6.0);

@@ -140,8 +140,8 @@ TEST(Perception, PeopleAreNoDoors) {
 
 // No corridor, no door: furniture at all angles.
 TEST(Perception, FurnitureIsNoDoor) {
-  const Total total = tours("cluttered", 12, 9000);
-  EXPECT_LE(total.doors.reported, 6);
+  const Total total = tours("cluttered", 6, 9000);
+  EXPECT_LE(total.doors.reported, 3);
   EXPECT_GE(total.walls.precision(), 0.95);
 }
 

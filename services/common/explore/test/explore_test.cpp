@@ -49,7 +49,7 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Explore,
-                         ::testing::Values(Case{"loop", 1}, Case{"loop", 2},
+                         ::testing::Values(Case{"small-office", 1}, Case{"small-office", 2}, Case{"small-office", 3}, Case{"small-office", 4}, Case{"loop", 1}, Case{"loop", 2},
                                            Case{"office-floor", 1}, Case{"office-floor", 2}));
 
 // The east corridor is walled off in its middle: a dead end from the south and one from the north.
