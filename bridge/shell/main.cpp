@@ -17,6 +17,9 @@ int check(const saphira::bridge::BridgeOptions& options) {
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
     if (file.path().extension() == ".p")
       saphira::protocol::load_parameters(file.path());
+  if (!options.parameter_file.empty())
+    saphira::protocol::load_parameters(
+        saphira::find_file(options.robots_folder, options.parameter_file, ".p"));
   return saphira::bus::kExitOk;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "node_options.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::test {
@@ -26,21 +27,22 @@ LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
   const std::string world = folder.path("world.wld");
   std::ofstream(world) << scene.world;
   const std::string map = scene.map.empty() ? "none" : source("config/maps/" + scene.map + ".map");
+  const std::string robot_file = find_file(source("config/robots"), scene.robot, ".p");
   if (scene.single_process) {
-    on_bus({"saphira-all", "--world", world, "--robot-file",
-            source("config/robots/" + scene.robot + ".p"), "--socket", folder.path("robot"),
-            "--trace", folder.path("trace.csv"), "--seed", std::to_string(scene.seed), "--step",
-            "--robots", source("config/robots"), "--map", map});
+    on_bus({"saphira-all", "--world", world, "--robot-file", robot_file, "--socket",
+            folder.path("robot"), "--trace", folder.path("trace.csv"), "--seed",
+            std::to_string(scene.seed), "--step", "--robots", source("config/robots"), "--map",
+            map});
     return;
   }
   std::vector<std::string> simulator{"saphira-sim",  "--step",
                                      "--world",      world,
-                                     "--robot-file", source("config/robots/" + scene.robot + ".p"),
+                                     "--robot-file", robot_file,
                                      "--socket",     folder.path("robot"),
                                      "--trace",      folder.path("trace.csv"),
                                      "--seed",       std::to_string(scene.seed)};
   std::vector<std::string> bridge{"saphira-bridge", "--link", "unix:" + folder.path("robot"),
-                                  "--robots", source("config/robots")};
+                                  "--robot-file", robot_file};
   std::vector<std::string> intentions{"saphira-intentions"};
   if (scene.vision) {
     simulator.insert(simulator.end(), {"--stereo-socket", folder.path("eyes")});

@@ -20,7 +20,7 @@ class LockstepSystem {
  public:
   struct Scene {
     std::string world;            ///< text of a world file
-    std::string robot;            ///< a file of config/robots, without its ending
+    std::string robot;            ///< a name of config/robots, or a file
     std::string map{};            ///< a file of config/maps [none: an empty map]
     unsigned seed = 1;            ///< of the simulator's noise
     bool vision = false;          ///< with stereo cameras and the vision service

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "saphira/base/text.hpp"
 #include "system.hpp"
 
 namespace saphira::test {
@@ -143,6 +145,27 @@ TEST_F(LookingTest, WhatAPersonSaysIsBelievedUntilItIsTakenBack) {
   const Outcome again = run({"beliefs", "unset", "answer"});
   EXPECT_EQ(again.code, 1);
   EXPECT_TRUE(has(again.text, "nobody has said answer")) << again.text;
+}
+
+// As docs/robots-of-others.md compares a robot with its file.
+TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
+  system.start_all();
+  const std::string page = read_file(source("docs/robots-of-others.md"));
+  ASSERT_TRUE(wait_until([&] { return system.truth().cycle > 0; })) << system.output();
+  const Truth begin = system.truth();
+  for (const auto& [command, number] : {std::pair{"move", "1"}, {"turn", "90"}}) {
+    EXPECT_TRUE(has(page, std::string("`saphira ") + command + " " + number + "`"));
+    Outcome done;
+    EXPECT_TRUE(wait_until([&] {
+      done = run({command, number});
+      return done.code == 0 || !has(done.text, "no bridge is heard");
+    }));
+    EXPECT_EQ(done.code, 0) << done.text << system.output();
+  }
+  ASSERT_TRUE(system.wait_still());
+  const Truth end = system.truth();
+  EXPECT_NEAR(std::hypot(end.x - begin.x, end.y - begin.y), 1.0, 0.1);
+  EXPECT_NEAR(std::remainder(end.th - begin.th, 2.0 * M_PI), M_PI / 2.0, 0.1);
 }
 
 TEST_F(LookingTest, SaysThatNobodyIsThere) {

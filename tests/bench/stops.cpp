@@ -100,9 +100,8 @@ class Ride {
   void start_bridge() {
     bridge_.reset();
     bridge_ = std::make_unique<bench::Child>(std::vector<std::string>{
-        "saphira-bridge", "--robot", robot_, "--domain", kDomain, "--robots",
-        std::filesystem::path(robot_file_).parent_path().string(), "--robot-port",
-        "serial:" + folder_.path("tty") + "@38400"});
+        "saphira-bridge", "--robot", robot_, "--domain", kDomain, "--robot-file", robot_file_,
+        "--robot-port", "serial:" + folder_.path("tty") + "@38400"});
   }
 
   /// [m/s] The speed in the driver's grant: the guard slows a robot that cannot hear people in
@@ -206,7 +205,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--velocity", velocity, "[m/s], or the robot's own limit").in_range(0.05, 2.0);
-  app.add_option("robots", names, "names of config/robots (usual: all)");
+  app.add_option("robots", names, "names of config/robots, or files (usual: all)");
   if (const auto code = app.parse(argc, argv))
     return *code;
   try {

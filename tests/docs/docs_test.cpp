@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <stdexcept>
+#include <sstream>
+#include <tuple>
 
+#include "pages.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/folder.hpp"
@@ -19,10 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path source() {
-  const char* const folder = std::getenv("SAPHIRA_SOURCE_DIR");
-  if (folder == nullptr)
-    throw std::runtime_error("SAPHIRA_SOURCE_DIR: expected the folder of the sources");
-  return folder;
+  return test::source("");
 }
 
 std::vector<fs::path> documents() {
@@ -32,28 +30,6 @@ std::vector<fs::path> documents() {
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
-}
-
-/// The lines of the fenced block that contains `word`, without their indent; empty: none.
-std::string block_with(const fs::path& file, const std::string& word) {
-  std::ifstream in(file);
-  std::string block;
-  std::size_t indent = 0;
-  bool inside = false;
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t fence = line.find("```");
-    if (fence == std::string::npos) {
-      if (inside)
-        block += line.substr(std::min(indent, line.size())) + "\n";
-      continue;
-    }
-    if (inside && block.find(word) != std::string::npos)
-      return block;
-    inside = !inside;
-    indent = fence;
-    block.clear();
-  }
-  return {};
 }
 
 TEST(Docs, LinksLeadToFilesThatAreThere) {
@@ -91,24 +67,82 @@ TEST(Docs, PathsAreThere) {
 
 TEST(Docs, TheBehaviorOfTheDocumentIsTaken) {
   const test::TempDir folder;
-  const std::string text = block_with(source() / "docs/add-a-behavior.md", "BeginBehavior");
-  ASSERT_FALSE(text.empty());
-  std::ofstream(folder.path("slow-down.beh")) << text;
+  std::ofstream(folder.path("slow-down.beh")) << test::block_of("docs/add-a-behavior.md", "");
   behaviors::Registry registry = behaviors::load_behaviors(folder.path());
   EXPECT_NE(registry.find("SlowDown"), nullptr);
 }
 
-TEST(Docs, TheActivityOfTheDocumentIsTaken) {
+/// The name of the only activity in a text.
+std::string taken(const std::string& text) {
   const test::TempDir folder;
-  const std::string text = block_with(source() / "docs/add-an-activity.md", "defintention");
-  ASSERT_FALSE(text.empty());
-  std::ofstream(folder.path("greet.act")) << text;
+  std::ofstream(folder.path("one.act")) << text;
   intentions::ActivityFolders folders({folder.path()}, intentions::all_functions(),
                                       intentions::built_in());
   const intentions::ActivityFolders::News news = folders.look();
   EXPECT_TRUE(news.errors.empty()) << news.errors.front();
-  ASSERT_EQ(news.taken.size(), 1U);
-  EXPECT_EQ(news.taken[0].name, "greet");
+  return news.taken.size() == 1 ? news.taken[0].name : "";
+}
+
+TEST(Docs, TheActivitiesOfTheDocumentsAreTaken) {
+  EXPECT_EQ(taken(test::block_of("docs/add-an-activity.md", "lisp")), "greet");
+  const std::string page = read_file(source() / "docs/add-a-behavior.md");
+  std::smatch intends;
+  ASSERT_TRUE(std::regex_search(page, intends, std::regex(R"(`(\(INTEND :SlowDown [^`]*)`)")));
+  EXPECT_EQ(taken("(defintention :slow :goals '(" + intends[1].str() + "))"), "slow");
+}
+
+/// All sources and tests; a literal on several lines is one.
+std::string sources() {
+  std::string all;
+  for (const char* const folder : {"agents", "bridge", "idl", "services", "sim"})
+    for (const auto& entry : fs::recursive_directory_iterator(source() / folder)) {
+      if (entry.path().extension() != ".cpp")
+        continue;
+      std::string text = read_file(entry.path().string());
+      for (std::size_t at = text.find("\"\n"); at != std::string::npos;
+           at = text.find("\"\n", at)) {
+        const std::size_t next = text.find_first_not_of(" \n", at + 1);
+        if (next != std::string::npos && text[next] == '"')
+          text.erase(at, next + 1 - at);
+        else
+          at = next;
+      }
+      all += text;
+    }
+  return all;
+}
+
+// In the tables of troubles; "..." and numbers stand for something, and ": " joins two texts.
+TEST(Docs, MessagesAreSaid) {
+  const std::string all = sources();
+  const std::regex message("`([^`]+)`");
+  const std::regex gap(R"([.][.][.]|: |[0-9]+([.][0-9]+)?)");
+  int pieces = 0;
+  for (const auto& [page, head, column] :
+       {std::tuple{"README.md", "| you see |", 1},
+        std::tuple{"docs/robots-of-others.md", "| the robot, or the line |", 2}}) {
+    const std::string text = read_file((source() / page).string());
+    ASSERT_NE(text.find(head), std::string::npos) << page;
+    std::istringstream rows(text.substr(text.find(head)));
+    for (std::string row; std::getline(rows, row) && row.starts_with("|");) {
+      std::istringstream cells(row);
+      std::string cell;
+      for (int i = 0; i <= column; ++i)
+        std::getline(cells, cell, '|');
+      for (auto it = std::sregex_iterator(cell.begin(), cell.end(), message);
+           it != std::sregex_iterator(); ++it) {
+        const std::string said = (*it)[1];
+        for (auto piece = std::sregex_token_iterator(said.begin(), said.end(), gap, -1);
+             piece != std::sregex_token_iterator(); ++piece, ++pieces) {
+          std::string words = piece->str();
+          words.erase(0, words.find_first_not_of(' '));
+          words.erase(words.find_last_not_of(' ') + 1);
+          EXPECT_NE(all.find(words), std::string::npos) << page << ": " << said << ": " << words;
+        }
+      }
+    }
+  }
+  EXPECT_GT(pieces, 20);
 }
 
 }  // namespace

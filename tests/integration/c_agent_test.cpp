@@ -28,6 +28,7 @@ TEST(Installed, HoldsWhatPeopleNeedAndNoDebugInformation) {
   const test::Installed installed;
   for (const char* file :
        {"share/doc/saphira/README.md", "share/doc/saphira/docs/situations.md",
+        "share/saphira/deployments/robot.yaml", "lib/systemd/system/saphira@.service",
         "share/saphira/examples/agents/go_there/go_there.cpp",
         "share/saphira/examples/agents/c_agent/c_agent.c", "share/saphira/idl/motion.idl",
         "share/saphira/idl/README.md", "share/saphira/idl/topics.def",

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include <thread>
 
 #include "node_options.hpp"
+#include "pages.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
@@ -111,6 +113,10 @@ class Scripted {
     } else if (goal.data.functor() == "fly") {
       status.state(v1::GOAL_REFUSED);
       status.reason("no wings");
+    } else if (goal.data.functor() == "go-to-place") {
+      const bool known = bus::text_of(goal.data.arguments(), "place") == "N2";
+      status.state(known ? v1::GOAL_SUCCEEDED : v1::GOAL_FAILED);
+      status.reason(known ? "it is there" : "the map has no such place");
     }
     statuses.write(status);
   }
@@ -467,6 +473,35 @@ TEST_F(CliTest, AGoalIsFollowedToItsEnd) {
   EXPECT_TRUE(has(refused.text, "refused: no wings")) << refused.text;
 }
 
+// The text of docs/add-an-agent.md, up to the endless loop at its end.
+TEST_F(CliTest, ThePythonScriptOfTheDocumentDoesWhatItSays) {
+  const Scripted scripted(robot_);
+  bus::Node node(test::node_options("teller", robot_));
+  auto messages = node.writer(topics::kMessages);
+  v1::Message message;
+  message.text("here I am");
+  const std::string bin = std::filesystem::path(test::program("saphira")).parent_path().string();
+  // timeout: a signal to it ends the script with the commands that it has started.
+  test::Process script(
+      {"/usr/bin/timeout", "100", "/usr/bin/env", "PATH=" + bin + ":" + getenv("PATH"), "python3",
+       "-u", write("script.py", test::block_of("docs/add-an-agent.md", "python"))},
+      folder_.path("script"), {{"SAPHIRA_ROBOT", robot_}, {"SAPHIRA_DOMAIN", test::domain()}});
+  test::wait_until([&] {
+    node.wait(milliseconds(50));
+    messages.write(message);
+    return has(script.output(), "the robot says: here I am") || !script.running();
+  });
+  const std::string said = script.output();
+  script.signal(SIGTERM);
+  if (script.wait() == 127)
+    GTEST_SKIP() << "no python3";
+  EXPECT_TRUE(has(said, "battery 12.5 V")) << said;
+  EXPECT_TRUE(has(said, "succeeded: it is there")) << said;
+  EXPECT_FALSE(has(said, "not reached: N2")) << said;
+  EXPECT_TRUE(has(said, "not reached: S3")) << said;
+  EXPECT_TRUE(has(said, "the robot says: here I am")) << said;
+}
+
 TEST_F(CliTest, CtrlCWithdrawsTheGoal) {
   const Scripted scripted(robot_);
   test::Process goal(command({"goal", "drive", "0.2"}), folder_.path("goal"));
@@ -723,6 +758,10 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
   EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
   EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
+  const std::string robot = write("wrong.p", "Class Pioneer\nRobotRadus 250\n");
+  const Outcome wrong = run({"check", "pioneer", "--set", "base=" + robot});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(has(wrong.text, "did you mean RobotRadius?")) << wrong.text;
 
   const Outcome speech = run({"check", "office", "--set", "speech=on", "--set",
                               "microphone=no-microphone", "--set", "loudspeaker=no-loudspeaker"});

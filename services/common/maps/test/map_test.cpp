@@ -240,8 +240,7 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
   std::remove(path.c_str());
 }
 
-// Another type, from the example of README.md: with its traits it is read, written, drawn and
-// driven through.
+// With its traits each type is read, written, drawn and driven through.
 TEST(ArtifactTraits, AreAllThatMapsAskOfAType) {
   std::set<std::string_view> words;
   for (const ArtifactTraits& each : kArtifactTraits) {
