@@ -22,6 +22,11 @@ constexpr double kSettle = 1.0;
 // Echoes from ahead that mark the end of a corridor: range and angle.
 constexpr double kAhead = 1.8;
 constexpr double kStraight = radians(10.0);
+// Of a doorway that the robot drove through: the limits of its width, and the widest gap in the
+// wall beside the end of a corridor that has one [m].
+constexpr double kNarrowest = 0.6;
+constexpr double kWidest = 1.2;
+constexpr double kWidestGap = 2.0;
 
 double off_grid(double heading) {
   return std::abs(heading - std::round(heading / (kPi / 2)) * (kPi / 2));
@@ -268,6 +273,7 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
     taken.cycle = cycle;
     known_points_[taken.index].last_way = way_;
     known_points_[taken.index].found = true;
+    known_points_[taken.index].only_driven = false;
     graph_.points[taken.index].seen[taken.seen] = seen;
     return false;
   }
@@ -329,6 +335,8 @@ void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
 void MapBuilder::pass() {
   for (std::size_t i = 0; i < known_points_.size(); ++i) {
     Known& known = known_points_[i];
+    if (known.only_driven)
+      continue;
     const Vec2 at =
         to_frame({graph_.points[i].in_map.x(), graph_.points[i].in_map.y(), known.heading},
                  pose_in_map_.position());
@@ -443,6 +451,94 @@ void MapBuilder::merge_lines() {
     }
 }
 
+/// The stretches of wall along one side of a corridor, in its frame.
+Stretches MapBuilder::side_of(const Feature& hall, double side) const {
+  Stretches out;
+  for (const GraphLine& line : graph_.lines)
+    for (const SeenLine& seen : line.seen) {
+      const Pose in =
+          relative(hall.pose_in_map, compose(graph_.nodes[seen.node].in_map, seen.in_node));
+      if (std::abs(side * in.y - hall.width / 2) < 2 * settings_.same_wall &&
+          std::abs(norm3_angle(in.th)) < 2 * settings_.same_heading)
+        out.emplace_back(in.x - seen.length / 2, in.x + seen.length / 2);
+    }
+  return joined(std::move(out), 0.1);
+}
+
+/// A gap in a corridor's wall that the robot drove through at `x`. Beside the corridor's end it has
+/// only one edge: the robot's way is its middle.
+std::optional<MapBuilder::Doorway> MapBuilder::doorway(const Feature& hall, double side,
+                                                       double x) const {
+  double from = -hall.length / 2;
+  double to = hall.length / 2;
+  bool has_from = false;
+  bool has_to = false;
+  for (const auto& s : side_of(hall, side)) {
+    if (s.first < x && s.second > x)
+      return std::nullopt;
+    if (s.second <= x) {
+      from = std::max(from, s.second);
+      has_from = true;
+    } else if (!has_to) {
+      to = std::min(to, s.first);
+      has_to = true;
+    }
+  }
+  if (!has_from && !has_to)
+    return std::nullopt;
+  Doorway found{(from + to) / 2, to - from};
+  if (!has_from || !has_to)
+    found = {x, 2.0 * (has_from ? x - from : to - x)};
+  if (to - from > kWidestGap || found.width < kNarrowest || found.width > kWidest)
+    return std::nullopt;
+  return found;
+}
+
+// A doorway beside the end of a corridor has a wall on one side only, and is no percept. The robot
+// that drove through knows it.
+void MapBuilder::note_doorways(const std::vector<Feature>& halls) {
+  for (std::size_t i = 1; i < graph_.nodes.size(); ++i) {
+    if (graph_.nodes[i].broken || driven_through_.contains(i))
+      continue;
+    for (const Feature& hall : halls) {
+      const Vec2 before = to_frame(hall.pose_in_map, graph_.nodes[i - 1].in_map.position());
+      const Vec2 after = to_frame(hall.pose_in_map, graph_.nodes[i].in_map.position());
+      const double side = before.y() + after.y() > 0.0 ? 1.0 : -1.0;
+      const double outside_before = side * before.y() - hall.width / 2;
+      const double outside_after = side * after.y() - hall.width / 2;
+      if ((outside_before < 0.0) == (outside_after < 0.0))
+        continue;
+      const double x =
+          before.x() + (after.x() - before.x()) * outside_before / (outside_before - outside_after);
+      if (std::abs(x) > hall.length / 2)
+        continue;
+      const auto found = doorway(hall, side, x);
+      if (!found)
+        continue;
+      driven_through_.insert(i);
+      const Vec2 at = transform(hall.pose_in_map, {found->middle, side * hall.width / 2});
+      const Pose pose{at.x(), at.y(), norm2_angle(hall.pose_in_map.th - side * kPi / 2)};
+      const Vec2 behind = transform(pose, {-1.0, 0.0});
+      const bool known =
+          std::any_of(graph_.points.begin(), graph_.points.end(),
+                      [&](const GraphPoint& point) {
+                        return !point.seen.empty() && (point.in_map - at).norm() < kWidest / 2;
+                      }) ||
+          std::any_of(halls.begin(), halls.end(),
+                      [&](const Feature& other) { return maps::contains(other, behind); });
+      if (known)
+        continue;
+      const Pose in_node = relative(graph_.nodes[i].in_map, pose);
+      graph_.points.push_back({at, {{i, in_node, found->width, 0.1, 0.1}}});
+      Known fresh;
+      fresh.type = PointType::door;
+      fresh.heading = pose.th;
+      fresh.only_driven = true;
+      known_points_.push_back(fresh);
+    }
+  }
+}
+
 // Makes the map from the graph. Rebuilt artifacts keep their ids.
 bool MapBuilder::publish() {
   std::vector<Feature> fresh;
@@ -487,6 +583,7 @@ bool MapBuilder::publish() {
       junctions.push_back(region.area);
       add(region.area);
     }
+  note_doorways(halls);
   for (std::size_t i = 0; i < graph_.points.size(); ++i) {
     const GraphPoint& point = graph_.points[i];
     if (point.seen.empty())

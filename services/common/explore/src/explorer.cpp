@@ -366,7 +366,7 @@ void Explorer::probe(const Inputs& inputs) {
                                     : away ? ": turned away"
                                            : ": open, and nothing follows");
     open_ = !stuck && !away;
-    if (!open_ && (lead_->opening || lead_->aside) && !in_corridor_)
+    if (!open_ && lead_->opening && !in_corridor_)
       leave(*lead_, stuck ? "closed" : "turned away");
     // An end that the robot passed on the way into the open was tried too.
     tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});

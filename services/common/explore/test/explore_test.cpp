@@ -49,7 +49,7 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Explore,
-                         ::testing::Values(Case{"small-office", 1}, Case{"small-office", 2}, Case{"small-office", 3}, Case{"small-office", 4}, Case{"loop", 1}, Case{"loop", 2},
+                         ::testing::Values(Case{"loop", 1}, Case{"loop", 2},
                                            Case{"office-floor", 1}, Case{"office-floor", 2}));
 
 // The east corridor is walled off in its middle: a dead end from the south and one from the north.
@@ -70,6 +70,23 @@ TEST(Explore, AClosedWayIsADeadEndFromBothSides) {
   ASSERT_EQ(east.size(), 2U) << maps::to_text(built.whole.map());
   for (const maps::Feature& f : east)
     EXPECT_NEAR(f.length, 8.0, 0.25);
+  EXPECT_EQ(built.whole.drive().contacts(), 0);
+}
+
+// Two of the doors are beside the ends of the hall, with a wall on one side only: they are known
+// since the robot drove through.
+TEST(Explore, DoorsBesideTheEndsOfAHallAreOnTheMap) {
+  DriveOptions options;
+  options.world = "small-office";
+  Building built(options);
+  built.run(20000);
+  EXPECT_TRUE(built.done()) << built.reason();
+  const test::MapScore score =
+      test::score(built.aligned_map(), maps::load_map(config_folder() + "/maps/small-office.map"));
+  EXPECT_EQ(score.doors, 4) << score.text;
+  EXPECT_EQ(score.doors_found, 4) << score.text;
+  EXPECT_EQ(score.doors_false, 0) << score.text;
+  EXPECT_EQ(score.corridors_found, 1) << score.text;
   EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "saphira/lps/local_perceptual_space.hpp"
@@ -69,8 +71,9 @@ struct Passes {
 
 /// Builds maps by driving (manual 6.9.2): percepts without a match become artifacts. Stretches of
 /// wall are joined to lines, opposite lines to corridors, corridors meet in junctions, openings
-/// become doors and breaks. The way and the features are one least-squares problem, so that seeing
-/// the first corridor again corrects the whole map.
+/// become doors and breaks; so does a gap beside the end of a corridor that the robot drove
+/// through. The way and the features are one least-squares problem, so that seeing the first
+/// corridor again corrects the whole map.
 ///
 /// Walls and corridors stay until removed. A door that was open and is seen closed stays, and
 /// counts as closed. A pure function of its inputs' history.
@@ -110,8 +113,9 @@ class MapBuilder {
     double heading = 0.0;   ///< of an opening: its normal, in the map, at the first sighting
     double last_way = 0.0;  ///< [m] driven at the newest sighting
     Passes passes;
-    bool beside = false;  ///< the robot is passing it
-    bool found = false;   ///< ...and has seen it
+    bool beside = false;       ///< the robot is passing it
+    bool found = false;        ///< ...and has seen it
+    bool only_driven = false;  ///< a doorway that no percept shows: passing it by says nothing
   };
   /// A present percept, and its match.
   struct Taken {
@@ -146,6 +150,13 @@ class MapBuilder {
   void merge_lines();
   std::vector<std::pair<double, double>> stretches(const GraphLine& line) const;
 
+  std::vector<std::pair<double, double>> side_of(const maps::Feature& hall, double side) const;
+  struct Doorway {
+    double middle = 0.0;  ///< [m] along the corridor
+    double width = 0.0;
+  };
+  std::optional<Doorway> doorway(const maps::Feature& hall, double side, double x) const;
+  void note_doorways(const std::vector<maps::Feature>& halls);
   bool publish();
 
   MapBuilderSettings settings_;
@@ -155,6 +166,7 @@ class MapBuilder {
   std::vector<Known> known_points_;
   std::map<std::uint32_t, Taken> taken_;  ///< by the percept's id
   std::vector<SeenPoint> ahead_;          ///< echoes from straight ahead
+  std::set<std::size_t> driven_through_;  ///< nodes of the way just behind a doorway
   maps::Editor editor_;
   std::vector<std::uint32_t> own_;                ///< ids of the builder's features
   std::map<std::uint32_t, std::size_t> door_of_;  ///< feature to opening

@@ -76,7 +76,6 @@ class Explorer {
     bool home = false;
     bool opening = false;  ///< in a wall: a new area begins behind it
     bool door = false;     ///< probably only a room is behind it
-    bool aside = false;    ///< heard from the side, at the end of a way
   };
   enum class Doing { choosing, going, probing, looking };
 
