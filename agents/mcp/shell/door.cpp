@@ -17,6 +17,8 @@ constexpr double kNews = 1e-6;          // of progress, for new words alone
 constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
 constexpr std::size_t kLongestNote = 160;
 constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
+constexpr double kGrace = 15.0;  // [s] after the deadline, for the last word about a task
+constexpr double kStop = 5.0;    // [s] for a robot to stand
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -89,7 +91,7 @@ void Door::hear() {
 
 void Door::turn(double now) {
   now_ = now;
-  session_.set_time(now);
+  session_.turn(now, unix_time());
   session_.set_tools(robot_.tools());
   session_.wait_for_tools(!robot_.knows_tools());
   hear();
@@ -97,7 +99,9 @@ void Door::turn(double now) {
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
       if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
         withdraw(*found->second.goal);
-      waiting_.erase(found);
+      found->second.still = now_ + kStop;
+      if (!found->second.is_task)
+        waiting_.erase(found);
     }
   for (const Call& call : session_.take_calls()) {
     try {
@@ -203,8 +207,16 @@ void Door::request(const Call& call, const v1::Capability& capability) {
   id.writer(node_.instance());
   id.number(number);
   actions_.begin(id, std::move(request), capability.parameters(), now_);
+  follow(call, id);
+}
+
+/// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
+void Door::follow(const Call& call, const v1::GoalId& id) {
   own_.push_back(id);
-  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+  const double wait = call.as_task ? kDeadline + kGrace : call.arguments.value("wait_s", kWait);
+  waiting_[call.number] = {.goal = id, .until = now_ + wait, .is_task = call.as_task};
+  if (call.as_task)
+    session_.begin_task(call.number, bus::describe(id), outcome(id).text);
 }
 
 /// False: the client has too much underway, and the call is answered.
@@ -231,9 +243,7 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
       goal.arguments().push_back(argument(name, value));
   goal.deadline(kDeadline);
   goal.writer_lost(v1::WRITER_LOST_CANCEL);
-  const v1::GoalId id = goals_.ask(goal);
-  own_.push_back(id);
-  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+  follow(call, goals_.ask(goal));
 }
 
 bool Door::is_own(const v1::GoalId& id) const {
@@ -248,7 +258,7 @@ void Door::withdraw(const v1::GoalId& id) {
 }
 
 void Door::cancel(const Call& call) {
-  Waiting waiting{.what = Waiting::For::cancel, .until = now_ + 5.0};
+  Waiting waiting{.what = Waiting::For::cancel, .until = now_ + kStop};
   if (call.arguments.contains("goal")) {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !is_own(*id))
@@ -269,7 +279,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
   switch (waiting.what) {
     case Waiting::For::goal: {
       const auto known = status(*waiting.goal);
-      if (!late && !(known && bus::ended(known->state()))) {
+      const bool ended = known && bus::ended(known->state());
+      if (!late && (!ended || (now_ < waiting.still && robot_.moves()))) {
         if (!known)
           return false;
         const std::string news =

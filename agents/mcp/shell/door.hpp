@@ -95,6 +95,8 @@ class Door {
     std::string said = {};
     std::optional<Result> result = std::nullopt;         ///< of the request
     std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
+    bool is_task = false;
+    double still = 0.0;  ///< [s] until then a withdrawn task goes on while the robot moves
   };
 
   void hear();
@@ -103,6 +105,7 @@ class Door {
   void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
   bool has_room(const Call& call);
+  void follow(const Call& call, const v1::GoalId& id);
   bool is_own(const v1::GoalId& id) const;
   void withdraw(const v1::GoalId& id);
   void write_due();

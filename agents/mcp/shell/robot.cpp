@@ -233,7 +233,8 @@ void Robot::make_tools() {
                       .description = schema.summary().empty() ? "The activity " + schema.name()
                                                               : schema.summary(),
                       .input = std::move(input),
-                      .output = goal_form()});
+                      .output = goal_form(),
+                      .lasts = true});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_)
@@ -250,7 +251,8 @@ void Robot::make_tools() {
                                        agent.name().substr(0, kLongestText) + ")",
                         .input = std::move(input),
                         .reads = !capability.acts(),
-                        .output = form_of(capability)});
+                        .output = form_of(capability),
+                        .lasts = capability.acts()});
       capabilities_[name] = capability;
     }
 }

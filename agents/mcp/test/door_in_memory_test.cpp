@@ -37,6 +37,25 @@ class DoorInMemory : public testing::Test {
                      .dump());
     turn();
   }
+  /// The result of a request of a client that knows tasks.
+  Json ask(int id, const std::string& method, Json parameters) {
+    parameters["_meta"] = {{"io.modelcontextprotocol/protocolVersion", Session::kModern},
+                           {"io.modelcontextprotocol/clientCapabilities",
+                            {{"extensions", {{"io.modelcontextprotocol/tasks", Json::object()}}}}}};
+    session.take(
+        Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump());
+    turn();
+    return result(id);
+  }
+  /// The robot's speed [m/s] from now on.
+  void drive(double velocity) {
+    v1::RobotState state;
+    state.stamp().epoch(1);
+    state.stamp().cycle(++cycle);
+    state.velocity(velocity);
+    robots.write(state);
+    turn();
+  }
   /// The result of a call; null: it has none yet.
   Json result(int id) {
     for (const Line& line : session.take_lines()) {
@@ -83,6 +102,8 @@ class DoorInMemory : public testing::Test {
   bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
   bus::Writer<v1::Answer> solved = other.writer(bus::topics::kSolved);
+  bus::Writer<v1::RobotState> robots = other.writer(bus::topics::kRobotState);
+  std::uint64_t cycle = 0;
   Session session{"saphira", "1", "a robot"};
   Robot robot{node};
   std::unique_ptr<Door> door = std::make_unique<Door>(node, robot, session, "model");
@@ -209,6 +230,62 @@ TEST_F(DoorInMemory, AFactIsAnsweredByItsDeclaredResults) {
   const Json value = result(1)["structuredContent"];
   EXPECT_EQ(value, Json({{"place", "library"}, {"sure", true}})) << "a place is a text";
   EXPECT_EQ(misfit(value, form("place_of")), "");
+}
+
+TEST_F(DoorInMemory, AnActionIsATaskForAClientThatKnowsTasks) {
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json begun = ask(1, "tools/call", sweep);
+  EXPECT_EQ(begun["resultType"], "task");
+  EXPECT_EQ(begun["status"], "working");
+  const Json task{{"taskId", begun["taskId"]}};
+  const v1::Request request = heard();
+  say(request, v1::ANSWER_UNDERWAY, "half of it is clean");
+  turn(100.0);
+  EXPECT_EQ(ask(2, "tasks/get", task)["statusMessage"], "underway: sweeper: half of it is clean");
+  say(request, v1::ANSWER_DONE, "", {bus::number("dust", 3.0)});
+  const Json ended = ask(3, "tasks/get", task);
+  EXPECT_EQ(ended["status"], "completed");
+  EXPECT_EQ(ended["result"]["structuredContent"]["results"], Json({{"dust", 3.0}}));
+  // The same id is a handle for the tools.
+  call(4, "goal", {{"goal", begun["taskId"]}});
+  EXPECT_EQ(result(4)["structuredContent"]["state"], "succeeded");
+}
+
+TEST_F(DoorInMemory, ACanceledTaskIsCanceledWhenTheRobotStands) {
+  drive(0.3);
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json task{{"taskId", ask(1, "tools/call", sweep)["taskId"]}};
+  const v1::Request request = heard();
+  EXPECT_EQ(ask(2, "tasks/cancel", task)["resultType"], "complete");
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  say(request, v1::ANSWER_GIVEN_UP, "half of it is clean");
+  EXPECT_EQ(ask(3, "tasks/get", task)["status"], "working") << "the robot moves";
+  drive(0.0);
+  EXPECT_EQ(ask(4, "tasks/get", task)["status"], "cancelled");
+}
+
+TEST_F(DoorInMemory, ACanceledTaskDoesNotWaitForARobotThatSomebodyElseDrives) {
+  drive(0.3);
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json task{{"taskId", ask(1, "tools/call", sweep)["taskId"]}};
+  const v1::Request request = heard();
+  ask(2, "tasks/cancel", task);
+  say(request, v1::ANSWER_GIVEN_UP, "");
+  turn(5.0);
+  EXPECT_EQ(ask(3, "tasks/get", task)["status"], "cancelled");
+}
+
+TEST_F(DoorInMemory, ASubscriberHearsThatAnActionGoesOn) {
+  session.take(
+      R"({"jsonrpc":"2.0","id":1,"method":"resources/subscribe","params":{"uri":"saphira://robot/goals"}})");
+  turn();
+  session.take_lines();
+  begin_sweep();
+  turn(1.0);
+  turn(1.0);
+  const auto lines = session.take_lines();
+  ASSERT_EQ(lines.size(), 1U) << "the second reading is the same";
+  EXPECT_EQ(Json::parse(lines[0].text)["method"], "notifications/resources/updated");
 }
 
 // SDKs of clients refuse a result without the declared form.
