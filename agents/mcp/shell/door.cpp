@@ -61,13 +61,14 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
       said_reader_(node.reader(bus::topics::kSaid)),
+      event_reader_(node.reader(bus::topics::kAgentEvents)),
       heard_writer_(node.writer(bus::topics::kHeard)),
       stop_writer_(node.writer(bus::topics::kDriveEstop)) {
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
 
-/// Takes sentences of the robot and answers of agents.
+/// Takes sentences of the robot, and events and answers of agents.
 void Door::hear() {
   goals_.poll();
   for (const auto& sample : said_reader_.take())
@@ -79,12 +80,25 @@ void Door::hear() {
         if (sample.data.end())
           waiting.until = now_;
       }
+  for (const auto& sample : event_reader_.take())
+    for (auto& [number, waiting] : waiting_)
+      if (waiting.what == Waiting::For::event && !waiting.result &&
+          (waiting.name.empty() || waiting.name == sample.data.functor())) {
+        const Json arguments = values_of(sample.data.arguments());
+        waiting.result = Result{sample.data.functor() + " " + arguments.dump() + ", reported by " +
+                                    sample.data.source(),
+                                {{"happened", true},
+                                 {"event", sample.data.functor()},
+                                 {"source", sample.data.source()},
+                                 {"arguments", arguments}},
+                                false};
+      }
   for (const v1::Answer& answer : requests_.poll()) {
     actions_.hear(answer);
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::request && waiting.number == answer.number() &&
           bus::ended(answer.code()))
-        waiting.result = Result{cli::line_of(answer), results_of(answer, waiting.declared),
+        waiting.result = Result{cli::line_of(answer), values_of(answer.results(), waiting.declared),
                                 !bus::well(answer.code())};
   }
 }
@@ -148,6 +162,8 @@ void Door::begin(const Call& call) {
     cancel(call);
   } else if (call.tool == "say") {
     say(call);
+  } else if (call.tool == "wait_for") {
+    wait_for(call);
   } else if (call.tool == "goal") {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !status(*id))
@@ -180,6 +196,25 @@ void Door::say(const Call& call) {
   heard_writer_.write(utterance);
   waiting_[call.number] = {
       .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
+}
+
+/// Waits for an event, or for another value of a belief.
+void Door::wait_for(const Call& call) {
+  const bool has_belief = call.arguments.contains("belief");
+  Waiting waiting{.what = has_belief ? Waiting::For::belief : Waiting::For::event,
+                  .until = now_ + call.arguments.value("wait_s", kWait),
+                  .name = call.arguments.value(has_belief ? "belief" : "event", "")};
+  if (has_belief) {
+    const std::optional<std::string> known = robot_.belief(waiting.name);
+    if (!known)
+      return session_.answer(
+          call.number,
+          {"not done: the robot has no such belief, but: " + robot_.beliefs(), nullptr, true});
+    waiting.before = *known;
+    if (call.arguments.contains("value"))
+      waiting.value = call.arguments.value("value", "");
+  }
+  waiting_[call.number] = waiting;
 }
 
 /// Sends a request to any capable agent. The answer fills missing parameters. An action gets an id
@@ -321,6 +356,23 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
                       Result{"no answer: saphira-facilitator may not run (robot_status says more)",
                              nullptr, true}));
       return true;
+    case Waiting::For::event:
+      if (!late && !waiting.result)
+        return false;
+      session_.answer(number, waiting.result.value_or(Result{
+                                  "nothing of that was reported", {{"happened", false}}, false}));
+      return true;
+    case Waiting::For::belief: {
+      const std::string value = robot_.belief(waiting.name).value_or("nil");
+      const bool happened = waiting.value ? value == *waiting.value : value != waiting.before;
+      if (!late && !happened)
+        return false;
+      session_.answer(number, {"the belief " + waiting.name + " is " + value +
+                                   (happened ? "" : ": what was awaited has not happened"),
+                               {{"happened", happened}, {"belief", waiting.name}, {"value", value}},
+                               false});
+      return true;
+    }
     case Waiting::For::words:
       if (!late)
         return false;

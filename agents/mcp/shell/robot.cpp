@@ -14,6 +14,7 @@ namespace saphira::mcp {
 namespace {
 
 constexpr std::chrono::seconds kLongestStart{3};  // for the activities
+constexpr double kLongestWait = 50.0;             // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;                   // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kLongestText = 300;  // of another agent
@@ -29,7 +30,7 @@ Json wait_of(double most) {
   return {{"type", "number"},
           {"minimum", 0},
           {"maximum", most},
-          {"description", "[s] to wait for the end before this answers; 20 where it is not given"}};
+          {"description", "[s] to wait at most before this answers; 20 where it is not given"}};
 }
 
 std::string tool_name(std::string name) {
@@ -158,6 +159,16 @@ std::vector<Tool> fixed_tools() {
        "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "
        "the robot's keyword, such as Flakey. Answers what the robot says",
        object({{"text", {{"type", "string"}}}}, {"text"}), false},
+      {"wait_for",
+       "Waits until an agent or a person reports an event, such as pointed_out, or until a belief "
+       "of the robot changes, such as *cur-place*, way-blocked or at-rest (t: yes, nil: no)",
+       object({{"event", {{"type", "string"}, {"description", "any where it is not given"}}},
+               {"belief", {{"type", "string"}, {"description", "in place of an event"}}},
+               {"value",
+                {{"type", "string"},
+                 {"description", "of the belief; any other value where it is not given"}}},
+               {"wait_s", wait_of(kLongestWait)}}),
+       true},
       {.name = "emergency_stop",
        .description = "Stops the robot by the hardest means. Only a person can release it",
        .input = object(nullptr),
@@ -298,6 +309,22 @@ Result Robot::status() const {
 Result Robot::why() const {
   const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
   return {situation::to_text(why), {{"sentence", why.sentence}}, false};
+}
+
+std::optional<std::string> Robot::belief(const std::string& name) const {
+  if (const v1::BeliefSet* const set = mind_.beliefs())
+    for (const v1::Belief& belief : set->beliefs())
+      if (belief.name() == name)
+        return belief.value();
+  return std::nullopt;
+}
+
+std::string Robot::beliefs() const {
+  std::string names;
+  if (const v1::BeliefSet* const set = mind_.beliefs())
+    for (const v1::Belief& belief : set->beliefs())
+      names += (names.empty() ? "" : ", ") + belief.name();
+  return names;
 }
 
 bool Robot::moves() const {

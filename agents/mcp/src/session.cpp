@@ -23,6 +23,10 @@ bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
 }
 
+bool is_task_method(const std::string& method) {
+  return method == "tasks/get" || method == "tasks/cancel" || method == "tasks/update";
+}
+
 Json describe(const Tool& tool, bool structured) {
   Json json{{"name", tool.name},
             {"description", tool.description},
@@ -194,10 +198,10 @@ bool Session::fits(const std::string& method, const Request& request, const Json
     return wrong("MCP-Protocol-Version", headers.version, version);
   if (method != headers.method)
     return wrong("Mcp-Method", headers.method, method);
-  const std::string names = method == "tools/call"         ? "name"
-                            : method == "resources/read"   ? "uri"
-                            : method.starts_with("tasks/") ? "taskId"
-                                                           : "";
+  const std::string names = method == "tools/call"       ? "name"
+                            : method == "resources/read" ? "uri"
+                            : is_task_method(method)     ? "taskId"
+                                                         : "";
   if (const Json name = member(parameters, names); name.is_string() && name != headers.name)
     return wrong("Mcp-Name", headers.name, name);
   return true;
@@ -258,7 +262,7 @@ void Session::ask_modern(const std::string& method, const Request& request,
                            {"instructions", instructions_},
                            {"ttlMs", 3600000},
                            {"cacheScope", "public"}});
-  if (method == "tasks/get" || method == "tasks/cancel" || method == "tasks/update")
+  if (is_task_method(method))
     return ask_task(method, request, parameters);
   ask_either(method, request, parameters);
 }

@@ -56,6 +56,23 @@ class DoorInMemory : public testing::Test {
     robots.write(state);
     turn();
   }
+  void believe(const std::string& name, const std::string& value) {
+    v1::Belief belief;
+    belief.name(name);
+    belief.value(value);
+    v1::BeliefSet set;
+    set.beliefs({belief});
+    beliefs.write(set);
+    turn();
+  }
+  void report(const std::string& functor, const std::vector<v1::Argument>& arguments) {
+    v1::AgentEvent event;
+    event.source("karen");
+    event.functor(functor);
+    event.arguments(arguments);
+    events.write(event);
+    turn();
+  }
   /// The result of a call; null: it has none yet.
   Json result(int id) {
     for (const Line& line : session.take_lines()) {
@@ -103,6 +120,8 @@ class DoorInMemory : public testing::Test {
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
   bus::Writer<v1::Answer> solved = other.writer(bus::topics::kSolved);
   bus::Writer<v1::RobotState> robots = other.writer(bus::topics::kRobotState);
+  bus::Writer<v1::BeliefSet> beliefs = other.writer(bus::topics::kBeliefs);
+  bus::Writer<v1::AgentEvent> events = other.writer(bus::topics::kAgentEvents);
   std::uint64_t cycle = 0;
   Session session{"saphira", "1", "a robot"};
   Robot robot{node};
@@ -286,6 +305,46 @@ TEST_F(DoorInMemory, ASubscriberHearsThatAnActionGoesOn) {
   const auto lines = session.take_lines();
   ASSERT_EQ(lines.size(), 1U) << "the second reading is the same";
   EXPECT_EQ(Json::parse(lines[0].text)["method"], "notifications/resources/updated");
+}
+
+TEST_F(DoorInMemory, AClientWaitsForAnEvent) {
+  report("rang", {});
+  call(1, "wait_for", {{"event", "pointed_out"}});
+  call(2, "wait_for", {{"wait_s", 5}});
+  EXPECT_TRUE(result(1).is_null()) << "what was before does not count";
+  report("rang", {});
+  EXPECT_EQ(result(2)["structuredContent"]["event"], "rang");
+  EXPECT_TRUE(result(1).is_null());
+  report("pointed_out", {bus::text("place", "library")});
+  const Json seen = result(1);
+  EXPECT_EQ(seen["structuredContent"],
+            Json::parse(R"({"happened":true,"event":"pointed_out","source":"karen",
+                            "arguments":{"place":"library"}})"));
+  EXPECT_EQ(seen["content"][0]["text"], R"(pointed_out {"place":"library"}, reported by karen)");
+  EXPECT_EQ(misfit(seen["structuredContent"], form("wait_for")), "");
+  call(3, "wait_for", {{"wait_s", 5}});
+  turn(5.0);
+  EXPECT_EQ(result(3)["structuredContent"], Json({{"happened", false}}));
+  EXPECT_EQ(result(3)["isError"], false);
+}
+
+TEST_F(DoorInMemory, AClientWaitsForABelief) {
+  believe("at-rest", "t");
+  call(1, "wait_for", {{"belief", "at-rest"}});
+  call(2, "wait_for", {{"belief", "at-rest"}, {"value", "t"}});
+  EXPECT_EQ(result(2)["structuredContent"]["happened"], true) << "it is so already";
+  EXPECT_TRUE(result(1).is_null());
+  believe("at-rest", "nil");
+  EXPECT_EQ(result(1)["structuredContent"],
+            Json::parse(R"({"happened":true,"belief":"at-rest","value":"nil"})"));
+  call(3, "wait_for", {{"belief", "at-rest"}, {"value", "t"}, {"wait_s", 50}});
+  turn(50.0);
+  EXPECT_EQ(result(3)["content"][0]["text"],
+            "the belief at-rest is nil: what was awaited has not happened");
+  call(4, "wait_for", {{"belief", "bored"}});
+  EXPECT_EQ(result(4)["isError"], true);
+  EXPECT_EQ(result(4)["content"][0]["text"],
+            "not done: the robot has no such belief, but: at-rest");
 }
 
 // SDKs of clients refuse a result without the declared form.

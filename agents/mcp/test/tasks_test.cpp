@@ -118,7 +118,9 @@ TEST(McpTasks, OnlyAClientThatDeclaresTasksGetsOne) {
     EXPECT_EQ(client.one(line(2, method))["error"]["code"], -32601) << "the older era has none";
     EXPECT_EQ(client.ask(method, "a")["error"]["code"], -32602) << "there is none";
   }
-  EXPECT_EQ(client.ask("tasks/list", "a")["error"]["code"], -32601);
+  const Headers headers{Session::kModern, "tasks/result", ""};
+  client.session.take(Tasks::request("r", "tasks/result", {{"taskId", "a"}}), 1, &headers);
+  EXPECT_EQ(client.heard().at(0)["error"]["code"], -32601) << "of an earlier kind of tasks";
   const Json listen{{"notifications", {{"taskIds", {"a"}}}}};
   EXPECT_EQ(client.one(modern("l", "subscriptions/listen", listen))["error"]["code"], -32021);
   EXPECT_EQ(client.one(modern("d", "server/discover"))["result"]["capabilities"]["extensions"],
