@@ -66,7 +66,7 @@ class Robot {
   const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   bool heard_schemas_ = false;
   std::vector<v1::ActivitySchema> schemas_;
-  std::map<std::uint64_t, v1::Agent> agents_;
+  std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
   std::map<std::string, v1::ActivitySchema> activities_;  ///< by the tool's name
   std::map<std::string, v1::Capability> capabilities_;    ///< likewise

@@ -213,9 +213,14 @@ void Robot::poll() {
     if (sample.info.disposed)
       agents_.erase(sample.data.id());
     else
-      agents_[sample.data.id()] = sample.data;
+      agents_[sample.data.id()] = sample;
     changed = true;
   }
+  for (const bus::WriterId& writer : agent_reader_.take_lost())  // killed, perhaps
+    changed =
+        std::erase_if(agents_,
+                      [&](const auto& each) { return each.second.info.writer == writer; }) > 0 ||
+        changed;
   if (changed)
     make_tools();
 }
@@ -249,7 +254,7 @@ void Robot::make_tools() {
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_)
-    for (const v1::Capability& capability : agent.capabilities()) {
+    for (const v1::Capability& capability : agent.data.capabilities()) {
       const std::string name = tool_name(capability.functor());
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
@@ -259,7 +264,7 @@ void Robot::make_tools() {
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
                         .description = capability.summary().substr(0, kLongestText) + " (agent " +
-                                       agent.name().substr(0, kLongestText) + ")",
+                                       agent.data.name().substr(0, kLongestText) + ")",
                         .input = std::move(input),
                         .reads = !capability.acts(),
                         .output = form_of(capability),

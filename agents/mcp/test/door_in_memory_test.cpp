@@ -307,6 +307,23 @@ TEST_F(DoorInMemory, ASubscriberHearsThatAnActionGoesOn) {
   EXPECT_EQ(Json::parse(lines[0].text)["method"], "notifications/resources/updated");
 }
 
+TEST_F(DoorInMemory, TheToolsOfAnAgentThatIsKilledEnd) {
+  {
+    bus::Node killed{test::memory_options("killed"), memory};
+    bus::Writer<v1::Agent> announcements = killed.writer(bus::topics::kAgents);
+    v1::Agent agent;
+    agent.id(8);
+    agent.name("cook");
+    agent.capabilities({bus::action("cook", "cooks", {})});
+    announcements.write(agent);
+    turn();
+    EXPECT_TRUE(form("cook").is_object());
+  }
+  turn();
+  EXPECT_TRUE(form("cook").is_null());
+  EXPECT_TRUE(form("sweep").is_object());
+}
+
 TEST_F(DoorInMemory, AClientWaitsForAnEvent) {
   report("rang", {});
   call(1, "wait_for", {{"event", "pointed_out"}});
