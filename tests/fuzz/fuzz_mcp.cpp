@@ -12,11 +12,16 @@ using namespace saphira::mcp;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Tool kTool{
-      "go_to", "goes",
-      Json::parse(R"({"type":"object","additionalProperties":false,"required":["x"],"properties":{
-        "x":{"type":"number","minimum":-100,"maximum":100},"frame":{"type":"string","enum":["map"]}}})")};
+      .name = "go_to",
+      .description = "goes",
+      .input = Json::parse(
+          R"({"type":"object","additionalProperties":false,"required":["x"],"properties":{
+        "x":{"type":"number","minimum":-100,"maximum":100},"frame":{"type":"string","enum":["map"]}}})"),
+      .lasts = true};
+  static const Tool kWhy{"why", "says why", Json::parse(R"({"type":"object","properties":{}})"),
+                         true};
   Session session("saphira", "1", "a robot");
-  session.set_tools({kTool});
+  session.set_tools({kTool, kWhy});
   std::uint64_t count = 0;
   std::string_view text(reinterpret_cast<const char*>(data), size);
   while (!text.empty()) {
@@ -24,20 +29,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ++count;
     // Lines, and requests of HTTP in turn; a third of the latter is closed.
     const Headers headers{count % 4 == 0 ? Session::kModern : "", "tools/call", "go_to"};
-    session.set_time(0.01 * static_cast<double>(count));
+    session.turn(0.5 * static_cast<double>(count));
     session.wait_for_tools(count % 5 == 4);
     session.take(text.substr(0, end), count, count % 2 == 0 ? &headers : nullptr);
     if (count % 3 == 0)
       session.close(count);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     for (const Call& call : session.take_calls()) {
-      if (!misfit(call.arguments, kTool.input).empty())
+      if (call.tool == kTool.name && !misfit(call.arguments, kTool.input).empty())
         std::abort();
+      if (call.as_task)
+        session.begin_task(call.number, std::to_string(call.number), "begun");
       session.progress(call.number, 0.5, "half");
       if (call.number % 2 == 0)
-        session.answer(call.number, {"done", call.arguments, false});
+        session.answer(call.number, {"done " + std::to_string(count), call.arguments, false});
     }
     session.take_given_up();
+    if (text.empty())
+      session.end();
     for (const Line& line : session.take_lines())
       if (!Json::accept(line.text) || line.text.find('\n') != std::string::npos)
         std::abort();

@@ -17,6 +17,8 @@ constexpr double kNews = 1e-6;          // of progress, for new words alone
 constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
 constexpr std::size_t kLongestNote = 160;
 constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
+constexpr double kGrace = 15.0;  // [s] after the deadline, for the last word about a task
+constexpr double kStop = 5.0;    // [s] for a robot to stand
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -59,13 +61,14 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
       said_reader_(node.reader(bus::topics::kSaid)),
+      event_reader_(node.reader(bus::topics::kAgentEvents)),
       heard_writer_(node.writer(bus::topics::kHeard)),
       stop_writer_(node.writer(bus::topics::kDriveEstop)) {
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
 
-/// Takes sentences of the robot and answers of agents.
+/// Takes sentences of the robot, and events and answers of agents.
 void Door::hear() {
   goals_.poll();
   for (const auto& sample : said_reader_.take())
@@ -77,19 +80,32 @@ void Door::hear() {
         if (sample.data.end())
           waiting.until = now_;
       }
+  for (const auto& sample : event_reader_.take())
+    for (auto& [number, waiting] : waiting_)
+      if (waiting.what == Waiting::For::event && !waiting.result &&
+          (waiting.name.empty() || waiting.name == sample.data.functor())) {
+        const Json arguments = values_of(sample.data.arguments());
+        waiting.result = Result{sample.data.functor() + " " + arguments.dump() + ", reported by " +
+                                    sample.data.source(),
+                                {{"happened", true},
+                                 {"event", sample.data.functor()},
+                                 {"source", sample.data.source()},
+                                 {"arguments", arguments}},
+                                false};
+      }
   for (const v1::Answer& answer : requests_.poll()) {
     actions_.hear(answer);
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::request && waiting.number == answer.number() &&
           bus::ended(answer.code()))
-        waiting.result = Result{cli::line_of(answer), results_of(answer, waiting.declared),
+        waiting.result = Result{cli::line_of(answer), values_of(answer.results(), waiting.declared),
                                 !bus::well(answer.code())};
   }
 }
 
 void Door::turn(double now) {
   now_ = now;
-  session_.set_time(now);
+  session_.turn(now, unix_time());
   session_.set_tools(robot_.tools());
   session_.wait_for_tools(!robot_.knows_tools());
   hear();
@@ -97,7 +113,9 @@ void Door::turn(double now) {
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
       if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
         withdraw(*found->second.goal);
-      waiting_.erase(found);
+      found->second.still = now_ + kStop;
+      if (!found->second.is_task)
+        waiting_.erase(found);
     }
   for (const Call& call : session_.take_calls()) {
     try {
@@ -144,6 +162,8 @@ void Door::begin(const Call& call) {
     cancel(call);
   } else if (call.tool == "say") {
     say(call);
+  } else if (call.tool == "wait_for") {
+    wait_for(call);
   } else if (call.tool == "goal") {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !status(*id))
@@ -178,6 +198,25 @@ void Door::say(const Call& call) {
       .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
 }
 
+/// Waits for an event, or for another value of a belief.
+void Door::wait_for(const Call& call) {
+  const bool has_belief = call.arguments.contains("belief");
+  Waiting waiting{.what = has_belief ? Waiting::For::belief : Waiting::For::event,
+                  .until = now_ + call.arguments.value("wait_s", kWait),
+                  .name = call.arguments.value(has_belief ? "belief" : "event", "")};
+  if (has_belief) {
+    const std::optional<std::string> known = robot_.belief(waiting.name);
+    if (!known)
+      return session_.answer(
+          call.number,
+          {"not done: the robot has no such belief, but: " + robot_.beliefs(), nullptr, true});
+    waiting.before = *known;
+    if (call.arguments.contains("value"))
+      waiting.value = call.arguments.value("value", "");
+  }
+  waiting_[call.number] = waiting;
+}
+
 /// Sends a request to any capable agent. The answer fills missing parameters. An action gets an id
 /// as a goal has.
 void Door::request(const Call& call, const v1::Capability& capability) {
@@ -203,8 +242,16 @@ void Door::request(const Call& call, const v1::Capability& capability) {
   id.writer(node_.instance());
   id.number(number);
   actions_.begin(id, std::move(request), capability.parameters(), now_);
+  follow(call, id);
+}
+
+/// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
+void Door::follow(const Call& call, const v1::GoalId& id) {
   own_.push_back(id);
-  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+  const double wait = call.as_task ? kDeadline + kGrace : call.arguments.value("wait_s", kWait);
+  waiting_[call.number] = {.goal = id, .until = now_ + wait, .is_task = call.as_task};
+  if (call.as_task)
+    session_.begin_task(call.number, bus::describe(id), outcome(id).text);
 }
 
 /// False: the client has too much underway, and the call is answered.
@@ -231,9 +278,7 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
       goal.arguments().push_back(argument(name, value));
   goal.deadline(kDeadline);
   goal.writer_lost(v1::WRITER_LOST_CANCEL);
-  const v1::GoalId id = goals_.ask(goal);
-  own_.push_back(id);
-  waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
+  follow(call, goals_.ask(goal));
 }
 
 bool Door::is_own(const v1::GoalId& id) const {
@@ -248,7 +293,7 @@ void Door::withdraw(const v1::GoalId& id) {
 }
 
 void Door::cancel(const Call& call) {
-  Waiting waiting{.what = Waiting::For::cancel, .until = now_ + 5.0};
+  Waiting waiting{.what = Waiting::For::cancel, .until = now_ + kStop};
   if (call.arguments.contains("goal")) {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !is_own(*id))
@@ -269,7 +314,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
   switch (waiting.what) {
     case Waiting::For::goal: {
       const auto known = status(*waiting.goal);
-      if (!late && !(known && bus::ended(known->state()))) {
+      const bool ended = known && bus::ended(known->state());
+      if (!late && (!ended || (now_ < waiting.still && robot_.moves()))) {
         if (!known)
           return false;
         const std::string news =
@@ -310,6 +356,23 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
                       Result{"no answer: saphira-facilitator may not run (robot_status says more)",
                              nullptr, true}));
       return true;
+    case Waiting::For::event:
+      if (!late && !waiting.result)
+        return false;
+      session_.answer(number, waiting.result.value_or(Result{
+                                  "nothing of that was reported", {{"happened", false}}, false}));
+      return true;
+    case Waiting::For::belief: {
+      const std::string value = robot_.belief(waiting.name).value_or("nil");
+      const bool happened = waiting.value ? value == *waiting.value : value != waiting.before;
+      if (!late && !happened)
+        return false;
+      session_.answer(number, {"the belief " + waiting.name + " is " + value +
+                                   (happened ? "" : ": what was awaited has not happened"),
+                               {{"happened", happened}, {"belief", waiting.name}, {"value", value}},
+                               false});
+      return true;
+    }
     case Waiting::For::words:
       if (!late)
         return false;

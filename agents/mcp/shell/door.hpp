@@ -32,6 +32,10 @@ class Robot {
   const v1::Capability* capability(const std::string& tool) const;
   const cli::Mind& mind() const { return mind_; }
   bool moves() const;
+  /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
+  std::optional<std::string> belief(const std::string& name) const;
+  /// The names of all beliefs, with commas.
+  std::string beliefs() const;
   /// The driver, any trouble, and the robot's pose, velocity and battery.
   Result status() const;
   Result why() const;
@@ -62,7 +66,7 @@ class Robot {
   const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   bool heard_schemas_ = false;
   std::vector<v1::ActivitySchema> schemas_;
-  std::map<std::uint64_t, v1::Agent> agents_;
+  std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
   std::map<std::string, v1::ActivitySchema> activities_;  ///< by the tool's name
   std::map<std::string, v1::Capability> capabilities_;    ///< likewise
@@ -86,15 +90,20 @@ class Door {
  private:
   /// A call without an answer yet.
   struct Waiting {
-    enum class For { goal, cancel, request, words, stop } what = For::goal;
+    enum class For { goal, cancel, request, words, stop, event, belief } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     double until = 0.0;        ///< [s]
     double told = -1.0;        ///< progress
     std::string words = {};    ///< of that progress
     std::string said = {};
-    std::optional<Result> result = std::nullopt;         ///< of the request
+    std::string name = {};                               ///< of the event [empty: any] or belief
+    std::optional<std::string> value = std::nullopt;     ///< wanted of the belief; nothing: another
+    std::string before = {};                             ///< value of the belief
+    std::optional<Result> result = std::nullopt;         ///< of the request or event
     std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
+    bool is_task = false;
+    double still = 0.0;  ///< [s] until then a withdrawn task goes on while the robot moves
   };
 
   void hear();
@@ -103,10 +112,12 @@ class Door {
   void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
   bool has_room(const Call& call);
+  void follow(const Call& call, const v1::GoalId& id);
   bool is_own(const v1::GoalId& id) const;
   void withdraw(const v1::GoalId& id);
   void write_due();
   void say(const Call& call);
+  void wait_for(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);
   void press();
   void note();
@@ -122,6 +133,7 @@ class Door {
   bus::GoalClient goals_;
   bus::RequestClient requests_;
   bus::Reader<v1::Utterance> said_reader_;
+  bus::Reader<v1::AgentEvent> event_reader_;
   bus::Writer<v1::Utterance> heard_writer_;
   bus::Writer<v1::MotorCommand> stop_writer_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call

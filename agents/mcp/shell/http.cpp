@@ -20,6 +20,7 @@ constexpr int kTicksOfSilence = 100;  // then a stream sends a sign of life
 constexpr std::size_t kLongestHeader = 1024;
 constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
 constexpr int kUnauthorized = 401;
+constexpr const char* kSign = ": \r\n";  // of life, in a stream
 
 using web::header;
 
@@ -94,7 +95,8 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
   exchange.is_only = header(wsi, WSI_TOKEN_CONNECTION) == "close";
   request.method = lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0     ? "POST"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
-                                                                         : "GET";
+                   : lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0    ? "GET"
+                                                                         : "";
   request.caller = {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN), true};
   request.authorization = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
   request.session = custom_header(wsi, "mcp-session-id:");
@@ -153,7 +155,7 @@ bool HttpServer::Impl::send_headers(lws* wsi, const Open& answer) {
          add("x-content-type-options:", "nosniff") &&
          (answer.session.empty() || add("mcp-session-id:", answer.session)) &&
          (answer.status != kUnauthorized || add("www-authenticate:", "Bearer")) &&
-         (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "POST, DELETE")) &&
+         (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "GET, POST, DELETE")) &&
          lws_finalize_write_http_header(wsi, start, &at, end) == 0;
 }
 
@@ -212,7 +214,7 @@ void HttpServer::Impl::tick() {
         ++answer.silent < kTicksOfSilence)
       continue;
     answer.silent = 0;
-    answer.body = ": \r\n";  // reveals a client that has left
+    answer.body = kSign;  // reveals a client that has left
     lws_callback_on_writable(answer.wsi);
   }
 }
@@ -294,7 +296,7 @@ void HttpServer::event(Exchange exchange, const std::string& message, bool last)
   answer.streams = true;
   answer.silent = 0;
   answer.complete = last;
-  answer.body += "event: message\ndata: " + message + "\n\n";
+  answer.body += message.empty() ? kSign : "event: message\ndata: " + message + "\n\n";
   if (answer.body.size() > kLongestQueue)
     lws_set_timeout(answer.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
   lws_callback_on_writable(answer.wsi);

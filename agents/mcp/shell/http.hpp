@@ -11,7 +11,7 @@ namespace saphira::mcp {
 
 /// A complete request of HTTP.
 struct HttpRequest {
-  std::string method;  ///< GET, POST, DELETE
+  std::string method;  ///< GET, POST, DELETE [empty: another]
   std::string path;
   console::Caller caller;
   std::string authorization;
@@ -50,6 +50,7 @@ class HttpServer {
   void answer(Exchange exchange, int status, const std::string& type, std::string body,
               const std::string& session = {});
   /// A message of a stream of events, which begins with the first one. last: the stream ends.
+  /// An empty message is a sign of life, which no client reads.
   void event(Exchange exchange, const std::string& message, bool last);
 
   /// Runs until `stop` is readable.

@@ -83,10 +83,13 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
     if (found == clients_.end())
       return refuse(exchange, 404, "there is no such session");
     found->second->door.close();
+    for (const auto& [open, streams] : found->second->waits)
+      server_.event(open, "", true);
     clients_.erase(found);
     return server_.answer(exchange, 200, "text/plain", "");
   }
-  if (request.method != "POST")
+  // The newer era has streams of a request alone.
+  if (request.method != "POST" && (request.method != "GET" || request.version == Session::kModern))
     return refuse(exchange, 405, "messages come by POST");
   std::string id;
   Client* const client = client_of(exchange, request, id);
@@ -96,6 +99,8 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   client->broken = false;
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;
+  if (request.method == "GET")
+    return open_stream(exchange, *client);
   robot_.poll();
   client->door.turn(now());
   if (!client->session.take(request.body, exchange, &headers)) {
@@ -106,17 +111,26 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   tell(id, *client);
 }
 
-/// Sends a client's messages. A message without one of its requests cannot be sent.
+/// A stream for messages outside of an answer. It replaces the one before.
+void HttpDoor::open_stream(Exchange exchange, Client& client) {
+  if (client.waits.erase(client.stream) > 0)
+    server_.event(client.stream, "", true);
+  client.stream = exchange;
+  client.waits[exchange] = true;
+  server_.event(exchange, "", false);
+}
+
+/// Sends a client's messages. A message without an open connection cannot be sent.
 void HttpDoor::tell(const std::string& id, Client& client) {
   for (const Line& line : client.session.take_lines()) {
-    const auto waits = client.waits.find(line.exchange);
+    const auto waits = client.waits.find(line.exchange == 0 ? client.stream : line.exchange);
     if (waits == client.waits.end())
       continue;
     if (line.last && !waits->second) {
       server_.answer(line.exchange, line.status, kJson, line.text, client.is_new ? id : "");
       client.is_new = false;
     } else {
-      server_.event(line.exchange, line.text, line.last);
+      server_.event(waits->first, line.text, line.last);
       waits->second = true;
     }
     if (line.last)
@@ -127,9 +141,10 @@ void HttpDoor::tell(const std::string& id, Client& client) {
 void HttpDoor::lost(Exchange exchange) {
   for (const auto& [id, client] : clients_)
     if (client->waits.erase(exchange) > 0) {
+      client->broken =
+          client->broken || (exchange != client->stream && !client->session.listens(exchange));
       client->session.close(exchange);
       client->heard = now();
-      client->broken = true;
     }
 }
 

@@ -18,8 +18,8 @@ struct HttpDoorOptions {
 };
 
 /// Streamable HTTP: up to 8 clients, each with a door of its own. A client without a request or a
-/// pending answer for 30 s has left, and its goals end; likewise a client that breaks a connection
-/// with a pending answer, and sends no request for 2 s.
+/// pending answer for 30 s has left, and its goals end; likewise a client that breaks the
+/// connection of a pending call, and sends no request for 2 s.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);
@@ -36,15 +36,18 @@ class HttpDoor {
           door(node, robot, session, options.who) {}
     Session session;
     Door door;
-    bool broken = false;  ///< its connection ended before an answer, since its last request
+    bool broken = false;  ///< the connection of a call ended before its answer, since its last
+                          ///< request
     double heard = 0.0;   ///< [s] of its last request
     bool is_new = false;  ///< its first answer will contain its session
     std::map<Exchange, bool> waits;  ///< requests without an answer; true: it streams
+    Exchange stream = 0;             ///< the one for messages outside of an answer [0: none]
   };
 
   HttpServer::Events events();
   void came(Exchange exchange, const HttpRequest& request);
   void lost(Exchange exchange);
+  void open_stream(Exchange exchange, Client& client);
   void turn();
   void tick();
   Client* client_of(Exchange exchange, const HttpRequest& request, std::string& id);

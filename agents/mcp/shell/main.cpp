@@ -45,6 +45,12 @@ int serve_http(const bus::NodeOptions& options, const Options& own, const bus::S
   return bus::kExitOk;
 }
 
+bool write_lines(mcp::Session& session) {
+  for (const mcp::Line& line : session.take_lines())
+    std::fprintf(stdout, "%s\n", line.text.c_str());
+  return std::fflush(stdout) == 0;
+}
+
 int serve(const bus::NodeOptions& options, const std::string& who, const bus::Stop& stop) {
   bus::Node node(options);
   mcp::Session session("saphira", bus::version(), kInstructions);
@@ -76,11 +82,11 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
     node.clear_wake();
     robot.poll();
     door.turn(BootClock::seconds());
-    for (const mcp::Line& line : session.take_lines())
-      std::fprintf(stdout, "%s\n", line.text.c_str());
-    if (std::fflush(stdout) != 0)
+    if (!write_lines(session))
       break;  // no reader
   }
+  session.end();
+  write_lines(session);
   door.close_and_wait();
   return bus::kExitOk;
 }

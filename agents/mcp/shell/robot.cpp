@@ -14,6 +14,7 @@ namespace saphira::mcp {
 namespace {
 
 constexpr std::chrono::seconds kLongestStart{3};  // for the activities
+constexpr double kLongestWait = 50.0;             // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;                   // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kLongestText = 300;  // of another agent
@@ -29,7 +30,7 @@ Json wait_of(double most) {
   return {{"type", "number"},
           {"minimum", 0},
           {"maximum", most},
-          {"description", "[s] to wait for the end before this answers; 20 where it is not given"}};
+          {"description", "[s] to wait at most before this answers; 20 where it is not given"}};
 }
 
 std::string tool_name(std::string name) {
@@ -158,6 +159,16 @@ std::vector<Tool> fixed_tools() {
        "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "
        "the robot's keyword, such as Flakey. Answers what the robot says",
        object({{"text", {{"type", "string"}}}}, {"text"}), false},
+      {"wait_for",
+       "Waits until an agent or a person reports an event, such as pointed_out, or until a belief "
+       "of the robot changes, such as *cur-place*, way-blocked or at-rest (t: yes, nil: no)",
+       object({{"event", {{"type", "string"}, {"description", "any where it is not given"}}},
+               {"belief", {{"type", "string"}, {"description", "in place of an event"}}},
+               {"value",
+                {{"type", "string"},
+                 {"description", "of the belief; any other value where it is not given"}}},
+               {"wait_s", wait_of(kLongestWait)}}),
+       true},
       {.name = "emergency_stop",
        .description = "Stops the robot by the hardest means. Only a person can release it",
        .input = object(nullptr),
@@ -202,9 +213,14 @@ void Robot::poll() {
     if (sample.info.disposed)
       agents_.erase(sample.data.id());
     else
-      agents_[sample.data.id()] = sample.data;
+      agents_[sample.data.id()] = sample;
     changed = true;
   }
+  for (const bus::WriterId& writer : agent_reader_.take_lost())  // killed, perhaps
+    changed =
+        std::erase_if(agents_,
+                      [&](const auto& each) { return each.second.info.writer == writer; }) > 0 ||
+        changed;
   if (changed)
     make_tools();
 }
@@ -233,11 +249,12 @@ void Robot::make_tools() {
                       .description = schema.summary().empty() ? "The activity " + schema.name()
                                                               : schema.summary(),
                       .input = std::move(input),
-                      .output = goal_form()});
+                      .output = goal_form(),
+                      .lasts = true});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_)
-    for (const v1::Capability& capability : agent.capabilities()) {
+    for (const v1::Capability& capability : agent.data.capabilities()) {
       const std::string name = tool_name(capability.functor());
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
@@ -247,10 +264,11 @@ void Robot::make_tools() {
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
                         .description = capability.summary().substr(0, kLongestText) + " (agent " +
-                                       agent.name().substr(0, kLongestText) + ")",
+                                       agent.data.name().substr(0, kLongestText) + ")",
                         .input = std::move(input),
                         .reads = !capability.acts(),
-                        .output = form_of(capability)});
+                        .output = form_of(capability),
+                        .lasts = capability.acts()});
       capabilities_[name] = capability;
     }
 }
@@ -296,6 +314,22 @@ Result Robot::status() const {
 Result Robot::why() const {
   const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
   return {situation::to_text(why), {{"sentence", why.sentence}}, false};
+}
+
+std::optional<std::string> Robot::belief(const std::string& name) const {
+  if (const v1::BeliefSet* const set = mind_.beliefs())
+    for (const v1::Belief& belief : set->beliefs())
+      if (belief.name() == name)
+        return belief.value();
+  return std::nullopt;
+}
+
+std::string Robot::beliefs() const {
+  std::string names;
+  if (const v1::BeliefSet* const set = mind_.beliefs())
+    for (const v1::Belief& belief : set->beliefs())
+      names += (names.empty() ? "" : ", ") + belief.name();
+  return names;
 }
 
 bool Robot::moves() const {

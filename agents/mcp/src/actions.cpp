@@ -69,7 +69,7 @@ void Actions::hear(const v1::Answer& answer) {
   const std::string text = silent ? "no reason was given" : answer.text();
   status.reason((answer.service().empty() || text.empty() ? "" : answer.service() + ": ") + text);
   if (is_over(asked.action))
-    asked.action.results = results_of(answer, asked.declared);
+    asked.action.results = values_of(answer.results(), asked.declared);
 }
 
 void Actions::withdraw(const v1::GoalId& id) {

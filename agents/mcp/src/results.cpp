@@ -118,9 +118,10 @@ Json json_of(const v1::GoalStatus& status) {
   return json;
 }
 
-Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParameter>& declared) {
+Json values_of(const std::vector<v1::Argument>& arguments,
+               const std::vector<v1::CapabilityParameter>& declared) {
   Json value = Json::object();
-  for (const v1::Argument& result : answer.results()) {
+  for (const v1::Argument& result : arguments) {
     const auto parameter = std::find_if(
         declared.begin(), declared.end(),
         [&](const v1::CapabilityParameter& each) { return each.name() == result.name(); });
@@ -189,6 +190,14 @@ Json form_of(const std::string& tool) {
     return object({{"ended", truth()}, {"moves", truth()}}, {"ended", "moves"});
   if (tool == "say")
     return object({{"said", text()}}, {"said"});
+  if (tool == "wait_for")
+    return object({{"happened", truth()},
+                   {"event", text()},
+                   {"source", text()},
+                   {"arguments", object(Json::object())},
+                   {"belief", text()},
+                   {"value", text()}},
+                  {"happened"});
   if (tool == "emergency_stop")
     return object({{"latched", truth()}, {"moves", truth()}}, {"latched", "moves"});
   return nullptr;

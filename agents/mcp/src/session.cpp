@@ -1,10 +1,9 @@
-#include "saphira/mcp/session.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "protocol.hpp"
 #include "saphira/base/guess.hpp"
 
 namespace saphira::mcp {
@@ -14,29 +13,18 @@ namespace {
 constexpr const char* kStructured = "2025-06-18";  // the first with structured results
 constexpr std::array kRevisions{Session::kLegacy, kStructured, "2025-03-26", "2024-11-05"};
 constexpr int kParseError = -32700;
-constexpr int kBadRequest = -32600;
 constexpr int kNoMethod = -32601;
-constexpr int kBadParameters = -32602;
 constexpr int kInternal = -32603;
-constexpr int kNoResource = -32002;  // of the older era; the newer one has kBadParameters
 constexpr int kBadHeader = -32020;
 constexpr int kBadVersion = -32022;
-const std::string kMeta = "io.modelcontextprotocol/";
-constexpr std::size_t kMostListeners = 16;
 constexpr std::size_t kDeepest = 16;
-const std::string kResources = "saphira://robot/";
 
 bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
 }
 
-Json member(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found == object.end() ? Json() : *found;
-}
-
-bool is_resource(const Tool& tool) {
-  return tool.reads && member(tool.input, "properties").empty();
+bool is_task_method(const std::string& method) {
+  return method == "tasks/get" || method == "tasks/cancel" || method == "tasks/update";
 }
 
 Json describe(const Tool& tool, bool structured) {
@@ -50,79 +38,7 @@ Json describe(const Tool& tool, bool structured) {
   return json;
 }
 
-bool has_type(const Json& value, const Json& type) {
-  if (type.is_array())
-    return std::any_of(type.begin(), type.end(),
-                       [&](const Json& each) { return has_type(value, each); });
-  if (type == "number")
-    return value.is_number();
-  if (type == "integer")
-    return value.is_number_integer();
-  if (type == "string")
-    return value.is_string();
-  if (type == "boolean")
-    return value.is_boolean();
-  if (type == "object")
-    return value.is_object();
-  if (type == "array")
-    return value.is_array();
-  return type != "null" || value.is_null();
-}
-
-std::string misfit_at(const std::string& where, const Json& value, const Json& schema) {
-  const std::string who = where.empty() ? "the arguments" : "\"" + where + "\"";
-  if (const Json type = member(schema, "type"); !type.is_null() && !has_type(value, type))
-    return who + ": expected " + (type.is_string() ? type.get<std::string>() : type.dump()) +
-           ", found " + value.dump().substr(0, 60);
-  if (const Json forms = member(schema, "anyOf"); !forms.is_null()) {
-    std::string why;
-    for (const Json& form : forms)
-      if (why = misfit_at(where, value, form); why.empty())
-        break;
-    if (!why.empty())
-      return why;
-  }
-  if (const Json choices = member(schema, "enum");
-      choices.is_array() && std::find(choices.begin(), choices.end(), value) == choices.end())
-    return who + ": expected one of " + choices.dump() + ", found " + value.dump().substr(0, 60);
-  if (value.is_number()) {
-    const double number = value.get<double>();
-    const Json low = member(schema, "minimum");
-    const Json high = member(schema, "maximum");
-    if ((low.is_number() && !(number >= low.get<double>())) ||
-        (high.is_number() && !(number <= high.get<double>())))
-      return who + ": expected a number" + (low.is_number() ? " from " + low.dump() : "") +
-             (high.is_number() ? " up to " + high.dump() : "") + ", found " + value.dump();
-  }
-  if (value.is_array() && schema.contains("items"))
-    for (const Json& each : value)
-      if (std::string why = misfit_at(where, each, schema["items"]); !why.empty())
-        return why;
-  if (!value.is_object())
-    return {};
-  const Json properties = member(schema, "properties");
-  for (const Json& name : member(schema, "required"))
-    if (!value.contains(name.get<std::string>()))
-      return (where.empty() ? "" : who + ": ") + name.dump() + " is missing";
-  for (const auto& [name, inner] : value.items()) {
-    const Json of = properties.is_object() ? member(properties, name.c_str()) : Json();
-    if (of.is_null()) {
-      if (member(schema, "additionalProperties") == false)
-        return "there is no argument \"" + name.substr(0, 60) + "\"";
-      continue;
-    }
-    if (std::string why = misfit_at(where.empty() ? name : where + "." + name, inner, of);
-        !why.empty())
-      return why;
-  }
-  return {};
-}
-
 }  // namespace
-
-std::string misfit(const Json& arguments, const Json& schema) {
-  return misfit_at({}, arguments, schema);
-}
 
 Sender sender_of(std::string_view message) {
   Sender sender;
@@ -132,32 +48,13 @@ Sender sender_of(std::string_view message) {
   if (!json.is_object())
     return sender;
   sender.begins = member(json, "method") == "initialize";
-  const Json parameters = member(json, "params");
-  const Json meta = parameters.is_object() ? member(parameters, "_meta") : Json();
+  const Json meta = member(member(json, "params"), "_meta");
   if (!meta.is_object())
     return sender;
   sender.modern = meta.contains(kMeta + "protocolVersion");
-  sender.client = member(meta, (kMeta + "clientInfo").c_str())
-                      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  sender.client =
+      member(meta, kMeta + "clientInfo").dump(-1, ' ', false, Json::error_handler_t::replace);
   return sender;
-}
-
-void Session::set_tools(std::vector<Tool> tools) {
-  std::sort(tools.begin(), tools.end(),
-            [](const Tool& a, const Tool& b) { return a.name < b.name; });
-  if (tools == tools_)
-    return;
-  tools_ = std::move(tools);
-  if (waits_)
-    return;  // the client has no list yet
-  const Json changed{{"jsonrpc", "2.0"}, {"method", "notifications/tools/list_changed"}};
-  if (begun_)
-    send(changed, 0);
-  for (const Request& listener : listeners_) {
-    Json told = changed;
-    told["params"]["_meta"][kMeta + "subscriptionId"] = listener.id;
-    send(told, listener.exchange);
-  }
 }
 
 void Session::wait_for_tools(bool waits) {
@@ -183,7 +80,8 @@ bool Session::has_to_wait(const std::string& method, const Json& parameters) con
   if (method == "tools/call")
     return std::none_of(tools_.begin(), tools_.end(),
                         [&](const Tool& each) { return each.always && name == each.name; });
-  return method == "tools/list" || method == "resources/list" || method == "resources/read";
+  return method == "tools/list" || method == "resources/list" || method == "resources/read" ||
+         method == "resources/subscribe" || method == "subscriptions/listen";
 }
 
 void Session::hold(const std::string& method, const Request& request, const Json& parameters) {
@@ -195,7 +93,7 @@ void Session::hold(const std::string& method, const Request& request, const Json
 
 void Session::reply(const Request& request, Json result) {
   if (request.modern) {
-    result["resultType"] = "complete";
+    result.emplace("resultType", "complete");
     result["_meta"][kMeta + "serverInfo"] = {{"name", name_}, {"version", version_}};
   }
   send({{"jsonrpc", "2.0"}, {"id", request.id}, {"result", std::move(result)}}, request.exchange,
@@ -295,16 +193,16 @@ bool Session::fits(const std::string& method, const Request& request, const Json
               ", and the message says " + expected.dump().substr(0, 70));
     return false;
   };
-  const Json meta = member(parameters, "_meta");
-  const Json version =
-      meta.is_object() ? member(meta, (kMeta + "protocolVersion").c_str()) : Json();
+  const Json version = member(member(parameters, "_meta"), kMeta + "protocolVersion");
   if (version.is_string() && version != headers.version)
     return wrong("MCP-Protocol-Version", headers.version, version);
   if (method != headers.method)
     return wrong("Mcp-Method", headers.method, method);
-  const bool reads = method == "resources/read";
-  if (const Json name = member(parameters, reads ? "uri" : "name");
-      (reads || method == "tools/call") && name.is_string() && name != headers.name)
+  const std::string names = method == "tools/call"       ? "name"
+                            : method == "resources/read" ? "uri"
+                            : is_task_method(method)     ? "taskId"
+                                                         : "";
+  if (const Json name = member(parameters, names); name.is_string() && name != headers.name)
     return wrong("Mcp-Name", headers.name, name);
   return true;
 }
@@ -313,10 +211,10 @@ void Session::ask(const std::string& method, const Request& request, const Json&
   if (method == "initialize") {
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
-    begun_ = true;
+    older().tools = true;
     structures_ = !known || asked.get<std::string>() >= kStructured;
     return reply(request, {{"protocolVersion", known ? asked : Json(kLegacy)},
-                           {"capabilities", capabilities()},
+                           {"capabilities", capabilities(false)},
                            {"serverInfo", {{"name", name_}, {"version", version_}}},
                            {"instructions", instructions_}});
   }
@@ -340,34 +238,40 @@ void Session::ask_either(const std::string& method, const Request& request,
     return list(request, {{"resourceTemplates", Json::array()}});
   if (method == "resources/read")
     return read(request, parameters);
+  if (method == "subscriptions/listen" && request.modern)
+    return listen(request, parameters);
+  if ((method == "resources/subscribe" || method == "resources/unsubscribe") && !request.modern)
+    return subscribe(request, member(parameters, "uri"), method == "resources/subscribe");
   error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
 }
 
 void Session::ask_modern(const std::string& method, const Request& request,
                          const Json& parameters) {
   const Json meta = member(parameters, "_meta");
-  const Json version =
-      meta.is_object() ? member(meta, (kMeta + "protocolVersion").c_str()) : Json();
+  const Json version = member(meta, kMeta + "protocolVersion");
   if (!version.is_string())
     return error(request, kBadParameters, "_meta: " + kMeta + "protocolVersion is missing");
   if (version != kModern)
     return error(request, kBadVersion, "Unsupported protocol version",
                  {{"supported", {kModern}}, {"requested", version}});
-  if (!member(meta, (kMeta + "clientCapabilities").c_str()).is_object())
+  if (!member(meta, kMeta + "clientCapabilities").is_object())
     return error(request, kBadParameters, "_meta: " + kMeta + "clientCapabilities is missing");
   if (method == "server/discover")
     return reply(request, {{"supportedVersions", {kModern}},
-                           {"capabilities", capabilities()},
+                           {"capabilities", capabilities(true)},
                            {"instructions", instructions_},
                            {"ttlMs", 3600000},
                            {"cacheScope", "public"}});
-  if (method == "subscriptions/listen")
-    return listen(request, parameters);
+  if (is_task_method(method))
+    return ask_task(method, request, parameters);
   ask_either(method, request, parameters);
 }
 
-Json Session::capabilities() const {
-  return {{"tools", {{"listChanged", true}}}, {"resources", Json::object()}};
+Json Session::capabilities(bool modern) const {
+  Json all{{"tools", {{"listChanged", true}}}, {"resources", {{"subscribe", true}}}};
+  if (modern)
+    all["extensions"][kTasks] = Json::object();
+  return all;
 }
 
 void Session::list_tools(const Request& request) {
@@ -388,15 +292,25 @@ void Session::list_resources(const Request& request) {
   list(request, {{"resources", std::move(all)}});
 }
 
-/// The answer of the tool behind a resource.
-void Session::read(const Request& request, const Json& parameters) {
-  const Json uri = member(parameters, "uri");
+/// The tool behind a resource; null: there is none.
+const Tool* Session::resource(const Json& uri) const {
   const auto tool = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& each) {
     return is_resource(each) && uri == kResources + each.name;
   });
-  if (tool == tools_.end())
-    return error(request, request.modern ? kBadParameters : kNoResource,
-                 "there is no resource " + uri.dump().substr(0, 100), {{"uri", uri}});
+  return tool == tools_.end() ? nullptr : &*tool;
+}
+
+void Session::no_resource(const Request& request, const Json& uri) {
+  error(request, request.modern ? kBadParameters : kNoResource,
+        "there is no resource " + uri.dump().substr(0, 100), {{"uri", uri}});
+}
+
+/// The answer of the tool behind a resource.
+void Session::read(const Request& request, const Json& parameters) {
+  const Json uri = member(parameters, "uri");
+  const Tool* const tool = resource(uri);
+  if (tool == nullptr)
+    return no_resource(request, uri);
   call(request, {{"name", tool->name}}, uri);
 }
 
@@ -407,25 +321,6 @@ void Session::list(const Request& request, Json result) {
     result["cacheScope"] = "private";
   }
   reply(request, std::move(result));
-}
-
-/// A request that stays open: it receives the changes.
-void Session::listen(const Request& request, const Json& parameters) {
-  if (listeners_.size() >= kMostListeners)
-    return error(request, kBadRequest, "too many subscriptions are open");
-  const Json wanted = member(parameters, "notifications");
-  const bool tools = wanted.is_object() && member(wanted, "toolsListChanged") == true;
-  if (tools)
-    listeners_.push_back(request);
-  Json honoured = Json::object();
-  if (tools)
-    honoured["toolsListChanged"] = true;
-  send({{"jsonrpc", "2.0"},
-        {"method", "notifications/subscriptions/acknowledged"},
-        {"params",
-         {{"_meta", {{kMeta + "subscriptionId", request.id}}},
-          {"notifications", std::move(honoured)}}}},
-       request.exchange);
 }
 
 /// [s] until a further call is allowed; 0: now, which counts it.
@@ -456,9 +351,7 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   if (arguments.is_null())
     arguments = Json::object();
   const std::uint64_t number = ++count_;
-  const Json meta = member(parameters, "_meta");
-  open_[number] = {request, tool->name, meta.is_object() ? member(meta, "progressToken") : Json(),
-                   uri};
+  open_[number] = {request, tool->name, member(member(parameters, "_meta"), "progressToken"), uri};
   const auto refuse = [&](const std::string& why) {
     answer(number, {"not done: " + why, nullptr, true});
   };
@@ -471,7 +364,8 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
       return refuse("at most 5 calls a second; again in " + Json(std::ceil(wait * 10) / 10).dump() +
                     " s");
   }
-  calls_.push_back({number, tool->name, std::move(arguments)});
+  const bool as_task = tool->lasts && request.modern && has_tasks(parameters);
+  calls_.push_back({number, tool->name, std::move(arguments), as_task});
 }
 
 void Session::note(const std::string& tool, const std::string& text, bool is_error) {
@@ -490,12 +384,16 @@ void Session::erase(std::uint64_t number) {
 
 void Session::give_up(const Json& parameters, std::uint64_t exchange) {
   const Json id = member(parameters, "requestId");
-  std::erase_if(listeners_,
-                [&](const Request& each) { return each.id == id && each.exchange == exchange; });
+  if (!is_id(id))
+    return;
+  std::erase_if(listeners_, [&](const Listener& each) {
+    return each.request.id == id && each.request.exchange == exchange;
+  });
   const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& each) {
     const Request& request = each.second.request;
     // Clients of the newer era may share this session, so an id is unique within a connection only.
-    return request.id == id && (!request.modern || request.exchange == exchange);
+    return request.id == id && (!request.modern || request.exchange == exchange) &&
+           each.second.task.empty();
   });
   if (found != open_.end())
     return erase(found->first);
@@ -505,13 +403,15 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
 }
 
 void Session::close(std::uint64_t exchange) {
-  std::erase_if(listeners_, [&](const Request& each) { return each.exchange == exchange; });
+  std::erase_if(listeners_, [&](const Listener& each) {
+    return each.request.modern && each.request.exchange == exchange;
+  });
   std::erase_if(held_, [&](const Held& each) {
     return each.request.modern && each.request.exchange == exchange;
   });
   std::vector<std::uint64_t> gone;
   for (const auto& [number, each] : open_)
-    if (each.request.modern && each.request.exchange == exchange)
+    if (each.request.modern && each.request.exchange == exchange && each.task.empty())
       gone.push_back(number);
   for (const std::uint64_t number : gone)
     erase(number);
@@ -523,6 +423,8 @@ void Session::answer(std::uint64_t call, const Result& result) {
     return;
   const Open open = std::move(found->second);
   open_.erase(found);
+  if (open.watches)
+    return see(open.uri, result.text);
   note(open.tool, result.text, result.is_error);
   if (!open.uri.is_null() && result.is_error)
     return error(open.request, kInternal, result.text, {{"uri", open.uri}});
@@ -533,11 +435,15 @@ void Session::answer(std::uint64_t call, const Result& result) {
   Json json{{"content", {{{"type", "text"}, {"text", result.text}}}}, {"isError", result.is_error}};
   if (result.value.is_object() && structures(open.request))
     json["structuredContent"] = result.value;
+  if (!open.task.empty())
+    return end_task(open.task, std::move(json), result);
   reply(open.request, std::move(json));
 }
 
 void Session::progress(std::uint64_t call, double value, const std::string& text) {
   const auto found = open_.find(call);
+  if (found != open_.end() && !found->second.task.empty())
+    return change_task(found->second.task, "working", text);
   if (found == open_.end() || found->second.token.is_null())
     return;
   send({{"jsonrpc", "2.0"},

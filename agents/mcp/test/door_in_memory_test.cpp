@@ -37,6 +37,42 @@ class DoorInMemory : public testing::Test {
                      .dump());
     turn();
   }
+  /// The result of a request of a client that knows tasks.
+  Json ask(int id, const std::string& method, Json parameters) {
+    parameters["_meta"] = {{"io.modelcontextprotocol/protocolVersion", Session::kModern},
+                           {"io.modelcontextprotocol/clientCapabilities",
+                            {{"extensions", {{"io.modelcontextprotocol/tasks", Json::object()}}}}}};
+    session.take(
+        Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump());
+    turn();
+    return result(id);
+  }
+  /// The robot's speed [m/s] from now on.
+  void drive(double velocity) {
+    v1::RobotState state;
+    state.stamp().epoch(1);
+    state.stamp().cycle(++cycle);
+    state.velocity(velocity);
+    robots.write(state);
+    turn();
+  }
+  void believe(const std::string& name, const std::string& value) {
+    v1::Belief belief;
+    belief.name(name);
+    belief.value(value);
+    v1::BeliefSet set;
+    set.beliefs({belief});
+    beliefs.write(set);
+    turn();
+  }
+  void report(const std::string& functor, const std::vector<v1::Argument>& arguments) {
+    v1::AgentEvent event;
+    event.source("karen");
+    event.functor(functor);
+    event.arguments(arguments);
+    events.write(event);
+    turn();
+  }
   /// The result of a call; null: it has none yet.
   Json result(int id) {
     for (const Line& line : session.take_lines()) {
@@ -83,6 +119,10 @@ class DoorInMemory : public testing::Test {
   bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
   bus::Writer<v1::Answer> solved = other.writer(bus::topics::kSolved);
+  bus::Writer<v1::RobotState> robots = other.writer(bus::topics::kRobotState);
+  bus::Writer<v1::BeliefSet> beliefs = other.writer(bus::topics::kBeliefs);
+  bus::Writer<v1::AgentEvent> events = other.writer(bus::topics::kAgentEvents);
+  std::uint64_t cycle = 0;
   Session session{"saphira", "1", "a robot"};
   Robot robot{node};
   std::unique_ptr<Door> door = std::make_unique<Door>(node, robot, session, "model");
@@ -209,6 +249,119 @@ TEST_F(DoorInMemory, AFactIsAnsweredByItsDeclaredResults) {
   const Json value = result(1)["structuredContent"];
   EXPECT_EQ(value, Json({{"place", "library"}, {"sure", true}})) << "a place is a text";
   EXPECT_EQ(misfit(value, form("place_of")), "");
+}
+
+TEST_F(DoorInMemory, AnActionIsATaskForAClientThatKnowsTasks) {
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json begun = ask(1, "tools/call", sweep);
+  EXPECT_EQ(begun["resultType"], "task");
+  EXPECT_EQ(begun["status"], "working");
+  const Json task{{"taskId", begun["taskId"]}};
+  const v1::Request request = heard();
+  say(request, v1::ANSWER_UNDERWAY, "half of it is clean");
+  turn(100.0);
+  EXPECT_EQ(ask(2, "tasks/get", task)["statusMessage"], "underway: sweeper: half of it is clean");
+  say(request, v1::ANSWER_DONE, "", {bus::number("dust", 3.0)});
+  const Json ended = ask(3, "tasks/get", task);
+  EXPECT_EQ(ended["status"], "completed");
+  EXPECT_EQ(ended["result"]["structuredContent"]["results"], Json({{"dust", 3.0}}));
+  // The same id is a handle for the tools.
+  call(4, "goal", {{"goal", begun["taskId"]}});
+  EXPECT_EQ(result(4)["structuredContent"]["state"], "succeeded");
+}
+
+TEST_F(DoorInMemory, ACanceledTaskIsCanceledWhenTheRobotStands) {
+  drive(0.3);
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json task{{"taskId", ask(1, "tools/call", sweep)["taskId"]}};
+  const v1::Request request = heard();
+  EXPECT_EQ(ask(2, "tasks/cancel", task)["resultType"], "complete");
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  say(request, v1::ANSWER_GIVEN_UP, "half of it is clean");
+  EXPECT_EQ(ask(3, "tasks/get", task)["status"], "working") << "the robot moves";
+  drive(0.0);
+  EXPECT_EQ(ask(4, "tasks/get", task)["status"], "cancelled");
+}
+
+TEST_F(DoorInMemory, ACanceledTaskDoesNotWaitForARobotThatSomebodyElseDrives) {
+  drive(0.3);
+  const Json sweep{{"name", "sweep"}, {"arguments", {{"room", "kitchen"}}}};
+  const Json task{{"taskId", ask(1, "tools/call", sweep)["taskId"]}};
+  const v1::Request request = heard();
+  ask(2, "tasks/cancel", task);
+  say(request, v1::ANSWER_GIVEN_UP, "");
+  turn(5.0);
+  EXPECT_EQ(ask(3, "tasks/get", task)["status"], "cancelled");
+}
+
+TEST_F(DoorInMemory, ASubscriberHearsThatAnActionGoesOn) {
+  session.take(
+      R"({"jsonrpc":"2.0","id":1,"method":"resources/subscribe","params":{"uri":"saphira://robot/goals"}})");
+  turn();
+  session.take_lines();
+  begin_sweep();
+  turn(1.0);
+  turn(1.0);
+  const auto lines = session.take_lines();
+  ASSERT_EQ(lines.size(), 1U) << "the second reading is the same";
+  EXPECT_EQ(Json::parse(lines[0].text)["method"], "notifications/resources/updated");
+}
+
+TEST_F(DoorInMemory, TheToolsOfAnAgentThatIsKilledEnd) {
+  {
+    bus::Node killed{test::memory_options("killed"), memory};
+    bus::Writer<v1::Agent> announcements = killed.writer(bus::topics::kAgents);
+    v1::Agent agent;
+    agent.id(8);
+    agent.name("cook");
+    agent.capabilities({bus::action("cook", "cooks", {})});
+    announcements.write(agent);
+    turn();
+    EXPECT_TRUE(form("cook").is_object());
+  }
+  turn();
+  EXPECT_TRUE(form("cook").is_null());
+  EXPECT_TRUE(form("sweep").is_object());
+}
+
+TEST_F(DoorInMemory, AClientWaitsForAnEvent) {
+  report("rang", {});
+  call(1, "wait_for", {{"event", "pointed_out"}});
+  call(2, "wait_for", {{"wait_s", 5}});
+  EXPECT_TRUE(result(1).is_null()) << "what was before does not count";
+  report("rang", {});
+  EXPECT_EQ(result(2)["structuredContent"]["event"], "rang");
+  EXPECT_TRUE(result(1).is_null());
+  report("pointed_out", {bus::text("place", "library")});
+  const Json seen = result(1);
+  EXPECT_EQ(seen["structuredContent"],
+            Json::parse(R"({"happened":true,"event":"pointed_out","source":"karen",
+                            "arguments":{"place":"library"}})"));
+  EXPECT_EQ(seen["content"][0]["text"], R"(pointed_out {"place":"library"}, reported by karen)");
+  EXPECT_EQ(misfit(seen["structuredContent"], form("wait_for")), "");
+  call(3, "wait_for", {{"wait_s", 5}});
+  turn(5.0);
+  EXPECT_EQ(result(3)["structuredContent"], Json({{"happened", false}}));
+  EXPECT_EQ(result(3)["isError"], false);
+}
+
+TEST_F(DoorInMemory, AClientWaitsForABelief) {
+  believe("at-rest", "t");
+  call(1, "wait_for", {{"belief", "at-rest"}});
+  call(2, "wait_for", {{"belief", "at-rest"}, {"value", "t"}});
+  EXPECT_EQ(result(2)["structuredContent"]["happened"], true) << "it is so already";
+  EXPECT_TRUE(result(1).is_null());
+  believe("at-rest", "nil");
+  EXPECT_EQ(result(1)["structuredContent"],
+            Json::parse(R"({"happened":true,"belief":"at-rest","value":"nil"})"));
+  call(3, "wait_for", {{"belief", "at-rest"}, {"value", "t"}, {"wait_s", 50}});
+  turn(50.0);
+  EXPECT_EQ(result(3)["content"][0]["text"],
+            "the belief at-rest is nil: what was awaited has not happened");
+  call(4, "wait_for", {{"belief", "bored"}});
+  EXPECT_EQ(result(4)["isError"], true);
+  EXPECT_EQ(result(4)["content"][0]["text"],
+            "not done: the robot has no such belief, but: at-rest");
 }
 
 // SDKs of clients refuse a result without the declared form.

@@ -119,6 +119,8 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
 
 int connected(int port) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const timeval patience{.tv_sec = 30, .tv_usec = 0};
+  setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -139,6 +141,19 @@ std::string http(int port, const std::string& head, const std::string& body = {}
     answer.append(buffer, static_cast<std::size_t>(n));
   close(fd);
   return answer;
+}
+
+/// Reads an open answer until it has this text. False: the text does not come.
+bool comes(int fd, const std::string& text) {
+  std::string answer;
+  char buffer[4096];
+  while (answer.find(text) == std::string::npos) {
+    const ssize_t n = read(fd, buffer, sizeof buffer);
+    if (n <= 0)
+      return false;
+    answer.append(buffer, static_cast<std::size_t>(n));
+  }
+  return true;
 }
 
 /// The message in an answer of HTTP, or in the last event of a stream.
@@ -210,7 +225,36 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
         http(port, session,
              json{{"id", 3}, {"method", "tools/call"}, {"params", parameters}}.dump()))["result"];
   };
+  // A stream carries what no request asks for.
+  const int stream = connected(port);
+  std::string get = session;
+  get.replace(0, 4, "GET") += "\r\nHost: localhost\r\n\r\n";
+  EXPECT_EQ(write(stream, get.data(), get.size()), static_cast<ssize_t>(get.size()));
+  EXPECT_TRUE(comes(stream, "text/event-stream"));
+  http(port, session,
+       R"({"id":3,"method":"resources/subscribe","params":{"uri":"saphira://robot/goals"}})");
   EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
+  EXPECT_TRUE(comes(stream, "notifications/resources/updated"));
+  close(stream);
+
+  // A task is polled to its end.
+  const auto ask = [&](const std::string& method, const std::string& name, json parameters) {
+    parameters["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
+                           {"io.modelcontextprotocol/clientCapabilities",
+                            {{"extensions", {{"io.modelcontextprotocol/tasks", json::object()}}}}}};
+    return message_of(http(port,
+                           post + "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: " + method +
+                               "\r\nMcp-Name: " + name,
+                           json{{"id", 5}, {"method", method}, {"params", parameters}}.dump()));
+  };
+  const json task = ask("tools/call", "go_to", go(1.2, 20))["result"];
+  EXPECT_EQ(task["status"], "working");
+  json state;
+  EXPECT_TRUE(wait_until([&] {
+    state = ask("tasks/get", task["taskId"], {{"taskId", task["taskId"]}})["result"];
+    return state["status"] == "completed";
+  })) << state.dump();
+  EXPECT_EQ(state["result"]["structuredContent"]["state"], "succeeded");
 
   // A client is killed in a call: its connection closes. In the newer era, without a session, the
   // connection is the call.

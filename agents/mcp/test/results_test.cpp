@@ -35,7 +35,7 @@ TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
                   found("age", v1::ARGUMENT_NUMBER)});
   answer.results()[2].number(std::numeric_limits<double>::infinity());
   // As it arrives at the client.
-  const Json value = Json::parse(results_of(answer, capability.parameters()).dump());
+  const Json value = Json::parse(values_of(answer.results(), capability.parameters()).dump());
   EXPECT_EQ(value["place"].size(), 2U);
   EXPECT_TRUE(value["age"].is_null());
   EXPECT_EQ(misfit(value, form), "");

@@ -1,39 +1,13 @@
 // The protocol line by line.
-#include "saphira/mcp/session.hpp"
-
-#include <gtest/gtest.h>
+#include "client.hpp"
 
 namespace saphira::mcp {
 namespace {
 
-Tool go_to() {
-  return {
-      "go_to", "goes to a point",
-      Json::parse(R"({"type":"object","additionalProperties":false,"required":["x"],"properties":{
-            "x":{"type":"number","minimum":-100,"maximum":100},
-            "frame":{"type":"string","enum":["map","robot"]}}})")};
-}
-
-struct Client {
-  Client() { session.set_tools({go_to()}); }
-  /// The lines of the answer to a line.
-  std::vector<Json> say(const std::string& line) {
-    session.take(line);
-    return heard();
-  }
-  std::vector<Json> heard() {
-    std::vector<Json> all;
-    for (const Line& line : session.take_lines())
-      all.push_back(Json::parse(line.text));
-    return all;
-  }
-  Json one(const std::string& line) {
-    const auto all = say(line);
-    EXPECT_EQ(all.size(), 1U) << line;
-    return all.empty() ? Json() : all.front();
-  }
-  Session session{"saphira", "1", "a robot"};
-};
+using test::Client;
+using test::go_to;
+using test::line;
+using test::modern;
 
 TEST(McpSession, BeginsWithTheRevisionOfTheClientWhereItIsKnown) {
   Client client;
@@ -154,14 +128,6 @@ TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {
   EXPECT_TRUE(client.say("").empty());
   EXPECT_TRUE(client.say(R"({"id":9,"result":{}})").empty());
   EXPECT_EQ(client.one(R"({"id":2,"method":"ping"})")["id"], 2);
-}
-
-/// A request of the newer era.
-std::string modern(const std::string& id, const std::string& method,
-                   Json parameters = Json::object()) {
-  parameters["_meta"]["io.modelcontextprotocol/protocolVersion"] = Session::kModern;
-  parameters["_meta"]["io.modelcontextprotocol/clientCapabilities"] = Json::object();
-  return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump();
 }
 
 TEST(McpSession, TheNewerEraNeedsNoBeginning) {
@@ -286,20 +252,16 @@ TEST(McpSession, AFloodIsHeldBackAndAStopIsNot) {
     }
     return client.heard().at(0)["result"];
   };
-  client.session.set_time(1000.0);
+  client.session.turn(1000.0);
   for (int i = 0; i < 20; ++i)
     EXPECT_EQ(send(go)["isError"], false) << i;
   EXPECT_EQ(send(go)["content"][0]["text"], "not done: at most 5 calls a second; again in 0.2 s");
   EXPECT_EQ(
       send(R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"stop"}})")["isError"],
       false);
-  client.session.set_time(1000.21);
+  client.session.turn(1000.21);
   EXPECT_EQ(send(go)["isError"], false);
   EXPECT_EQ(send(go)["isError"], true);
-}
-
-std::string line(int id, const std::string& method, const Json& parameters = Json::object()) {
-  return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump();
 }
 
 Tool emergency_stop() {

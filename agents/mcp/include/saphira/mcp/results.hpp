@@ -13,9 +13,10 @@ namespace saphira::mcp {
 
 Json json_of(const v1::GoalStatus& status);
 
-/// The results of an answer by name. Several results of one name are a list. A result of another
-/// kind than declared is left out.
-Json results_of(const v1::Answer& answer, const std::vector<v1::CapabilityParameter>& declared);
+/// Arguments of an event or results of an answer, by name. Several of one name are a list. One of
+/// another kind than declared is left out.
+Json values_of(const std::vector<v1::Argument>& arguments,
+               const std::vector<v1::CapabilityParameter>& declared = {});
 
 /// Of a tool that asks for a goal.
 Json goal_form();

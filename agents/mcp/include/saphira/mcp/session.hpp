@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +22,7 @@ struct Tool {
   bool reads = false;       ///< changes nothing; without arguments it is a resource as well
   bool always = false;      ///< exempt from the limit: it stops the robot
   Json output = nullptr;    ///< JSON Schema of Result.value, an object; null: not declared
+  bool lasts = false;       ///< asks for a goal: a task for a client that knows tasks
   bool operator==(const Tool&) const = default;
 };
 
@@ -27,6 +31,7 @@ struct Call {
   std::uint64_t number = 0;  ///< of this session
   std::string tool;
   Json arguments;
+  bool as_task = false;  ///< its answer is a task, at once
 };
 
 struct Result {
@@ -45,7 +50,7 @@ struct Outcome {
 /// A message for the client.
 struct Line {
   std::string text;
-  std::uint64_t exchange = 0;  ///< of the request that it belongs to
+  std::uint64_t exchange = 0;  ///< of the request that it belongs to [0: none]
   bool last = false;           ///< it answers that request
   int status = 200;            ///< of HTTP, where it is the whole answer
 };
@@ -77,7 +82,7 @@ class Session {
         version_(std::move(version)),
         instructions_(std::move(instructions)) {}
 
-  /// The tools from now on. The client is notified of a change.
+  /// The tools from now on. Who listens is notified of a change, at most once a second.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
   /// True: the tools are not all known yet. Lists, readings and calls are held back until false,
@@ -85,21 +90,29 @@ class Session {
   void wait_for_tools(bool waits);
   /// The client sends no more: held calls are dropped. True where held lists are still unanswered.
   bool leave();
-  /// The clock of the limit on calls [s], of any origin.
-  void set_time(double time) { time_ = time; }
+  /// The time, of any origin, and since 1970 [s]. Watched resources are read again, once a second,
+  /// by calls of their tools. Call at least some times a second.
+  void turn(double time, double date = 0.0);
 
   /// A message of the client. exchange: its HTTP request [0: a line of a stream]; headers: of that
   /// request. False: the message gets no answer.
   bool take(std::string_view message, std::uint64_t exchange = 0, const Headers* headers = nullptr);
   /// The client has closed the connection of a request. In the newer era that cancels the request.
   void close(std::uint64_t exchange);
+  /// True for a request that listens and calls nothing.
+  bool listens(std::uint64_t exchange) const;
+  /// The server ends: so does each request that listens.
+  void end();
 
   /// Since the last call: called tools, and calls that the client has given up. The latter get no
-  /// further answer.
+  /// further answer, except for tasks: those are answered when the robot stands.
   std::vector<Call> take_calls();
   std::vector<std::uint64_t> take_given_up();
 
   void answer(std::uint64_t call, const Result& result);
+  /// Answers a call with a task, of this id and message. Its progress and its answer are the task's
+  /// from now on.
+  void begin_task(std::uint64_t call, const std::string& id, const std::string& text);
   /// The progress of a call, for a client that asked for it. value has to rise.
   void progress(std::uint64_t call, double value, const std::string& text);
 
@@ -131,8 +144,30 @@ class Session {
   struct Open {
     Request request;
     std::string tool;
-    Json token;     ///< of progress; null: none is wanted
-    Json uri = {};  ///< of the resource that is read; null: a tool was called
+    Json token;             ///< of progress; null: none is wanted
+    Json uri = {};          ///< of the resource that is read; null: a tool was called
+    bool watches = false;   ///< it is read for those who listen; the client has not called
+    std::string task = {};  ///< the call is this task
+  };
+  /// Changes that a client wants to hear of.
+  struct Listener {
+    Request request;  ///< of the older era, which has one listener: without an id
+    bool tools = false;
+    std::set<std::string> resources = {};
+    std::set<std::string> tasks = {};
+  };
+  /// A resource that somebody listens to.
+  struct Watched {
+    std::optional<std::string> text = std::nullopt;  ///< as read last
+    bool is_read = false;                            ///< now
+    /// [s] then it is read again
+    double next = -std::numeric_limits<double>::infinity();
+  };
+  struct Task {
+    Json state;              ///< as the client gets it
+    std::uint64_t call = 0;  ///< 0: it has ended
+    double begun = 0.0;      ///< [s]
+    bool withdrawn = false;  ///< by the client
   };
   void send(const Json& message, std::uint64_t exchange, bool last = false, int status = 200) {
     lines_.push_back(
@@ -148,10 +183,24 @@ class Session {
   bool has_to_wait(const std::string& method, const Json& parameters) const;
   void hold(const std::string& method, const Request& request, const Json& parameters);
   void list_tools(const Request& request);
-  void listen(const Request& request, const Json& parameters);
-  Json capabilities() const;
+  Json capabilities(bool modern) const;
   void list_resources(const Request& request);
+  const Tool* resource(const Json& uri) const;
+  void no_resource(const Request& request, const Json& uri);
   void read(const Request& request, const Json& parameters);
+  Listener& older();
+  void listen(const Request& request, const Json& parameters);
+  void subscribe(const Request& request, const Json& uri, bool wanted);
+  void tell(const Listener& listener, const std::string& method, Json parameters);
+  void tell_tools();
+  void watch(const std::string& uri);
+  void see(const std::string& uri, const std::string& text);
+  static bool has_tasks(const Json& parameters);
+  bool lacks_tasks(const Request& request, const Json& parameters);
+  void forget_tasks();
+  void ask_task(const std::string& method, const Request& request, const Json& parameters);
+  void change_task(const std::string& id, const std::string& status, const std::string& text);
+  void end_task(const std::string& id, Json json, const Result& result);
   bool structures(const Request& request) const { return request.modern || structures_; }
   void list(const Request& request, Json result);
   void call(const Request& request, const Json& parameters, const Json& uri = nullptr);
@@ -164,18 +213,22 @@ class Session {
   const std::string version_;
   const std::string instructions_;
   std::vector<Tool> tools_;
-  bool begun_ = false;
   bool structures_ = true;  ///< the client's revision has structured results
   bool waits_ = false;      ///< for the tools
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;
-  std::vector<Request> listeners_;  ///< those that want changes of the tools
+  std::vector<Listener> listeners_;
+  std::map<std::string, Watched> watched_;  ///< by uri
+  std::map<std::string, Task> tasks_;       ///< by id
+  bool news_ = false;                       ///< the tools have changed, and nobody was told
+  double told_ = -std::numeric_limits<double>::infinity();  ///< [s] of the tools
   std::vector<Call> calls_;
   std::vector<std::uint64_t> given_up_;
   std::vector<Outcome> outcomes_;
   std::vector<Line> lines_;
   double time_ = 0.0;
+  double date_ = 0.0;
   double allowed_ = kMostAtOnce;  ///< calls allowed at once
   double counted_ = 0.0;          ///< [s] time of `allowed_`
 };

@@ -1,0 +1,84 @@
+// The part of JSON Schema that tools use.
+#include <algorithm>
+
+#include "protocol.hpp"
+
+namespace saphira::mcp {
+
+namespace {
+
+bool has_type(const Json& value, const Json& type) {
+  if (type.is_array())
+    return std::any_of(type.begin(), type.end(),
+                       [&](const Json& each) { return has_type(value, each); });
+  if (type == "number")
+    return value.is_number();
+  if (type == "integer")
+    return value.is_number_integer();
+  if (type == "string")
+    return value.is_string();
+  if (type == "boolean")
+    return value.is_boolean();
+  if (type == "object")
+    return value.is_object();
+  if (type == "array")
+    return value.is_array();
+  return type != "null" || value.is_null();
+}
+
+std::string misfit_at(const std::string& where, const Json& value, const Json& schema) {
+  const std::string who = where.empty() ? "the arguments" : "\"" + where + "\"";
+  if (const Json type = member(schema, "type"); !type.is_null() && !has_type(value, type))
+    return who + ": expected " + (type.is_string() ? type.get<std::string>() : type.dump()) +
+           ", found " + value.dump().substr(0, 60);
+  if (const Json forms = member(schema, "anyOf"); !forms.is_null()) {
+    std::string why;
+    for (const Json& form : forms)
+      if (why = misfit_at(where, value, form); why.empty())
+        break;
+    if (!why.empty())
+      return why;
+  }
+  if (const Json choices = member(schema, "enum");
+      choices.is_array() && std::find(choices.begin(), choices.end(), value) == choices.end())
+    return who + ": expected one of " + choices.dump() + ", found " + value.dump().substr(0, 60);
+  if (value.is_number()) {
+    const double number = value.get<double>();
+    const Json low = member(schema, "minimum");
+    const Json high = member(schema, "maximum");
+    if ((low.is_number() && !(number >= low.get<double>())) ||
+        (high.is_number() && !(number <= high.get<double>())))
+      return who + ": expected a number" + (low.is_number() ? " from " + low.dump() : "") +
+             (high.is_number() ? " up to " + high.dump() : "") + ", found " + value.dump();
+  }
+  if (value.is_array() && schema.contains("items"))
+    for (const Json& each : value)
+      if (std::string why = misfit_at(where, each, schema["items"]); !why.empty())
+        return why;
+  if (!value.is_object())
+    return {};
+  const Json properties = member(schema, "properties");
+  for (const Json& name : member(schema, "required"))
+    if (!value.contains(name.get<std::string>()))
+      return (where.empty() ? "" : who + ": ") + name.dump() + " is missing";
+  for (const auto& [name, inner] : value.items()) {
+    const Json of = properties.is_object() ? member(properties, name.c_str()) : Json();
+    if (of.is_null()) {
+      if (member(schema, "additionalProperties") == false)
+        return "there is no argument \"" + name.substr(0, 60) + "\"";
+      continue;
+    }
+    if (std::string why = misfit_at(where.empty() ? name : where + "." + name, inner, of);
+        !why.empty())
+      return why;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string misfit(const Json& arguments, const Json& schema) {
+  return misfit_at({}, arguments, schema);
+}
+
+}  // namespace saphira::mcp
