@@ -88,6 +88,7 @@ class Copy {
     std::ofstream(folder_.path(name)) << text;
   }
   std::string said(const std::string& command) const {
+    fs::remove(folder_.path("said"));
     test::Process process({"/bin/sh", "-c", command}, folder_.path("said"));
     process.wait(std::chrono::minutes(2));
     return process.output();
