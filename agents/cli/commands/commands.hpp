@@ -69,6 +69,8 @@ void add_write(CLI::App& app, Chosen& chosen);
 void add_wiring(CLI::App& app, Chosen& chosen);
 void add_console(CLI::App& app, Chosen& chosen);
 void add_mcp(CLI::App& app, Chosen& chosen);
+void add_record(CLI::App& app, Chosen& chosen);
+void add_replay(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 
 }  // namespace saphira::cli

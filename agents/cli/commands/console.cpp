@@ -47,4 +47,14 @@ void add_mcp(CLI::App& app, Chosen& chosen) {
               "A client such as a desktop assistant starts it, and ends it.");
 }
 
+void add_record(CLI::App& app, Chosen& chosen) {
+  add_program(app, chosen, "record", "Record what is said on the bus, as an MCAP file",
+              "Tools such as Foxglove open it.");
+}
+
+void add_replay(CLI::App& app, Chosen& chosen) {
+  add_program(app, chosen, "replay", "Say what was recorded once more, as another robot",
+              "Nothing drives by a recording.");
+}
+
 }  // namespace saphira::cli

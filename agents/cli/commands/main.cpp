@@ -79,6 +79,8 @@ int main(int argc, char** argv) {
         cli::add_renew(app, chosen);
         cli::add_console(app, chosen);
         cli::add_mcp(app, chosen);
+        cli::add_record(app, chosen);
+        cli::add_replay(app, chosen);
         cli::add_security(app, chosen);
         cli::add_estop(app, chosen);
         cli::add_status(app, chosen);

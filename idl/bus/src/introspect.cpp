@@ -76,6 +76,12 @@ bool Scribe::dispose() {
   return writer_->dispose(sample_.get());
 }
 
+bool Scribe::dispose(const std::string& json) {
+  const std::shared_ptr<void> sample(type_->create(), type_->destroy);
+  type_->parse(json, sample.get());
+  return writer_->dispose(sample.get());
+}
+
 bool Scribe::wait_acknowledged(int timeout_ms) {
   return writer_->wait_acknowledged(timeout_ms);
 }

@@ -29,8 +29,9 @@ class JsonReader {
     } else if constexpr (std::is_enum_v<T>) {
       item = enumerator<T>(json, place);
     } else if constexpr (std::is_floating_point_v<T>) {
-      expect(json.is_number(), json, place, "a number");
-      item = json.get<T>();
+      // Null is what stands for NaN in a sample's JSON.
+      expect(json.is_number() || json.is_null(), json, place, "a number");
+      item = json.is_null() ? std::numeric_limits<T>::quiet_NaN() : json.get<T>();
     } else if constexpr (std::is_integral_v<T>) {
       integer(json, item, place);
     } else {

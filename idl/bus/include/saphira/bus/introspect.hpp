@@ -51,6 +51,8 @@ class Scribe {
   bool write(const std::string& json);
   /// Withdraws the instance that was written last.
   bool dispose();
+  /// Withdraws the instance whose key this object has. Errors as write().
+  bool dispose(const std::string& json);
   bool wait_acknowledged(int timeout_ms);
   std::size_t matched() const;
 

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace saphira::recorder {
+
+/// A topic of a recording.
+struct Channel {
+  std::string topic;  ///< such as robot/state
+  std::string type;   ///< such as saphira::v1::RobotState
+  std::string robot;
+};
+
+struct Sample {
+  std::uint16_t channel = 0;
+  std::int64_t time_ns = 0;  ///< since 1970
+  std::string json;          ///< as bus::Echo gives it
+};
+
+/// Writes a recording: an MCAP file (https://mcap.dev, version 0) of JSON messages, each channel
+/// with a JSON schema. Samples are kept in chunks with an index. A file without its end, as after a
+/// kill, has every chunk that was flushed.
+class Writer {
+ public:
+  /// `out`: binary, and empty. It outlives the writer.
+  explicit Writer(std::ostream& out);
+
+  /// The schema of the channel comes from its first sample.
+  std::uint16_t add_channel(const Channel& channel);
+  /// Samples of one channel come in the order of their times.
+  void add(const Sample& sample);
+  /// Writes the samples since the last flush. False: the stream did not take them.
+  bool flush();
+  /// Writes the rest and the summary; nothing may be added any more. False: as flush().
+  bool close();
+
+  std::uint64_t samples() const { return samples_; }
+  std::uint64_t bytes() const { return at_; }
+
+ private:
+  struct Kept {
+    Channel channel;
+    std::uint64_t samples = 0;
+    std::string description;  ///< its schema and channel records; empty before its first sample
+    std::vector<std::pair<std::int64_t, std::uint64_t>> index;  ///< of the chunk: time and place
+  };
+
+  void write(std::string_view bytes);
+  void describe(std::uint16_t channel, const std::string& json);
+
+  std::ostream& out_;
+  std::uint64_t at_ = 0;
+  std::vector<Kept> channels_;
+  std::string chunk_;
+  std::int64_t chunk_first_ = 0;
+  std::int64_t chunk_last_ = 0;
+  std::string chunk_indices_;  ///< records for the summary
+  std::uint32_t chunks_ = 0;
+  std::uint64_t samples_ = 0;
+  std::int64_t first_ = 0;
+  std::int64_t last_ = 0;
+};
+
+/// Reads a recording from its beginning, without its index: also a file that has no end.
+class Reader {
+ public:
+  /// std::invalid_argument: not a recording. `in`: binary; it outlives the reader.
+  explicit Reader(std::istream& in);
+
+  /// The next sample in the order of the file; none: the end. std::invalid_argument: a part that is
+  /// damaged, compressed or no JSON, with its place in the file.
+  std::optional<Sample> next();
+  /// Of a sample that next() has given.
+  const Channel& channel(std::uint16_t id) const { return channels_.at(id); }
+  /// The file ends amid a record, as after a kill of the recorder.
+  bool is_cut_off() const { return cut_off_; }
+
+ private:
+  bool read_record();
+  void take_record(std::uint8_t code, std::string_view body, std::uint64_t place);
+
+  std::istream& in_;
+  std::uint64_t at_ = 0;
+  bool ended_ = false;
+  bool cut_off_ = false;
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::vector<Sample> ready_;
+  std::size_t next_ = 0;
+};
+
+/// A JSON schema of messages like this one: the types of its members. Members that are null have
+/// any type.
+std::string schema_of(const std::string& json, const std::string& title);
+
+}  // namespace saphira::recorder

@@ -1,0 +1,105 @@
+// Records what is said on the bus, as an MCAP file. README.md.
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <string>
+
+#include "recorder.hpp"
+#include "saphira/bus/program.hpp"
+
+namespace {
+
+using namespace saphira;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kTurn = std::chrono::milliseconds(20);
+constexpr auto kFlush = std::chrono::seconds(1);
+
+struct Options {
+  std::string file;
+  std::vector<std::string> topics;
+  double seconds = 0.0;
+};
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string usual_name(const std::string& robot) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 32> time{};
+  std::strftime(time.data(), time.size(), "-%Y-%m-%d-%H%M%S.mcap", &local);
+  return robot + time.data();
+}
+
+int record(const bus::NodeOptions& node_options, const Options& options, const bus::Stop& stop) {
+  const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
+  const auto topics = recorder::recorded_topics(options.topics);
+  std::ofstream out(file, std::ios::binary);
+  const auto failed = [&] {
+    std::fprintf(stderr, "saphira: %s: cannot be written: %s\n", file.c_str(),
+                 std::strerror(errno));
+    return bus::kExitFailed;
+  };
+  if (!out)
+    return failed();
+  bus::Node node(node_options);
+  recorder::Writer writer(out);
+  recorder::Recorder recorder(node, writer, topics);
+  for (const std::string& topic : recorder.refused())
+    std::fprintf(stderr, "saphira: not recorded: %s\n", topic.c_str());
+  std::fprintf(stderr, "records robot %s to %s; Ctrl-C ends it\n", node_options.robot.c_str(),
+               file.c_str());
+  const auto began = Clock::now();
+  auto flushed = began;
+  while (!stop.requested() &&
+         (options.seconds <= 0.0 ||
+          Clock::now() - began < std::chrono::duration<double>(options.seconds))) {
+    node.wait(kTurn, &stop);
+    recorder.poll(now_ns());
+    if (Clock::now() - flushed >= kFlush) {
+      flushed = Clock::now();
+      if (!writer.flush())
+        return failed();
+    }
+  }
+  recorder.poll(now_ns());
+  if (!writer.close())
+    return failed();
+  const std::chrono::duration<double> lasted = Clock::now() - began;
+  std::fprintf(stderr, "%llu samples in %.0f s, %.1f MB\n",
+               static_cast<unsigned long long>(writer.samples()), lasted.count(),
+               static_cast<double>(writer.bytes()) / 1e6);
+  if (writer.samples() == 0)
+    std::fprintf(stderr, "saphira: nothing was said; saphira status shows which programs run\n");
+  return writer.samples() == 0 ? bus::kExitFailed : bus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options own;
+  return bus::run_program(
+      argc, argv, "record", "Records what is said on the bus, as an MCAP file with JSON messages",
+      [&](CommandLine& app) {
+        app.add_option("file", own.file, "FILE.mcap; else ROBOT-DATE-TIME.mcap in this folder");
+        app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();
+        app.add_option("--for", own.seconds, "[s] end then").positive();
+      },
+      [&](const bus::NodeOptions& options, const bus::Stop& stop) {
+        try {
+          return record(options, own, stop);
+        } catch (const std::invalid_argument& error) {
+          std::fprintf(stderr, "saphira: %s\n", error.what());
+          return static_cast<int>(bus::kExitUsage);
+        }
+      });
+}

@@ -1,0 +1,101 @@
+// Says what was recorded on the bus once more, as another robot. README.md.
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <string>
+
+#include "recorder.hpp"
+#include "saphira/bus/program.hpp"
+
+namespace {
+
+using namespace saphira;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kTurn = std::chrono::milliseconds(20);
+constexpr auto kLook = std::chrono::seconds(1);  // for a robot of that name, and for readers
+
+struct Options {
+  std::string file;
+  std::string as;
+  double rate = 1.0;
+  bool list = false;
+};
+
+int list(const recorder::Contents& contents) {
+  std::time_t began = contents.first_ns / 1'000'000'000;
+  std::string date = std::ctime(&began);
+  date.pop_back();
+  std::printf("robot %s, %s, %.1f s\n", contents.robot.c_str(), date.c_str(),
+              static_cast<double>(contents.last_ns - contents.first_ns) / 1e9);
+  for (const auto& [topic, count] : contents.samples)
+    std::printf("%8llu  %s\n", static_cast<unsigned long long>(count), topic.c_str());
+  return bus::kExitOk;
+}
+
+bool has_robot(bus::Node& node, const bus::Stop& stop) {
+  const auto states = node.reader(bus::topics::kRobotState);
+  const auto began = Clock::now();
+  while (!stop.requested() && Clock::now() - began < kLook && states.matched() == 0)
+    node.wait(kTurn, &stop);
+  return states.matched() > 0;
+}
+
+int replay(bus::NodeOptions node_options, const Options& options, const bus::Stop& stop) {
+  std::ifstream file(options.file, std::ios::binary);
+  const recorder::Contents contents = recorder::contents_of(file);
+  if (contents.cut_off)
+    std::fprintf(stderr,
+                 "saphira: %s has no end, as after a kill of its recorder: read up to there\n",
+                 options.file.c_str());
+  if (contents.samples.empty())
+    throw std::invalid_argument("it has no sample");
+  if (options.list)
+    return list(contents);
+  node_options.robot = options.as.empty() ? contents.robot + "-replay" : options.as;
+  bus::Node node(node_options);
+  if (has_robot(node, stop)) {
+    std::fprintf(stderr, "saphira: a robot %s is on the bus; --as NAME gives another name\n",
+                 node_options.robot.c_str());
+    return bus::kExitFailed;
+  }
+  file.clear();
+  file.seekg(0);
+  recorder::Reader reader(file);
+  recorder::Player player(node, reader, contents);
+  std::fprintf(stderr, "plays %.0f s as robot %s: saphira --robot %s status; Ctrl-C ends it\n",
+               static_cast<double>(contents.last_ns - contents.first_ns) / 1e9,
+               node_options.robot.c_str(), node_options.robot.c_str());
+  for (const auto look = Clock::now(); !stop.requested() && Clock::now() - look < kLook;)
+    node.wait(kTurn, &stop);
+  const auto began = Clock::now();
+  while (!stop.requested() &&
+         player.poll(std::chrono::duration<double>(Clock::now() - began).count() * options.rate))
+    node.wait(kTurn, &stop);
+  std::fprintf(stderr, "%llu samples\n", static_cast<unsigned long long>(player.written()));
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options own;
+  return bus::run_program(
+      argc, argv, "replay",
+      "Says what was recorded once more, as another robot: nothing drives by it",
+      [&](CommandLine& app) {
+        app.add_option("file", own.file, "FILE.mcap of saphira record").required().existing_file();
+        app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay");
+        app.add_option("--rate", own.rate, "seconds of the recording in a second").positive();
+        app.add_flag("--list", own.list, "say what it holds, and end");
+      },
+      [&](const bus::NodeOptions& options, const bus::Stop& stop) {
+        try {
+          return replay(options, own, stop);
+        } catch (const std::invalid_argument& error) {
+          std::fprintf(stderr, "saphira: %s: %s\n", own.file.c_str(), error.what());
+          return static_cast<int>(bus::kExitUsage);
+        }
+      });
+}

@@ -1,0 +1,376 @@
+#include "saphira/recorder/recording.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace saphira::recorder {
+
+namespace {
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::uint64_t kLongest = std::uint64_t{64} << 20U;  // [bytes] of a record
+constexpr std::size_t kPiece = std::size_t{1} << 20U;         // [bytes] that are read at once
+constexpr const char* kRobot = "robot";                       // a channel's metadata
+
+// Records of the format, by their codes.
+constexpr std::uint8_t kHeader = 1;
+constexpr std::uint8_t kFooter = 2;
+constexpr std::uint8_t kSchema = 3;
+constexpr std::uint8_t kChannel = 4;
+constexpr std::uint8_t kMessage = 5;
+constexpr std::uint8_t kChunk = 6;
+constexpr std::uint8_t kMessageIndex = 7;
+constexpr std::uint8_t kChunkIndex = 8;
+constexpr std::uint8_t kStatistics = 11;
+constexpr std::uint8_t kSummaryOffset = 14;
+constexpr std::uint8_t kDataEnd = 15;
+
+// Numbers are little-endian.
+template <class T>
+void put(std::string& out, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    out += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xFFU);
+}
+
+void put(std::string& out, std::string_view text) {
+  put(out, static_cast<std::uint32_t>(text.size()));
+  out += text;
+}
+
+std::string record(std::uint8_t code, std::string_view body) {
+  std::string out;
+  put(out, code);
+  put(out, static_cast<std::uint64_t>(body.size()));
+  out += body;
+  return out;
+}
+
+std::uint32_t checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+/// The fields of a record, one after the other.
+class Fields {
+ public:
+  Fields(std::string_view bytes, std::uint64_t place) : bytes_(bytes), place_(place) {}
+
+  template <class T>
+  T number() {
+    std::uint64_t value = 0;
+    const std::string_view taken = take(sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      value |= static_cast<std::uint64_t>(static_cast<unsigned char>(taken[i])) << (8 * i);
+    return static_cast<T>(value);
+  }
+  std::string_view text() { return take(number<std::uint32_t>()); }
+  std::string_view take(std::uint64_t count) {
+    if (count > bytes_.size())
+      complain("a record ends amid a field");
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
+  std::string_view rest() { return take(bytes_.size()); }
+  bool empty() const { return bytes_.empty(); }
+  [[noreturn]] void complain(const std::string& what) const {
+    throw std::invalid_argument("byte " + std::to_string(place_) + ": " + what);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::uint64_t place_;
+};
+
+nlohmann::json schema_of(const nlohmann::json& value) {
+  if (value.is_object()) {
+    nlohmann::json members = nlohmann::json::object();
+    for (const auto& [name, member] : value.items())
+      members[name] = schema_of(member);
+    return {{"type", "object"}, {"properties", std::move(members)}};
+  }
+  if (value.is_array())
+    return {{"type", "array"},
+            {"items", value.empty() ? nlohmann::json::object() : schema_of(value.front())}};
+  if (value.is_null())
+    return nlohmann::json::object();
+  return {{"type", value.is_string() ? "string" : value.is_boolean() ? "boolean" : "number"}};
+}
+
+}  // namespace
+
+std::string schema_of(const std::string& json, const std::string& title) {
+  const nlohmann::json sample = nlohmann::json::parse(json, nullptr, false);
+  nlohmann::json schema = schema_of(sample.is_object() ? sample : nlohmann::json::object());
+  schema["title"] = title;
+  return schema.dump();
+}
+
+Writer::Writer(std::ostream& out) : out_(out) {
+  std::string body;
+  put(body, std::string_view());
+  put(body, std::string_view("saphira"));
+  write(std::string(kMagic) + record(kHeader, body));
+}
+
+std::uint16_t Writer::add_channel(const Channel& channel) {
+  channels_.push_back({channel, 0, {}, {}});
+  return static_cast<std::uint16_t>(channels_.size() - 1);
+}
+
+void Writer::describe(std::uint16_t channel, const std::string& json) {
+  const Channel& of = channels_[channel].channel;
+  const auto id = static_cast<std::uint16_t>(channel + 1);  // 0 is no schema
+  std::string schema;
+  put(schema, id);
+  put(schema, std::string_view(of.type));
+  put(schema, std::string_view("jsonschema"));
+  put(schema, std::string_view(schema_of(json, of.type)));
+  std::string metadata;
+  put(metadata, std::string_view(kRobot));
+  put(metadata, std::string_view(of.robot));
+  std::string body;
+  put(body, channel);
+  put(body, id);
+  put(body, std::string_view(of.topic));
+  put(body, std::string_view("json"));
+  put(body, std::string_view(metadata));
+  channels_[channel].description = record(kSchema, schema) + record(kChannel, body);
+  chunk_ += channels_[channel].description;
+}
+
+void Writer::add(const Sample& sample) {
+  Kept& kept = channels_.at(sample.channel);
+  if (kept.description.empty())
+    describe(sample.channel, sample.json);
+  const bool is_first = std::all_of(channels_.begin(), channels_.end(),
+                                    [](const Kept& each) { return each.index.empty(); });
+  chunk_first_ = is_first ? sample.time_ns : std::min(chunk_first_, sample.time_ns);
+  chunk_last_ = is_first ? sample.time_ns : std::max(chunk_last_, sample.time_ns);
+  first_ = samples_ == 0 ? sample.time_ns : std::min(first_, sample.time_ns);
+  last_ = samples_ == 0 ? sample.time_ns : std::max(last_, sample.time_ns);
+  kept.index.emplace_back(sample.time_ns, chunk_.size());
+  std::string body;
+  put(body, sample.channel);
+  put(body, static_cast<std::uint32_t>(kept.samples));
+  put(body, sample.time_ns);
+  put(body, sample.time_ns);
+  body += sample.json;
+  chunk_ += record(kMessage, body);
+  ++kept.samples;
+  ++samples_;
+}
+
+bool Writer::flush() {
+  if (chunk_.empty())
+    return static_cast<bool>(out_);
+  std::string body;
+  put(body, chunk_first_);
+  put(body, chunk_last_);
+  put(body, static_cast<std::uint64_t>(chunk_.size()));
+  put(body, checksum(chunk_));
+  put(body, std::string_view());  // no compression
+  put(body, static_cast<std::uint64_t>(chunk_.size()));
+  body += chunk_;
+  const std::string chunk = record(kChunk, body);
+  const std::uint64_t chunk_at = at_;
+  std::string indices;
+  std::string places;
+  for (std::size_t id = 0; id < channels_.size(); ++id) {
+    Kept& kept = channels_[id];
+    if (kept.index.empty())
+      continue;
+    put(places, static_cast<std::uint16_t>(id));
+    put(places, chunk_at + chunk.size() + indices.size());
+    std::string entries;
+    for (const auto& [time, place] : kept.index) {
+      put(entries, time);
+      put(entries, place);
+    }
+    std::string index;
+    put(index, static_cast<std::uint16_t>(id));
+    put(index, std::string_view(entries));
+    indices += record(kMessageIndex, index);
+    kept.index.clear();
+  }
+  std::string entry;
+  put(entry, chunk_first_);
+  put(entry, chunk_last_);
+  put(entry, chunk_at);
+  put(entry, static_cast<std::uint64_t>(chunk.size()));
+  put(entry, std::string_view(places));
+  put(entry, static_cast<std::uint64_t>(indices.size()));
+  put(entry, std::string_view());
+  put(entry, static_cast<std::uint64_t>(chunk_.size()));
+  put(entry, static_cast<std::uint64_t>(chunk_.size()));
+  chunk_indices_ += record(kChunkIndex, entry);
+  ++chunks_;
+  chunk_.clear();
+  write(chunk + indices);
+  return static_cast<bool>(out_.flush());
+}
+
+bool Writer::close() {
+  flush();
+  std::string end;
+  put(end, std::uint32_t{0});  // no checksum of the whole
+  write(record(kDataEnd, end));
+  const std::uint64_t summary = at_;
+  std::string offsets;
+  const auto group = [&](std::uint8_t code, const std::string& records) {
+    if (records.empty())
+      return;
+    std::string offset;
+    put(offset, code);
+    put(offset, at_);
+    put(offset, static_cast<std::uint64_t>(records.size()));
+    offsets += record(kSummaryOffset, offset);
+    write(records);
+  };
+  std::string schemas;
+  std::string channels;
+  std::string counts;
+  std::uint32_t described = 0;
+  for (std::size_t id = 0; id < channels_.size(); ++id) {
+    const Kept& kept = channels_[id];
+    if (kept.description.empty())
+      continue;
+    ++described;
+    Fields fields(kept.description, 0);
+    fields.number<std::uint8_t>();
+    const auto length = fields.number<std::uint64_t>();
+    const std::size_t schema = 1 + sizeof(std::uint64_t) + length;
+    schemas += kept.description.substr(0, schema);
+    channels += kept.description.substr(schema);
+    put(counts, static_cast<std::uint16_t>(id));
+    put(counts, kept.samples);
+  }
+  std::string statistics;
+  put(statistics, samples_);
+  put(statistics, static_cast<std::uint16_t>(described));
+  put(statistics, described);
+  put(statistics, std::uint32_t{0});  // attachments
+  put(statistics, std::uint32_t{0});  // metadata
+  put(statistics, chunks_);
+  put(statistics, first_);
+  put(statistics, last_);
+  put(statistics, std::string_view(counts));
+  group(kSchema, schemas);
+  group(kChannel, channels);
+  group(kStatistics, record(kStatistics, statistics));
+  group(kChunkIndex, chunk_indices_);
+  std::string footer;
+  put(footer, summary);
+  put(footer, at_);
+  put(footer, std::uint32_t{0});
+  write(offsets + record(kFooter, footer) + std::string(kMagic));
+  return static_cast<bool>(out_.flush());
+}
+
+void Writer::write(std::string_view bytes) {
+  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  at_ += bytes.size();
+}
+
+Reader::Reader(std::istream& in) : in_(in) {
+  std::string magic(kMagic.size(), '\0');
+  in_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (magic != kMagic)
+    throw std::invalid_argument("not an MCAP file: its first bytes are others");
+  at_ = kMagic.size();
+}
+
+std::optional<Sample> Reader::next() {
+  while (next_ == ready_.size()) {
+    ready_.clear();
+    next_ = 0;
+    if (!read_record())
+      return std::nullopt;
+  }
+  return std::move(ready_[next_++]);
+}
+
+bool Reader::read_record() {
+  if (ended_)
+    return false;
+  std::array<char, 9> head{};
+  in_.read(head.data(), head.size());
+  if (in_.gcount() < static_cast<std::streamsize>(head.size())) {
+    ended_ = cut_off_ = true;
+    return false;
+  }
+  Fields fields({head.data(), head.size()}, at_);
+  const auto code = fields.number<std::uint8_t>();
+  const auto length = fields.number<std::uint64_t>();
+  if (length > kLongest)
+    fields.complain("a record of " + std::to_string(length) + " bytes");
+  std::string body;
+  while (body.size() < length) {  // in pieces: the length may be wrong
+    const std::size_t had = body.size();
+    body.resize(std::min<std::size_t>(length, had + kPiece));
+    in_.read(body.data() + had, static_cast<std::streamsize>(body.size() - had));
+    if (static_cast<std::size_t>(in_.gcount()) < body.size() - had) {
+      ended_ = cut_off_ = true;
+      return false;
+    }
+  }
+  const std::uint64_t place = at_;
+  at_ += head.size() + length;
+  if (code == kDataEnd || code == kFooter)
+    ended_ = true;
+  take_record(code, body, place);
+  return true;
+}
+
+void Reader::take_record(std::uint8_t code, std::string_view body, std::uint64_t place) {
+  Fields fields(body, place);
+  if (code == kChunk) {
+    fields.take(3 * sizeof(std::uint64_t));
+    const auto crc = fields.number<std::uint32_t>();
+    if (const std::string_view compression = fields.text(); !compression.empty())
+      fields.complain("compressed with " + std::string(compression) +
+                      "; `mcap decompress` makes a file without");
+    const std::string_view records = fields.take(fields.number<std::uint64_t>());
+    if (crc != 0 && crc != checksum(records))
+      fields.complain("damaged: the checksum of this part is another");
+    for (Fields inside(records, place); !inside.empty();) {
+      const auto kind = inside.number<std::uint8_t>();
+      if (kind == kChunk)
+        fields.complain("a chunk within a chunk");
+      take_record(kind, inside.take(inside.number<std::uint64_t>()), place);
+    }
+  } else if (code == kSchema) {
+    const auto id = fields.number<std::uint16_t>();
+    schemas_[id] = fields.text();
+  } else if (code == kChannel) {
+    const auto id = fields.number<std::uint16_t>();
+    Channel channel;
+    channel.type = schemas_[fields.number<std::uint16_t>()];
+    channel.topic = fields.text();
+    if (fields.text() != "json")
+      fields.complain("the samples of " + channel.topic + " are not in JSON");
+    for (Fields metadata(fields.text(), place); !metadata.empty();) {
+      const std::string_view name = metadata.text();
+      const std::string_view value = metadata.text();
+      if (name == kRobot)
+        channel.robot = value;
+    }
+    channels_[id] = std::move(channel);
+  } else if (code == kMessage) {
+    Sample sample;
+    sample.channel = fields.number<std::uint16_t>();
+    fields.number<std::uint32_t>();
+    sample.time_ns = fields.number<std::int64_t>();
+    fields.number<std::uint64_t>();
+    sample.json = fields.rest();
+    if (!channels_.contains(sample.channel))
+      fields.complain("a sample of an unknown channel");
+    ready_.push_back(std::move(sample));
+  }
+}
+
+}  // namespace saphira::recorder

@@ -1,0 +1,115 @@
+// A robot's bus is recorded, and played on another one. Both are in memory.
+#include "recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "node_options.hpp"
+
+namespace saphira::recorder {
+namespace {
+
+v1::RobotState state(std::uint64_t cycle) {
+  v1::RobotState made;
+  made.stamp().epoch(7);
+  made.stamp().cycle(cycle);
+  made.velocity(0.1 * static_cast<double>(cycle));
+  made.battery(std::numeric_limits<double>::quiet_NaN());
+  return made;
+}
+
+v1::Drawing drawing(std::uint64_t number) {
+  v1::Drawing made;
+  made.instance(5);
+  made.number(number);
+  return made;
+}
+
+class Recorded : public testing::Test {
+ protected:
+  /// Three states, two drawings of which one is withdrawn, and a command.
+  void record(const std::vector<std::string>& only = {}) {
+    bus::Node node(test::memory_options("robot"), bus::make_memory_bus());
+    auto states = node.writer(bus::topics::kRobotState);
+    auto drawings = node.writer(bus::topics::kDrawings);
+    auto commands = node.writer(bus::topics::kDriveDirect);
+    Writer writer(file_);
+    Recorder recorder(node, writer, recorded_topics(only));
+    EXPECT_TRUE(recorder.refused().empty());
+    for (std::uint64_t cycle = 1; cycle <= 3; ++cycle) {
+      states.write(state(cycle));
+      if (cycle == 1) {
+        drawings.write(drawing(1));
+        drawings.write(drawing(2));
+        commands.write({});
+      } else if (cycle == 2) {
+        drawings.dispose(drawing(2));
+      }
+      recorder.poll(static_cast<std::int64_t>(cycle) * 100'000'000);
+    }
+    EXPECT_TRUE(writer.close());
+  }
+  Contents contents() const {
+    std::istringstream in(file_.str());
+    return contents_of(in);
+  }
+
+  std::ostringstream file_;
+};
+
+TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
+  record();
+  std::istringstream in(file_.str());
+  Reader reader(in);
+  bus::Node node(test::memory_options("replay"), bus::make_memory_bus());
+  auto states = node.reader(bus::topics::kRobotState);
+  auto drawings = node.reader(bus::topics::kDrawings);
+  auto commands = node.reader(bus::topics::kDriveDirect);
+  Player player(node, reader, contents());
+  EXPECT_EQ(player.left_out(), std::set<std::string>{"drive/direct"});
+  EXPECT_TRUE(player.poll(0.05));
+  auto came = states.take();
+  ASSERT_EQ(came.size(), 1U);
+  EXPECT_EQ(came[0].data.stamp().cycle(), 1U);
+  EXPECT_TRUE(std::isnan(came[0].data.battery()));
+  EXPECT_EQ(drawings.take().size(), 2U);
+  EXPECT_TRUE(player.poll(0.1));
+  const auto changed = drawings.take();
+  ASSERT_EQ(changed.size(), 1U);
+  EXPECT_TRUE(changed[0].info.disposed);
+  EXPECT_EQ(changed[0].data.number(), 2U);
+  EXPECT_FALSE(player.poll(10.0)) << "the end";
+  came = states.take();
+  ASSERT_FALSE(came.empty());
+  EXPECT_EQ(came.back().data.stamp().cycle(), 3U);
+  EXPECT_DOUBLE_EQ(came.back().data.velocity(), 0.3);
+  EXPECT_EQ(player.written(), 6U);
+  EXPECT_TRUE(commands.take().empty());
+}
+
+TEST_F(Recorded, SaysWhatItHolds) {
+  record();
+  const Contents all = contents();
+  EXPECT_EQ(all.samples.at("robot/state"), 3U);
+  EXPECT_EQ(all.samples.at("drawings"), 3U);
+  EXPECT_EQ(all.samples.at("drive/direct"), 1U);
+  EXPECT_EQ(all.robot, test::memory_options("robot").robot);
+  EXPECT_EQ(all.first_ns, 100'000'000);
+  EXPECT_EQ(all.last_ns, 300'000'000);
+  EXPECT_FALSE(all.cut_off);
+}
+
+TEST_F(Recorded, HasTheTopicsThatOneNames) {
+  record({"drawings"});
+  EXPECT_EQ(contents().samples.size(), 1U);
+  EXPECT_THROW(recorded_topics({"robot/stat"}), std::invalid_argument);
+  for (const bus::TopicEntry& topic : recorded_topics({}))
+    EXPECT_NE(topic.qos, "recall") << topic.name;
+}
+
+}  // namespace
+}  // namespace saphira::recorder
