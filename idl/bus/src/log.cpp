@@ -41,10 +41,13 @@ bool can_write() {
 }
 
 std::atomic<std::uint64_t> unwritten{0};
+std::atomic<bool> erred{false};
 
 }  // namespace
 
 void write_log(v1::LogLevel level, const std::string& text) {
+  if (level == v1::LOG_ERROR)
+    erred = true;
   if (!can_write()) {
     ++unwritten;
     return;
@@ -54,6 +57,10 @@ void write_log(v1::LogLevel level, const std::string& text) {
   for (const Level& known : kLevels)
     if (known.ours == level)
       logger().log(known.theirs, text);
+}
+
+bool error_logged() {
+  return erred;
 }
 
 bool set_log_level(const std::string& name) {

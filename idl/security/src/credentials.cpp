@@ -81,7 +81,8 @@ Credentials load_shared(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
     fail(folder, "there is no such folder of credentials",
-         "`saphira security add` makes one on the machine of the authority; copy it here");
+         "`saphira security add` makes one on the machine of the authority; copy it here. "
+         "For a simulator on this machine alone, --security none runs without");
   Credentials found;
   found.files.authority = folder + "/" + kAuthority;
   found.authority = read(found.files.authority);

@@ -87,6 +87,18 @@ TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_EQ(other_format(""), "");
 }
 
+TEST(Text, TheReasonStandsBehindTheFile) {
+  errno = ENOSPC;
+  EXPECT_EQ(cannot_be("/run/lock", "written"),
+            "/run/lock: cannot be written: No space left on device");
+}
+
+TEST(Text, OneThingIsNoPlural) {
+  EXPECT_EQ(counted(0, "program"), "0 programs");
+  EXPECT_EQ(counted(1, "program"), "1 program");
+  EXPECT_EQ(counted(2, "program"), "2 programs");
+}
+
 TEST(Text, UnreadableFileIsNamed) {
   try {
     read_file("/nonexistent/file.wld");
