@@ -27,10 +27,11 @@ constexpr std::array<const char*, 4> kOfPeople{"operator", "agent", "observer", 
 std::string read(const std::string& file) {
   try {
     return read_file(file);
-  } catch (const std::exception&) {
-    fail(file, "cannot be read",
-         "a folder of credentials is made by `saphira security add` and copied whole, by and for "
-         "the user who runs the program");
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(
+        std::string(error.what()) +
+        "; a folder of credentials is made by `saphira security add` and copied whole, by and for "
+        "the user who runs the program");
   }
 }
 
