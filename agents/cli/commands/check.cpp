@@ -1,12 +1,13 @@
 // check: a dry run of a deployment's programs with their options. Running programs are not
 // affected.
+#include "check.hpp"
+
 #include <sys/wait.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
 
-#include "check.hpp"
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"

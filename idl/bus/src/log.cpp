@@ -41,13 +41,12 @@ bool can_write() {
 }
 
 std::atomic<std::uint64_t> unwritten{0};
-std::atomic<bool> erred{false};
 
 }  // namespace
 
 void write_log(v1::LogLevel level, const std::string& text) {
   if (level == v1::LOG_ERROR)
-    erred = true;
+    has_erred() = true;
   if (!can_write()) {
     ++unwritten;
     return;
@@ -59,7 +58,8 @@ void write_log(v1::LogLevel level, const std::string& text) {
       logger().log(known.theirs, text);
 }
 
-bool error_logged() {
+std::atomic<bool>& has_erred() {
+  static std::atomic<bool> erred{false};
   return erred;
 }
 

@@ -104,6 +104,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   if (const std::optional<int> code = app.parse(argc, argv))
     return *code;
   internal::has_worked() = false;
+  internal::has_erred() = false;
   std::string what;
   std::string usage;  // the first such error, for the person who gave the input
   try {
@@ -115,7 +116,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     }
     const int code = body(options, stop);
     // A mistake that a running program only reports also fails a dry run.
-    return options.dry_run && code == kExitOk && internal::error_logged() ? kExitFailed : code;
+    return options.dry_run && code == kExitOk && internal::has_erred() ? kExitFailed : code;
   } catch (const FileError& error) {
     usage = what = error.what();
   } catch (const std::invalid_argument& error) {

@@ -119,9 +119,11 @@ TEST(CommandLine, ANumberIsExpectedInWords) {
     return parsed.err;
   };
   EXPECT_EQ(words({"--count", "x"}), "gauge: --count: expected a whole number, found x\n");
-  EXPECT_EQ(words({"--seed", "x"}), "gauge: --seed: expected a whole number of 0 or more, found x\n");
+  EXPECT_EQ(words({"--seed", "x"}),
+            "gauge: --seed: expected a whole number of 0 or more, found x\n");
   EXPECT_EQ(words({"far"}), "gauge: length: expected a number, found far\n");
-  EXPECT_EQ(words({"--part", "2"}), "gauge: --part: expected a number between 0 and 0.5, found 2\n");
+  EXPECT_EQ(words({"--part", "2"}),
+            "gauge: --part: expected a number between 0 and 0.5, found 2\n");
 }
 
 }  // namespace
