@@ -115,7 +115,10 @@ std::string refusal(const Deployment& deployment, const Places& places,
   const RunFolder folder;
   std::vector<std::string> left_out;
   for (const ChildSpec& child : dry_lines(deployment, places, folder, set, options, left_out)) {
-    const Said said = can_be_asked(child) ? ask(child) : Said{};
+    // Another program may not know a dry run: it would be refused, or go on.
+    const bool ours = std::filesystem::path(child.argv.at(0)).parent_path() == places.bin &&
+                      (!child.robot.empty() || program_of(child) == "saphira-sim");
+    const Said said = ours && can_be_asked(child) ? ask(child) : Said{};
     if (said.misused)
       return child.name + " does not take what " + deployment.file + " gives it\n" + said.text;
   }
