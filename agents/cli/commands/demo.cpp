@@ -387,7 +387,7 @@ class Demo {
     const auto asked = Clock::now();
     while (!goals.delivered(100)) {
       supervisor_.step(milliseconds(0));
-      if (stop.requested() || gave_up(asked, processes))
+      if (stop.requested() || supervisor_.misused() || gave_up(asked, processes))
         return;
       processes.poll();
     }
