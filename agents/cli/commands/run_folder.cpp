@@ -65,9 +65,9 @@ void fill(int file, const std::string& path, const std::string& text) {
 }  // namespace
 
 RunFolder::RunFolder() {
-  path_ = "/tmp/saphira-demo-XXXXXX";
+  path_ = own_folder() + "/temporary-XXXXXX";
   if (mkdtemp(path_.data()) == nullptr)
-    throw std::runtime_error(cannot_be("a temporary folder in /tmp", "made"));
+    throw std::runtime_error(cannot_be(path_, "made") + kElsewhere);
 }
 
 RunFolder::RunFolder(const std::string& name) {
