@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -13,7 +14,10 @@ namespace {
 
 /// Reads the files that a robot's answer would need.
 int check(const saphira::bridge::BridgeOptions& options) {
-  saphira::transport::parse_address(options.robot_port);
+  const std::string trouble =
+      saphira::transport::line_trouble(saphira::transport::parse_address(options.robot_port));
+  if (!trouble.empty())
+    std::fprintf(stderr, "%s\n", trouble.c_str());
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
     if (file.path().extension() == ".p")
       saphira::protocol::load_parameters(file.path());

@@ -62,7 +62,7 @@ void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions
   std::ofstream out(files[1], std::ios::binary);
   out << saphira::sim::plot_svg(world, trace, robot.radius) << std::flush;
   if (!out)
-    throw std::runtime_error(files[1] + ": cannot be written");
+    throw std::runtime_error(saphira::cannot_be(files[1], "written"));
 }
 
 }  // namespace

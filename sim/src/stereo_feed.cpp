@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::sim {
 
 StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& socket,
@@ -55,7 +57,7 @@ void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
   std::ofstream file(folder_ + name.data(), std::ios::binary);
   file << picture << std::flush;
   if (!file)
-    throw std::runtime_error(folder_ + name.data() + ": cannot be written");
+    throw std::runtime_error(cannot_be(folder_ + name.data(), "written"));
 }
 
 void StereoFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,

@@ -716,13 +716,27 @@ TEST_F(Answers, UpGivesARobotEachOfItsProgramsOnce) {
   const std::string first = write("first.yaml", programs);
   const std::string second = write("second.yaml", programs);
   test::Process up(command({"up", first}), folder_.path("up"));
-  ASSERT_TRUE(test::wait_until([&] { return has(up.output(), "1 programs of"); })) << up.output();
+  ASSERT_TRUE(test::wait_until([&] { return has(up.output(), "1 program of"); })) << up.output();
   const Outcome other = run({"up", second});
   EXPECT_NE(other.code, 0);
   EXPECT_TRUE(has(other.text, "behaviors of robot " + robot_)) << other.text;
   EXPECT_TRUE(has(other.text, "started by " + first)) << other.text;
   up.signal(SIGTERM);
   EXPECT_EQ(up.wait(), 0);
+}
+
+TEST_F(Answers, UpInTheBackgroundIsRefusedASecondTime) {
+  const std::string file =
+      write("twice.yaml",
+            "programs:\n"
+            "  - {name: a, program: sh, bus: false, arguments: [-c, exec sleep 600]}\n");
+  const Outcome first = run({"up", file, "-d"});
+  EXPECT_EQ(first.code, 0) << first.text;
+  const Outcome again = run({"up", file, "-d"});
+  EXPECT_EQ(again.code, 3) << again.text;
+  EXPECT_TRUE(has(again.text, "saphira: this deployment is running already: ")) << again.text;
+  const Outcome stopped = run({"stop", "twice-" + robot_});
+  EXPECT_EQ(stopped.code, 0) << stopped.text;
 }
 
 TEST_F(Answers, UpNamesTheMistakeInADeployment) {
@@ -740,7 +754,8 @@ TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
             "  - {program: saphira-bridge, arguments: [--no-such-option]}\n");
   const Outcome outcome = run({"up", file});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "bridge does not take what")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "saphira: bridge does not take what")) << outcome.text;
+  EXPECT_FALSE(has(outcome.text, "started")) << outcome.text;
 }
 
 // The programs read the files that a deployment gives them, and nothing is started.
@@ -775,6 +790,16 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
     EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
   }
   EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
+  const Outcome line = run({"check", "pioneer", "--set", "device=/dev/ttyNone"});
+  EXPECT_EQ(line.code, 0) << line.text;
+  EXPECT_TRUE(has(line.text, "/dev/ttyNone: cannot be opened: No such file")) << line.text;
+
+  // A mistake that a running program would only report.
+  std::filesystem::create_directory(folder_.path("my"));
+  write("my/wrong.beh", "BeginBehavior\n");
+  const Outcome behaviors = run({"check", "demo", "--set", "behaviors=" + folder_.path("my")});
+  EXPECT_EQ(behaviors.code, 2) << behaviors.text;
+  EXPECT_TRUE(has(behaviors.text, "wrong.beh:")) << behaviors.text;
 
   // Of a program that lacks something the supervisor tries again; the others run on.
   std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),

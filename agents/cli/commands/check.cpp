@@ -1,5 +1,7 @@
 // check: a dry run of a deployment's programs with their options. Running programs are not
 // affected.
+#include "check.hpp"
+
 #include <sys/wait.h>
 
 #include <array>
@@ -9,7 +11,6 @@
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"
-#include "saphira/cli/deployment.hpp"
 #include "saphira/cli/printer.hpp"
 
 namespace saphira::cli {
@@ -49,21 +50,39 @@ Said ask(const ChildSpec& child) {
   return said;
 }
 
-int check(const std::string& name, const std::vector<std::string>& set,
-          const bus::NodeOptions& options) {
-  Places places = find_places();
-  const Deployment deployment = load_deployment(find_deployment(name, places));
-  const RunFolder folder;  // the memory of a running deployment is not touched
+/// The command lines of its programs, for this run folder. The memory of a running deployment is
+/// not touched.
+std::vector<ChildSpec> dry_lines(const Deployment& deployment, Places places,
+                                 const RunFolder& folder, const std::vector<std::string>& set,
+                                 const bus::NodeOptions& options,
+                                 std::vector<std::string>& left_out) {
   places.run = folder.path();
   places.robot = options.robot;
-  int wrong = 0;
-  int misused = 0;
-  std::vector<std::string> left_out;
-  for (ChildSpec& child : command_lines(deployment, places, set, &left_out)) {
+  std::vector<ChildSpec> children = command_lines(deployment, places, set, &left_out);
+  for (ChildSpec& child : children)
     child.environment.merge(as_environment(options));
-    const std::string program = std::filesystem::path(child.argv.at(0)).filename();
-    if (!program.starts_with("saphira-")) {
-      print("%-15s not asked: %s is no program of saphira\n", child.name.c_str(), program.c_str());
+  return children;
+}
+
+std::string program_of(const ChildSpec& child) {
+  return std::filesystem::path(child.argv.at(0)).filename();
+}
+bool can_be_asked(const ChildSpec& child) {
+  return program_of(child).starts_with("saphira-");
+}
+
+int check(const std::string& name, const std::vector<std::string>& set,
+          const bus::NodeOptions& options) {
+  const Places places = find_places();
+  const Deployment deployment = load_deployment(find_deployment(name, places));
+  const RunFolder folder;
+  std::size_t wrong = 0;
+  std::size_t misused = 0;
+  std::vector<std::string> left_out;
+  for (const ChildSpec& child : dry_lines(deployment, places, folder, set, options, left_out)) {
+    if (!can_be_asked(child)) {
+      print("%-15s not asked: %s is no program of saphira\n", child.name.c_str(),
+            program_of(child).c_str());
       continue;
     }
     const Said said = ask(child);
@@ -81,14 +100,30 @@ int check(const std::string& name, const std::vector<std::string>& set,
     print("%s would start%s\n", deployment.file.c_str(),
           left_out.empty() ? "" : ", without what is left out");
   else if (misused == 0)
-    print("%s would start, but %d of its programs would not run\n", deployment.file.c_str(), wrong);
+    print("%s would start, but %zu of its programs would not run as %s should\n",
+          deployment.file.c_str(), wrong, wrong == 1 ? "it" : "they");
   else
-    print("%s would not start: %d of its programs do not take what they are given\n",
-          deployment.file.c_str(), misused);
+    print("%s would not start: %zu of its programs %s given\n", deployment.file.c_str(), misused,
+          misused == 1 ? "does not take what it is" : "do not take what they are");
   return wrong == 0 ? bus::kExitOk : bus::kExitUsage;
 }
 
 }  // namespace
+
+std::string refusal(const Deployment& deployment, const Places& places,
+                    const std::vector<std::string>& set, const bus::NodeOptions& options) {
+  const RunFolder folder;
+  std::vector<std::string> left_out;
+  for (const ChildSpec& child : dry_lines(deployment, places, folder, set, options, left_out)) {
+    // Another program may not know a dry run: it would be refused, or go on.
+    const bool ours = std::filesystem::path(child.argv.at(0)).parent_path() == places.bin &&
+                      (!child.robot.empty() || program_of(child) == "saphira-sim");
+    const Said said = ours && can_be_asked(child) ? ask(child) : Said{};
+    if (said.misused)
+      return child.name + " does not take what " + deployment.file + " gives it\n" + said.text;
+  }
+  return {};
+}
 
 void add_check(CLI::App& app, Chosen& chosen) {
   struct Options {

@@ -321,7 +321,8 @@ class Demo {
                     [this](auto from, auto line) { keep(from, line); }) {}
 
   int run(const bus::Stop& stop) {
-    std::ofstream(trace_).close();
+    if (!std::ofstream(trace_))
+      throw std::invalid_argument(cannot_be(trace_, "written"));
     // Children first: they start while our node is made.
     supervisor_.start();
     // Other commands find the bus by that.
@@ -386,7 +387,7 @@ class Demo {
     const auto asked = Clock::now();
     while (!goals.delivered(100)) {
       supervisor_.step(milliseconds(0));
-      if (stop.requested() || gave_up(asked, processes))
+      if (stop.requested() || supervisor_.misused() || gave_up(asked, processes))
         return;
       processes.poll();
     }
@@ -470,8 +471,6 @@ class Demo {
 
     std::string outcome = status_ ? bus::describe(*status_) : "the goal got no answer";
     const auto misused = supervisor_.misused();
-    if (misused)
-      trouble_ = *misused + " does not take what it is given";
     bool crashed = false;
     for (const Supervisor::Child& child : supervisor_.children()) {
       if (!child.crashed)
@@ -481,6 +480,14 @@ class Demo {
     }
     if (interrupted)
       outcome = "interrupted; " + outcome;
+    if (misused) {
+      // Of the other programs, which wait for it or do not take the same, nothing.
+      for (const std::string& line : kept_)
+        if (line.starts_with(*misused + " | "))
+          std::fprintf(stderr, "%s\n", line.c_str());
+      std::fprintf(stderr, "saphira: %s does not take what it is given\n", misused->c_str());
+      return bus::kExitUsage;
+    }
     std::FILE* out = options_.json ? stderr : stdout;
     std::fprintf(out, "%s: %s\n", summary.arrived ? "arrived" : "did not arrive", outcome.c_str());
     if (summary.track.cycles > 0)
@@ -495,8 +502,6 @@ class Demo {
     if (options_.json)
       std::printf("%s\n", to_json(summary).c_str());
     std::fflush(stdout);
-    if (misused)
-      return bus::kExitUsage;
     return summary.arrived && !crashed ? bus::kExitOk : bus::kExitFailed;
   }
 

@@ -104,11 +104,10 @@ std::optional<std::string> unknown_topic(const std::string& topic) {
   if (std::find(names.begin(), names.end(), topic) != names.end())
     return std::nullopt;
   const std::string meant = guess(topic, names);
-  std::string text = "no topic \"" + topic.substr(0, 200) + "\": " +
-                     (meant.empty() ? "expected one of" : "did you mean " + meant + "? There are");
-  for (const std::string& name : names)
-    text += " " + name;
-  return text;
+  return "no topic \"" + topic.substr(0, 200) + "\": " +
+         (meant.empty() ? "expected one such as robot/state; saphira wiring shows all, "
+                        : "did you mean " + meant + "? There are others: ") +
+         "saphira list shows those of what runs";
 }
 
 std::string qos_of(const std::string& topic) {

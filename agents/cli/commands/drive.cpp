@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
 #include "saphira/cli/printer.hpp"
@@ -472,14 +473,17 @@ void add_drive(CLI::App& app, Chosen& chosen) {
   CLI::App* command =
       app.add_subcommand("drive", "Drive by keyboard or joystick, while something is held");
   auto joystick = std::make_shared<std::string>(kJoystick);
-  command->add_option("--joystick", *joystick, "The kernel's device of a joystick or gamepad")
-      ->capture_default_str();
+  const CLI::Option* const given =
+      command->add_option("--joystick", *joystick, "The kernel's device of a joystick or gamepad")
+          ->capture_default_str();
   CLI::App* back = command->add_subcommand(
       "hand-back", "After a person has driven: lets goals and behaviors drive again");
   command->require_subcommand(0, 1);
   command->footer(std::string("Keys:\n") + kKeys);
-  command->callback([back, joystick, &chosen] {
-    chosen.run = [joystick](const bus::NodeOptions& options, const bus::Stop& stop) {
+  command->callback([back, joystick, given, &chosen] {
+    chosen.run = [joystick, given](const bus::NodeOptions& options, const bus::Stop& stop) {
+      if (given->count() > 0 && access(joystick->c_str(), R_OK) != 0)
+        complain("saphira: %s; it is searched for\n", cannot_be(*joystick, "read").c_str());
       return drive(*joystick, options, stop);
     };
     if (back->parsed())

@@ -24,8 +24,10 @@ std::map<std::string, std::string> as_environment(const bus::NodeOptions& option
 }
 
 RunningBus bus_of(const std::string& what, const bus::NodeOptions& options) {
-  return {what,          options.robot,     options.domain, name_of(options.profile),
-          options.peers, options.interface, false};
+  return {what,           options.robot,
+          options.domain, name_of(options.profile),
+          options.peers,  options.interface,
+          false,          options.security.empty() ? bus::kOpenBus : options.security};
 }
 
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {

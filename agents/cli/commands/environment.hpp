@@ -12,7 +12,7 @@ namespace saphira::cli {
 /// Our bus options, for programs that we start.
 std::map<std::string, std::string> as_environment(const bus::NodeOptions& options);
 
-/// The bus of these options, for commands without bus options (FoundBus).
+/// The bus of these options, for other commands (FoundBus).
 RunningBus bus_of(const std::string& what, const bus::NodeOptions& options);
 
 /// A private bus: a robot name of its own, and unless a domain was given, a random one. name: of

@@ -16,6 +16,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr double kUnanswered = 15.0;  ///< [s] until a goal without any answer is given up
+constexpr double kEmptyBus = 5.0;     ///< [s] the same where no program is heard
+
 struct GoalOptions {
   std::vector<std::string> words;
   int priority = 0;
@@ -145,11 +148,12 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
       deployments.settle(stop);
       return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     }
+    const bool empty = processes.all().empty();
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
       complain("saphira: no answer yet: %s\n", who_is_there(node_options, processes).c_str());
     }
-    if (!status && seconds_since(began) > 15.0) {
+    if (!status && seconds_since(began) > (empty ? kEmptyBus : kUnanswered)) {
       complain("saphira: given up\n");
       goals.cancel(id);
       return bus::kExitFailed;

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,20 +30,22 @@ int print_help(const CLI::App& root, const std::string& name) {
   return bus::kExitUsage;
 }
 
-/// Without bus options, a command joins a running bus of this machine.
+/// A command joins a running bus of this machine, as far as its options leave that open.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
-  static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
-                                            "renew", "log",      "security", "bench"};
-  for (const char* const option : {"--robot", "--domain", "--profile", "--peer", "--interface"})
-    if (root.get_option(option)->count() > 0)
-      return options;
+  static const std::set<std::string> others{"demo", "scenario", "up",       "check",
+                                            "stop", "renew",    "security", "bench"};
   const auto commands = root.get_subcommands();
   if (commands.empty() || others.contains(commands.front()->get_name()))
     return options;
+  if (commands.front()->get_name() == "log" && !commands.front()->get_subcommands().empty())
+    return options;  // of a file
+  const auto given = [&](const char* option) { return root.get_option(option)->count() > 0; };
   const RunningBus usual = bus_of("", options);
-  const std::vector<RunningBus> running = running_buses();
-  const RunningBus* const meant = bus_meant(usual, running);
-  if (meant == nullptr)
+  const std::optional<RunningBus> meant = bus_meant(
+      usual, running_buses(),
+      {given("--robot"), given("--domain"),
+       given("--profile") || given("--peer") || given("--interface"), given("--security")});
+  if (!meant)
     return options;
   if (commands.front()->get_name() != "complete")
     complain("saphira: of %s that runs here (%s)\n", meant->what.c_str(),
@@ -52,6 +55,7 @@ bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options
   options.profile = bus::profile_of(meant->profile);
   options.peers = meant->peers;
   options.interface = meant->interface;
+  options.security = meant->security;
   return options;
 }
 

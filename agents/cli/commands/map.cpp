@@ -11,6 +11,7 @@
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
 #include "saphira/cli/printer.hpp"
@@ -125,9 +126,10 @@ int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
   View view(options);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
-  std::printf("map %s%s: %zu artifacts\n",
+  std::printf("map %s%s: %s\n",
               view.sample->source().empty() ? "from nothing" : view.sample->source().c_str(),
-              view.sample->changed() ? ", changed" : "", view.map.features.size());
+              view.sample->changed() ? ", changed" : "",
+              counted(view.map.features.size(), "artifact").c_str());
   auto told = Clock::now() - std::chrono::seconds(1);
   do {
     if (view.registration && seconds_since(told) >= 1.0) {
@@ -152,7 +154,7 @@ int write_out(const std::string& path, const std::string& text) {
     return bus::kExitOk;
   }
   if (!replace_file(path, text, true)) {
-    std::cerr << "saphira: " << path << ": cannot be written\n";
+    std::cerr << "saphira: " << cannot_be(path, "written") << '\n';
     return bus::kExitFailed;
   }
   std::printf("written to %s\n", path.c_str());
@@ -263,6 +265,8 @@ void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::D
 
 int show(const std::string& path, double seconds, const bus::NodeOptions& options,
          const bus::Stop& stop) {
+  if (path != "-")
+    expect_ending(path, ".svg");
   View view(options);
   auto grid = view.node.reader(bus::topics::kGrid);
   auto perceptions = view.node.reader(bus::topics::kPerception);
@@ -381,6 +385,8 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
 
 /// Lets the robot build the map (activity build-map); writes it when it is complete.
 int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
+  if (path != "-" && !can_replace_file(path))
+    throw std::invalid_argument(cannot_be(path, "written"));
   View view(options);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
@@ -408,8 +414,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     if (!done && !view.holds.empty())
       news += (news.empty() ? "" : "; ") + view.holds;
     if (now_corridors != corridors || now_doors != doors)
-      news += (news.empty() ? "" : "; ") + std::to_string(now_corridors) + " corridors, " +
-              std::to_string(now_doors) + " doors";
+      news += (news.empty() ? "" : "; ") + counted(now_corridors, "corridor") + ", " +
+              counted(now_doors, "door");
     corridors = now_corridors;
     doors = now_doors;
     if (news.empty() || news == told)
@@ -433,9 +439,12 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
       return bus::kExitFailed;
   }
   view.poll();
-  std::printf("%zu corridors, %zu doors, %zu artifacts%s\n", corridors, doors,
-              view.map.features.size(), whole ? "" : "; broken off, something may be left");
+  std::printf("%s, %s, %s%s\n", counted(corridors, "corridor").c_str(),
+              counted(doors, "door").c_str(), counted(view.map.features.size(), "artifact").c_str(),
+              whole ? "" : "; broken off, something may be left");
   const int written = write_out(path, maps::to_text(view.map));
+  if (written != bus::kExitOk)
+    complain("saphira: the map is still on the robot: saphira map save FILE writes it\n");
   return done && !whole ? static_cast<int>(bus::kExitFailed) : written;
 }
 

@@ -10,6 +10,7 @@
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/map_words.hpp"
+#include "saphira/cli/words.hpp"
 #include "saphira/logs/log_map.hpp"
 #include "saphira/logs/virtual_sonar.hpp"
 #include "saphira/maps/drawing.hpp"
@@ -52,7 +53,7 @@ logs::LogMap map_log(const logs::DataSet& log, const bus::Stop& stop) {
 
 void write(const std::string& path, const std::string& text) {
   if (!replace_file(path, text, true))
-    throw std::runtime_error(path + ": cannot be written");
+    throw std::runtime_error(cannot_be(path, "written"));
   std::printf("written to %s\n", path.c_str());
 }
 
@@ -66,6 +67,12 @@ std::vector<Vec2> points(const std::vector<logs::StampedPose>& poses) {
 }
 
 int map(const RobotLogOptions& options, const bus::Stop& stop) {
+  // Tried before the work of minutes.
+  if (!options.drawing.empty())
+    expect_ending(options.drawing, ".svg");
+  for (const std::string& path : {options.map, options.drawing})
+    if (!path.empty() && !can_replace_file(path))
+      throw std::runtime_error(cannot_be(path, "written"));
   const logs::DataSet log = read(options);
   const logs::LogMap mapped = map_log(log, stop);
   write(options.map, maps::to_text(mapped.walls));

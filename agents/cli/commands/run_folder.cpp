@@ -6,11 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <stdexcept>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira::cli {
 
@@ -18,12 +21,17 @@ namespace {
 
 constexpr const char* kServiceFolder = "/var/lib/saphira";  ///< of saphira@.service
 
+/// Advice for a folder that cannot be used.
+constexpr const char* kElsewhere =
+    "; the variable SAPHIRA_RUN names another folder for what runs (usual: one in /tmp)";
+
 /// Makes a private folder; one of another owner is refused.
 void make_own(const std::string& path) {
-  mkdir(path.c_str(), 0700);
+  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
+    throw std::runtime_error(cannot_be(path, "made") + kElsewhere);
   struct stat info {};
   if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid())
-    throw std::runtime_error(path + " cannot be made, or is not ours");
+    throw std::runtime_error(path + ": expected a folder of this user" + kElsewhere);
 }
 
 /// The folder of this user, for all deployments: SAPHIRA_RUN, or one in /tmp.
@@ -36,22 +44,30 @@ std::string own_folder() {
   return ours;
 }
 
-/// Opens and locks it; -1 when another process holds the lock.
+/// Opens and locks it; -1 when another process holds the lock. std::runtime_error where it cannot
+/// be opened.
 int lock(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0)
+  if (file < 0)
+    throw std::runtime_error(cannot_be(path, "written") + kElsewhere);
+  if (flock(file, LOCK_EX | LOCK_NB) == 0)
     return file;
-  if (file >= 0)
-    close(file);
+  close(file);
   return -1;
+}
+
+/// The whole content of a locked file.
+void fill(int file, const std::string& path, const std::string& text) {
+  if (ftruncate(file, 0) != 0 || ::write(file, text.data(), text.size()) < 0)
+    throw std::runtime_error(cannot_be(path, "written") + kElsewhere);
 }
 
 }  // namespace
 
 RunFolder::RunFolder() {
-  path_ = "/tmp/saphira-demo-XXXXXX";
+  path_ = own_folder() + "/temporary-XXXXXX";
   if (mkdtemp(path_.data()) == nullptr)
-    throw std::runtime_error("no temporary folder in /tmp");
+    throw std::runtime_error(cannot_be(path_, "made") + kElsewhere);
 }
 
 RunFolder::RunFolder(const std::string& name) {
@@ -61,9 +77,7 @@ RunFolder::RunFolder(const std::string& name) {
   if (lock_ < 0)
     throw std::runtime_error("this deployment is running already: " + path_ +
                              "/lock is held; saphira stop ends it");
-  const std::string pid = std::to_string(getpid());
-  if (ftruncate(lock_, 0) != 0 || ::write(lock_, pid.data(), pid.size()) < 0)
-    throw std::runtime_error(path_ + "/lock cannot be written");
+  fill(lock_, path_ + "/lock", std::to_string(getpid()));
 }
 
 RunFolder::~RunFolder() {
@@ -103,8 +117,9 @@ FoundBus::FoundBus(const RunningBus& bus) {
       folder + "/" + bus.robot + "-" + std::to_string(bus.domain) + "-" + std::to_string(getpid());
   lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   const std::string text = to_text(bus);
-  if (lock_ < 0 || flock(lock_, LOCK_EX) != 0 || ::write(lock_, text.data(), text.size()) < 0)
-    throw std::runtime_error(path_ + " cannot be written");
+  if (lock_ < 0 || flock(lock_, LOCK_EX) != 0)
+    throw std::runtime_error(cannot_be(path_, "written") + kElsewhere);
+  fill(lock_, path_, text);
 }
 
 FoundBus::~FoundBus() {
@@ -170,8 +185,7 @@ void ProgramLocks::hold(const std::string& program, const std::string& robot, un
                              ": stop that one, or take another --robot or --domain");
   }
   locks_.push_back(file);
-  if (ftruncate(file, 0) != 0 || ::write(file, holder.data(), holder.size()) < 0)
-    throw std::runtime_error(path + " cannot be written");
+  fill(file, path, holder);
 }
 
 }  // namespace saphira::cli

@@ -37,7 +37,7 @@ std::vector<Running> running_deployments();
 /// The path of the log file of that deployment, for its output without a terminal.
 std::string log_of(const std::string& name);
 
-/// Lets commands without bus options find this bus, as long as the object lives (running_buses).
+/// Lets other commands find this bus, as long as the object lives (running_buses).
 class FoundBus {
  public:
   explicit FoundBus(const RunningBus& bus);

@@ -1,7 +1,5 @@
 // The paper's story (4.6): people tell the robot where they are, and send it for a report.
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <limits>
@@ -218,7 +216,7 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
   std::filesystem::create_directories(folder);
   const std::string text = folder + "/dialogue.txt";
   if (!replace_file(text, said))
-    throw std::runtime_error(text + ": cannot be written: " + std::strerror(errno));
+    throw std::runtime_error(cannot_be(text, "written"));
   const std::string speech = find_places().bin + "/saphira-speech";
   if (!std::filesystem::exists(speech))
     throw std::runtime_error("--audio: there is no saphira-speech beside this program; " + text +
@@ -243,9 +241,9 @@ Ending play(const ScenarioOptions& options, const std::string& cast, std::uint64
   ending.track = evaluate_trace(read_file(run.trace()), std::numeric_limits<std::uint64_t>::max(),
                                 run.trace());
   if (!options.json)
-    print("%s after %.0f s of robot time, %.0f m, %llu contacts%s\n",
+    print("%s after %.0f s of robot time, %.0f m, %s%s\n",
           ending.delivered() ? "delivered" : "not delivered", ending.time, ending.track.path,
-          static_cast<unsigned long long>(ending.track.contacts),
+          counted(ending.track.contacts, "contact").c_str(),
           ending.well ? "" : "; the story was to end otherwise");
   flush_output();
   if (!options.audio.empty())
@@ -281,7 +279,7 @@ class Sum {
   std::string text() const {
     return std::to_string(well_) + " of " + std::to_string(runs_) +
            " stories ended as their cast says, " + std::to_string(delivered_) +
-           " with the delivery; " + std::to_string(contacts_) + " contacts";
+           " with the delivery; " + counted(contacts_, "contact");
   }
 
  private:
@@ -300,6 +298,12 @@ int scenario(const ScenarioOptions& options, const bus::NodeOptions& given, cons
   for (const std::string& name : options.casts) {
     casts.push_back(find_file(config_folder() + "/people", name, ".people"));
     story::Cast(read_file(casts.back()), casts.back());  // reports errors before anything runs
+  }
+  if (!options.audio.empty()) {
+    std::error_code why;
+    std::filesystem::create_directories(options.audio, why);
+    if (why)
+      throw std::invalid_argument(options.audio + ": cannot be made: " + why.message());
   }
   const bus::NodeOptions node = own_bus(given, "flakey");
   const FoundBus found(bus_of("the scenario", node));

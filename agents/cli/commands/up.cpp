@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "check.hpp"
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"
@@ -68,7 +69,7 @@ std::string name_of(const Deployment& deployment, const bus::NodeOptions& option
          std::to_string(deployment.bus.domain.value_or(options.domain));
 }
 
-/// Its bus, for commands without bus options.
+/// Its bus, for other commands.
 RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options) {
   RunningBus bus = cli::bus_of(
       "the deployment " + std::filesystem::path(deployment.file).stem().string(), options);
@@ -78,6 +79,7 @@ RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options)
   bus.interface = deployment.bus.interface.value_or(bus.interface);
   if (!deployment.bus.peers.empty())
     bus.peers = deployment.bus.peers;
+  bus.security = deployment.bus.security.value_or(bus.security);
   bus.deployment = true;
   return bus;
 }
@@ -146,6 +148,11 @@ int up(const std::string& name, const std::vector<std::string>& set,
                  deployment.file + " (process " + std::to_string(getpid()) + ")");
   }
 
+  if (const std::string why = refusal(deployment, places, set, options); !why.empty()) {
+    std::cerr << "saphira: " << why;
+    return bus::kExitUsage;
+  }
+
   for (const std::string& file : deployment.forget) {
     std::error_code gone;
     std::filesystem::remove(std::filesystem::path(folder.path()) / file, gone);
@@ -160,7 +167,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   supervisor.start();
   const FoundBus found(bus_of(deployment, options));
   const std::string started =
-      std::to_string(supervisor.children().size()) + " programs of " + deployment.file;
+      counted(supervisor.children().size(), "program") + " of " + deployment.file;
   print({}, started + kAreStarted);
   manager.ready(started);
   const auto period = std::min(milliseconds(10000), manager.period().value_or(milliseconds(10000)));
@@ -183,7 +190,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
 
 /// Starts this program again, without a terminal: its output goes to the log.
 pid_t start_again(const std::string& name, const std::vector<std::string>& set,
-                  const bus::NodeOptions& options, const std::string& log) {
+                  const bus::NodeOptions& options, int log) {
   std::vector<std::string> words{"saphira", "up", name};
   for (const std::string& one : set)
     words.insert(words.end(), {"--set", one});
@@ -199,8 +206,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
     setenv(variable.c_str(), value.c_str(), 1);
   setsid();
   const int nothing = open("/dev/null", O_RDONLY);
-  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0600);
-  if (nothing < 0 || file < 0 || dup2(nothing, 0) < 0 || dup2(file, 1) < 0 || dup2(file, 2) < 0)
+  if (nothing < 0 || dup2(nothing, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0)
     _exit(bus::kExitBroken);
   execv("/proc/self/exe", argv.data());
   _exit(bus::kExitBroken);
@@ -219,7 +225,12 @@ int detach(const std::string& name, const std::vector<std::string>& set,
     std::cerr << "saphira: " << text << '\n';
   const std::string running = name_of(deployment, options);
   const std::string log = log_of(running);
-  const pid_t child = start_again(std::filesystem::absolute(deployment.file), set, options, log);
+  { const RunFolder unheld(running); }  // the log of a running one stays as it is
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0600);
+  if (file < 0)
+    throw std::runtime_error(cannot_be(log, "written"));
+  const pid_t child = start_again(std::filesystem::absolute(deployment.file), set, options, file);
+  close(file);
   const auto began = Clock::now();
   int status = 0;
   while (!stop.requested() && seconds_since(began) < kStarted) {
@@ -229,7 +240,8 @@ int detach(const std::string& name, const std::vector<std::string>& set,
       return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
     }
     for (const Running& one : running_deployments())
-      if (one.name == running && read_file(log).find(kAreStarted) != std::string::npos) {
+      if (one.name == running && one.pid == child &&
+          read_file(log).find(kAreStarted) != std::string::npos) {
         std::cout << running << " runs (process " << child << "); its output: " << log
                   << "; saphira stop ends it\n";
         return bus::kExitOk;

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/text.hpp"
 #include "system/system.hpp"
 #include "watch.hpp"
 
@@ -34,6 +35,8 @@ void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProce
 int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
            const bus::Stop& stop) {
   std::vector<runtime::Unit> units = system::units();
+  if (!options.drawing.empty())
+    expect_ending(options.drawing, ".svg");
   if (options.table) {
     std::fputs(runtime::wiring_table(units).c_str(), stdout);
     return bus::kExitOk;
@@ -47,7 +50,7 @@ int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
     find_trouble(units, seen);
   if (!options.drawing.empty()) {
     if (!replace_file(options.drawing, runtime::wiring_drawing(units))) {
-      std::fprintf(stderr, "saphira wiring: %s cannot be written\n", options.drawing.c_str());
+      std::fprintf(stderr, "saphira: %s\n", cannot_be(options.drawing, "written").c_str());
       return bus::kExitFailed;
     }
     std::printf("drew %s\n", options.drawing.c_str());

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::cli {
@@ -132,8 +133,8 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     ++bare;
   const auto expect = [&](std::size_t count, const std::string& form) {
     if (bare != count)
-      throw std::invalid_argument("expected " + form + ", found " + std::to_string(bare) +
-                                  (bare == 1 ? " word" : " words") + " after " + words[0]);
+      throw std::invalid_argument("expected " + form + ", found " + counted(bare, "word") +
+                                  " after " + words[0]);
     for (std::size_t i = 0; i < count; ++i)
       if (!parse_number(rest[i]))
         throw std::invalid_argument("expected " + form + ", found \"" + rest[i] + "\"");
@@ -148,6 +149,12 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     rest.erase(rest.begin());
     --bare;
   }
+  // Lengths may have their unit; one alone may be a name.
+  if (words[0] == "go" && bare >= 2)
+    for (std::size_t i = 0; i < bare; ++i)
+      if (const std::string number = rest[i].substr(0, rest[i].size() - 1);
+          rest[i].ends_with("m") && parse_number(number))
+        rest[i] = number;
   // The name of a place can have several words.
   if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
     std::string place = rest[0];

@@ -45,8 +45,7 @@ constexpr std::array<Form, 16> kForms{
   for (const Form& form : kForms) {
     if (!words.empty() && form.verb == words.front())
       throw std::invalid_argument("expected " + std::string(form.verb) + std::string(form.rest) +
-                                  ", found " + std::to_string(words.size() - 1) +
-                                  (words.size() == 2 ? " word" : " words") + " after it");
+                                  ", found " + counted(words.size() - 1, "word") + " after it");
     verbs.append(verbs.empty() ? "" : &form == &kForms.back() ? " or " : ", ").append(form.verb);
   }
   throw std::invalid_argument("expected " + verbs +

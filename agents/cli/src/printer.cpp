@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::cli {
 
 namespace {
@@ -91,8 +93,9 @@ void Printer::run(const std::shared_ptr<Shared>& shared) {
       return;
     std::string text = std::exchange(shared->lines, {});
     if (shared->left_out > 0)
-      text += "(" + std::to_string(std::exchange(shared->left_out, 0)) +
-              " messages were left out: nobody read)\n";
+      text +=
+          "(left out, as nobody read: " + counted(std::exchange(shared->left_out, 0), "message") +
+          ")\n";
     text += std::exchange(shared->picture, {});
     shared->printing = true;
     lock.unlock();

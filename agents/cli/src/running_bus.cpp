@@ -1,9 +1,14 @@
 #include "saphira/cli/running_bus.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace saphira::cli {
+
+namespace {
+
+constexpr const char* kOpen = "none";
+
+}  // namespace
 
 std::string to_text(const RunningBus& bus) {
   return nlohmann::json{{"what", bus.what},
@@ -12,7 +17,8 @@ std::string to_text(const RunningBus& bus) {
                         {"profile", bus.profile},
                         {"peers", bus.peers},
                         {"interface", bus.interface},
-                        {"deployment", bus.deployment}}
+                        {"deployment", bus.deployment},
+                        {"security", bus.security}}
              .dump() +
          "\n";
 }
@@ -20,24 +26,39 @@ std::string to_text(const RunningBus& bus) {
 std::optional<RunningBus> parse_running_bus(std::string_view text) {
   try {
     const nlohmann::json json = nlohmann::json::parse(text);
-    return RunningBus{json.at("what"),      json.at("robot"), json.at("domain"),
-                      json.at("profile"),   json.at("peers"), json.at("interface"),
-                      json.at("deployment")};
+    return RunningBus{json.at("what"),       json.at("robot"),          json.at("domain"),
+                      json.at("profile"),    json.at("peers"),          json.at("interface"),
+                      json.at("deployment"), json.value("security", "")};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
   }
 }
 
-const RunningBus* bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running) {
-  if (running.empty())
-    return nullptr;
-  for (const RunningBus& bus : running)
+std::optional<RunningBus> bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running,
+                                    const GivenOptions& given) {
+  // A network alone is given for a robot that runs elsewhere.
+  if (given.network && !given.robot && !given.domain)
+    return std::nullopt;
+  std::optional<RunningBus> meant;
+  for (RunningBus bus : running) {
+    if ((given.robot && bus.robot != usual.robot) || (given.domain && bus.domain != usual.domain))
+      continue;
+    if (given.network) {
+      bus.profile = usual.profile;
+      bus.peers = usual.peers;
+      bus.interface = usual.interface;
+    }
+    // A person's own credentials come before those of a service.
+    if (given.security || bus.security.empty() ||
+        (bus.security != kOpen && usual.security != kOpen))
+      bus.security = usual.security;
     if (options_of(bus, usual).empty())
-      return nullptr;
-  // A real robot comes before a demonstration beside it.
-  const auto found = std::find_if(running.begin(), running.end(),
-                                  [](const RunningBus& bus) { return bus.deployment; });
-  return found == running.end() ? &running.front() : &*found;
+      return std::nullopt;
+    // A real robot comes before a demonstration beside it.
+    if (!meant || (bus.deployment && !meant->deployment))
+      meant = std::move(bus);
+  }
+  return meant;
 }
 
 std::string options_of(const RunningBus& bus, const RunningBus& usual) {
@@ -56,6 +77,8 @@ std::string options_of(const RunningBus& bus, const RunningBus& usual) {
       add("--peer", peer);
   if (bus.interface != usual.interface && !bus.interface.empty())
     add("--interface", bus.interface);
+  if (bus.security != usual.security)
+    add("--security", bus.security);
   return options;
 }
 

@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/text.hpp"
+
 extern "C" char** environ;
 
 namespace saphira::cli {
@@ -227,8 +229,8 @@ void Supervisor::renew(const std::function<std::string(const std::string& progra
       say(slot.spec.name + " stays as it is: " + why_not);
   }
   say(to_renew_.empty() ? "no program has a new version to take in"
-                        : "new versions of " + std::to_string(to_renew_.size()) +
-                              " programs are taken in, one after the other");
+                        : "new versions of " + counted(to_renew_.size(), "program") +
+                              " are taken in, one after the other");
 }
 
 void Supervisor::renew_next() {

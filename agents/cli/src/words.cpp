@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <stdexcept>
 
 #include "saphira/situation/format.hpp"
 
@@ -55,6 +56,12 @@ std::string status_table(std::vector<SeenProcess> processes) {
               : status.reason()});
   }
   return table(rows);
+}
+
+void expect_ending(const std::string& path, const std::string& ending) {
+  if (!path.ends_with(ending))
+    throw std::invalid_argument(path + ": expected a name that ends with " + ending +
+                                ", the kind of file that this writes");
 }
 
 }  // namespace saphira::cli

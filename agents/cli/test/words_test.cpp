@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 namespace saphira::cli {
 namespace {
 
@@ -33,6 +35,18 @@ TEST(StatusTable, SaysWhoIsLost) {
   EXPECT_LT(text.find("lost"), intentions);
   EXPECT_EQ(text.find("lost", intentions), std::string::npos);
   EXPECT_NE(text.find("running", intentions), std::string::npos);
+}
+
+TEST(Ending, IsThatOfTheContent) {
+  EXPECT_NO_THROW(expect_ending("floor.svg", ".svg"));
+  try {
+    expect_ending("floor.txt", ".svg");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "floor.txt: expected a name that ends with .svg, the kind of file that this "
+                 "writes");
+  }
 }
 
 }  // namespace

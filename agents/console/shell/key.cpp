@@ -11,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::console {
 
 namespace {
@@ -42,7 +44,7 @@ Kept keep(const std::string& file) {
     return {new_key(), 0};
   const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0)
-    throw std::runtime_error(file + ": cannot be opened, to keep the console's key");
+    throw std::runtime_error(cannot_be(file, "opened") + "; it is for the console's key");
   struct stat state {};
   std::array<char, 100> text{};
   const ssize_t size = read(fd, text.data(), text.size());
@@ -51,17 +53,18 @@ Kept keep(const std::string& file) {
   Kept kept;
   content >> kept.key >> kept.port;
   const bool open_to_others = fstat(fd, &state) != 0 || (state.st_mode & 077U) != 0;
-  bool written = true;
+  std::string trouble;
   if (!open_to_others && kept.key.size() < 2 * kBytes) {
     kept = {new_key(), 0};
-    written = write_all(fd, kept);
+    if (!write_all(fd, kept))
+      trouble = cannot_be(file, "written");
   }
   close(fd);
   if (open_to_others)
     throw std::runtime_error(file +
                              ": others may read the console's key; chmod 600 it, or remove it");
-  if (!written)
-    throw std::runtime_error(file + ": the console's key cannot be written");
+  if (!trouble.empty())
+    throw std::runtime_error(trouble + "; it is for the console's key");
   return kept;
 }
 
@@ -81,9 +84,10 @@ void keep_port(const std::string& file, const Kept& kept, int port) {
     return;
   const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
   const bool written = fd >= 0 && write_all(fd, {kept.key, port});
+  const std::string trouble = written ? "" : cannot_be(file, "written");
   close(fd);
   if (!written)
-    throw std::runtime_error(file + ": the console's port cannot be written");
+    throw std::runtime_error(trouble + "; it is for the console's port");
 }
 
 }  // namespace saphira::console

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "browser.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::console {
 
@@ -44,7 +45,7 @@ void make_screenshot(const std::string& address, const ScreenshotOptions& option
   std::ofstream out(options.file, std::ios::binary);
   out << decode_base64(picture.at("data").get<std::string>());
   if (!out.flush())
-    throw std::runtime_error(options.file + ": cannot be written");
+    throw std::runtime_error(cannot_be(options.file, "written"));
 }
 
 }  // namespace saphira::console

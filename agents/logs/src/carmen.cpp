@@ -517,7 +517,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
 std::string read_log(const std::string& path, std::string* trouble) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file)
-    throw std::runtime_error(path + ": cannot be opened");
+    throw std::runtime_error(cannot_be(path, "opened"));
   std::string out;
   std::array<char, 1 << 16> part{};
   for (;;) {

@@ -8,6 +8,7 @@
 
 #include "relay.hpp"
 #include "saphira/base/stop_signals.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
 
 namespace {
@@ -20,7 +21,7 @@ std::vector<relay::Robot> read_robots(const std::string& file) {
   text << in.rdbuf();
   struct stat state {};
   if (!in || stat(file.c_str(), &state) != 0)
-    throw std::invalid_argument(file + ": cannot be read");
+    throw std::invalid_argument(cannot_be(file, "read"));
   if ((state.st_mode & 077U) != 0)
     throw std::invalid_argument(file + ": others may read the robots' tokens; chmod 600 it");
   return relay::parse_robots(file, text.str());

@@ -145,7 +145,7 @@ void Microphone::read_once() {
   } else if (fs::is_fifo(source_)) {
     const int file = open(source_.c_str(), O_RDONLY | O_NONBLOCK);
     if (file < 0)
-      throw std::runtime_error("the pipe " + source_ + " cannot be read");
+      throw std::runtime_error(cannot_be(source_, "read"));
     read_pipe(file);  // the next writer is read next
     close(file);
   } else {
@@ -244,7 +244,7 @@ void Speaker::play_once(const Sound& sound) {
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "/%04d.wav", ++files_);
   if (!(std::ofstream(sink_ + name.data(), std::ios::binary) << wav(sound)))
-    throw std::runtime_error(sink_ + name.data() + " cannot be written");
+    throw std::runtime_error(cannot_be(sink_ + name.data(), "written"));
 }
 
 void Speaker::play_on_device(const Sound& sound) const {

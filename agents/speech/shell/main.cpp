@@ -18,7 +18,7 @@ void write_sound(const std::filesystem::path& path, const speech::Sound& sound) 
   std::ofstream out(path, std::ios::binary);
   out << speech::wav(sound) << std::flush;
   if (!out)
-    throw std::runtime_error(path.string() + ": cannot be written");
+    throw std::runtime_error(cannot_be(path, "written"));
 }
 
 /// A file for each line, and one for all.

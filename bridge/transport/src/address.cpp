@@ -5,11 +5,13 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 
 #include "baud.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::transport {
 
@@ -149,6 +151,14 @@ Address parse_address(const std::string& text) {
     throw std::invalid_argument("\"" + text + "\": the path of a local socket has at most " +
                                 std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   return address;
+}
+
+std::string line_trouble(const Address& address) {
+  if (address.kind != Address::Kind::serial || access(address.name.c_str(), R_OK | W_OK) == 0)
+    return {};
+  const char* const todo = errno == EACCES ? "; its users are of the group dialout"
+                                           : "; the bridge waits until it is there";
+  return cannot_be(address.name, "opened") + todo;
 }
 
 std::string default_address() {

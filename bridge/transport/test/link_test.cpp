@@ -18,6 +18,15 @@
 namespace saphira::transport {
 namespace {
 
+TEST(Address, AMissingLineIsNamed) {
+  EXPECT_EQ(line_trouble(parse_address("/dev/ttyNone@19200")),
+            "/dev/ttyNone: cannot be opened: No such file or directory; the bridge waits until it "
+            "is there");
+  EXPECT_EQ(line_trouble(parse_address("/dev/null")), "");
+  EXPECT_EQ(line_trouble(parse_address("unix:/nowhere")), "");
+  EXPECT_EQ(line_trouble(parse_address("tcp:lab:8101")), "");
+}
+
 TEST(Address, IsReadInEveryForm) {
   EXPECT_EQ(parse_address("/dev/ttyS0").text(), "/dev/ttyS0@9600");
   EXPECT_EQ(parse_address("/dev/ttyUSB0@19200").baud, 19200);

@@ -45,6 +45,8 @@ std::atomic<std::uint64_t> unwritten{0};
 }  // namespace
 
 void write_log(v1::LogLevel level, const std::string& text) {
+  if (level == v1::LOG_ERROR)
+    has_erred() = true;
   if (!can_write()) {
     ++unwritten;
     return;
@@ -54,6 +56,11 @@ void write_log(v1::LogLevel level, const std::string& text) {
   for (const Level& known : kLevels)
     if (known.ours == level)
       logger().log(known.theirs, text);
+}
+
+std::atomic<bool>& has_erred() {
+  static std::atomic<bool> erred{false};
+  return erred;
 }
 
 bool set_log_level(const std::string& name) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "system.h"
@@ -8,6 +9,8 @@ namespace saphira::bus::internal {
 
 /// To stderr, at once.
 void write_log(v1::LogLevel level, const std::string& text);
+/// True after an error was logged.
+std::atomic<bool>& has_erred();
 /// debug, info, warning or error; lower levels are not written. False for any other name.
 bool set_log_level(const std::string& name);
 

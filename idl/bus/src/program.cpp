@@ -104,6 +104,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   if (const std::optional<int> code = app.parse(argc, argv))
     return *code;
   internal::has_worked() = false;
+  internal::has_erred() = false;
   std::string what;
   std::string usage;  // the first such error, for the person who gave the input
   try {
@@ -113,12 +114,14 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
       internal::check_credentials(options);
       stop.request();
     }
-    return body(options, stop);
+    const int code = body(options, stop);
+    // A mistake that a running program only reports also fails a dry run.
+    return options.dry_run && code == kExitOk && internal::has_erred() ? kExitFailed : code;
   } catch (const FileError& error) {
     usage = what = error.what();
   } catch (const std::invalid_argument& error) {
     what = error.what();
-    usage = "saphira-" + options.name + ": " + what;
+    usage = app.program() + ": " + what;
   } catch (const std::exception& error) {
     what = error.what();
   }
@@ -128,7 +131,10 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     std::fprintf(stderr, "%s\n", usage.c_str());
     return kExitUsage;
   }
-  internal::write_log(v1::LOG_ERROR, options.name + ": " + what);
+  if (app.program() == "saphira-" + name)
+    internal::write_log(v1::LOG_ERROR, options.name + ": " + what);
+  else  // a command that people give, no service with a log
+    std::fprintf(stderr, "%s: %s\n", app.program().c_str(), what.c_str());
   return kExitBroken;
 }
 

@@ -59,5 +59,35 @@ TEST(Program, TheSameIsOurMistakeWhereTheServiceWasAtWork) {
       << "of another run";
 }
 
+TEST(Program, ADryRunFailsForAMistakeThatARunningProgramOnlyReports) {
+  std::string name = "saphira-test";
+  std::string dry = "--dry-run";
+  char* argv[] = {name.data(), dry.data(), nullptr};
+  const auto code = [&](int argc, const std::string& mistake) {
+    return run_program(argc, argv, "test", "A test", {},
+                       [&](const NodeOptions& options, const Stop&) {
+                         Node node(options, make_memory_bus());
+                         node.warn("an old file");
+                         if (!mistake.empty())
+                           node.error(mistake);
+                         return static_cast<int>(kExitOk);
+                       });
+  };
+  EXPECT_EQ(code(2, ""), kExitOk);
+  EXPECT_EQ(code(2, "a.beh:1:1: expected a name"), kExitFailed);
+  EXPECT_EQ(code(1, "a.beh:1:1: expected a name"), kExitOk);
+}
+
+// What people type is answered by the name that they typed.
+TEST(Program, AnErrorBeginsWithTheNameOfTheProgram) {
+  std::string name = "saphira-test";
+  char* argv[] = {name.data(), nullptr};
+  testing::internal::CaptureStderr();
+  run_program(1, argv, "test", "A test", {}, [](const NodeOptions&, const Stop&) -> int {
+    throw std::invalid_argument("expected a place");
+  });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "saphira-test: expected a place\n");
+}
+
 }  // namespace
 }  // namespace saphira::bus::test

@@ -27,10 +27,11 @@ constexpr std::array<const char*, 4> kOfPeople{"operator", "agent", "observer", 
 std::string read(const std::string& file) {
   try {
     return read_file(file);
-  } catch (const std::exception&) {
-    fail(file, "cannot be read",
-         "a folder of credentials is made by `saphira security add` and copied whole, by and for "
-         "the user who runs the program");
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(
+        std::string(error.what()) +
+        "; a folder of credentials is made by `saphira security add` and copied whole, by and for "
+        "the user who runs the program");
   }
 }
 
@@ -81,7 +82,8 @@ Credentials load_shared(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
     fail(folder, "there is no such folder of credentials",
-         "`saphira security add` makes one on the machine of the authority; copy it here");
+         "`saphira security add` makes one on the machine of the authority; copy it here. "
+         "For a simulator on this machine alone, --security none runs without");
   Credentials found;
   found.files.authority = folder + "/" + kAuthority;
   found.authority = read(found.files.authority);

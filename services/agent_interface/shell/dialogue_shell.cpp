@@ -17,6 +17,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::agent_interface {
@@ -241,7 +242,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
 
 void DialogueShell::remember() {
   if (!options_.memory.empty() && !replace_file(options_.memory, dialogue_.save()))
-    node_.warn("what the robot was told cannot be kept: " + options_.memory + " cannot be written");
+    node_.warn("what the robot was told cannot be kept: " + cannot_be(options_.memory, "written"));
 }
 
 void DialogueShell::publish() {

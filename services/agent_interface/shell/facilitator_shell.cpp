@@ -6,6 +6,7 @@
 #include "agent_interface/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -123,7 +124,7 @@ void FacilitatorShell::step(double now) {
   const Facilitator::Outputs out = facilitator_.step(now);
   awaits_ = !out.requests.empty();
   if (out.changed && !memory_.empty() && !replace_file(memory_, sealed(facilitator_.save())))
-    node_.warn(memory_ + " cannot be written: after a restart an action may be done again");
+    node_.warn(cannot_be(memory_, "written") + "; after a restart an action may be done again");
   for (const Request& request : out.requests)
     if (request.service == robot_.address())
       robot_says(request, robot_.begin(request, now));

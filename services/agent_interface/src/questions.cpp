@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <tuple>
 
 #include "words.hpp"
 
@@ -163,16 +164,20 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
         true, out);
   } else if (functor == "what_do_you_know") {
     constexpr std::array kKinds{
-        std::pair{Advice::Kind::office_of, "offices"},
-        std::pair{Advice::Kind::person_at, "places of people"},
-        std::pair{Advice::Kind::knows_where, "people who know where others are"},
-        std::pair{Advice::Kind::hazard, "hazards and rules for places"}};
+        std::tuple{Advice::Kind::office_of, "office", "offices"},
+        std::tuple{Advice::Kind::person_at, "place of a person", "places of people"},
+        std::tuple{Advice::Kind::knows_where, "person who knows where others are",
+                   "people who know where others are"},
+        std::tuple{Advice::Kind::hazard, "hazard or rule for places",
+                   "hazards and rules for places"}};
     std::string counts;
-    for (const auto& [kind, words] : kKinds) {
-      const auto count = std::count_if(known.begin(), known.end(),
-                                       [&](const Advice& one) { return one.kind == kind; });
+    for (const auto& [kind, one, many] : kKinds) {
+      const auto count =
+          std::count_if(known.begin(), known.end(),
+                        [&, wanted = kind](const Advice& fact) { return fact.kind == wanted; });
       if (count > 0)
-        counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + words;
+        counts +=
+            (counts.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
     }
     std::string newest;
     for (std::size_t i = 0; i < std::min(known.size(), kFewFacts); ++i)

@@ -756,7 +756,7 @@ TEST_F(DialogueTest, ItSaysWhatItKnows) {
   hear("Flakey, there is a water leak in this corridor");
   hear("Flakey, keep out of EJ-231");
   EXPECT_EQ(said("Flakey, what do you know?"),
-            "I know 1 offices, 1 places of people, 2 hazards and rules for places; Alice said "
+            "I know 1 office, 1 place of a person, 2 hazards and rules for places; Alice said "
             "that I am to keep out of EJ-231; Alice said that there is a water leak at upper "
             "corridor; Bob said that john is at EJ-233");
   EXPECT_EQ(said("Flakey, is there a leak?"),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -57,7 +56,7 @@ MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(pat
                       : found || std::filesystem::exists(path_) ? Memory::Condition::kWhole
                                                                 : Memory::Condition::kNone;
   if (!begin(memory_))
-    throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
+    throw std::runtime_error(cannot_be(path_, "written"));
 }
 
 bool MemoryFile::begin(Memory& memory) {

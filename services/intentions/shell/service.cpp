@@ -306,9 +306,11 @@ void Service::remember(const News& news) {
     lines += write_line(ending);
   Notes notes;
   if (!lines.empty() && !memory_.append(lines))
-    notes.warn("the memory file cannot be written: a restart may do a finished goal again");
+    notes.warn(cannot_be("the memory file", "written") +
+               "; a restart may do a finished goal again");
   if (news.work && !memory_.keep(*news.work))
-    notes.warn("the memory file cannot be written: a restart may do again what has been done");
+    notes.warn(cannot_be("the memory file", "written") +
+               "; a restart may do again what has been done");
   ports_.say(notes.lines());
 }
 

@@ -97,7 +97,7 @@ TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
   registry.add(schema);
   EXPECT_EQ(registry.find("stop")->summary, "another");
   EXPECT_EQ(registry.instead_of("stpo"),
-            "did you mean stop? There are 5 (saphira goal activities)");
+            "did you mean stop? saphira goal activities lists the 5 that there are");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saphira/base/durable.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::runtime {
 namespace {
@@ -19,15 +20,16 @@ std::string Saver::offer(const std::function<std::string()>& text) {
   if (writing_.valid() &&
       writing_.wait_for(std::chrono::seconds::zero()) != std::future_status::ready)
     return {};
-  bool good = !writing_.valid() || writing_.get();
+  std::string trouble = writing_.valid() ? writing_.get() : "";
   try {
     writing_ = std::async(std::launch::async, [file = path_, content = text()] {
-      return replace_file(file, content, true);
+      return replace_file(file, content, true) ? std::string() : cannot_be(file, "written");
     });
-  } catch (const std::system_error&) {
-    good = false;  // no thread was available
+  } catch (const std::system_error& error) {  // no thread was available
+    trouble = path_ + ": cannot be written: " + error.what();
   }
-  return std::exchange(works_, good) && !good ? path_ + " cannot be written" : "";
+  const bool worked = std::exchange(works_, trouble.empty());
+  return worked ? trouble : "";
 }
 
 }  // namespace saphira::runtime

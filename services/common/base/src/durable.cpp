@@ -51,6 +51,7 @@ class File {
     }
     return true;
   }
+  bool opened() const { return fd_ >= 0; }
   bool sync() const { return ::fsync(fd_) == 0; }
 
  private:
@@ -105,6 +106,19 @@ std::string read_or_set_aside(const std::string& path,
          (error ? " (it could not be set aside: " + error.message() + ")"
                 : "; it is set aside as " + aside) +
          ": " + why;
+}
+
+bool can_replace_file(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    errno = EISDIR;
+    return false;
+  }
+  const std::string fresh = path + ".new";
+  if (!File(fresh, O_WRONLY | O_CREAT | O_TRUNC).opened())
+    return false;
+  ::unlink(fresh.c_str());
+  return true;
 }
 
 bool replace_file(const std::string& path, std::string_view text, bool sync) {

@@ -59,6 +59,9 @@ std::string find_file(const std::string& folder, const std::string& name,
   for (const fs::path& path : {fs::path(folder) / name, fs::path(folder) / (name + extension)})
     if (fs::is_regular_file(path, error))
       return path.string();
+  if (fs::exists(name, error))
+    throw std::invalid_argument(name + ": expected a file, found " +
+                                (fs::is_directory(name, error) ? "a folder" : "a device"));
   const std::vector<std::string> names = names_in(folder, extension);
   std::string list;
   for (const std::string& known : names)

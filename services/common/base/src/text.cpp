@@ -2,10 +2,10 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
@@ -139,7 +139,7 @@ void expect_last_line_break(std::string_view text, const std::string& file) {
 std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)
-    throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+    throw std::runtime_error(cannot_be(path, "read"));
   in.peek();
   if (in.bad())
     throw std::runtime_error(path + ": cannot be read (is it a file?)");
@@ -148,6 +148,15 @@ std::string read_file(const std::string& path) {
   if (text.starts_with(kByteOrderMark))
     text.erase(0, kByteOrderMark.size());
   return text;
+}
+
+std::string cannot_be(const std::string& path, std::string_view done) {
+  const int why = errno;
+  return path + ": cannot be " + std::string(done) + ": " + std::generic_category().message(why);
+}
+
+std::string counted(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
 std::string_view other_format(std::string_view text) {

@@ -86,5 +86,19 @@ TEST(Durable, AFileIsReplacedWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("full.new")));
 }
 
+TEST(Durable, AFileIsTriedAndStaysAsItIs) {
+  const test::TempDir folder;
+  const std::string path = folder.path("state");
+  EXPECT_TRUE(can_replace_file(path));
+  EXPECT_FALSE(std::filesystem::exists(path) || std::filesystem::exists(path + ".new"));
+  write(path, "one");
+  EXPECT_TRUE(can_replace_file(path));
+  EXPECT_EQ(read_file(path), "one");
+  EXPECT_FALSE(can_replace_file(folder.path("nowhere/state")));
+  EXPECT_EQ(errno, ENOENT);
+  EXPECT_FALSE(can_replace_file(folder.path(".")));
+  EXPECT_EQ(errno, EISDIR);
+}
+
 }  // namespace
 }  // namespace saphira

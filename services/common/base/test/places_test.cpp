@@ -33,6 +33,16 @@ TEST(Places, APathIsTakenAsItIs) {
   EXPECT_EQ(find_file(kRobots, path, ".p"), path);
 }
 
+TEST(Places, AFolderIsNoFile) {
+  for (const auto& [path, found] : {std::pair("/tmp", "a folder"), {"/dev/null", "a device"}})
+    try {
+      find_file(kRobots, path, ".p");
+      FAIL() << "found";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), path + std::string(": expected a file, found ") + found);
+    }
+}
+
 TEST(Places, WhatIsNotThereIsAnErrorThatListsWhatIs) {
   try {
     find_file(kRobots, "nonesuch", ".p");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <fstream>
 
 #include "process.hpp"
@@ -85,6 +86,18 @@ TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_EQ(other_format("POS (1) 0, 0, 0\n"), "");
   EXPECT_EQ(other_format("P50 0 0\n"), "");
   EXPECT_EQ(other_format(""), "");
+}
+
+TEST(Text, TheReasonStandsBehindTheFile) {
+  errno = ENOSPC;
+  EXPECT_EQ(cannot_be("/run/lock", "written"),
+            "/run/lock: cannot be written: No space left on device");
+}
+
+TEST(Text, OneThingIsNoPlural) {
+  EXPECT_EQ(counted(0, "program"), "0 programs");
+  EXPECT_EQ(counted(1, "program"), "1 program");
+  EXPECT_EQ(counted(2, "program"), "2 programs");
 }
 
 TEST(Text, UnreadableFileIsNamed) {

@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/numbers.hpp"
 
 namespace saphira {
 
@@ -30,6 +32,44 @@ int not_understood(const CLI::App& app) {
       stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
       meant.empty() ? "; --help lists the options" : (": did you mean " + meant + "?").c_str());
   return kUsage;
+}
+
+/// The kind of value that the option of that name takes.
+std::string kind_of(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* command = &app; command != nullptr;
+       command = command->get_subcommands().empty() ? nullptr : command->get_subcommands().front())
+    for (const CLI::Option* const option : command->get_options())
+      if (option->get_name() == name) {
+        const std::string type = option->get_type_name();
+        return type.starts_with("UINT")  ? "a whole number of 0 or more"
+               : type.starts_with("INT") ? "a whole number"
+                                         : "a number";
+      }
+  return "another value";
+}
+
+/// An error of CLI11 about a value, in our words; empty for others.
+std::string about_value(const CLI::App& app, const std::string& error) {
+  const auto between = [&](const std::string& before, const std::string& behind) {
+    const std::size_t begin = error.find(before);
+    const std::size_t end = begin == std::string::npos ? begin : error.find(behind, begin);
+    return end == std::string::npos
+               ? std::string()
+               : error.substr(begin + before.size(), end - begin - before.size());
+  };
+  if (const std::string name = between("Could not convert: ", " = "); !name.empty())
+    return name + ": expected " + kind_of(app, name) + ", found " +
+           error.substr(error.find(" = ") + 3);
+  if (const std::string value = between(": Value ", " not in range "); !value.empty()) {
+    const double low = std::strtod(between(" not in range ", " to ").c_str(), nullptr);
+    const double high = std::strtod(error.substr(error.rfind(" to ") + 4).c_str(), nullptr);
+    constexpr double kNoEnd = 1e300;  // of CLI::PositiveNumber
+    return error.substr(0, error.find(": Value ")) + ": expected a number " +
+           (high > kNoEnd ? "above " + plain(low)
+                          : "between " + plain(low) + " and " + plain(high)) +
+           ", found " + value;
+  }
+  return {};
 }
 
 bool has_default(const std::string& value) {
@@ -201,12 +241,20 @@ Option CommandLine::option(const std::string& name) const {
   return Option(*option);
 }
 
+std::string CommandLine::program() const {
+  return app_->get_name();
+}
+
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
     return not_understood(*app_);
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = about_value(*app_, error.what()); !text.empty()) {
+      std::fprintf(stderr, "%s: %s\n", program().c_str(), text.c_str());
+      return kUsage;
+    }
     return app_->exit(error) == 0 ? 0 : kUsage;
   }
   return std::nullopt;

@@ -97,10 +97,33 @@ TEST(CommandLine, MistakesAreNamed) {
   };
   EXPECT_EQ(words({"--sped", "1"}), "gauge: \"--sped\" is not understood: did you mean --speed?\n");
   EXPECT_NE(words({"--kind", "radar"}).find("radar not in {laser,sonar}"), std::string::npos);
-  EXPECT_NE(words({"--speed", "-1"}).find("--speed"), std::string::npos);
+  EXPECT_EQ(words({"--speed", "-1"}), "gauge: --speed: expected a number above 0, found -1\n");
   EXPECT_NE(words({"--key", "/nowhere"}).find("/nowhere"), std::string::npos);
   EXPECT_NE(words({"--even", "ab"}).find("--even requires --key"), std::string::npos);
   EXPECT_NE(words({"--key", "/dev/null", "--even", "abc"}).find("two letters"), std::string::npos);
+}
+
+TEST(CommandLine, ANumberIsExpectedInWords) {
+  long count = 0;
+  unsigned long seed = 0;
+  double part = 0.0;
+  double length = 0.0;
+  const auto words = [&](std::vector<const char*> given) {
+    CommandLine line("measures", "gauge");
+    line.add_option("length", length, "[m]");
+    line.add_option("--count,-n", count, "how many");
+    line.add_option("--seed", seed, "of the noise");
+    line.add_option("--part", part, "of the whole").in_range(0.0, 0.5);
+    const Parsed parsed = parse(line, std::move(given));
+    EXPECT_EQ(parsed.code, 2);
+    return parsed.err;
+  };
+  EXPECT_EQ(words({"--count", "x"}), "gauge: --count: expected a whole number, found x\n");
+  EXPECT_EQ(words({"--seed", "x"}),
+            "gauge: --seed: expected a whole number of 0 or more, found x\n");
+  EXPECT_EQ(words({"far"}), "gauge: length: expected a number, found far\n");
+  EXPECT_EQ(words({"--part", "2"}),
+            "gauge: --part: expected a number between 0 and 0.5, found 2\n");
 }
 
 }  // namespace

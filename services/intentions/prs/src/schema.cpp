@@ -126,8 +126,8 @@ std::string Registry::instead_of(std::string_view functor) const {
   for (const auto& [name, schema] : schemas_)
     names.push_back(schema->name);
   const std::string meant = guess(functor, names);
-  return (meant.empty() ? "there are " : "did you mean " + meant + "? There are ") +
-         std::to_string(names.size()) + " (saphira goal activities)";
+  return (meant.empty() ? "" : "did you mean " + meant + "? ") +
+         "saphira goal activities lists the " + std::to_string(names.size()) + " that there are";
 }
 
 void Registry::know_behaviors(std::vector<BehaviorSignature> behaviors) {

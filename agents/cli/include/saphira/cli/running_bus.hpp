@@ -16,16 +16,28 @@ struct RunningBus {
   std::string profile = "host";
   std::vector<std::string> peers;
   std::string interface;
-  bool deployment = false;  ///< of `saphira up`, not of a demonstration
+  bool deployment = false;    ///< of `saphira up`, not of a demonstration
+  std::string security = {};  ///< folder of credentials, or "none"; empty: unknown
+};
+
+/// The bus options that a person gave.
+struct GivenOptions {
+  bool robot = false;
+  bool domain = false;
+  bool network = false;  ///< profile, peers or interface
+  bool security = false;
 };
 
 /// The form in files. An incomplete text reads as nothing.
 std::string to_text(const RunningBus& bus);
 std::optional<RunningBus> parse_running_bus(std::string_view text);
 
-/// The bus that a command without bus options joins. `running`: newest first. The usual bus if it
-/// runs or no bus runs (nullptr), otherwise the newest deployment, else the newest.
-const RunningBus* bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running);
+/// The bus that a command joins: `usual` are its own options. `running`: newest first. A given
+/// robot or domain selects; among the rest it is the usual bus if that runs, otherwise the newest
+/// deployment, else the newest. What is given stays, the rest is that of the running bus. Nothing:
+/// `usual` it is, also where no bus is meant.
+std::optional<RunningBus> bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running,
+                                    const GivenOptions& given = {});
 
 /// The options to join it, without defaults.
 std::string options_of(const RunningBus& bus, const RunningBus& usual);

@@ -23,4 +23,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows);
 /// The table of processes, sorted by name.
 std::string status_table(std::vector<SeenProcess> processes);
 
+/// std::invalid_argument unless the file to be written has the ending of its content.
+void expect_ending(const std::string& path, const std::string& ending);
+
 }  // namespace saphira::cli

@@ -30,6 +30,9 @@ struct Address {
 /// std::invalid_argument gives the expected form.
 Address parse_address(const std::string& text);
 
+/// The reason why its serial line cannot be opened now; empty: it can, or it has none.
+std::string line_trouble(const Address& address);
+
 /// The socket of a simulator on this machine: $ROBOT_SOCKET, else /tmp/saphira-robot-<uid>.
 std::string default_address();
 

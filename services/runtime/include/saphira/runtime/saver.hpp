@@ -23,7 +23,7 @@ class Saver {
 
   std::string path_;
   Clock::time_point began_ = Clock::now();
-  std::future<bool> writing_;
+  std::future<std::string> writing_;  ///< its trouble, in words
   bool works_ = true;
 };
 

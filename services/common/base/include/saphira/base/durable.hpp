@@ -32,4 +32,8 @@ std::string read_or_set_aside(const std::string& path,
 /// the old file is unchanged.
 bool replace_file(const std::string& path, std::string_view text, bool sync = false);
 
+/// True where replace_file could begin to write the file, which stays as it is. Otherwise errno
+/// gives the reason.
+bool can_replace_file(const std::string& path);
+
 }  // namespace saphira

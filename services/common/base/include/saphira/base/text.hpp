@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -85,6 +86,12 @@ void expect_last_line_break(std::string_view text, const std::string& file);
 /// The whole content of a file, without a byte order mark; std::runtime_error with its name where
 /// it cannot be read.
 std::string read_file(const std::string& path);
+
+/// "PATH: cannot be written: No space left on device": the reason is that of errno.
+std::string cannot_be(const std::string& path, std::string_view done);
+
+/// "1 program", "2 programs".
+std::string counted(std::size_t count, const std::string& thing);
 
 /// The kind of file, in words, of a text that begins as a file of another program; empty for any
 /// other text.

@@ -85,6 +85,9 @@ class CommandLine {
   /// and --version, 2 after an error, which is on stderr then.
   std::optional<int> parse(int argc, const char* const* argv);
 
+  /// Its name in messages.
+  std::string program() const;
+
   /// The parser itself, for a program with subcommands.
   CLI::App& parser() { return *app_; }
 
