@@ -22,13 +22,16 @@ double seconds_of(std::uint64_t cycles) {
   return 0.1 * static_cast<double>(cycles);
 }
 
-/// The newest instance that is heard; otherwise the one that was heard last.
+/// The newest instance that is heard, rather not the copy of a second deployment, which only waits;
+/// otherwise the one that was heard last.
 const Program* find(const std::vector<Program>& programs, const std::string& name) {
   const Program* found = nullptr;
   const auto better = [](const Program& a, const Program& b) {
     const bool heard = a.age <= kLostAge;
     if (heard != (b.age <= kLostAge))
       return heard;
+    if (heard && a.namesake != b.namesake)
+      return b.namesake;
     return heard ? a.status.uptime() < b.status.uptime() : a.age < b.age;
   };
   for (const Program& program : programs)
