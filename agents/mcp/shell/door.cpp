@@ -388,8 +388,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       session_.answer(
           number,
           {!waiting.said.empty() ? waiting.said
-           : heard_writer_.matched() == 0
-               ? "the robot said nothing: saphira-dialogue may not run"
+           : !situation::is_heard(robot_.mind().processes().all(), "dialogue")
+               ? "the robot said nothing: no saphira-dialogue is on the bus"
                : "the robot said nothing: a sentence for it begins with its keyword, such as "
                  "\"Flakey, stop\"",
            {{"said", waiting.said}},

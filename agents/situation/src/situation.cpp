@@ -160,13 +160,16 @@ std::string trouble(const Situation& situation) {
   return text;
 }
 
+bool is_heard(const std::vector<Program>& programs, const std::string& name) {
+  const Program* const program = find(programs, name);
+  return program != nullptr && program->age <= kLostAge;
+}
+
 std::string missing_services(const std::vector<Program>& programs) {
   std::vector<std::string> missing;
-  for (const char* const name : kMakeItGo) {
-    const Program* const program = find(programs, name);
-    if (program == nullptr || program->age > kLostAge)
+  for (const char* const name : kMakeItGo)
+    if (!is_heard(programs, name))
       missing.emplace_back(name);
-  }
   return listed(missing);
 }
 

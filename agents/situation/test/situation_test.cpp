@@ -49,6 +49,11 @@ TEST(Condition, LateIsHeardAndHungIsNot) {
 }
 
 TEST(MissingServices, AreNamed) {
+  Program lost = test::program("dialogue");
+  EXPECT_TRUE(is_heard({lost}, "dialogue"));
+  EXPECT_FALSE(is_heard({lost}, "facilitator"));
+  lost.age = 9.0;
+  EXPECT_FALSE(is_heard({lost}, "dialogue"));
   EXPECT_EQ(missing_services({}), "bridge, behaviors and intentions");
   Program silent = program("intentions");
   silent.age = 9.0;
