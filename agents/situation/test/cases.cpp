@@ -136,6 +136,14 @@ void goals(std::vector<Case>& all) {
                             s.statuses = {goal_status(state, "the reason")};
                           },
                           {"The robot stands", "no goal is underway", said}, {"nobody has asked"}));
+  all.push_back(at_rest("a person has stopped it", "why",
+                        [](Situation& s) {
+                          s.statuses = {goal_status(v1::GOAL_SUCCEEDED, "it stands")};
+                          s.statuses[0].functor("stop");
+                          s.statuses[0].requester("somebody at the console");
+                        },
+                        {"no goal is underway: somebody at the console stopped it"},
+                        {"stop()", "succeeded"}));
   all.push_back(at_rest("a goal is underway, and waits for a door", "why",
                         [](Situation& s) {
                           s.goals = driving().goals;
