@@ -68,8 +68,7 @@ class Situations : public testing::Test {
 };
 
 TEST_F(Situations, APersonTurnsTheRobotAndLetsGo) {
-  EXPECT_FALSE(
-      has(until({"why"}, {"The robot stands", "no goal is underway"}), "drives it"));
+  EXPECT_FALSE(has(until({"why"}, {"The robot stands", "no goal is underway"}), "drives it"));
   test::Process person =
       started({"write", "drive/teleop", R"({"rotation_velocity": 0.5})"}, "person");
   const std::string turns =

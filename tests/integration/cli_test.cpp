@@ -344,7 +344,8 @@ TEST_F(CliTest, TalkSaysThatNobodyListens) {
                           " --domain " + test::domain() + " talk"},
                      folder_.path("talk"));
   EXPECT_EQ(talk.wait(), 1) << talk.output();
-  EXPECT_TRUE(has(talk.output(), "nothing was answered: no program is on the bus")) << talk.output();
+  EXPECT_TRUE(has(talk.output(), "nothing was answered: no program is on the bus"))
+      << talk.output();
 }
 
 TEST_F(CliTest, AskForProgramsSaysThatNobodyAnswers) {

@@ -472,7 +472,7 @@ std::string Reason::goals_reason(bool brief) const {
     return scene_.past ? "no goal was underway" : "no goal is underway";
   }
   if (newest->functor() == "stop" && newest->state() == v1::GOAL_SUCCEEDED)
-    return "no goal is underway: " + requester(newest->id()) + " stopped it";
+    return requester(newest->id()) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason();
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
          ": " + situation::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);

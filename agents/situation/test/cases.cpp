@@ -142,7 +142,7 @@ void goals(std::vector<Case>& all) {
                           s.statuses[0].functor("stop");
                           s.statuses[0].requester("somebody at the console");
                         },
-                        {"no goal is underway: somebody at the console stopped it"},
+                        {"somebody at the console stopped it, and no goal is underway"},
                         {"stop()", "succeeded"}));
   all.push_back(at_rest("a goal is underway, and waits for a door", "why",
                         [](Situation& s) {
