@@ -58,7 +58,7 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
   mcp::Door door(node, robot, session, who);
   std::string input;
   bool open = true;
-  // What was read is answered after the end of the input too, for as long as somebody reads it.
+  // Calls that were read are answered after the end of the input too, while somebody reads that.
   while ((open || door.leave()) && !stop.requested()) {
     std::array<pollfd, 4> fds{{{open ? STDIN_FILENO : -1, POLLIN, 0},
                                {stop.fd(), POLLIN, 0},

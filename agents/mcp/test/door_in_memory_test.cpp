@@ -398,7 +398,7 @@ TEST_F(DoorInMemory, AQuestionWaitsForWhatIsNotHeardYet) {
   EXPECT_EQ(answers(0.5), 6U) << "nobody is there";
 }
 
-TEST_F(DoorInMemory, WhatWasReadIsAnsweredAfterTheEndOfTheInput) {
+TEST_F(DoorInMemory, ACallThatWasReadIsAnsweredAfterTheEndOfTheInput) {
   EXPECT_FALSE(door->leave());
   call(1, "wait_for", {{"wait_s", 5}});
   EXPECT_TRUE(door->leave());

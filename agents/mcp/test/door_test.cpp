@@ -117,7 +117,7 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
   EXPECT_EQ(system.truth().contacts, 0);
 }
 
-TEST(McpDoor, WhatWasReadIsAnsweredAfterTheEndOfTheInput) {
+TEST(McpDoor, ACallThatWasReadIsAnsweredAfterTheEndOfTheInput) {
   System system;
   system.start_all();
   ASSERT_TRUE(wait_activities(system));
