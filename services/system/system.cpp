@@ -44,4 +44,16 @@ std::vector<runtime::Unit> units() {
   return units;
 }
 
+std::string only_writer(const std::string& topic) {
+  std::string writer;
+  for (const runtime::Unit& unit : units())
+    for (const runtime::Port& port : unit.ports)
+      if (port.topic == topic && !port.is_input()) {
+        if (!writer.empty() || port.use == runtime::Port::Use::kChanges)
+          return {};
+        writer = unit.name;
+      }
+  return writer;
+}
+
 }  // namespace saphira::system

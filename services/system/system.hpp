@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "saphira/runtime/component.hpp"
@@ -13,5 +14,8 @@ std::vector<runtime::Component> services();
 
 /// The units of the whole robot: the bridge and the services.
 std::vector<runtime::Unit> units();
+
+/// The one unit that writes this topic, once a cycle, such as bridge; empty: there is none.
+std::string only_writer(const std::string& topic);
 
 }  // namespace saphira::system

@@ -68,8 +68,7 @@ class Situations : public testing::Test {
 };
 
 TEST_F(Situations, APersonTurnsTheRobotAndLetsGo) {
-  EXPECT_FALSE(
-      has(until({"why"}, {"The robot stands", "nobody has asked for a goal"}), "drives it"));
+  EXPECT_FALSE(has(until({"why"}, {"The robot stands", "no goal is underway"}), "drives it"));
   test::Process person =
       started({"write", "drive/teleop", R"({"rotation_velocity": 0.5})"}, "person");
   const std::string turns =
@@ -81,11 +80,11 @@ TEST_F(Situations, APersonTurnsTheRobotAndLetsGo) {
   const std::string waits = until({"why"}, {"The robot stands", "saphira drive hand-back"});
   EXPECT_FALSE(has(waits.substr(0, waits.find('\n')), "saphira write")) << waits;
   EXPECT_TRUE(has(said({"drive", "hand-back"}), "handed back"));
-  EXPECT_FALSE(has(until({"why"}, {"nobody has asked for a goal"}), "saphira write"));
+  EXPECT_FALSE(has(until({"why"}, {"no goal is underway"}), "saphira write"));
 }
 
 TEST_F(Situations, AServiceHangsWhileAGoalIsUnderway) {
-  until({"why"}, {"nobody has asked for a goal"});
+  until({"why"}, {"no goal is underway"});
   test::Process goal = started({"goal", "go", "9", "0"}, "goal");
   until({"why"}, {"drive ahead", "go_to"});
   const pid_t intentions = pid_of("intentions");

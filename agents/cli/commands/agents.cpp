@@ -56,19 +56,22 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
       std::printf("%s\n", text.c_str());
   };
   const auto show = [&] {
-    processes.poll();
     for (const auto& sample : answers.take())
       if (!sample.info.disposed && sample.data.asker() == node.instance() &&
           sample.data.code() == v1::ANSWER_UNDERWAY &&
           !(sample.data.text().empty() && sample.data.results().empty()))
         tell(sample.data);
   };
-  const v1::Answer end = client.ask(
-      request, ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence, &stop, show);
+  const v1::Answer end = ask_program(
+      kFacilitator, node, client, request,
+      ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence, stop, processes, show);
   if (end.service().empty()) {
     if (ask_options.json)
       tell(end);
-    std::cerr << "saphira: " << end.text() << "; " << who_is_there(options, processes) << '\n';
+    std::cerr << "saphira: " << end.text();
+    if (absence(node, processes, kFacilitator).empty())
+      std::cerr << "; " << who_is_there(options, processes);
+    std::cerr << '\n';
     return bus::kExitFailed;
   }
   show();
@@ -110,15 +113,20 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
         set[id] = sample;
     }
   });
+  std::vector<v1::Agent> all;
   for (const auto& [id, agent] : known)
-    std::fputs(describe(agent).c_str(), stdout);
+    all.push_back(agent);
+  std::fputs(describe(all).c_str(), stdout);
   for (const auto& [id, trigger] : set) {
     const std::string held_by = holder(census, trigger.info.writer);
     std::printf("%s%s\n", describe(trigger.data, bus::describe(trigger.data.id())).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
-  if (known.empty())
-    std::printf("no agents; %s\n", who_is_there(options, processes).c_str());
+  if (known.empty()) {
+    const std::string absent = absence(node, processes, kFacilitator);
+    std::printf("no agents; %s\n",
+                (absent.empty() ? who_is_there(options, processes) : absent).c_str());
+  }
   return bus::kExitOk;
 }
 

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 
 #include "commands.hpp"
@@ -137,7 +139,7 @@ class Teleop {
     print(
         "Keep a key down: without keys the robot stops. After you have driven, goals wait until "
         "you\n"
-        "hand the robot back (h, or later: saphira drive hand-back).\n\n\n\n");
+        "hand the robot back (h, or later: saphira drive hand-back).\n\n\n\n\n");
     auto due = Clock::now();
     while (!stop.requested() && !quit_) {
       std::array<pollfd, 4> fds{{{STDIN_FILENO, POLLIN, 0},
@@ -401,13 +403,15 @@ class Teleop {
     std::string third = note_;
     if (!refusal_.empty() && seconds_since(refused_at_) < kTellRefusal)
       third = "refused: " + refusal_;
-    // Three lines, each cut to the terminal, so that the cursor can go back up over them.
+    // Four lines, each cut to the terminal, so that the cursor can go back up over them.
     winsize size{};
     const std::size_t width =
         ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79U;
-    std::string picture = "\x1b[2F";
+    const auto [begin, rest] = two_lines(second, width);
+    std::string picture = "\x1b[3F";
     bool first = true;
-    for (const std::string* each : {&line, &second, &third}) {
+    for (const std::string* each :
+         std::initializer_list<const std::string*>{&line, &begin, &rest, &third}) {
       picture += first ? "\r\x1b[K" : "\n\x1b[K";
       first = false;
       picture += each->substr(0, width);
@@ -460,6 +464,10 @@ class Teleop {
 };
 
 int drive(const std::string& joystick, const bus::NodeOptions& options, const bus::Stop& stop) {
+  if (joystick != kJoystick && access(joystick.c_str(), R_OK) != 0) {
+    std::cerr << "saphira: no joystick " << joystick << ": " << std::strerror(errno) << '\n';
+    return bus::kExitUsage;
+  }
   if (isatty(STDIN_FILENO) == 0) {
     std::cerr << "saphira: drive needs a terminal for its keys\n";
     return bus::kExitUsage;

@@ -146,6 +146,9 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
     const auto status = goals.status(id);
     if (status && follower.show(*status)) {
       deployments.settle(stop);
+      if (const std::string advice = advice_after_failure(goal);
+          status->state() == v1::GOAL_FAILED && !advice.empty())
+        print("           %s\n", advice.c_str());
       return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     }
     const bool empty = processes.all().empty();

@@ -11,13 +11,6 @@ namespace saphira::cli {
 
 namespace {
 
-using std::chrono::milliseconds;
-
-/// The status comes once a second, so every living program has reported after this.
-constexpr milliseconds kListen{1300};
-// With security: Fast DDS repeats a lost handshake message after a second.
-constexpr milliseconds kListenSecured{2600};
-
 /// The status of all programs, and the driver of the robot.
 class StatusView {
  public:
@@ -118,7 +111,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   bus::Node node(options);
   StatusView view(node);
   const auto refresh = [&view] { view.poll(); };
-  poll_for(node, node.identity() ? kListenSecured : kListen, stop, refresh);
+  poll_for(node, listening_time(node), stop, refresh);
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
     return view.anybody() ? bus::kExitOk : bus::kExitFailed;

@@ -23,7 +23,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr const char* kDialogue = "dialogue";
 constexpr double kSilence = 5.0;  // [s] for the first answer
+constexpr double kOther = 3.0;    // [s] for that of another program than saphira-dialogue
 
 struct SayOptions {
   std::vector<std::string> words;
@@ -48,17 +50,33 @@ std::string words_in_line(const std::vector<std::string>& words) {
   return text;
 }
 
+/// The reason why a sentence got no answer; empty while one may still come. `silence`: [s] since it
+/// was said. `advice`: where the dialogue hears it.
+std::string no_answer(const bus::Node& node, const Processes& processes,
+                      const bus::Writer<v1::Utterance>& writer, double silence,
+                      const std::string& advice) {
+  const std::string absent = absence(node, processes, kDialogue);
+  if (!absent.empty() && (writer.matched() == 0 || silence > kOther))
+    return "nothing was answered: " + absent;
+  return silence < kSilence ? "" : "nothing was answered. " + advice;
+}
+
 /// Prints all utterances to and by the robot, as they come.
 int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   auto heard = node.reader(bus::topics::kHeard);
   auto said = node.reader(bus::topics::kSaid);
+  const auto began = Clock::now();
+  const auto is_new = [&](const bus::Sample<v1::Utterance>& sample) {
+    return !sample.info.disposed &&
+           is_for(sample.data, sample.info.age, node.instance(), seconds_since(began));
+  };
   while (!stop.requested()) {
     for (const auto& sample : heard.take())
-      if (!sample.info.disposed)
+      if (is_new(sample))
         print("%s\n", line_of(sample.data).c_str());
     for (const auto& sample : said.take())
-      if (!sample.info.disposed)
+      if (is_new(sample))
         print("%s\n", line_of(sample.data, options.robot).c_str());
     std::fflush(stdout);
     if (std::ferror(stdout) != 0)
@@ -94,13 +112,15 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
       if (sample.data.end() || say_options.quick)
         return sample.data.text().starts_with("what?") ? bus::kExitFailed : bus::kExitOk;
     }
-    if (answered || seconds_since(began) < kSilence)
+    if (answered)
       continue;
-    complain("saphira: nothing was answered. %s\n",
-             writer.matched() == 0
-                 ? ("No program listens: " + who_is_there(options, processes)).c_str()
-                 : "A sentence for the robot begins with its keyword, such as \"Flakey, stop\"");
-    return bus::kExitFailed;
+    if (const std::string why =
+            no_answer(node, processes, writer, seconds_since(began),
+                      "A sentence for the robot begins with its keyword, such as \"Flakey, stop\"");
+        !why.empty()) {
+      complain("saphira: %s\n", why.c_str());
+      return bus::kExitFailed;
+    }
   }
   return bus::kExitFailed;
 }
@@ -136,8 +156,8 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
     processes.poll();
     for (const auto& sample : said.take()) {
       const bool ours = sample.data.answers().writer() == node.instance();
-      // A living writer repeats its earlier sentences to a new reader.
-      if (sample.info.disposed || (!ours && sample.info.age > seconds_since(began) + 1.0))
+      if (sample.info.disposed ||
+          !is_for(sample.data, sample.info.age, node.instance(), seconds_since(began)))
         continue;
       const std::string& text = sample.data.text();
       asked = text.ends_with("?") && !text.starts_with("what?");
@@ -157,19 +177,21 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
       answered = over = false;
       spoke = Clock::now();
     }
-    if (answered || seconds_since(spoke) < kSilence)
+    if (answered)
       continue;
-    complain("saphira: nothing was answered. %s\n",
-             writer.matched() == 0
-                 ? ("No program listens: " + who_is_there(options, processes)).c_str()
-                 : "Its grammar may be another one: --grammar");
+    const std::string why = no_answer(node, processes, writer, seconds_since(spoke),
+                                      "Its grammar may be another one: --grammar");
+    if (why.empty())
+      continue;
+    complain("saphira: %s\n", why.c_str());
     answered = over = true;
     code = bus::kExitFailed;
   }
   return code;
 }
 
-/// Waits for the robot's knowledge on the bus; nothing where none comes within kSilence.
+/// Waits for the robot's knowledge on the bus; nothing where none comes within kSilence, or the
+/// dialogue is not there.
 std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const bus::Stop& stop) {
   auto reader = node.reader(bus::topics::kKnows);
   std::optional<v1::Knowledge> knowledge;
@@ -178,6 +200,8 @@ std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const 
     node.wait(milliseconds(100), &stop);
     processes.poll();
     knowledge = reader.take_newest();
+    if (!absence(node, processes, kDialogue).empty())
+      break;
   }
   return knowledge;
 }
@@ -189,8 +213,9 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
   if (words.empty()) {
     const auto knowledge = known(node, processes, stop);
     if (!knowledge) {
+      const std::string absent = absence(node, processes, kDialogue);
       std::cerr << "saphira: nothing is said about what the robot knows; "
-                << who_is_there(options, processes) << '\n';
+                << (absent.empty() ? who_is_there(options, processes) : absent) << '\n';
       return bus::kExitFailed;
     }
     std::fputs(knowledge_table(*knowledge).c_str(), stdout);
@@ -203,9 +228,9 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
     return bus::kExitUsage;
   }
   bus::RequestClient client(node, bus::topics::kSolve, "saphira knows");
-  const v1::Answer answer =
-      client.ask(bus::request("forget", {bus::number("number", number)}, "dialogue"), 10.0, &stop,
-                 [&] { processes.poll(); });
+  const v1::Answer answer = ask_program(
+      kFacilitator, node, client,
+      bus::request("forget", {bus::number("number", number)}, kDialogue), 10.0, stop, processes);
   std::printf("%s\n", answer.text().c_str());
   return bus::well(answer.code()) ? bus::kExitOk : bus::kExitFailed;
 }

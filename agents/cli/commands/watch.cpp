@@ -129,7 +129,45 @@ std::string who_is_there(const bus::NodeOptions& options, const Processes& proce
              process.status.reason();
   if (const std::string trouble = situation::trouble(processes.situation()); !trouble.empty())
     return trouble + " (" + where + ")";
-  return "all services are on the bus (" + where + ")";
+  return "bridge, behaviors and intentions are on the bus (" + where + ")";
+}
+
+std::chrono::milliseconds listening_time(const bus::Node& node) {
+  // With security: Fast DDS repeats a lost handshake message after a second.
+  return std::chrono::milliseconds(node.identity() ? 2600 : 1300);
+}
+
+std::string absence(const bus::Node& node, const Processes& processes, const std::string& program) {
+  const situation::Situation known = processes.situation();
+  const std::chrono::duration<double> needed = listening_time(node);
+  if (is_heard(known.programs, program) || known.listened < needed.count())
+    return {};
+  if (known.programs.empty())
+    return who_is_there(node.options(), processes);
+  return "no saphira-" + program + " is on the bus (robot " + node.options().robot + ", domain " +
+         std::to_string(node.options().domain) + "): saphira up office has it";
+}
+
+v1::Answer ask_program(const std::string& program, bus::Node& node, bus::RequestClient& client,
+                       const v1::Request& request, double patience, const bus::Stop& stop,
+                       Processes& processes, const std::function<void()>& meanwhile) {
+  struct Absent {
+    std::string words;
+  };
+  try {
+    return client.ask(request, patience, &stop, [&] {
+      processes.poll();
+      if (meanwhile)
+        meanwhile();
+      if (std::string words = absence(node, processes, program); !words.empty())
+        throw Absent{std::move(words)};
+    });
+  } catch (const Absent& absent) {
+    v1::Answer answer;
+    answer.code(v1::ANSWER_NOBODY);
+    answer.text(absent.words);
+    return answer;
+  }
 }
 
 }  // namespace saphira::cli

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/second_deployment.hpp"
 #include "saphira/cli/words.hpp"
 
@@ -87,5 +89,20 @@ std::string person(const std::string& program, bool since = false);
 
 /// The missing or troubled programs, in words, for requests without an answer.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
+
+/// The program that takes what is asked on agents/solve.
+inline constexpr const char* kFacilitator = "facilitator";
+
+/// The time after which every living program has reported: the status comes once a second.
+std::chrono::milliseconds listening_time(const bus::Node& node);
+
+/// That this program is not on the bus, in words. Empty: it is, or may not have reported yet.
+std::string absence(const bus::Node& node, const Processes& processes, const std::string& program);
+
+/// RequestClient::ask, on a topic that only this program answers. Where it is not on the bus, that
+/// ends it at once, and is the text of the answer.
+v1::Answer ask_program(const std::string& program, bus::Node& node, bus::RequestClient& client,
+                       const v1::Request& request, double patience, const bus::Stop& stop,
+                       Processes& processes, const std::function<void()>& meanwhile = {});
 
 }  // namespace saphira::cli

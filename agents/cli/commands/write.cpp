@@ -12,6 +12,7 @@
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
+#include "system/system.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -28,6 +29,7 @@ struct WriteOptions {
   std::string topic;
   std::string json;
   double seconds = 0.0;
+  bool force = false;
 };
 
 /// The samples in their order: the one of the command line, or each line of standard input.
@@ -181,6 +183,14 @@ int write(const WriteOptions& options, const bus::NodeOptions& node, const bus::
     std::cerr << "saphira: " << *unknown << '\n';
     return bus::kExitUsage;
   }
+  // People may write commands for the wheels: the bridge judges them.
+  const bool commands = options.topic.starts_with("drive/") && options.topic != "drive/grant";
+  if (const std::string writer = system::only_writer(options.topic);
+      !writer.empty() && !commands && !options.force) {
+    std::cerr << "saphira: not written: " << options.topic << " is written by " << writer
+              << " alone, and two writers confuse its readers; --force writes it all the same\n";
+    return bus::kExitUsage;
+  }
   int code = bus::kExitOk;
   try {
     bus::for_each_topic([&](const auto& topic) {
@@ -213,6 +223,7 @@ void add_write(CLI::App& app, Chosen& chosen) {
       ->required();
   command->add_option("--for", options->seconds, "[s] drive/..., goals: end then")
       ->check(above_zero());
+  command->add_flag("--force", options->force, "also a topic that one program writes by design");
   command->footer(
       "Members that are not named are 0, false or empty; saphira echo shows the form of a sample.\n"
       "drive/...: the robot drives for as long as this runs, and stops when it ends. goals and "

@@ -181,4 +181,16 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
   return parse_goal(words[0], rest);
 }
 
+std::string advice_after_failure(const v1::Goal& goal) {
+  const auto& arguments = goal.arguments();
+  const bool off_the_map =
+      goal.functor() == "go_to" &&
+      std::any_of(arguments.begin(), arguments.end(), [](const v1::Argument& one) {
+        return one.kind() == v1::ARGUMENT_POINT && one.frame() != v1::FRAME_MAP;
+      });
+  return off_the_map ? "go X Y heads straight for a point of odom, where the robot began at 0 0; "
+                       "saphira goal go X,Y@map takes the ways of the map"
+                     : "";
+}
+
 }  // namespace saphira::cli

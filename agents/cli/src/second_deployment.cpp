@@ -6,7 +6,8 @@ std::string second_deployment(const std::vector<SeenProcess>& processes) {
   std::string programs;
   for (const auto& [status, age, namesake] : processes)
     if (namesake && age <= kLostAge)
-      programs += (programs.empty() ? "" : ", ") + status.name() + " (process " +
+      programs += (programs.empty() ? "" : ", ") + status.name() +
+                  (status.state() == v1::SERVICE_WAITING ? " (waits, process " : " (process ") +
                   std::to_string(status.pid()) + " at " + status.host() + ")";
   if (programs.empty())
     return {};

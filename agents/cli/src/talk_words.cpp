@@ -74,6 +74,28 @@ std::string time_of(double time) {
   return text.data();
 }
 
+std::string describe(const v1::Agent& agent) {
+  std::string text = agent.name() + "  " + agent.summary() + "\n";
+  for (const v1::Capability& capability : agent.capabilities()) {
+    std::string arguments;
+    for (const v1::CapabilityParameter& parameter : capability.parameters())
+      arguments += (arguments.empty() ? "" : ", ") +
+                   (parameter.required() ? parameter.name() : "[" + parameter.name() + "]");
+    text += "  " + capability.functor() + "(" + arguments + ")  " + capability.summary() + "\n";
+    for (const v1::CapabilityParameter& parameter : capability.parameters()) {
+      // An unbound one may be of any kind.
+      std::string words = parameter.kind() == v1::ARGUMENT_UNBOUND
+                              ? ""
+                              : saphira::describe(from_bus(parameter.kind()));
+      if (!parameter.meaning().empty())
+        words += (words.empty() ? "" : ", ") + parameter.meaning();
+      if (!words.empty())
+        text += "    " + parameter.name() + ": " + words + "\n";
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 v1::Argument parse_slot(const std::string& word) {
@@ -84,6 +106,10 @@ v1::Argument parse_slot(const std::string& word) {
     return argument;
   }
   return parse_argument(word);
+}
+
+bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, double listened) {
+  return utterance.answers().writer() == instance || age <= listened;
 }
 
 std::string line_of(const v1::Utterance& utterance, const std::string& robot) {
@@ -122,19 +148,16 @@ std::string to_json(const v1::Answer& answer) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string describe(const v1::Agent& agent) {
-  std::string text = agent.name() + "  " + agent.summary() + "\n";
-  for (const v1::Capability& capability : agent.capabilities()) {
-    std::string arguments;
-    for (const v1::CapabilityParameter& parameter : capability.parameters())
-      arguments += (arguments.empty() ? "" : ", ") +
-                   (parameter.required() ? parameter.name() : "[" + parameter.name() + "]");
-    text += "  " + capability.functor() + "(" + arguments + ")  " + capability.summary() + "\n";
-    for (const v1::CapabilityParameter& parameter : capability.parameters())
-      text += "    " + parameter.name() + ": " + saphira::describe(from_bus(parameter.kind())) +
-              (parameter.meaning().empty() ? "" : ", " + parameter.meaning()) + "\n";
-  }
-  return text;
+std::string describe(const std::vector<v1::Agent>& agents) {
+  std::string text;
+  std::string robot;
+  for (const v1::Agent& agent : agents)
+    if (agent.name() == "robot")
+      robot += "robot  " + std::to_string(agent.capabilities().size()) +
+               " activities: saphira goal activities lists them\n";
+    else
+      text += describe(agent);
+  return text + robot;
 }
 
 std::string describe(const v1::Trigger& trigger, const std::string& id) {

@@ -35,6 +35,15 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+std::array<std::string, 2> two_lines(const std::string& text, std::size_t width) {
+  if (text.size() <= width)
+    return {text, ""};
+  const std::size_t space = text.rfind(' ', width);
+  if (space == std::string::npos || space == 0)
+    return {text.substr(0, width), text.substr(width, width)};
+  return {text.substr(0, space), text.substr(space + 1, width)};
+}
+
 std::string status_table(std::vector<SeenProcess> processes) {
   std::sort(processes.begin(), processes.end(), [](const SeenProcess& a, const SeenProcess& b) {
     return std::pair(a.status.name(), a.status.pid()) < std::pair(b.status.name(), b.status.pid());

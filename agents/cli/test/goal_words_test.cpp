@@ -95,6 +95,14 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"follow", "who=ann"}), "follow(who=\"ann\")");
 }
 
+TEST(GoalWords, AFailureOffTheMapPointsToTheMap) {
+  EXPECT_NE(advice_after_failure(parse_request({"go", "3", "1"})).find("X,Y@map"),
+            std::string::npos);
+  EXPECT_EQ(advice_after_failure(parse_request({"go_to", "position=3,1@map"})), "");
+  EXPECT_EQ(advice_after_failure(parse_request({"go", "3,1@map"})), "");
+  EXPECT_EQ(advice_after_failure(parse_request({"drive", "0.3"})), "");
+}
+
 TEST(GoalWords, WrongShortFormsAreRefused) {
   const std::vector<std::vector<std::string>> wrong{{},
                                                     {"go"},

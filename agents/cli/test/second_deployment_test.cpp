@@ -26,6 +26,10 @@ TEST(SecondDeployment, IsNamedByWhatIsThereASecondTime) {
                        "9 at attic)."),
             std::string::npos)
       << words;
+  SeenProcess waits = process("bridge", 8, true);
+  waits.status.state(v1::SERVICE_WAITING);
+  EXPECT_NE(second_deployment({waits}).find("bridge (waits, process 8 at attic)"),
+            std::string::npos);
   EXPECT_NE(words.find("saphira up"), std::string::npos);
   EXPECT_NE(words.find("--robot"), std::string::npos);
 }

@@ -47,6 +47,44 @@ TEST(TalkWords, AnAnswerIsOneObject) {
             R"({"agent":"calendar","code":"bad_argument","text":"no such person","values":{}})");
 }
 
+TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
+  v1::CapabilityParameter place;
+  place.name("place");
+  place.kind(v1::ARGUMENT_UNBOUND);
+  place.meaning("a text");
+  v1::CapabilityParameter hour;
+  hour.name("hour");
+  hour.kind(v1::ARGUMENT_NUMBER);
+  v1::CapabilityParameter anything;
+  anything.name("anything");
+  anything.kind(v1::ARGUMENT_UNBOUND);
+  v1::Capability capability;
+  capability.functor("meet");
+  capability.summary("meets somebody");
+  capability.parameters({place, hour, anything});
+  v1::Agent robot;
+  robot.name("robot");
+  robot.capabilities({capability, capability});
+  v1::Agent calendar;
+  calendar.name("calendar");
+  calendar.summary("knows the day");
+  calendar.capabilities({capability});
+  EXPECT_EQ(describe({robot, calendar}),
+            "calendar  knows the day\n"
+            "  meet([place], [hour], [anything])  meets somebody\n"
+            "    place: a text\n"
+            "    hour: a number\n"
+            "robot  2 activities: saphira goal activities lists them\n");
+}
+
+TEST(TalkWords, SentencesOfBeforeAreNotForAListener) {
+  v1::Utterance said;
+  said.answers().writer(7);
+  EXPECT_TRUE(is_for(said, 9.0, 7, 2.0)) << "its answer";
+  EXPECT_TRUE(is_for(said, 1.9, 8, 2.0));
+  EXPECT_FALSE(is_for(said, 2.1, 8, 2.0));
+}
+
 TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
   v1::Trigger trigger;
   trigger.kind(v1::TRIGGER_TIME);

@@ -24,6 +24,14 @@ TEST(Table, AlignsColumns) {
             "long name    7\n");
 }
 
+TEST(Words, ALongTextTakesTwoLines) {
+  using Lines = std::array<std::string, 2>;
+  EXPECT_EQ(two_lines("it stands", 9), (Lines{"it stands", ""}));
+  EXPECT_EQ(two_lines("it stands now", 9), (Lines{"it stands", "now"}));
+  EXPECT_EQ(two_lines("it stands now", 8), (Lines{"it", "stands n"}));
+  EXPECT_EQ(two_lines("abcdefgh", 3), (Lines{"abc", "def"}));
+}
+
 TEST(StatusTable, SaysWhoIsLost) {
   const std::string text = status_table({process("intentions", 0.5), process("behaviors", 3.5)});
   const std::size_t behaviors = text.find("behaviors");

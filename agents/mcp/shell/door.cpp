@@ -1,6 +1,7 @@
 #include "door.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/agent.hpp"
@@ -109,7 +110,8 @@ void Door::turn(double now) {
   session_.set_tools(robot_.tools());
   session_.wait_for_tools(!robot_.knows_tools());
   hear();
-  for (const std::uint64_t number : session_.take_given_up())
+  for (const std::uint64_t number : session_.take_given_up()) {
+    std::erase_if(early_, [&](const Call& call) { return call.number == number; });
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
       if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
         withdraw(*found->second.goal);
@@ -117,9 +119,16 @@ void Door::turn(double now) {
       if (!found->second.is_task)
         waiting_.erase(found);
     }
-  for (const Call& call : session_.take_calls()) {
+  }
+  std::vector<Call> calls = std::exchange(early_, {});
+  for (Call& call : session_.take_calls())
+    calls.push_back(std::move(call));
+  for (const Call& call : calls) {
     try {
-      begin(call);
+      if (robot_.is_early(call))
+        early_.push_back(call);
+      else
+        begin(call);
     } catch (const std::exception& error) {  // the bus did not take it
       session_.answer(call.number, {std::string("not done: ") + error.what(), nullptr, true});
     }
@@ -379,8 +388,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       session_.answer(
           number,
           {!waiting.said.empty() ? waiting.said
-           : heard_writer_.matched() == 0
-               ? "the robot said nothing: saphira-dialogue may not run"
+           : !situation::is_heard(robot_.mind().processes().all(), "dialogue")
+               ? "the robot said nothing: no saphira-dialogue is on the bus"
                : "the robot said nothing: a sentence for it begins with its keyword, such as "
                  "\"Flakey, stop\"",
            {{"said", waiting.said}},
@@ -453,6 +462,16 @@ Json Door::goals() const {
   return all;
 }
 
+bool Door::leave() {
+  if (!std::exchange(left_, true)) {
+    close();
+    for (auto& [number, waiting] : waiting_)
+      if (waiting.goal && is_own(*waiting.goal))
+        waiting.until = std::min(waiting.until, now_ + kStop);
+  }
+  return session_.leave();
+}
+
 void Door::close() {
   for (const v1::GoalId& id : own_)
     withdraw(id);
@@ -460,7 +479,8 @@ void Door::close() {
 }
 
 void Door::close_and_wait() {
-  close();
+  if (!left_)
+    close();
   if (!own_.empty())
     goals_.delivered(1000);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -23,10 +22,13 @@ class Robot {
   explicit Robot(bus::Node& node);
 
   /// Takes the newest samples.
-  void poll();
+  /// now: [s] of a clock that never goes back.
+  void poll(double now);
   const std::vector<Tool>& tools() const { return tools_; }
   /// The activities were heard, or have been awaited for long enough.
-  bool knows_tools() const;
+  bool knows_tools() const { return heard_schemas_ || has_listened(); }
+  /// The facts of this call may still come: this program has just begun to listen.
+  bool is_early(const Call& call) const;
   /// The activity or capability behind the tool of this name; null: another kind of tool.
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
@@ -46,6 +48,7 @@ class Robot {
  private:
   void make_tools();
   Surroundings surroundings() const;
+  bool has_listened() const;
 
   bus::Node& node_;
   cli::Mind mind_;
@@ -63,7 +66,8 @@ class Robot {
   std::optional<v1::FloorMap> map_;
   std::optional<v1::Registration> registration_;
   std::optional<v1::Knowledge> knowledge_;
-  const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::optional<double> began_;  ///< [s] the first poll
+  double now_ = 0.0;
   bool heard_schemas_ = false;
   std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
@@ -82,6 +86,9 @@ class Door {
   /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
   /// least ten times a second. now: [s] of a clock that never goes back.
   void turn(double now);
+  /// The client sends no more: its goals and actions are withdrawn. True where calls are still
+  /// unanswered; each is answered within its own limit.
+  bool leave();
   /// Withdraws every goal and action of this client.
   void close();
   /// Waits until that is acknowledged, for a second at most.
@@ -137,6 +144,8 @@ class Door {
   bus::Writer<v1::Utterance> heard_writer_;
   bus::Writer<v1::MotorCommand> stop_writer_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
+  std::vector<Call> early_;                   ///< whose facts may still come
+  bool left_ = false;                         ///< the client sends no more
   Actions actions_;
   std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
   double now_ = 0.0;

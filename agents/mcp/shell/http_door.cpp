@@ -101,7 +101,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   client->waits[exchange] = false;
   if (request.method == "GET")
     return open_stream(exchange, *client);
-  robot_.poll();
+  robot_.poll(now());
   client->door.turn(now());
   if (!client->session.take(request.body, exchange, &headers)) {
     client->waits.erase(exchange);
@@ -149,7 +149,7 @@ void HttpDoor::lost(Exchange exchange) {
 }
 
 void HttpDoor::turn() {
-  robot_.poll();
+  robot_.poll(now());
   for (const auto& [id, client] : clients_) {
     client->door.turn(now());
     tell(id, *client);

@@ -58,18 +58,23 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
   mcp::Door door(node, robot, session, who);
   std::string input;
   bool open = true;
-  // Lists that wait for the tools are answered after the end of the input too.
-  while ((open || session.leave()) && !stop.requested()) {
-    std::array<pollfd, 3> fds{{{open ? STDIN_FILENO : -1, POLLIN, 0},
+  // Calls that were read are answered after the end of the input too, while somebody reads that.
+  while ((open || door.leave()) && !stop.requested()) {
+    std::array<pollfd, 4> fds{{{open ? STDIN_FILENO : -1, POLLIN, 0},
                                {stop.fd(), POLLIN, 0},
-                               {node.wake_fd(), POLLIN, 0}}};
+                               {node.wake_fd(), POLLIN, 0},
+                               {open ? -1 : STDOUT_FILENO, 0, 0}}};
     poll(fds.data(), fds.size(), kTurn);
+    if ((fds[3].revents & (POLLHUP | POLLERR)) != 0)
+      break;
     if ((fds[0].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
       std::array<char, 4096> buffer{};
       const ssize_t n = read(STDIN_FILENO, buffer.data(), buffer.size());
       open = n > 0;
       if (open)
         input.append(buffer.data(), static_cast<std::size_t>(n));
+      else
+        input += '\n';  // of the last line
       for (std::size_t end = input.find('\n'); end != std::string::npos; end = input.find('\n')) {
         session.take(std::string_view(input).substr(0, end));
         input.erase(0, end + 1);
@@ -80,7 +85,7 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
       }
     }
     node.clear_wake();
-    robot.poll();
+    robot.poll(BootClock::seconds());
     door.turn(BootClock::seconds());
     if (!write_lines(session))
       break;  // no reader

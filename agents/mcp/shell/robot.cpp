@@ -1,6 +1,5 @@
 // The robot for a language model: tools, and their requests.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <string>
@@ -13,9 +12,9 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr std::chrono::seconds kLongestStart{3};  // for the activities
-constexpr double kLongestWait = 50.0;             // [s] of a call: clients give up after 60
-constexpr double kStill = 0.01;                   // [m/s], [rad/s]
+constexpr double kLongestStart = 3.0;  // [s] for the activities and the first facts
+constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
+constexpr double kStill = 0.01;        // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kLongestText = 300;  // of another agent
 
@@ -191,7 +190,9 @@ Robot::Robot(bus::Node& node)
   make_tools();
 }
 
-void Robot::poll() {
+void Robot::poll(double now) {
+  began_ = began_.value_or(now);
+  now_ = now;
   mind_.poll();
   const auto take = [](auto& reader, auto& newest) {
     if (auto sample = reader.take_newest())
@@ -273,8 +274,23 @@ void Robot::make_tools() {
     }
 }
 
-bool Robot::knows_tools() const {
-  return heard_schemas_ || std::chrono::steady_clock::now() - began_ >= kLongestStart;
+bool Robot::has_listened() const {
+  return began_ && now_ - *began_ >= kLongestStart;
+}
+
+bool Robot::is_early(const Call& call) const {
+  if (has_listened())
+    return false;
+  if (call.tool == "robot_status" || call.tool == "why" || call.tool == "goals" ||
+      call.tool == "goal")
+    return !mind_.whole(mind_.newest_cycle()) || !mind_.knows_goals();
+  if (call.tool == "map")
+    return !map_ || !registration_;
+  if (call.tool == "look")
+    return !mind_.robot() || !perception_;
+  if (call.tool == "knows")
+    return !knowledge_;
+  return call.arguments.contains("belief") && mind_.beliefs() == nullptr;
 }
 
 const v1::ActivitySchema* Robot::activity(const std::string& tool) const {

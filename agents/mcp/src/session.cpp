@@ -66,10 +66,10 @@ void Session::wait_for_tools(bool waits) {
 }
 
 bool Session::leave() {
-  std::erase_if(held_, [](const Held& each) {
-    return each.method == "tools/call" || each.method == "resources/read";
+  left_ = true;
+  return !held_.empty() || std::any_of(open_.begin(), open_.end(), [](const auto& each) {
+    return !each.second.watches && each.second.task.empty();
   });
-  return !held_.empty();
 }
 
 /// A stop is never held back.
@@ -357,6 +357,8 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   };
   if (const std::string why = misfit(arguments, tool->input); !why.empty())
     return refuse(why);
+  if (left_ && tool->lasts)
+    return refuse("the input of this client has ended, and a goal ends with its client");
   if (!tool->always) {
     if (open_.size() > kMostOpen)
       return refuse("too many calls are not answered yet; wait for one of them");

@@ -23,10 +23,11 @@ class DoorInMemory : public testing::Test {
     agents.write(agent);
     schemas.write(v1::ActivitySchemas());
     turn();
+    turn(3.0);  // nothing more is awaited
   }
   void turn(double seconds = 0.0) {
     now += seconds;
-    robot.poll();
+    robot.poll(now);
     door->turn(now);
   }
   void call(int id, const std::string& tool, const Json& arguments) {
@@ -121,6 +122,7 @@ class DoorInMemory : public testing::Test {
   bus::Writer<v1::Answer> solved = other.writer(bus::topics::kSolved);
   bus::Writer<v1::RobotState> robots = other.writer(bus::topics::kRobotState);
   bus::Writer<v1::BeliefSet> beliefs = other.writer(bus::topics::kBeliefs);
+  bus::Writer<v1::Knowledge> knowledge = other.writer(bus::topics::kKnows);
   bus::Writer<v1::AgentEvent> events = other.writer(bus::topics::kAgentEvents);
   std::uint64_t cycle = 0;
   Session session{"saphira", "1", "a robot"};
@@ -362,6 +364,61 @@ TEST_F(DoorInMemory, AClientWaitsForABelief) {
   EXPECT_EQ(result(4)["isError"], true);
   EXPECT_EQ(result(4)["content"][0]["text"],
             "not done: the robot has no such belief, but: at-rest");
+}
+
+TEST_F(DoorInMemory, AQuestionWaitsForWhatIsNotHeardYet) {
+  Session asked{"saphira", "1", "a robot"};
+  Robot young{node};
+  Door at{node, young, asked, "model"};
+  const auto answers = [&](double seconds) {
+    now += seconds;
+    young.poll(now);
+    at.turn(now);
+    return asked.take_lines().size();
+  };
+  const auto call_of = [&](int id, const std::string& tool, const Json& arguments) {
+    asked.take(Json{{"jsonrpc", "2.0"},
+                    {"id", id},
+                    {"method", "tools/call"},
+                    {"params", {{"name", tool}, {"arguments", arguments}}}}
+                   .dump());
+  };
+  answers(0.0);
+  schemas.write(v1::ActivitySchemas());
+  for (const char* const tool : {"robot_status", "why", "goals", "map", "look", "knows"})
+    call_of(1, tool, Json::object());
+  call_of(2, "wait_for", {{"belief", "bored"}});
+  EXPECT_EQ(answers(0.0), 0U);
+  call_of(3, "wait_for", {{"event", "rang"}, {"wait_s", 1}});
+  EXPECT_EQ(answers(1.0), 0U);
+  EXPECT_EQ(answers(1.0), 1U) << "an event is awaited at once";
+  v1::Knowledge nothing;
+  knowledge.write(nothing);
+  EXPECT_EQ(answers(0.5), 1U) << "knows";
+  EXPECT_EQ(answers(0.5), 6U) << "nobody is there";
+}
+
+TEST_F(DoorInMemory, ACallThatWasReadIsAnsweredAfterTheEndOfTheInput) {
+  EXPECT_FALSE(door->leave());
+  call(1, "wait_for", {{"wait_s", 5}});
+  EXPECT_TRUE(door->leave());
+  turn(5.0);
+  EXPECT_FALSE(result(1).is_null());
+  EXPECT_FALSE(door->leave());
+}
+
+TEST_F(DoorInMemory, AnActionIsWithdrawnAndAnsweredAtTheEndOfTheInput) {
+  call(1, "sweep", {{"room", "kitchen"}});
+  const v1::Request request = heard();
+  EXPECT_TRUE(door->leave());
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  turn(4.0);
+  EXPECT_TRUE(result(1).is_null());
+  turn(1.0);
+  EXPECT_FALSE(result(1).is_null());
+  EXPECT_FALSE(door->leave());
+  call(2, "sweep", {{"room", "kitchen"}});
+  EXPECT_EQ(result(2)["isError"], true) << "nothing begins any more";
 }
 
 // SDKs of clients refuse a result without the declared form.

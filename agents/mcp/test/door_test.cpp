@@ -117,6 +117,20 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
   EXPECT_EQ(system.truth().contacts, 0);
 }
 
+TEST(McpDoor, ACallThatWasReadIsAnsweredAfterTheEndOfTheInput) {
+  System system;
+  system.start_all();
+  ASSERT_TRUE(wait_activities(system));
+  const std::string line =
+      R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"robot_status"}})";
+  Process server({"/bin/sh", "-c", "echo '" + line + "' | " + program("saphira-mcp")},
+                 system.folder().path("piped.out"), {{"SAPHIRA_ROBOT", system.robot()}});
+  EXPECT_EQ(server.wait(), 0);
+  EXPECT_NE(server.output().find("\"isError\":false"), std::string::npos) << server.output();
+  EXPECT_EQ(server.output().find("which program drives is not known"), std::string::npos)
+      << server.output();
+}
+
 int connected(int port) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const timeval patience{.tv_sec = 30, .tv_usec = 0};

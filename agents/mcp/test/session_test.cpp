@@ -323,17 +323,28 @@ TEST(McpSession, AWaitingRequestThatIsGivenUpIsNotAnswered) {
   EXPECT_EQ(lines[0].exchange, 2U);
 }
 
-TEST(McpSession, AClientThatLeavesGetsItsListsAndCallsNothing) {
+TEST(McpSession, AClientThatLeavesGetsItsAnswersAndBeginsNothing) {
   Client client;
+  Tool drive = go_to();
+  drive.name = "drive";
+  drive.lasts = true;
+  client.session.set_tools({go_to(), drive});
   EXPECT_FALSE(client.session.leave());
   client.session.wait_for_tools(true);
-  client.say(line(1, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
-  EXPECT_FALSE(client.session.leave());
+  client.say(line(1, "tools/call", {{"name", "drive"}, {"arguments", {{"x", 1}}}}));
   client.say(line(2, "tools/list"));
+  client.say(line(3, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
   EXPECT_TRUE(client.session.leave());
   client.session.wait_for_tools(false);
-  EXPECT_TRUE(client.session.take_calls().empty());
-  EXPECT_EQ(client.heard().at(0)["id"], 2);
+  const auto answers = client.heard();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0]["result"]["isError"], true);
+  EXPECT_EQ(answers[1]["id"], 2);
+  EXPECT_TRUE(client.session.leave()) << "a call is not answered yet";
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_EQ(calls[0].tool, "go_to");
+  client.session.answer(calls[0].number, {"there", nullptr, false});
   EXPECT_FALSE(client.session.leave());
 }
 

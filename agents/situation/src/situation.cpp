@@ -22,13 +22,16 @@ double seconds_of(std::uint64_t cycles) {
   return 0.1 * static_cast<double>(cycles);
 }
 
-/// The newest instance that is heard; otherwise the one that was heard last.
+/// The newest instance that is heard, rather not the copy of a second deployment, which only waits;
+/// otherwise the one that was heard last.
 const Program* find(const std::vector<Program>& programs, const std::string& name) {
   const Program* found = nullptr;
   const auto better = [](const Program& a, const Program& b) {
     const bool heard = a.age <= kLostAge;
     if (heard != (b.age <= kLostAge))
       return heard;
+    if (heard && a.namesake != b.namesake)
+      return b.namesake;
     return heard ? a.status.uptime() < b.status.uptime() : a.age < b.age;
   };
   for (const Program& program : programs)
@@ -157,13 +160,16 @@ std::string trouble(const Situation& situation) {
   return text;
 }
 
+bool is_heard(const std::vector<Program>& programs, const std::string& name) {
+  const Program* const program = find(programs, name);
+  return program != nullptr && program->age <= kLostAge;
+}
+
 std::string missing_services(const std::vector<Program>& programs) {
   std::vector<std::string> missing;
-  for (const char* const name : kMakeItGo) {
-    const Program* const program = find(programs, name);
-    if (program == nullptr || program->age > kLostAge)
+  for (const char* const name : kMakeItGo)
+    if (!is_heard(programs, name))
       missing.emplace_back(name);
-  }
   return listed(missing);
 }
 

@@ -40,9 +40,9 @@ std::string Reason::name_of(const v1::BehaviorState& behavior) const {
   const std::string name = short_name(behavior);
   const auto& all = scene_.behaviors->behaviors();
   const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
-    return short_name(other) == name;
+    return other.running() && short_name(other) == name;
   });
-  return alike == 1 ? name : behavior.name();
+  return alike <= 1 ? name : behavior.name();
 }
 
 std::vector<Say> Reason::says(Channel channel) const {
@@ -469,8 +469,10 @@ std::string Reason::goals_reason(bool brief) const {
   if (newest == nullptr) {
     if (!scene_.statuses_known)
       return std::string("which goals there ") + (scene_.past ? "were" : "are") + " is not known";
-    return scene_.past ? "there was no goal" : "nobody has asked for a goal";
+    return scene_.past ? "no goal was underway" : "no goal is underway";
   }
+  if (newest->functor() == "stop" && newest->state() == v1::GOAL_SUCCEEDED)
+    return requester(newest->id()) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason();
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
          ": " + situation::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);

@@ -72,6 +72,8 @@ std::string wish_of(const v1::BehaviorState& behavior, Channel channel) {
 }
 
 std::string control_text(const v1::RuleState& rule) {
+  if (channel_of(rule) == Channel::turn && degrees(std::abs(rule.value())) < 0.05)
+    return "straight on";
   switch (rule.action()) {
     case v1::CONTROL_TURN_LEFT:
       return angle_text(rule.value()) + " to the left";
@@ -107,7 +109,7 @@ std::string intention_name(const v1::IntentionNode& node) {
   // The root of a goal's tree has the goal's id as its name.
   return node.parent() == 0 || nameless(node.name(), node.schema())
              ? node.schema()
-             : node.schema() + " (" + node.name() + ")";
+             : node.schema() + " (" + without_number(node.name()) + ")";
 }
 
 bool concerns(const v1::Belief& belief, const v1::IntentionNode& node) {

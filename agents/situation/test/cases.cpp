@@ -118,10 +118,10 @@ void all_is_well(std::vector<Case>& all) {
 
 void goals(std::vector<Case>& all) {
   all.push_back(at_rest("nothing was ever asked for", "why", [](Situation&) {},
-                        {"The robot stands", "nobody has asked for a goal"},
+                        {"The robot stands", "no goal is underway"},
                         {"is not heard", "drives it"}));
   all.push_back(at_rest("the same", "why not faster", [](Situation&) {},
-                        {"It does not go faster", "nobody has asked for a goal"}, {"It does go"}));
+                        {"It does not go faster", "no goal is underway"}, {"It does go"}));
   const std::vector<std::tuple<std::string, v1::GoalState, std::string>> ends{
       {"arrived", v1::GOAL_SUCCEEDED, "succeeded, the reason"},
       {"gave up", v1::GOAL_FAILED, "failed, the reason"},
@@ -136,6 +136,14 @@ void goals(std::vector<Case>& all) {
                             s.statuses = {goal_status(state, "the reason")};
                           },
                           {"The robot stands", "no goal is underway", said}, {"nobody has asked"}));
+  all.push_back(at_rest("a person has stopped it", "why",
+                        [](Situation& s) {
+                          s.statuses = {goal_status(v1::GOAL_SUCCEEDED, "it stands")};
+                          s.statuses[0].functor("stop");
+                          s.statuses[0].requester("somebody at the console");
+                        },
+                        {"somebody at the console stopped it, and no goal is underway"},
+                        {"stop()", "succeeded"}));
   all.push_back(at_rest("a goal is underway, and waits for a door", "why",
                         [](Situation& s) {
                           s.goals = driving().goals;
@@ -222,8 +230,7 @@ void people(std::vector<Case>& all) {
   all.push_back(at_rest("the same", "drive", drove, {"saphira drive hand-back"},
                         {"does not want", "keyboard"}));
   all.push_back(at_rest("a person drove, handed back, and nothing is asked for", "why",
-                        [](Situation&) {}, {"nobody has asked for a goal"},
-                        {"keyboard", "does not want"}));
+                        [](Situation&) {}, {"no goal is underway"}, {"keyboard", "does not want"}));
   const auto pressed = [](Situation& s) {
     stand(s);
     s.grant->role(v1::ROLE_ESTOP);

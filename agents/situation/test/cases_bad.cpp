@@ -199,7 +199,7 @@ void past(std::vector<Case>& all) {
                       absent("behaviors")},
                      {"failed, the way is blocked"}, {"suspended", "is not heard"}));
   all.push_back(when("a standstill of before, without a goal", "why", before, {},
-                     {"there was no goal"}, {"nobody has asked"}));
+                     {"no goal was underway"}, {"nobody has asked"}));
   all.push_back(when("intentions was killed before that cycle", "why", before, {[](Situation& s) {
                        s.intentions.reset();
                        s.intentions_known = {500, 880};
@@ -290,7 +290,7 @@ void wheels(std::vector<Case>& all) {
   all.push_back(when("the same, and behaviors is not heard", "why", driving(),
                      {no_power, silent("behaviors", 20)}, {"drive ahead at 0.30 m/s", off}));
   all.push_back(when("the motors are off, and nothing is asked for", "why", resting(), {no_power},
-                     {"nobody has asked for a goal"}, {off}));
+                     {"no goal is underway"}, {off}));
   all.push_back(when("the motors were switched off as it drove: it still rolls", "why", driving(),
                      {no_power, [](Situation& s) { s.robot->velocity(0.2); }},
                      {"now it does 0.20 m/s"}, {off}));
@@ -331,7 +331,7 @@ void lost_on_the_map(std::vector<Case>& all) {
     s.behaviors->turning(false);
   };
   all.push_back(when("the robot is lost on the map, at rest", "why", resting(), {nowhere},
-                     {"The robot stands: nobody has asked for a goal; " + words}));
+                     {"The robot stands: no goal is underway; " + words}));
   all.push_back(when("the same", "why tree", resting(), {nowhere},
                      {words + ", 0 % sure (nothing that it hears fits the map): saphira map place "
                               "X Y TH"}));
@@ -358,7 +358,7 @@ void lost_on_the_map(std::vector<Case>& all) {
                         s.past = true;
                         s.cycle = 900;
                       }},
-                     {"there was no goal"}, {"map"}));
+                     {"no goal was underway"}, {"map"}));
   all.push_back(when("the robot knows its place", "why tree", driving(), {tracking}, {},
                      {"on the map", "map place"}));
 }

@@ -23,6 +23,19 @@ TEST(Condition, OfTwoInstancesTheOneThatIsHeardCounts) {
   EXPECT_NE(condition(s, "behaviors").words.find("8.0 s"), std::string::npos);
 }
 
+TEST(Condition, TheWaitingCopyOfASecondDeploymentDoesNotCount) {
+  Situation s = driving();
+  Program copy = test::program("bridge");
+  copy.status.uptime(1.0);
+  copy.status.state(v1::SERVICE_WAITING);
+  copy.namesake = true;
+  s.programs.push_back(copy);
+  EXPECT_EQ(condition(s, "bridge").health, Health::running);
+  EXPECT_EQ(trouble(s), "");
+  test::find(s, "bridge").age = 9.0;
+  EXPECT_EQ(condition(s, "bridge").health, Health::waiting);
+}
+
 TEST(Condition, LateIsHeardAndHungIsNot) {
   Situation s = driving();
   s.behaviors_known.newest = s.now - 2;
@@ -36,6 +49,11 @@ TEST(Condition, LateIsHeardAndHungIsNot) {
 }
 
 TEST(MissingServices, AreNamed) {
+  Program lost = test::program("dialogue");
+  EXPECT_TRUE(is_heard({lost}, "dialogue"));
+  EXPECT_FALSE(is_heard({lost}, "facilitator"));
+  lost.age = 9.0;
+  EXPECT_FALSE(is_heard({lost}, "dialogue"));
   EXPECT_EQ(missing_services({}), "bridge, behaviors and intentions");
   Program silent = program("intentions");
   silent.age = 9.0;

@@ -281,6 +281,24 @@ TEST_F(WhyTest, BehaviorsAreNamedAsShortAsCanBe) {
   keep_off().name("GoToPos#5");
   EXPECT_NE(sentence().find(": go-to-pos#4 wants"), std::string::npos) << sentence();
   EXPECT_NE(sentence().find(", GoToPos#5 wants"), std::string::npos) << sentence();
+  keep_off().running(false);
+  EXPECT_NE(sentence().find(": GoToPos wants"), std::string::npos) << sentence();
+}
+
+TEST_F(WhyTest, IntentionsAndTurnsAreToldInWords) {
+  v1::IntentionNode root;
+  root.id(9);
+  root.schema("watch");
+  root.goal(id(2));
+  v1::IntentionNode& own = scene.intentions->nodes()[0];
+  own.parent(9);
+  own.name("rest#32");
+  own.schema("idle");
+  scene.intentions->nodes().push_back(root);
+  go().rules({rule("Right", 1.0, v1::CONTROL_TURN_RIGHT, 0.0)});
+  const std::string text = to_text(why(scene));
+  EXPECT_NE(text.find("for idle (rest): "), std::string::npos) << text;
+  EXPECT_NE(text.find("rule Right holds to 1.00: straight on"), std::string::npos) << text;
 }
 
 TEST_F(WhyTest, NotSinceNoRuleWould) {

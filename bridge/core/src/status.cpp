@@ -96,8 +96,9 @@ void Core::report(double now, const Surroundings& around) {
   if (now - reported_at_ < kCycle)
     return;
   reported_at_ = now;
-  if (!in_session()) {
-    // Without a robot there are no cycles; latches are published all the same.
+  if (!in_session() && around.namesake.empty()) {
+    // Without a robot there are no cycles; latches are published all the same. Beside a bridge that
+    // has the robot, the grant is that bridge's.
     grant_ = arbiter_.decide(time(now), 0);
     publish_grant();
   }

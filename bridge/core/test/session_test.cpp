@@ -283,6 +283,7 @@ TEST(Session, ARobotOfAnotherBridgeIsNotAsked) {
   EXPECT_TRUE(scene.sent.empty());
   EXPECT_EQ(scene.condition().health, Health::waiting);
   EXPECT_EQ(scene.condition().reason, "another bridge, process 7, has a robot of this name");
+  EXPECT_FALSE(scene.has<GrantDecided>()) << "the other bridge says who drives";
   scene.around.namesake.clear();
   scene.connect();
   EXPECT_TRUE(scene.core.in_session());

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "saphira/base/numbers.hpp"
 
@@ -120,6 +122,10 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
   all.reserve(known_.size());
   for (const auto& [key, status] : known_)
     all.push_back(status);
+  std::stable_sort(all.begin(), all.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
+    return std::pair(a.stamp().epoch(), a.stamp().cycle()) <
+           std::pair(b.stamp().epoch(), b.stamp().cycle());
+  });
   return all;
 }
 
@@ -188,13 +194,15 @@ std::string describe(const v1::GoalStatus& status) {
   if (!ended(status.state()) && !status.step().empty())
     line += ": " + status.step();
   if (status.state() == v1::GOAL_UNDERWAY) {
-    const char* const trend = status.trend() == v1::TREND_RISING    ? ", rising"
-                              : status.trend() == v1::TREND_FALLING ? ", falling"
-                                                                    : "";
     char percent[48];
-    std::snprintf(percent, sizeof percent, " (%.0f %% done, level %.2f%s)",
-                  100.0 * status.progress(), status.level(), trend);
+    std::snprintf(percent, sizeof percent, " (%.0f %% done", 100.0 * status.progress());
     line += percent;
+    // The level of most activities is the part that is done.
+    if (std::abs(status.level() - status.progress()) >= 0.01) {
+      std::snprintf(percent, sizeof percent, ", level %.2f", status.level());
+      line += percent;
+    }
+    line += ")";
   }
   if (!status.reason().empty())
     line += (ended(status.state()) ? ": " : " [") + status.reason() +

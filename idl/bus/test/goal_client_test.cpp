@@ -77,6 +77,22 @@ TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
   EXPECT_FALSE(client.status(foreign.id()));
 }
 
+TEST_F(GoalClients, TheNewestStatusIsTheLast) {
+  GoalClient client(agent_, "an agent");
+  for (const std::uint64_t number : {1U, 2U, 3U}) {
+    v1::GoalStatus status;
+    status.id().writer(number);
+    status.stamp().epoch(number == 1 ? 8 : 7);
+    status.stamp().cycle(100 - number);
+    statuses_.write(status);
+  }
+  client.poll();
+  std::vector<std::uint64_t> order;
+  for (const v1::GoalStatus& status : client.statuses())
+    order.push_back(status.id().writer());
+  EXPECT_EQ(order, (std::vector<std::uint64_t>{3, 2, 1}));
+}
+
 // A program that is stopped for minutes misses the end, and the status is withdrawn meanwhile.
 TEST_F(GoalClients, AGoalWhoseEndWasMissedIsOver) {
   GoalClient patient(agent_, "an agent");
@@ -159,7 +175,10 @@ TEST(GoalClient, TellsAStatusInALine) {
   status.state(v1::GOAL_UNDERWAY);
   status.step("driving");
   status.progress(0.25);
+  status.trend(v1::TREND_RISING);
   EXPECT_EQ(describe(status), "underway: driving (25 % done, level 0.00)");
+  status.level(0.25);
+  EXPECT_EQ(describe(status), "underway: driving (25 % done)");
   status.state(v1::GOAL_SUSPENDED);
   status.step("");
   status.reason("interrupted");

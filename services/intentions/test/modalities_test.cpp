@@ -44,7 +44,7 @@ TEST(Modality, WaitForAConditionAndItsLimit) {
   ASSERT_TRUE(stage.loaded.troubles.empty()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(3);
-  EXPECT_EQ(stage.status(1).step, "waits for stalled");
+  EXPECT_EQ(stage.status(1).step, "waits until a wheel is stalled");
   stage.inputs.robot.left_stalled = true;
   stage.step(2);
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
@@ -55,6 +55,20 @@ TEST(Modality, WaitForAConditionAndItsLimit) {
   EXPECT_EQ(stage.status(2).state, GoalState::kFailed);
   EXPECT_EQ(stage.status(2).code, GoalCode::kTimeout);
   EXPECT_EQ(stage.status(2).reason, "waited 0.5 s for stalled");
+}
+
+TEST(Modality, StepsAreToldInWords) {
+  const auto step_of = [](const std::string& goals) {
+    Stage stage(activity(goals));
+    stage.ask(1, "it");
+    stage.step(3);
+    return stage.status(1).step;
+  };
+  EXPECT_EQ(step_of("(WAIT-FOR nil :forever t)"), "waits");
+  EXPECT_EQ(step_of("(WAIT-FOR (and stalled bumped) :timeout 9s)"),
+            "waits for (and stalled bumped)");
+  EXPECT_EQ(step_of("(PRESERVE (not stalled) (WAIT 9s))"), "(not stalled)");
+  EXPECT_EQ(step_of("(MAINTAIN connected :by (WAIT 1s) (WAIT 9s))"), "while there is a robot");
 }
 
 TEST(Modality, TimeoutsOfBehaviorsAndActivities) {

@@ -32,6 +32,16 @@ const std::set<std::string> kFromOutside{
     "device/timer",  "device/sonar",      "device/sound",   "device/server", "device/serial",
     "device/vision", "agents/solved"};
 
+TEST(System, CyclicTopicsHaveOneWriter) {
+  EXPECT_EQ(only_writer("robot/state"), "bridge");
+  EXPECT_EQ(only_writer("drive/grant"), "bridge");
+  EXPECT_EQ(only_writer("behaviors/state"), "behaviors");
+  EXPECT_EQ(only_writer("recall/robot"), "bridge");
+  EXPECT_EQ(only_writer("robot/description"), "") << "not cyclic";
+  EXPECT_EQ(only_writer("drive/direct"), "") << "people write it";
+  EXPECT_EQ(only_writer("nothing"), "");
+}
+
 TEST(System, EveryTopicThatIsReadIsWrittenByOne) {
   const std::vector<Unit> all = units();
   for (const Line& line : runtime::lines_of(all)) {

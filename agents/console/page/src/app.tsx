@@ -161,7 +161,7 @@ function Now({link, grant, seen: s}: {link: Link; grant?: Grant; seen: Seen}) {
       <div class="place"><dt>{tracking ? 'On the map' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th).toFixed(0)}°{' '}
         {tracking ? `± ${sigma < 0.1 ? (100 * sigma).toFixed(0) + ' cm' : sigma.toFixed(1) + ' m'}` : `(${(registration?.state ?? 'no registration').replace('REGISTRATION_', '').toLowerCase()})`}</dd></div>
       <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V</dd></div>
-      <div><dt>Packets</dt><dd title="motor, sonar and vision packets a second">{robot.motor_packets_per_s} / {robot.sonar_readings_per_s} / {robot.vision_packets_per_s}</dd></div>
+      <div class="place"><dt>Packets a second</dt><dd>motors {robot.motor_packets_per_s}, sonars {robot.sonar_readings_per_s}, vision {robot.vision_packets_per_s}</dd></div>
     </dl>
   </div>;
 }
@@ -259,7 +259,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
         <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
       </div>
-      {layers && <details class="layers"><summary>Layers</summary>
+      {layers && <details class="layers" onToggle={() => act(() => {})}><summary>Layers</summary>
         {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
           <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
         <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
@@ -280,7 +280,8 @@ function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
     const [v, h] = corner.split(' ');
     return points.every(p => Math.abs(p.x - x(h)) > width + aside || Math.abs(p.y - y(v)) > height + beside[v]);
   };
-  const corners = ['bottom right', 'top right', 'top left', ...(view.bottom > 0 ? [] : ['bottom left'])];   // the stick
+  const corners = ['bottom right', ...(document.querySelector('.layers[open]') ? [] : ['top right']), 'top left',
+    ...(view.bottom > 0 ? [] : ['bottom left'])];   // the stick
   if (corners.includes(was) && free(was)) return was;
   const far = (corner: string) => Math.hypot(points[0].x - x(corner.split(' ')[1]), points[0].y - y(corner.split(' ')[0]));
   corners.sort((a, b) => far(b) - far(a));

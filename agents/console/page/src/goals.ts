@@ -87,8 +87,7 @@ function wishesOf(map?: SaphiraMap, schemas?: ActivitySchemas): Wishes {
   const places = [...new Set(named.map(a => a.name))].map(name => ({words: goTo(name), about: 'a place of the map'}));
   const activities = (schemas?.schemas ?? []).map(({name, summary, parameters}) =>
     ({words: [name, ...parameters.filter(p => p.required).map(p => `${p.name}=`)].join(' '), about: summary}));
-  const example = [...places.slice(0, 1).map(place => place.words), 'go 3 1', 'turn 90',
-    ...activities.filter(({words}) => words === 'patrol').map(({words}) => words)].join(', ');
+  const example = `${places[0]?.words ?? 'go 3 1'}, turn 90`;   // short, as the field is
   return {list: [...places, ...activities], example};
 }
 

@@ -66,7 +66,7 @@ export function Goals({link}: {link: Link}) {
       </div>
       {told && <p class={told.well ? 'told' : 'told bad'} role="status">{forPage(told.text)}</p>}
     </form>
-    {open.length + over.length === 0 && nothing('No goals. Click on the map to send the robot somewhere.')}
+    {open.length + over.length === 0 && nothing('No goal is underway. Click on the map to send the robot somewhere.')}
     {many && <h2>One goal after the other, in this order</h2>}
     <ol class="cards" aria-label="Goals">{open.map(g => <GoalCard key={g.id} pursued={g} many={many} link={link} />)}</ol>
     {over.length > 0 && <h2>Ended</h2>}

@@ -183,9 +183,9 @@ function App() {
               <button disabled={!mayMove} title={why} onClick={() => around(stepAround)}>Turn left</button>
               <button disabled={!mayMove} title={why} onClick={() => around(-stepAround)}>Turn right</button></>}
             {thing.kind === 'robot' && <button disabled={!mayMove} title={why} onClick={() => wish({do: 'disconnect', robot: Number(thing.name)})}>Disconnect</button>}
-            {([['←', 'left', -1, 0], ['→', 'right', 1, 0], ['↑', 'up', 0, 1], ['↓', 'down', 0, -1]] as const).map(([sign, name, dx, dy]) =>
+            <div class="row arrows">{([['←', 'left', -1, 0], ['→', 'right', 1, 0], ['↑', 'up', 0, 1], ['↓', 'down', 0, -1]] as const).map(([sign, name, dx, dy]) =>
               <button key={name} disabled={!mayMove} title={why} aria-label={`Move it ${name}`}
-                      onClick={() => put(thing, thing.x + dx * stepAside, thing.y + dy * stepAside)}>{sign}</button>)}
+                      onClick={() => put(thing, thing.x + dx * stepAside, thing.y + dy * stepAside)}>{sign}</button>)}</div>
           </div></>}
         {robot?.inputs && <InputRow robot={robot} port={port} setPort={setPort} disabled={!mayMove} why={why}
                             set={what => wish({do: 'input', robot: Number(thing!.name), ...what})} />}

@@ -240,6 +240,7 @@ export class View {
         if (this.layers.areas) this.drawAreas();
         this.drawRobot(robot, odom);
       });
+      this.drawCoveredLabels(robot);
     }
     if (this.target) this.drawTarget(this.target);
     this.drawScale();
@@ -454,7 +455,16 @@ export class View {
     if (!turned) lines.placed = {turn, labels};
     return labels;
   }
-  private drawLabels(lines: MapLines, c: CanvasRenderingContext2D) {
+  // The robot covers no name: those under it come once more, over it.
+  private drawCoveredLabels(robot: Pose) {
+    if (this.local || !this.layers.map || !this.onMap() || !this.lines) return;
+    const radius = this.robotRadius(), {a, b, c, d} = this.context.getTransform();
+    const covered = ({text, x, y, below}: Placed) =>
+      Math.abs(a * (x - robot.x) + c * (y - robot.y)) / this.ratio < radius * this.scale + this.width(text) / 2 &&
+      Math.abs((b * (x - robot.x) + d * (y - robot.y)) / this.ratio + below) < radius * this.scale + this.fontSize() / 2;
+    this.drawLabels(this.lines, this.context, covered);
+  }
+  private drawLabels(lines: MapLines, c: CanvasRenderingContext2D, wanted: (label: Placed) => boolean = () => true) {
     const m = c.getTransform(), labels = this.placeLabels(lines, m), within = this.inPicture();
     c.save();
     c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
@@ -464,7 +474,7 @@ export class View {
     c.lineWidth = 3;
     c.strokeStyle = this.colors.ground;
     c.fillStyle = this.colors.text;
-    for (const {text, x, y, below} of labels) {
+    for (const {text, x, y, below} of labels.filter(wanted)) {
       if (!within(x, y)) continue;
       const [px, py] = [(m.a * x + m.c * y + m.e) / this.ratio, (m.b * x + m.d * y + m.f) / this.ratio + below];
       c.strokeText(text, px, py);
@@ -657,22 +667,26 @@ export class View {
           for (const a of b.areas) c.strokeRect(a.x_from, a.y_from, a.x_to - a.x_from, a.y_to - a.y_from);
   }
 
+  private robotRadius() { return Math.max(this.link.data<RobotDescription>('robot/description')?.radius ?? 0.22, this.px(9)); }
   private drawRobot(robot: Pose, odom: Pose) {
     const c = this.context, {colors} = this;
     const state = this.link.data<RobotState>('robot/state')!;
     const description = this.link.data<RobotDescription>('robot/description');
-    const radius = Math.max(description?.radius ?? 0.22, this.px(9));
+    const radius = this.robotRadius(), nose = 0.9;   // [rad] where the nose leaves the circle
     c.beginPath();
-    c.arc(0, 0, radius, 0, 7);
+    c.arc(0, 0, radius, nose, -nose);
+    c.lineTo(radius / Math.cos(nose), 0);
+    c.closePath();
     c.fillStyle = colors.robot;
     c.fill();
     c.strokeStyle = colors['robot-edge'];
     c.lineWidth = this.px(1.5);
     c.stroke();
     c.beginPath();
-    c.moveTo(radius * 0.85, 0);
-    c.lineTo(-radius * 0.35, radius * 0.5);
-    c.lineTo(-radius * 0.35, -radius * 0.5);
+    c.moveTo(radius * 1.2, 0);
+    c.lineTo(-radius * 0.65, radius * 0.42);
+    c.lineTo(-radius * 0.35, 0);
+    c.lineTo(-radius * 0.65, -radius * 0.42);
     c.closePath();
     c.fillStyle = colors['robot-edge'];
     c.fill();

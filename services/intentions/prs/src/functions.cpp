@@ -345,7 +345,8 @@ void add_beliefs(Functions& functions) {
 
 void add_conditions(Functions& functions) {
   const auto add = [&](const char* name, const char* summary, auto test) {
-    functions.add(name, summary, [test](const World& world) { return Value::truth(test(world)); });
+    functions.add(name, std::string("whether ") + summary,
+                  [test](const World& world) { return Value::truth(test(world)); });
   };
   add("connected", "there is a robot", [](const World& w) { return w.robot.connected; });
   add("has-power", "its motors have power", [](const World& w) { return w.robot.has_power; });

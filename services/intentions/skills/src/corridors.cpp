@@ -304,7 +304,7 @@ void add_corridors(Functions& functions) {
                 });
   functions.add("*corridor*", "the corridor that the robot is in, on the map or seen",
                 corridor_here);
-  functions.add("in-corridor", "whether it is in one",
+  functions.add("in-corridor", "whether it is in a corridor",
                 [](const World& world) { return Value::truth(corridor_here(world).truthy()); });
   functions.add("door-ahead", "the nearest door that is seen within 2.5 m before the robot",
                 [](const World& world) {

@@ -480,7 +480,7 @@ void add_conditions(Functions& functions) {
   });
   functions.add("map-known", "whether there is a map",
                 [](const World& world) { return Value::truth(world.around.topology != nullptr); });
-  functions.add("lost", "whether it has found that it does not", [](const World& world) {
+  functions.add("lost", "whether it has lost its place on the map", [](const World& world) {
     return Value::truth(world.around.registration.state == Localization::kLost);
   });
 }

@@ -35,4 +35,7 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
 /// each with further name=value words behind it. std::invalid_argument as above.
 v1::Goal parse_request(const std::vector<std::string>& words);
 
+/// Advice where this goal has failed; empty: none.
+std::string advice_after_failure(const v1::Goal& goal);
+
 }  // namespace saphira::cli

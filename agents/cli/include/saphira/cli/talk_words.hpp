@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "agents.h"
 #include "request.h"
@@ -12,6 +14,11 @@ namespace saphira::cli {
 /// gives the expected form.
 v1::Argument parse_slot(const std::string& word);
 
+/// The utterance is for a listener that is this instance and has listened for so long [s]: it
+/// answers it, or was said since. A living writer repeats its earlier sentences to a new reader.
+/// age: [s] of the utterance.
+bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, double listened);
+
 /// Such as "alice: Flakey, stop"; the robot's own with its name.
 std::string line_of(const v1::Utterance& utterance, const std::string& robot = {});
 
@@ -20,8 +27,8 @@ std::string line_of(const v1::Answer& answer);
 /// One JSON object: agent, code, text, and values by name; several values of one name are a list.
 std::string to_json(const v1::Answer& answer);
 
-/// An agent with a line for each capability.
-std::string describe(const v1::Agent& agent);
+/// The agents, each with a line for each capability. The robot's activities are the last line.
+std::string describe(const std::vector<v1::Agent>& agents);
 /// Such as "trigger 1f3a:2 of ann: every 5 s: note".
 std::string describe(const v1::Trigger& trigger, const std::string& id);
 

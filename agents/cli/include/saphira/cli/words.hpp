@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ using SeenProcess = situation::Program;
 /// Text in aligned columns; numbers (a leading digit) to the right. The first row is the heading.
 /// The last column is not padded. Ends with a line break.
 std::string table(const std::vector<std::vector<std::string>>& rows);
+
+/// The text on two lines of at most that many characters, divided at a word.
+std::array<std::string, 2> two_lines(const std::string& text, std::size_t width);
 
 /// The table of processes, sorted by name.
 std::string status_table(std::vector<SeenProcess> processes);

@@ -88,7 +88,8 @@ class Session {
   /// True: the tools are not all known yet. Lists, readings and calls are held back until false,
   /// except for calls of tools that are always allowed.
   void wait_for_tools(bool waits);
-  /// The client sends no more: held calls are dropped. True where held lists are still unanswered.
+  /// The client sends no more: a call for a goal or an action is refused. True where requests are
+  /// still unanswered.
   bool leave();
   /// The time, of any origin, and since 1970 [s]. Watched resources are read again, once a second,
   /// by calls of their tools. Call at least some times a second.
@@ -215,6 +216,7 @@ class Session {
   std::vector<Tool> tools_;
   bool structures_ = true;  ///< the client's revision has structured results
   bool waits_ = false;      ///< for the tools
+  bool left_ = false;       ///< the client sends no more
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;

@@ -86,6 +86,8 @@ Condition condition(const Situation& situation, const std::string& program);
 
 /// The trouble with the programs that move the robot, in words; empty: none.
 std::string trouble(const Situation& situation);
+/// A program of this name is heard.
+bool is_heard(const std::vector<Program>& programs, const std::string& name);
 /// The missing or unheard ones of them, in words such as "behaviors and intentions"; empty: all are
 /// there.
 std::string missing_services(const std::vector<Program>& programs);

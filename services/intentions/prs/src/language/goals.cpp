@@ -250,6 +250,17 @@ bool Goals::assign(const Form& form) {
   return true;
 }
 
+/// The condition of a step, for people.
+void Goals::tell(std::size_t at, const Form& condition) {
+  step(at).text = to_text(condition);
+  const Condition* const known = condition.kind == Form::Kind::kName
+                                     ? definition_.functions().condition(normal(condition.text))
+                                     : nullptr;
+  constexpr std::string_view kWhether = "whether ";
+  if (known != nullptr && known->summary.starts_with(kWhether))
+    step(at).words = known->summary.substr(kWhether.size());
+}
+
 /// Waits for the end of its time only.
 bool Goals::pause(const Form& form) {
   const Parts given = definition_.parts(form, 1, {});
@@ -271,7 +282,7 @@ bool Goals::wait(const Form& form) {
   expect_items(form, given, 1, 1, "(WAIT-FOR condition)");
   const std::size_t at = add(Step::Op::kWait, form);
   take(at, *given.items[0], false);
-  step(at).text = to_text(*given.items[0]);
+  tell(at, *given.items[0]);
   const Form* const timeout = given.option("timeout");
   if (timeout != nullptr)
     step(at).timeout = expressions_.expression(*timeout, false);
@@ -457,7 +468,7 @@ bool Goals::guard(const Form& form, Step::Op op) {
                                found(form));
   const std::size_t at = add(op, form);
   take(at, *given.items[0], false);
-  step(at).text = to_text(*given.items[0]);
+  tell(at, *given.items[0]);
   step(at).branches.push_back(here());
   sequence({given.items.begin() + 1, given.items.end()});
   add(Step::Op::kEndThread, form);

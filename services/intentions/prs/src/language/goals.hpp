@@ -25,6 +25,7 @@ class Goals {
   bool goal(const Form& form);
   bool test(const Form& form);
   bool assign(const Form& form);
+  void tell(std::size_t at, const Form& condition);
   bool pause(const Form& form);
   bool wait(const Form& form);
   bool ask(const Form& form);

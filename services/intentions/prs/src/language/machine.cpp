@@ -218,7 +218,11 @@ class Machine : public Activity {
     if (!main.waiting)
       self.say(program_->sets[step.set].text);
     else if (step.op == Step::Op::kWait)
-      self.say("waits for " + step.text);
+      self.say(step.text == "nil"   ? "waits"
+               : step.words.empty() ? "waits for " + step.text
+                                    : "waits until " + step.words);
+    else if (!step.words.empty())
+      self.say("while " + step.words);
     else
       self.say(step.text);
   }

@@ -101,7 +101,8 @@ struct Step {
   Op op = Op::kJump;
   std::size_t set = 0;
   int line = 0;
-  std::string text;  ///< for people
+  std::string text;   ///< for people
+  std::string words;  ///< of a condition of the robot, such as "a wheel is stalled"
   Expression expression;
   std::size_t slot = kNowhere;    ///< of a local; kAssign
   std::size_t target = kNowhere;  ///< of a jump; behind the goal, of those that fork
