@@ -1,14 +1,13 @@
 // Records what is said on the bus, as an MCAP file. README.md.
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <string>
 
 #include "recorder.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace {
@@ -45,8 +44,7 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
   const auto topics = recorder::recorded_topics(options.topics);
   std::ofstream out(file, std::ios::binary);
   const auto failed = [&] {
-    std::fprintf(stderr, "saphira: %s: cannot be written: %s\n", file.c_str(),
-                 std::strerror(errno));
+    std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
     return bus::kExitFailed;
   };
   if (!out)

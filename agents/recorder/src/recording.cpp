@@ -107,7 +107,7 @@ std::string schema_of(const std::string& json, const std::string& title) {
   const nlohmann::json sample = nlohmann::json::parse(json, nullptr, false);
   nlohmann::json schema = schema_of(sample.is_object() ? sample : nlohmann::json::object());
   schema["title"] = title;
-  return schema.dump();
+  return schema.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Writer::Writer(std::ostream& out) : out_(out) {

@@ -67,7 +67,6 @@ TEST(Modality, StepsAreToldInWords) {
   EXPECT_EQ(step_of("(WAIT-FOR nil :forever t)"), "waits");
   EXPECT_EQ(step_of("(WAIT-FOR (and stalled bumped) :timeout 9s)"),
             "waits for (and stalled bumped)");
-  EXPECT_EQ(step_of("(PRESERVE (not stalled) (WAIT 9s))"), "(not stalled)");
   EXPECT_EQ(step_of("(MAINTAIN connected :by (WAIT 1s) (WAIT 9s))"), "while there is a robot");
 }
 
