@@ -188,7 +188,12 @@ class Parser {
         members << value;
       }
       members << ");\n";
-      settable << "  visit(\"" << member << "\", " << value << ");\n";
+      settable << "  visit(\"" << member << "\", ";
+      if (constants.contains(of))
+        settable << "Nameable<" << of << ">{" << value << ", name_of_" << of << "}";
+      else
+        settable << value;
+      settable << ");\n";
       if (key)
         keys << "  visit(\"" << member << "\", " << value << ");\n";
       expect(";");
@@ -236,7 +241,10 @@ int main(int argc, char** argv) {
     }
     out << "\nnamespace saphira {\n"
            "/// A number whose values have names; nullptr for one that has none.\n"
-           "template <class T>\nstruct Named {\n  T value;\n  const char* name;\n};\n}\n\n";
+           "template <class T>\nstruct Named {\n  T value;\n  const char* name;\n};\n"
+           "/// The same, to be set.\n"
+           "template <class T>\nstruct Nameable {\n  T& value;\n  const char* (*name)(T);\n};\n"
+           "}\n\n";
     for (int i = 2; i < argc; ++i)
       Parser(argv[i], out).parse();
     std::ofstream file(argv[1]);

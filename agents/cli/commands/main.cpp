@@ -114,11 +114,8 @@ int main(int argc, char** argv) {
             ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well. (Separate programs have
         // their own options, and the words of complete are for no parser.)
-        for (CLI::App* command : app.get_subcommands({})) {
-          const std::string name = command->get_name();
-          command->fallthrough(name != "bench" && name != "console" && name != "mcp" &&
-                               name != "complete");
-        }
+        for (CLI::App* command : app.get_subcommands({}))
+          command->fallthrough(!command->get_allow_extras() && !command->get_prefix_command());
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run) {

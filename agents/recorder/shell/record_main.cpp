@@ -43,12 +43,12 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
   const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
   const auto topics = recorder::recorded_topics(options.topics);
   std::ofstream out(file, std::ios::binary);
-  const auto failed = [&] {
+  const auto failed = [&](int code) {
     std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
-    return bus::kExitFailed;
+    return code;
   };
   if (!out)
-    return failed();
+    return failed(bus::kExitUsage);
   bus::Node node(node_options);
   recorder::Writer writer(out);
   recorder::Recorder recorder(node, writer, topics);
@@ -66,19 +66,19 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
     if (Clock::now() - flushed >= kFlush) {
       flushed = Clock::now();
       if (!writer.flush())
-        return failed();
+        return failed(bus::kExitFailed);
     }
   }
   recorder.poll(now_ns());
   if (!writer.close())
-    return failed();
+    return failed(bus::kExitFailed);
   const std::chrono::duration<double> lasted = Clock::now() - began;
   std::fprintf(stderr, "%llu samples in %.0f s, %.1f MB\n",
                static_cast<unsigned long long>(writer.samples()), lasted.count(),
                static_cast<double>(writer.bytes()) / 1e6);
-  if (writer.samples() == 0)
+  if (!recorder.has_heard())
     std::fprintf(stderr, "saphira: nothing was said; saphira status shows which programs run\n");
-  return writer.samples() == 0 ? bus::kExitFailed : bus::kExitOk;
+  return recorder.has_heard() ? bus::kExitOk : bus::kExitFailed;
 }
 
 }  // namespace

@@ -35,8 +35,9 @@ Recorder::Recorder(bus::Node& node, Writer& writer, const std::vector<bus::Topic
   for (const bus::TopicEntry& topic : topics) {
     try {
       auto echo = std::make_unique<bus::Echo>(node, topic.name);
-      sources_.push_back(
-          {std::move(echo), writer.add_channel({topic.name, topic.type, node.options().robot})});
+      const std::uint16_t channel =
+          writer_.add_channel({topic.name, topic.type, node.options().robot});
+      sources_.push_back({std::move(echo), channel, topic.name == bus::topics::kPresence.name});
     } catch (const std::runtime_error& error) {
       refused_.push_back(topic.name + ": " + error.what());
     }
@@ -45,8 +46,10 @@ Recorder::Recorder(bus::Node& node, Writer& writer, const std::vector<bus::Topic
 
 void Recorder::poll(std::int64_t now_ns) {
   for (const Source& source : sources_)
-    for (std::string& json : source.echo->take_json())
+    for (std::string& json : source.echo->take_json()) {
       writer_.add({source.channel, now_ns, std::move(json)});
+      has_heard_ = has_heard_ || !source.is_presence;
+    }
 }
 
 Contents contents_of(std::istream& in) {

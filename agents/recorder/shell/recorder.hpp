@@ -28,13 +28,17 @@ class Recorder {
   void poll(std::int64_t now_ns);
   /// Topics that this program may not read, each with the reason.
   const std::vector<std::string>& refused() const { return refused_; }
+  /// Something was said besides the presence of programs, which the recorder's own is among.
+  bool has_heard() const { return has_heard_; }
 
  private:
   struct Source {
     std::unique_ptr<bus::Echo> echo;
     std::uint16_t channel;
+    bool is_presence;
   };
   Writer& writer_;
+  bool has_heard_ = false;
   std::vector<Source> sources_;
   std::vector<std::string> refused_;
 };

@@ -31,12 +31,16 @@ v1::Drawing drawing(std::uint64_t number) {
 
 class Recorded : public testing::Test {
  protected:
-  /// Three states, two drawings of which one is withdrawn, and a command.
+  /// A refused goal, three states, two drawings of which one is withdrawn, and a command.
   void record(const std::vector<std::string>& only = {}) {
     bus::Node node(test::memory_options("robot"), bus::make_memory_bus());
     auto states = node.writer(bus::topics::kRobotState);
     auto drawings = node.writer(bus::topics::kDrawings);
     auto commands = node.writer(bus::topics::kDriveDirect);
+    auto goals = node.writer(bus::topics::kGoalStatus);
+    v1::GoalStatus refused;
+    refused.code(v1::CODE_NO_ROBOT);
+    goals.write(refused);
     Writer writer(file_);
     Recorder recorder(node, writer, recorded_topics(only));
     EXPECT_TRUE(recorder.refused().empty());
@@ -51,6 +55,7 @@ class Recorded : public testing::Test {
       }
       recorder.poll(static_cast<std::int64_t>(cycle) * 100'000'000);
     }
+    EXPECT_TRUE(recorder.has_heard());
     EXPECT_TRUE(writer.close());
   }
   Contents contents() const {
@@ -69,6 +74,7 @@ TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
   auto states = node.reader(bus::topics::kRobotState);
   auto drawings = node.reader(bus::topics::kDrawings);
   auto commands = node.reader(bus::topics::kDriveDirect);
+  auto goals = node.reader(bus::topics::kGoalStatus);
   Player player(node, reader, contents());
   EXPECT_EQ(player.left_out(), std::set<std::string>{"drive/direct"});
   EXPECT_TRUE(player.poll(0.05));
@@ -87,7 +93,10 @@ TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
   ASSERT_FALSE(came.empty());
   EXPECT_EQ(came.back().data.stamp().cycle(), 3U);
   EXPECT_DOUBLE_EQ(came.back().data.velocity(), 0.3);
-  EXPECT_EQ(player.written(), 6U);
+  EXPECT_EQ(player.written(), 7U);
+  const auto refused = goals.take();
+  ASSERT_EQ(refused.size(), 1U);
+  EXPECT_EQ(refused[0].data.code(), v1::CODE_NO_ROBOT) << "a number whose values have names";
   EXPECT_TRUE(commands.take().empty());
 }
 

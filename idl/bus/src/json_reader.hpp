@@ -45,12 +45,25 @@ class JsonReader {
     for (std::size_t i = 0; i < json.size(); ++i)
       read(json[i], items.emplace_back(), place + "[" + std::to_string(i) + "]");
   }
+  /// As a name, or as the number.
+  template <class T>
+  void read(const nlohmann::json& json, Nameable<T>& item, const std::string& place) {
+    if (!json.is_string())
+      return integer(json, item.value, place);
+    const std::string wanted = json.get<std::string>();
+    for (T value = 0; value < kMostNamed; ++value)
+      if (const char* const name = item.name(value); name != nullptr && wanted == name) {
+        item.value = value;
+        return;
+      }
+    fail(place, "expected a number or one of its names, found " + json.dump().substr(0, 60));
+  }
   template <class T>
   void structure(const nlohmann::json& json, T& item, const std::string& place) {
     expect(json.is_object(), json, place, "an object {...}");
     std::vector<std::string> names;
     std::size_t known = 0;
-    visit_members(item, [&](const char* name, auto& member) {
+    visit_members(item, [&](const char* name, auto&& member) {
       names.emplace_back(name);
       const auto found = json.find(name);
       if (found == json.end())
@@ -63,6 +76,8 @@ class JsonReader {
   }
 
  private:
+  static constexpr int kMostNamed = 10000;  // numbers with names are below
+
   [[noreturn]] static void fail(const std::string& place, const std::string& what) {
     throw std::invalid_argument((place.empty() ? "" : place + ": ") + what);
   }
