@@ -6,6 +6,7 @@
 #include <string>
 
 #include "recorder.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace {
@@ -44,6 +45,10 @@ bool has_robot(bus::Node& node, const bus::Stop& stop) {
 
 int replay(bus::NodeOptions node_options, const Options& options, const bus::Stop& stop) {
   std::ifstream file(options.file, std::ios::binary);
+  if (!file) {
+    std::fprintf(stderr, "saphira: %s\n", cannot_be(options.file, "read").c_str());
+    return bus::kExitUsage;
+  }
   const recorder::Contents contents = recorder::contents_of(file);
   if (contents.cut_off)
     std::fprintf(stderr,
@@ -85,7 +90,7 @@ int main(int argc, char** argv) {
       argc, argv, "replay",
       "Says what was recorded once more, as another robot: nothing drives by it",
       [&](CommandLine& app) {
-        app.add_option("file", own.file, "FILE.mcap of saphira record").required().existing_file();
+        app.add_option("file", own.file, "FILE.mcap of saphira record").required();
         app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay");
         app.add_option("--rate", own.rate, "seconds of the recording in a second").positive();
         app.add_flag("--list", own.list, "say what it holds, and end");
