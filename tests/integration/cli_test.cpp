@@ -405,7 +405,7 @@ TEST_F(CliTest, StatusGoalAndMapSayThatTwoDeploymentsHaveTheRobot) {
       << second->output();
   const std::string expected =
       "two deployments have this robot; a second time there are: bridge "
-      "(process " +
+      "(waits, process " +
       std::to_string(second->pid()) + " at ";
   std::string status;
   EXPECT_TRUE(test::wait_until([&] { return has(status = run({"status"}).text, expected); }))
