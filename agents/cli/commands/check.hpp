@@ -8,8 +8,8 @@
 
 namespace saphira::cli {
 
-/// Runs each program dry, until one does not take what the deployment gives it: the words for that,
-/// with the program's own. Empty: all take it. Nothing is started.
+/// Runs the programs dry, one after the other. Returns the words of the first that refuses its
+/// options; empty: none does. Nothing is started.
 std::string refusal(const Deployment& deployment, const Places& places,
                     const std::vector<std::string>& set, const bus::NodeOptions& options);
 

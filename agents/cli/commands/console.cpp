@@ -48,13 +48,13 @@ void add_mcp(CLI::App& app, Chosen& chosen) {
 }
 
 void add_record(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "record", "Record what is said on the bus, as an MCAP file",
-              "Tools such as Foxglove open it.");
+  add_program(app, chosen, "record", "Record the bus as an MCAP file",
+              "Other tools for MCAP files open it.");
 }
 
 void add_replay(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "replay", "Say what was recorded once more, as another robot",
-              "Nothing drives by a recording.");
+  add_program(app, chosen, "replay", "Play a recording on the bus, as another robot",
+              "Commands are left out.");
 }
 
 }  // namespace saphira::cli

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 
 #include "commands.hpp"
@@ -465,7 +464,7 @@ class Teleop {
 
 int drive(const std::string& joystick, const bus::NodeOptions& options, const bus::Stop& stop) {
   if (joystick != kJoystick && access(joystick.c_str(), R_OK) != 0) {
-    std::cerr << "saphira: no joystick " << joystick << ": " << std::strerror(errno) << '\n';
+    std::cerr << "saphira: " << cannot_be(joystick, "read") << '\n';
     return bus::kExitUsage;
   }
   if (isatty(STDIN_FILENO) == 0) {
@@ -481,17 +480,14 @@ void add_drive(CLI::App& app, Chosen& chosen) {
   CLI::App* command =
       app.add_subcommand("drive", "Drive by keyboard or joystick, while something is held");
   auto joystick = std::make_shared<std::string>(kJoystick);
-  const CLI::Option* const given =
-      command->add_option("--joystick", *joystick, "The kernel's device of a joystick or gamepad")
-          ->capture_default_str();
+  command->add_option("--joystick", *joystick, "The kernel's device of a joystick or gamepad")
+      ->capture_default_str();
   CLI::App* back = command->add_subcommand(
       "hand-back", "After a person has driven: lets goals and behaviors drive again");
   command->require_subcommand(0, 1);
   command->footer(std::string("Keys:\n") + kKeys);
-  command->callback([back, joystick, given, &chosen] {
-    chosen.run = [joystick, given](const bus::NodeOptions& options, const bus::Stop& stop) {
-      if (given->count() > 0 && access(joystick->c_str(), R_OK) != 0)
-        complain("saphira: %s; it is searched for\n", cannot_be(*joystick, "read").c_str());
+  command->callback([back, joystick, &chosen] {
+    chosen.run = [joystick](const bus::NodeOptions& options, const bus::Stop& stop) {
       return drive(*joystick, options, stop);
     };
     if (back->parsed())

@@ -90,7 +90,7 @@ std::string person(const std::string& program, bool since = false);
 /// The missing or troubled programs, in words, for requests without an answer.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 
-/// The program that takes what is asked on agents/solve.
+/// The program that answers requests on agents/solve.
 inline constexpr const char* kFacilitator = "facilitator";
 
 /// The time after which every living program has reported: the status comes once a second.

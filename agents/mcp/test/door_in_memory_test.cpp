@@ -330,7 +330,7 @@ TEST_F(DoorInMemory, AClientWaitsForAnEvent) {
   report("rang", {});
   call(1, "wait_for", {{"event", "pointed_out"}});
   call(2, "wait_for", {{"wait_s", 5}});
-  EXPECT_TRUE(result(1).is_null()) << "what was before does not count";
+  EXPECT_TRUE(result(1).is_null()) << "an earlier event does not count";
   report("rang", {});
   EXPECT_EQ(result(2)["structuredContent"]["event"], "rang");
   EXPECT_TRUE(result(1).is_null());

@@ -1,4 +1,4 @@
-// Records what is said on the bus, as an MCAP file. README.md.
+// Records the bus as an MCAP file. README.md.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "recorder.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
@@ -25,9 +26,7 @@ struct Options {
 };
 
 std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
+  return static_cast<std::int64_t>(unix_time() * 1e9);
 }
 
 std::string usual_name(const std::string& robot) {
@@ -86,7 +85,7 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
 int main(int argc, char** argv) {
   Options own;
   return bus::run_program(
-      argc, argv, "record", "Records what is said on the bus, as an MCAP file with JSON messages",
+      argc, argv, "record", "Records the bus as an MCAP file with JSON messages",
       [&](CommandLine& app) {
         app.add_option("file", own.file, "FILE.mcap; else ROBOT-DATE-TIME.mcap in this folder");
         app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();

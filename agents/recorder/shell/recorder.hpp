@@ -24,7 +24,7 @@ class Recorder {
  public:
   Recorder(bus::Node& node, Writer& writer, const std::vector<bus::TopicEntry>& topics);
 
-  /// Takes what has come. `now_ns`: since 1970.
+  /// Takes the new samples. `now_ns`: since 1970.
   void poll(std::int64_t now_ns);
   /// Topics that this program may not read, each with the reason.
   const std::vector<std::string>& refused() const { return refused_; }
@@ -62,7 +62,7 @@ class Player {
   /// `contents`: of the same recording. Topics that this contract does not know are left out.
   Player(bus::Node& node, Reader& reader, const Contents& contents);
 
-  /// Writes what is due `seconds` after the first sample of the recording. False: it has ended.
+  /// Writes the samples of the recording's first `seconds`. False: it has ended.
   /// std::invalid_argument: as Reader, or a sample of another contract.
   bool poll(double seconds);
   std::uint64_t written() const { return written_; }

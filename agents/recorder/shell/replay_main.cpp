@@ -1,4 +1,4 @@
-// Says what was recorded on the bus once more, as another robot. README.md.
+// Plays a recording on the bus, as another robot. README.md.
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -87,8 +87,7 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
 int main(int argc, char** argv) {
   Options own;
   return bus::run_program(
-      argc, argv, "replay",
-      "Says what was recorded once more, as another robot: nothing drives by it",
+      argc, argv, "replay", "Plays a recording on the bus, as another robot. Commands are left out",
       [&](CommandLine& app) {
         app.add_option("file", own.file, "FILE.mcap of saphira record").required();
         app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay");

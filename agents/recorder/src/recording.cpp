@@ -147,10 +147,9 @@ void Writer::add(const Sample& sample) {
   Kept& kept = channels_.at(sample.channel);
   if (kept.description.empty())
     describe(sample.channel, sample.json);
-  const bool is_first = std::all_of(channels_.begin(), channels_.end(),
-                                    [](const Kept& each) { return each.index.empty(); });
-  chunk_first_ = is_first ? sample.time_ns : std::min(chunk_first_, sample.time_ns);
-  chunk_last_ = is_first ? sample.time_ns : std::max(chunk_last_, sample.time_ns);
+  chunk_first_ = chunk_samples_ == 0 ? sample.time_ns : std::min(chunk_first_, sample.time_ns);
+  chunk_last_ = chunk_samples_ == 0 ? sample.time_ns : std::max(chunk_last_, sample.time_ns);
+  ++chunk_samples_;
   first_ = samples_ == 0 ? sample.time_ns : std::min(first_, sample.time_ns);
   last_ = samples_ == 0 ? sample.time_ns : std::max(last_, sample.time_ns);
   kept.index.emplace_back(sample.time_ns, chunk_.size());
@@ -209,6 +208,7 @@ bool Writer::flush() {
   put(entry, static_cast<std::uint64_t>(chunk_.size()));
   chunk_indices_ += record(kChunkIndex, entry);
   ++chunks_;
+  chunk_samples_ = 0;
   chunk_.clear();
   write(chunk + indices);
   return static_cast<bool>(out_.flush());

@@ -206,7 +206,7 @@ void Reason::add_purpose(Sentence& sentence,
   if (own == nullptr) {
     if (!scene_.intentions)
       if (const Condition how = condition(scene_, "intentions"); !how.words.empty())
-        sentence.add(3, "; for what is not known: intentions " + how.words);
+        sentence.add(3, "; the goal behind it is not known: intentions " + how.words);
     return;
   }
   const v1::IntentionNode* root = own;

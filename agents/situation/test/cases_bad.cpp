@@ -91,7 +91,7 @@ void intentions_gone(std::vector<Case>& all) {
                      {"intentions was started 0.8 s ago"}));
   all.push_back(when(
       "behaviors drives on an intent that is 0.4 s old", "why", before, {silent("intentions", 4)},
-      {"drive ahead", "for what is not known: intentions is 0.4 s behind"}, {"stands"}));
+      {"drive ahead", "the goal behind it is not known: intentions is 0.4 s behind"}, {"stands"}));
   all.push_back(when("intentions waits for the robot", "trouble", before, {[](Situation& s) {
                        Program& program = find(s, "intentions");
                        program.status.state(v1::SERVICE_WAITING);

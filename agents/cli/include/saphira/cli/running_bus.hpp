@@ -32,10 +32,10 @@ struct GivenOptions {
 std::string to_text(const RunningBus& bus);
 std::optional<RunningBus> parse_running_bus(std::string_view text);
 
-/// The bus that a command joins: `usual` are its own options. `running`: newest first. A given
-/// robot or domain selects; among the rest it is the usual bus if that runs, otherwise the newest
-/// deployment, else the newest. What is given stays, the rest is that of the running bus. Nothing:
-/// `usual` it is, also where no bus is meant.
+/// The bus that a command joins. `usual`: its own options; `running`: newest first. A given robot
+/// or domain selects among these. Of several the usual bus comes first, then the newest deployment,
+/// then the newest. Given options stay; the running bus sets the others. None: `usual` stays as it
+/// is.
 std::optional<RunningBus> bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running,
                                     const GivenOptions& given = {});
 

@@ -61,6 +61,7 @@ class Writer {
   std::uint64_t at_ = 0;
   std::vector<Kept> channels_;
   std::string chunk_;
+  std::uint64_t chunk_samples_ = 0;
   std::int64_t chunk_first_ = 0;
   std::int64_t chunk_last_ = 0;
   std::string chunk_indices_;  ///< records for the summary
