@@ -64,7 +64,7 @@ struct Bus::Names {
 };
 
 Session::Session(const NodeOptions& options, Side the_side, const std::shared_ptr<Wake>& wake,
-                 const Peers& peers, const std::shared_ptr<Machines>& machines,
+                 Peers& peers, const std::shared_ptr<Machines>& machines,
                  const std::shared_ptr<Guard>& guard)
     : side(the_side),
       // Each side hears of its own programs; those of this machine are heard on loopback.
@@ -303,7 +303,7 @@ void Bus::give_back() {
 #endif
 }
 
-std::unique_ptr<Session> Bus::make(Side side) const {
+std::unique_ptr<Session> Bus::make(Side side) {
   return std::make_unique<Session>(options_, side, wake, peers, machines_, guard_);
 }
 

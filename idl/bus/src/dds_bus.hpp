@@ -34,9 +34,8 @@ class Presence;
 class Session {
  public:
   /// std::runtime_error where it cannot be made.
-  Session(const NodeOptions& options, Side side, const std::shared_ptr<Wake>& wake,
-          const Peers& peers, const std::shared_ptr<Machines>& machines,
-          const std::shared_ptr<Guard>& guard);
+  Session(const NodeOptions& options, Side side, const std::shared_ptr<Wake>& wake, Peers& peers,
+          const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -127,7 +126,7 @@ class Bus {
   void give_back();
   void look_at_network();
   void tell_waits(std::chrono::nanoseconds now);
-  std::unique_ptr<Session> make(Side side) const;
+  std::unique_ptr<Session> make(Side side);
   void renew(Side side, bool after_sleep);
   void replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep);
   void retire(std::unique_ptr<Session> old);

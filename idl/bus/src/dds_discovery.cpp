@@ -67,6 +67,13 @@ std::string to_text(const rtps::GuidPrefix_t& prefix) {
   return {reinterpret_cast<const char*>(prefix.value), sizeof prefix.value};
 }
 
+Peers::Program program_of(const rtps::GuidPrefix_t& prefix) {
+  Peers::Program program{};
+  static_assert(sizeof prefix.value == std::tuple_size_v<Peers::Program>);
+  std::copy(std::begin(prefix.value), std::end(prefix.value), program.begin());
+  return program;
+}
+
 /// An endpoint by its program and host, for people.
 std::string name(const EndpointEntry& endpoint) {
   return std::string(endpoint.writer ? "the writer of " : "the reader of ") +
@@ -75,6 +82,12 @@ std::string name(const EndpointEntry& endpoint) {
 }
 
 }  // namespace
+
+Discovery::~Discovery() {
+  for (const auto& [prefix, program] : programs_)
+    if (program.pid != 0)
+      peers_.leave(program_of(prefix));
+}
 
 template <class Proxy>
 void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
@@ -128,6 +141,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     if (--program.discovered <= 0) {
       if (machines_)
         machines_->forget(to_text(prefix));
+      if (program.pid != 0)
+        peers_.leave(program_of(prefix));
       programs_.erase(prefix);
       std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
     }
@@ -144,8 +159,11 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     program.host = field(data, "host=");
     if (machines_)
       machines_->tell(to_text(prefix), field(data, "hears="));
+    const bool joins = program.pid == 0;
     const std::string pid = field(data, "pid=");
     std::from_chars(pid.data(), pid.data() + pid.size(), program.pid);
+    if (joins && program.pid != 0)
+      peers_.join(program_of(prefix));
     count_programs_here();
   }
   changed();

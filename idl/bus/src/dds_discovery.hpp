@@ -25,13 +25,18 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   /// most_here: programs of this machine that others can find [0: any number].
   /// machines: gets the machines that each program hears; may be null.
   /// guard: identifies each program, and learns which are let in; none on an open bus.
-  Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::shared_ptr<Machines> machines,
+  Discovery(std::shared_ptr<Wake> wake, Peers& peers, std::shared_ptr<Machines> machines,
             std::shared_ptr<Guard> guard, std::size_t most_here)
       : wake_(std::move(wake)),
         peers_(peers),
         machines_(std::move(machines)),
         guard_(std::move(guard)),
         most_here_(most_here) {}
+  ~Discovery() override;
+  Discovery(const Discovery&) = delete;
+  Discovery& operator=(const Discovery&) = delete;
+  Discovery(Discovery&&) = delete;
+  Discovery& operator=(Discovery&&) = delete;
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -63,7 +68,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   struct Program {
     std::string name;
     std::string host;
-    std::uint32_t pid = 0;
+    std::uint32_t pid = 0;                     ///< 0: not built on this library
     int discovered = 0;                        ///< times found minus times dropped
     std::shared_ptr<const Identity> identity;  ///< none on an open bus
   };
@@ -91,7 +96,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   void changed();
 
   const std::shared_ptr<Wake> wake_;
-  const Peers& peers_;
+  Peers& peers_;
   const std::shared_ptr<Machines> machines_;
   const std::shared_ptr<Guard> guard_;
   const std::size_t most_here_;

@@ -25,6 +25,8 @@ void Peers::match(Ends& ends, const WriterId& other) {
   const std::scoped_lock lock(mutex_);
   ends.matched_.insert(other);
   ends.before_.erase(other);
+  if (const Program program = program_of(other); joined_.contains(program))
+    programs_.try_emplace(program);
   count(ends);
   wake_->signal();
 }
@@ -36,7 +38,7 @@ void Peers::unmatch(Ends& ends, const WriterId& other) {
   const auto program = programs_.find(program_of(other));
   if (program == programs_.end() || !program->second.absent)
     ends.lose(other);
-  else if (!program->second.expected && !has_matches(program->first))
+  if (program != programs_.end() && !program->second.matched && !has_matches(program->first))
     programs_.erase(program);
   count(ends);
   wake_->signal();
@@ -49,6 +51,9 @@ void Peers::restart(Ends& ends) {
       ends.before_.insert(other);
   ends.matched_.clear();
   ends.ticks_left_ = kRestart;
+  std::erase_if(programs_, [&](const auto& program) {
+    return !program.second.matched && !has_matches(program.first);
+  });
   count(ends);
 }
 
@@ -62,9 +67,22 @@ bool Peers::any_absent(const Ends& ends) const {
   return ends.present_ < ends.matched_.size();
 }
 
+void Peers::join(const Program& program) {
+  const std::scoped_lock lock(mutex_);
+  joined_.insert(program);
+  if (has_matches(program))
+    programs_.try_emplace(program);
+}
+
+void Peers::leave(const Program& program) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto found = joined_.find(program); found != joined_.end())
+    joined_.erase(found);
+}
+
 void Peers::expect(const Program& program) {
   const std::scoped_lock lock(mutex_);
-  programs_[program].expected = true;
+  programs_[program].matched = true;
 }
 
 void Peers::forget(const Program& program) {
@@ -74,7 +92,7 @@ void Peers::forget(const Program& program) {
     return;
   // The other matches of an absent program end soon as well, and were reported lost already.
   if (found->second.absent && has_matches(program))
-    found->second.expected = false;
+    found->second.matched = false;
   else
     programs_.erase(found);
 }

@@ -75,6 +75,11 @@ class Peers {
   bool any_absent(const Ends& ends) const;
 
   // The presence of the others. A program of which none is expected is judged by discovery alone.
+  /// Discovery found a program that sends its presence. It is expected from the first match on: a
+  /// program that is killed while it joins may never match with its presence.
+  void join(const Program& program);
+  void leave(const Program& program);
+  /// The match with a program's presence is made, or has ended.
   void expect(const Program& program);
   void forget(const Program& program);
   /// Ten times a second, with the programs that were heard since the last time.
@@ -86,7 +91,7 @@ class Peers {
     int ticks = 0;
     bool heard = false;
     bool absent = false;
-    bool expected = true;
+    bool matched = false;  ///< with its presence
   };
 
   bool is_absent(const Program& program) const;
@@ -98,6 +103,7 @@ class Peers {
   const std::shared_ptr<Wake> wake_;
   mutable std::mutex mutex_;
   std::set<Ends*> ends_;
+  std::multiset<Program> joined_;  ///< by session
   std::map<Program, Silence> programs_;
 };
 

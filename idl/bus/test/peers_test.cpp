@@ -80,6 +80,35 @@ TEST_F(PeersTest, ProgramThatIsExpectedAndNotHeardHasMoreTime) {
   EXPECT_TRUE(peers_.absent(program(2)));
 }
 
+TEST_F(PeersTest, ProgramThatIsKilledWhileItJoinsIsLost) {
+  peers_.join(program(2));  // its presence is never matched
+  peers_.join(program(3));
+  peers_.match(ends_, end_of(3, 1));
+  silence(Peers::kSilentAtFirst - 1);
+  EXPECT_FALSE(peers_.absent(program(2)));
+  EXPECT_FALSE(peers_.absent(program(3)));
+  peers_.take_lost(ends_);
+  peers_.tick({});
+  EXPECT_TRUE(peers_.absent(program(2)));
+  EXPECT_EQ(peers_.take_lost(ends_), (std::vector<WriterId>{end_of(2, 1), end_of(3, 1)}));
+  EXPECT_TRUE(peers_.any_absent(ends_));
+
+  // Discovery ends the matches at last, and nothing is told twice or left.
+  peers_.leave(program(2));
+  peers_.unmatch(ends_, end_of(2, 1));
+  EXPECT_TRUE(peers_.take_lost(ends_).empty());
+  EXPECT_FALSE(peers_.absent(program(2)));
+  peers_.match(ends_, end_of(2, 1));  // of a program that sends no presence
+  silence(Peers::kSilentAtFirst);
+  EXPECT_FALSE(peers_.absent(program(2)));
+}
+
+TEST_F(PeersTest, ProgramThatJoinsIsNotExpectedBeforeAMatch) {
+  peers_.join(program(4));  // of another robot
+  silence(Peers::kSilentAtFirst);
+  EXPECT_FALSE(peers_.absent(program(4)));
+}
+
 TEST_F(PeersTest, EndOfAnAbsentProgramIsNotLostASecondTime) {
   silence(Peers::kSilent);
   EXPECT_EQ(peers_.take_lost(ends_).size(), 2U);
