@@ -3,9 +3,11 @@
 #include <fastdds/dds/core/status/StatusMask.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <thread>
 #include <utility>
 
 #include "dds_bus.hpp"
+#include "dds_presence.hpp"
 #include "dds_qos.hpp"
 #include "saphira/bus/topics.hpp"
 
@@ -19,12 +21,31 @@ struct Liar::Impl {
         wake(std::make_shared<internal::Wake>()),
         peers(wake),
         session(options, internal::Side::local, wake, peers, nullptr,
-                internal::Guard::make(options)) {}
+                internal::Guard::make(options)) {
+    presence.open(session, false);
+    ticks = std::jthread([this](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        presence.tick();
+        std::this_thread::sleep_for(std::chrono::milliseconds(internal::Peers::kTickMs));
+      }
+    });
+  }
+  ~Impl() {
+    ticks = {};
+    presence.close(session);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  Impl(Impl&&) = delete;
+  Impl& operator=(Impl&&) = delete;
 
   const std::string allowed;
   const std::shared_ptr<internal::Wake> wake;
   internal::Peers peers;
   internal::Session session;
+  /// As of any program that is there; by an instance of its own.
+  internal::Presence presence{peers, reinterpret_cast<std::uintptr_t>(this)};
+  std::jthread ticks;
 };
 
 namespace {
