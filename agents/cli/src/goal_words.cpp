@@ -155,8 +155,8 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
       if (const std::string number = rest[i].substr(0, rest[i].size() - 1);
           rest[i].ends_with("m") && parse_number(number))
         rest[i] = number;
-  // The name of a place can have several words.
-  if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
+  // The name of a place can have several words; one number is an artifact's id.
+  if (words[0] == "go" && bare >= 1 && (bare == 1 || !parse_number(rest[0]))) {
     std::string place = rest[0];
     for (std::size_t i = 1; i < bare; ++i)
       place += " " + rest[i];

@@ -13,7 +13,8 @@
 namespace saphira::registration {
 namespace {
 
-constexpr double kOutside = 5.0;  // [m] allowed beyond the rectangle round the map
+constexpr double kOutside = 5.0;         // [m] allowed beyond the rectangle round the map
+constexpr const char* kStart = "start";  // the POS at which a robot begins
 constexpr const char* kBuilding = "the map is being built: switch that off first (features off)";
 
 /// Throws where no robot can be registered on the map.
@@ -90,7 +91,7 @@ std::optional<Pose> start_pose(const std::string& start, const maps::Map& map) {
   const auto places = maps::named(map, lps::PointType::position, start);
   if (!places.empty())
     return places.front()->pose_in_map;
-  if (start == "start")
+  if (start == kStart)
     return std::nullopt;
   double values[3] = {0.0, 0.0, 0.0};
   const char* at = start.data();
@@ -168,13 +169,23 @@ void Core::set_builder() {
   settings.sonars = now_.sonars;
   settings.snap_to_right_angle_grid = now_.snaps;
   now_.building = LineMap(now_.editor.map()).empty();
+  now_.built_from = now_.pose_in_map;
   now_.builder.emplace(settings, now_.editor.map(), now_.pose_in_map);
   now_.builder->take_ids(now_.editor);
 }
 
-/// From now on registration uses the map that was built.
+/// From now on registration uses the map that was built. It gets the place where building began: a
+/// robot that is started there again knows where it is.
 void Core::end_building() {
   now_.building = false;
+  if (!map().features.empty() && maps::named(map(), lps::PointType::position, kStart).empty()) {
+    maps::Feature start;
+    start.type = lps::PointType::position;
+    start.name = kStart;
+    start.pose_in_map = now_.built_from;
+    start.learned = true;
+    now_.editor.put(start);
+  }
   registration_->set_map(now_.editor.map());
   registration_->set_pose(now_.builder->pose_in_map());
   const std::vector<std::uint32_t> closed = now_.builder->closed();

@@ -342,7 +342,8 @@ TEST(RegistrationCore, WhatItCanBeAskedForIsDocumented) {
 TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   Core core(settings(""));
   Robot robot;
-  EXPECT_EQ(robot.step(core).reason, "builds the map");
+  const Core::Outputs first = robot.step(core);
+  EXPECT_EQ(first.reason, "builds the map");
   EXPECT_TRUE(core.adds_features());
   for (const char* const action : {"put", "remove", "place", "find", "switch"})
     EXPECT_EQ(core.act(request(action)).text,
@@ -359,6 +360,11 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   EXPECT_NE(after.reason, "builds the map");
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.1);
   EXPECT_NEAR(after.pose_in_map.y, before.y, 0.1);
+  // A robot that is started there again knows where it is.
+  const std::optional<Pose> start = start_pose("start", core.map());
+  ASSERT_TRUE(start);
+  EXPECT_NEAR(start->x, first.pose_in_map.x, 0.1);
+  EXPECT_NEAR(start->y, first.pose_in_map.y, 0.1);
 }
 
 TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {

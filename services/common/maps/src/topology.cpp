@@ -294,6 +294,17 @@ std::string Topology::no_place(std::string_view name) const {
     add(region.area.name);
   for (const Feature& position : positions_)
     add(position.name);
+  // A map that the robot built has no names.
+  const auto add_id = [&](std::string known) {
+    std::replace(known.begin(), known.end(), ' ', '-');
+    add(known);
+  };
+  for (std::size_t i = 0; i < regions_.size(); ++i)
+    if (regions_[i].area.id != 0 && regions_[i].area.name.empty())
+      add_id(text(i));
+  for (const Link& link : links_)
+    if (link.id != 0 && !link.b)
+      add_id(text(link));
   std::string out = "the map has no place \"" + std::string(name) + "\"";
   if (const std::string meant = guess(name, names); !meant.empty())
     return out + ": did you mean \"" + meant + "\"?";
@@ -308,6 +319,23 @@ std::string Topology::no_place(std::string_view name) const {
 std::optional<Place> Topology::place(std::string_view name_or_id) const {
   if (name_or_id.empty())
     return std::nullopt;
+  if (const auto named = place_called(name_or_id))
+    return named;
+  // "door 12" or "door-12".
+  if (constexpr std::string_view article = "the "; name_or_id.starts_with(article))
+    return place(name_or_id.substr(article.size()));
+  const std::size_t blank = name_or_id.find_last_of(" -");
+  if (blank == std::string_view::npos)
+    return std::nullopt;
+  auto by_id = place_called(name_or_id.substr(blank + 1));
+  const std::string meant =
+      lowered(name_or_id.substr(0, blank)) + " " + std::string(name_or_id.substr(blank + 1));
+  if (by_id && (by_id->name == meant || by_id->name.starts_with(meant + " ")))
+    return by_id;
+  return std::nullopt;
+}
+
+std::optional<Place> Topology::place_called(std::string_view name_or_id) const {
   const std::uint32_t id = number_in<std::uint32_t>(name_or_id).value_or(0);
 
   const auto search = [&](const auto& meant) -> std::optional<Place> {
@@ -341,7 +369,7 @@ std::optional<Place> Topology::place(std::string_view name_or_id) const {
       Place place;
       place.regions = {link.a};
       place.point = transform(link.pose_in_map, {0.6, 0.0});
-      place.name = (link.kind == LinkKind::door ? "door " : "opening ") + std::to_string(id);
+      place.name = text(link);
       return place;
     }
   }
@@ -349,6 +377,10 @@ std::optional<Place> Topology::place(std::string_view name_or_id) const {
     return found;
   const std::string small = lowered(name_or_id);
   return search([&](const Feature& feature) { return lowered(feature.name) == small; });
+}
+
+std::string Topology::text(const Link& link) {
+  return (link.kind == LinkKind::door ? "door " : "opening ") + std::to_string(link.id);
 }
 
 std::string Topology::text(std::size_t region) const {

@@ -127,6 +127,15 @@ TEST(Topology, EveryShippedMapHangsTogether) {
   }
 }
 
+TEST(Topology, OfAMapWithoutNamesKindsAndIdsAreShown) {
+  const Topology t(
+      parse_map("CORRIDOR (1) 0, 0, 0, 10000, 1600\nDOOR (3) 1000, 800, -90, 900\n"
+                "POS (4) 0, 0, 0 \"start\"\n",
+                "built.map"));
+  EXPECT_EQ(t.no_place("library"),
+            "the map has no place \"library\": it has start, corridor-1, door-3");
+}
+
 TEST(Topology, PlacesByNameAndId) {
   const Topology t(load_map(config_folder() + "/maps/office-floor.map"));
   ASSERT_TRUE(t.place("EJ-231"));
@@ -138,6 +147,14 @@ TEST(Topology, PlacesByNameAndId) {
   ASSERT_TRUE(t.place("start")->point);
   EXPECT_NEAR(t.place("start")->point->y(), 14.0, 1e-9);
   ASSERT_TRUE(t.place("1265"));
+  for (const char* const door : {"door 1265", "door-1265", "Door 1265", "the door 1265"}) {
+    ASSERT_TRUE(t.place(door)) << door;
+    EXPECT_EQ(t.place(door)->name, "door 1265");
+  }
+  ASSERT_TRUE(t.place("corridor-2"));
+  EXPECT_EQ(t.place("corridor-2")->name, "corridor 2 (central corridor)");
+  EXPECT_FALSE(t.place("corridor-1265"));
+  EXPECT_FALSE(t.place("door 126"));
   EXPECT_EQ(t.place("1265")->name, "door 1265");
   EXPECT_NEAR(t.place("1265")->point->y(), 6.6, 1e-9) << "before the door, in the corridor";
   EXPECT_FALSE(t.place("EJ-999"));

@@ -41,6 +41,7 @@ struct CoreState {
     std::optional<MapBuilder> builder;
     /// The map began empty: the builder finds the pose together with the map.
     bool building = false;
+    Pose built_from;         ///< in the map, when building began
     bool too_large = false;  ///< the map has reached its largest size
     std::uint64_t odom = 0;  ///< of the newest step
     Pose pose_in_odom;

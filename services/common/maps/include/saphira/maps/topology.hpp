@@ -60,7 +60,7 @@ class Topology {
   /// is none, the nearest within `tolerance` [m].
   std::optional<std::size_t> region_at(const Vec2& position_in_map, double tolerance = 0.0) const;
   /// By the id of an artifact, or by a name: of a region, of a position, of a door, in that order;
-  /// with the exact case first, then either case.
+  /// with the exact case first, then either case; or by kind and id, "door 12" or "door-12".
   std::optional<Place> place(std::string_view name_or_id) const;
   /// A message that there is no such place, with the most similar name and some of the others.
   std::string no_place(std::string_view name) const;
@@ -68,6 +68,8 @@ class Topology {
   std::string text(std::size_t region) const;
 
  private:
+  static std::string text(const Link& link);
+  std::optional<Place> place_called(std::string_view name_or_id) const;
   void meet(std::size_t a, std::size_t b);
   void open(const Feature& gate, LinkKind kind);
   void join(Link link);
