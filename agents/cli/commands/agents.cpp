@@ -32,13 +32,8 @@ constexpr double kSilence = 11.0;  // [s]
 
 int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop) {
   v1::Request request;
-  try {
-    for (const std::string& word : ask_options.arguments)
-      request.arguments().push_back(parse_slot(word));
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "saphira: " << error.what() << '\n';
-    return bus::kExitUsage;
-  }
+  for (const std::string& word : ask_options.arguments)
+    request.arguments().push_back(parse_slot(word));
   request.functor(ask_options.functor);
   request.service(ask_options.agent);
   request.deadline(ask_options.deadline);

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/program.hpp"
@@ -17,6 +18,13 @@ struct Chosen {
   /// Runs `what` where the command is chosen.
   void when(CLI::App* command, Run what) {
     command->callback([this, what = std::move(what)] { run = what; });
+  }
+  template <class Options>
+  void when(CLI::App* command, std::shared_ptr<Options> options,
+            int (*what)(const Options&, const bus::NodeOptions&, const bus::Stop&)) {
+    when(command, [options, what](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return what(*options, node, stop);
+    });
   }
 };
 

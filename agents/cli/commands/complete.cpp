@@ -1,6 +1,5 @@
 // complete: the possible next words of a command line, for the shell (saphira.bash).
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <set>
@@ -18,17 +17,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kDeclarations{1000};  // for what programs declare: a person waits for it
-
-std::vector<std::string> shipped(const std::string& folder, const std::string& extension) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(config_folder() + "/" + folder, none))
-    if (entry.path().extension() == extension)
-      names.push_back(entry.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 std::vector<std::string> topics() {
   std::vector<std::string> names;
@@ -87,7 +75,7 @@ std::vector<std::string> fixed_words(const CLI::App& root, const Begun& line) {
   if (name == "echo" || name == "write")
     return topics();
   if (name == "up" || name == "check" || name == "stop" || name == "renew")
-    return shipped("deployments", ".yaml");
+    return names_in(config_folder() + "/deployments", ".yaml");
   static const std::map<std::string, std::vector<std::string>> kWords{
       {"goal", {"go", "drive", "turn", "stop", "list", "cancel", "activities"}},
       {"why", {"not"}},

@@ -144,12 +144,7 @@ int device(const std::vector<std::string>& words, const bus::NodeOptions& option
     return list_devices(options, stop);
   if (words == std::vector<std::string>{"follow"})
     return follow(options, stop);
-  try {
-    return ask(parse_device(words), options, stop);
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "saphira: " << error.what() << '\n';
-    return bus::kExitUsage;
-  }
+  return ask(parse_device(words), options, stop);
 }
 
 }  // namespace

@@ -105,13 +105,7 @@ void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::
 }
 
 int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
-  v1::Goal goal;
-  try {
-    goal = parse_request(options.words);
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "saphira: " << error.what() << '\n';
-    return bus::kExitUsage;
-  }
+  v1::Goal goal = parse_request(options.words);
   goal.priority(options.priority);
   goal.deadline(options.deadline);
   goal.level(options.level);

@@ -90,9 +90,7 @@ void add_processes(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Of the service intentions also an intention, by its name or number (saphira intentions).\n"
       "An interrupted process cleans up and waits until it is resumed.");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return processes(*options, node, stop);
-  });
+  chosen.when(command, options, processes);
 }
 
 }  // namespace saphira::cli

@@ -354,9 +354,7 @@ void add_scenario(CLI::App& app, Chosen& chosen) {
       "several runs the last");
   command->footer(
       "Exit code 0: each story ended as its cast says, without a contact; 1: one did not.");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return scenario(*options, node, stop);
-  });
+  chosen.when(command, options, scenario);
 }
 
 }  // namespace saphira::cli

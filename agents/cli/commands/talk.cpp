@@ -248,9 +248,7 @@ void add_say(CLI::App& app, Chosen& chosen) {
       "Sentences that are understood: config/grammars/flakey.grammar. Exit code 0: it was "
       "understood; 1: not.\n"
       "Ctrl-C ends the command, not what the robot does: say \"Flakey, stop\" for that.");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return say(*options, node, stop);
-  });
+  chosen.when(command, options, say);
 }
 
 void add_talk(CLI::App& app, Chosen& chosen) {
@@ -284,9 +282,7 @@ void add_knows(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("knows", "Facts that the robot was told, and by whom");
   command->add_option("words", *words, "forget NUMBER: takes one back");
-  chosen.when(command, [words](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return knows(*words, node, stop);
-  });
+  chosen.when(command, words, knows);
 }
 
 }  // namespace saphira::cli

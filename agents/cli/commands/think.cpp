@@ -403,9 +403,7 @@ void add_intentions(CLI::App& app, Chosen& chosen) {
       "* waits for what is below it, o goes on beside it; then the schema, (the instance), and "
       "the\n"
       "state that comes next, or B for a behavior.");
-  chosen.when(command, [watch](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return intentions(*watch, node, stop);
-  });
+  chosen.when(command, watch, intentions);
 }
 
 void add_behaviors(CLI::App& app, Chosen& chosen) {
@@ -432,9 +430,7 @@ void add_why(CLI::App& app, Chosen& chosen) {
   command->add_option("--cycle", options->cycle,
                       "of the last minute: its number, or -N for N cycles ago");
   command->add_flag("--json", options->json, "one JSON object");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return why(*options, node, stop);
-  });
+  chosen.when(command, options, why);
 }
 
 void add_beliefs(CLI::App& app, Chosen& chosen) {
@@ -444,9 +440,7 @@ void add_beliefs(CLI::App& app, Chosen& chosen) {
   command->add_flag("--hold", options->hold, "set: until Ctrl-C, and then take it back");
   add_watch_options(*command, options->watch);
   command->footer("Values as in activities: t, nil, 2.5, \"text\", (a b).");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return beliefs(*options, node, stop);
-  });
+  chosen.when(command, options, beliefs);
 }
 
 }  // namespace saphira::cli

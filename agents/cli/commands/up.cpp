@@ -351,14 +351,7 @@ void add_up(CLI::App& app, Chosen& chosen) {
       ->type_size(1);
   command->add_flag("--detach,-d", options->detached, "in the background; saphira stop ends it");
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    try {
-      if (options->detached)
-        return detach(options->deployment, options->set, node, stop);
-      return up(options->deployment, options->set, node, stop);
-    } catch (const std::invalid_argument& error) {
-      std::cerr << "saphira: " << error.what() << '\n';
-      return static_cast<int>(bus::kExitUsage);
-    }
+    return (options->detached ? detach : up)(options->deployment, options->set, node, stop);
   });
 }
 

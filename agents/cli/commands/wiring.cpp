@@ -73,9 +73,7 @@ void add_wiring(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("wiring", "Which program writes which topic and which reads it");
   command->add_option("--draw", options->drawing, "as a drawing (SVG) into this file");
   command->add_flag("--table", options->table, "as a table in Markdown, of the system at rest");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return wiring(*options, node, stop);
-  });
+  chosen.when(command, options, wiring);
 }
 
 }  // namespace saphira::cli

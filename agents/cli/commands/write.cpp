@@ -229,9 +229,7 @@ void add_write(CLI::App& app, Chosen& chosen) {
       "drive/...: the robot drives for as long as this runs, and stops when it ends. goals and "
       "what is\n"
       "latched hold until Ctrl-C. Requests are answered: exit code 0 means done.");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return write(*options, node, stop);
-  });
+  chosen.when(command, options, write);
 }
 
 }  // namespace saphira::cli
