@@ -14,58 +14,66 @@ namespace {
 
 using protocol::RobotParameters;
 
-World empty() {
-  return parse_world("width 100000 height 100000", "empty.wld");
-}
-
+const char* const kEmpty = "width 100000 height 100000";
 // One wall at x = 2 m, from y = -5 to 5.
-World walled() {
-  return parse_world("width 9000 height 9000\n2000 -5000 2000 5000", "wall.wld");
-}
+const char* const kWalled = "width 9000 height 9000\n2000 -5000 2000 5000";
+
+/// A robot without another.
+struct Alone {
+  explicit Alone(const RobotParameters& parameters = {}, const Pose& start = {},
+                 std::uint64_t seed = 1, const char* text = kEmpty)
+      : world(parse_world(text, "test.wld")),
+        scene(world),
+        robot(scene.add_robot(parameters, start, seed)) {}
+  Robot* operator->() const { return &robot; }
+
+  World world;
+  Scene scene;
+  Robot& robot;
+};
 
 void run(Robot& robot, int ticks) {
   for (int i = 0; i < ticks; ++i)
     robot.tick();
 }
+void run(const Alone& alone, int ticks) {
+  run(alone.robot, ticks);
+}
 
 // Manual 5.5: constant acceleration to the set speed.
 TEST(Robot, AcceleratesAtAConstantRate) {
-  const World world = empty();
   RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
-  Scene scene(world);
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_velocity(0.3);
+  const Alone robot(parameters);
+  robot->set_velocity(0.3);
   run(robot, 30);
-  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
+  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
   run(robot, 40);
-  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
-  robot.set_velocity(-1.0);  // clamped
+  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
+  robot->set_velocity(-1.0);  // clamped
   run(robot, 15);
-  EXPECT_NEAR(robot.velocity(), 0.0, 1e-9);
+  EXPECT_NEAR(robot->velocity(), 0.0, 1e-9);
   run(robot, 80);
-  EXPECT_NEAR(robot.velocity(), -0.4, 1e-9);
-  robot.stop();
+  EXPECT_NEAR(robot->velocity(), -0.4, 1e-9);
+  robot->stop();
   run(robot, 20);
-  EXPECT_EQ(robot.velocity(), 0.0);
-  EXPECT_FALSE(robot.moving());
-  EXPECT_EQ(robot.pose_in_world().y, 0.0);
+  EXPECT_EQ(robot->velocity(), 0.0);
+  EXPECT_FALSE(robot->moving());
+  EXPECT_EQ(robot->pose_in_world().y, 0.0);
 }
 
 // Manual Figure 5-2.
 TEST(Robot, TurnsByATrapezoid) {
-  const World world = empty();
   RobotParameters parameters;
-  Scene scene(world);
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_heading(radians(170.0));
+  const Alone robot(parameters);
+  robot->set_heading(radians(170.0));
   std::vector<double> speeds;
   for (int i = 0; i < 400; ++i) {
-    robot.tick();
-    speeds.push_back(robot.rotation_velocity());
-    ASSERT_LE(robot.pose_in_odom().th, radians(170.0) + 0.002) << "overshoot";
+    robot->tick();
+    speeds.push_back(robot->rotation_velocity());
+    ASSERT_LE(robot->pose_in_odom().th, radians(170.0) + 0.002) << "overshoot";
   }
-  EXPECT_NEAR(robot.pose_in_odom().th, radians(170.0), 0.002);
-  EXPECT_FALSE(robot.moving());
+  EXPECT_NEAR(robot->pose_in_odom().th, radians(170.0), 0.002);
+  EXPECT_FALSE(robot->moving());
   const double top = *std::max_element(speeds.begin(), speeds.end());
   EXPECT_NEAR(top, parameters.max_rotation_velocity, 1e-9);
   const double step = parameters.rotation_acceleration * kTick;
@@ -78,52 +86,46 @@ TEST(Robot, TurnsByATrapezoid) {
 }
 
 TEST(Robot, TurnsTheShortWayRound) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
-  robot.set_heading(radians(350.0));
+  const Alone robot;
+  robot->set_heading(radians(350.0));
   run(robot, 100);
-  EXPECT_NEAR(robot.pose_in_odom().th, radians(-10.0), 0.002);
-  robot.turn_by(radians(-20.0));
+  EXPECT_NEAR(robot->pose_in_odom().th, radians(-10.0), 0.002);
+  robot->turn_by(radians(-20.0));
   run(robot, 100);
-  EXPECT_NEAR(robot.pose_in_odom().th, radians(-30.0), 0.003);
+  EXPECT_NEAR(robot->pose_in_odom().th, radians(-30.0), 0.003);
 }
 
 TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
-  const World world = empty();
   RobotParameters parameters;
-  Scene scene(world);
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_heading(radians(90.0));
+  const Alone robot(parameters);
+  robot->set_heading(radians(90.0));
   run(robot, 50);
-  robot.set_heading(radians(-90.0));
-  double last = robot.rotation_velocity();
+  robot->set_heading(radians(-90.0));
+  double last = robot->rotation_velocity();
   EXPECT_GT(last, 1.0);
   for (int i = 0; i < 400; ++i) {
-    robot.tick();
-    ASSERT_LE(std::abs(robot.rotation_velocity() - last),
+    robot->tick();
+    ASSERT_LE(std::abs(robot->rotation_velocity() - last),
               parameters.rotation_acceleration * kTick + 1e-9);
-    last = robot.rotation_velocity();
+    last = robot->rotation_velocity();
   }
-  EXPECT_NEAR(robot.pose_in_odom().th, radians(-90.0), 0.002);
+  EXPECT_NEAR(robot->pose_in_odom().th, radians(-90.0), 0.002);
 }
 
 TEST(Robot, WheelVelocities) {
-  const World world = empty();
   RobotParameters parameters;
-  Scene scene(world);
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_wheel_velocities(0.1, 0.2);
+  const Alone robot(parameters);
+  robot->set_wheel_velocities(0.1, 0.2);
   run(robot, 100);
-  EXPECT_NEAR(robot.left_velocity(), 0.1, 1e-9);
-  EXPECT_NEAR(robot.right_velocity(), 0.2, 1e-9);
-  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
-  EXPECT_NEAR(robot.rotation_velocity(), 0.05 * parameters.rotation_per_difference, 1e-9);
+  EXPECT_NEAR(robot->left_velocity(), 0.1, 1e-9);
+  EXPECT_NEAR(robot->right_velocity(), 0.2, 1e-9);
+  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
+  EXPECT_NEAR(robot->rotation_velocity(), 0.05 * parameters.rotation_per_difference, 1e-9);
   // Another command leaves the mode (manual 5.4.6).
-  robot.set_heading(robot.pose_in_odom().th);
+  robot->set_heading(robot->pose_in_odom().th);
   run(robot, 100);
-  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
-  EXPECT_EQ(robot.rotation_velocity(), 0.0);
+  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
+  EXPECT_EQ(robot->rotation_velocity(), 0.0);
 }
 
 // The time of the fastest motion straight on or on the spot.
@@ -132,59 +134,53 @@ double wheel_limit(const RobotParameters& p) {
 }
 
 TEST(Robot, BeyondTheWheelsLimitItStaysOnTheArc) {
-  const World world = empty();
   const RobotParameters parameters;
   for (const double forward : {0.4, -0.4})
     for (const double turn : {radians(100.0), radians(-40.0)}) {
-      Scene scene(world);
-      Robot& robot = scene.add_robot(parameters, {}, 1);
-      robot.set_velocity(forward);
-      robot.set_rotation_velocity(turn);
+      const Alone robot(parameters);
+      robot->set_velocity(forward);
+      robot->set_rotation_velocity(turn);
       run(robot, 300);
-      EXPECT_NEAR(robot.rotation_velocity() / robot.velocity(), turn / forward, 1e-9);
+      EXPECT_NEAR(robot->rotation_velocity() / robot->velocity(), turn / forward, 1e-9);
       const double faster =
-          std::max(std::abs(robot.left_velocity()), std::abs(robot.right_velocity()));
+          std::max(std::abs(robot->left_velocity()), std::abs(robot->right_velocity()));
       EXPECT_NEAR(faster, wheel_limit(parameters), 1e-9);
     }
 }
 
 TEST(Robot, WheelVelocitiesBeyondTheLimitKeepTheirRatio) {
-  const World world = empty();
   const RobotParameters parameters;
   const std::vector<std::pair<double, double>> asked{{2.0, 0.1}, {0.1, -2.0}, {0.5, 0.4},
                                                      {1.0, 1.0}, {-0.6, 0.6}, {0.52, 0.25}};
   for (const auto& [left, right] : asked) {
-    Scene scene(world);
-    Robot& robot = scene.add_robot(parameters, {}, 1);
-    robot.set_wheel_velocities(left, right);
+    const Alone robot(parameters);
+    robot->set_wheel_velocities(left, right);
     run(robot, 300);
-    EXPECT_NEAR(robot.left_velocity() * right, robot.right_velocity() * left, 1e-9);
-    EXPECT_GT(std::abs(robot.left_velocity()) + std::abs(robot.right_velocity()), 0.5);
-    EXPECT_LE(std::abs(robot.left_velocity()), wheel_limit(parameters) + 1e-9);
-    EXPECT_LE(std::abs(robot.right_velocity()), wheel_limit(parameters) + 1e-9);
+    EXPECT_NEAR(robot->left_velocity() * right, robot->right_velocity() * left, 1e-9);
+    EXPECT_GT(std::abs(robot->left_velocity()) + std::abs(robot->right_velocity()), 0.5);
+    EXPECT_LE(std::abs(robot->left_velocity()), wheel_limit(parameters) + 1e-9);
+    EXPECT_LE(std::abs(robot->right_velocity()), wheel_limit(parameters) + 1e-9);
   }
 }
 
 TEST(Robot, AtFullSpeedATurnWaitsUntilItsWheelCan) {
-  const World world = empty();
   RobotParameters parameters;
   parameters.max_velocity = 1.0;  // more than a turn on the spot needs of a wheel
-  Scene scene(world);
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_velocity(1.0);
+  const Alone robot(parameters);
+  robot->set_velocity(1.0);
   run(robot, 400);
-  EXPECT_NEAR(robot.right_velocity(), 1.0, 1e-9);
-  robot.set_heading(radians(90.0));
+  EXPECT_NEAR(robot->right_velocity(), 1.0, 1e-9);
+  robot->set_heading(radians(90.0));
   run(robot, 30);
-  EXPECT_LT(robot.velocity(), 0.9);
-  EXPECT_GT(robot.rotation_velocity(), 0.2);
+  EXPECT_LT(robot->velocity(), 0.9);
+  EXPECT_GT(robot->rotation_velocity(), 0.2);
   run(robot, 600);
-  EXPECT_NEAR(robot.pose_in_odom().th, radians(90.0), 0.002);
-  EXPECT_NEAR(robot.velocity(), 1.0, 0.01);
+  EXPECT_NEAR(robot->pose_in_odom().th, radians(90.0), 0.002);
+  EXPECT_NEAR(robot->velocity(), 1.0, 0.01);
 }
 
 TEST(Robot, TheWheelsLimitChangesNothingThatItDoesNotReach) {
-  const World world = empty();
+  const World world = parse_world(kEmpty, "empty.wld");
   RobotParameters parameters;
   RobotParameters faster = parameters;
   faster.max_velocity = 10.0;
@@ -239,7 +235,6 @@ bool command_at_random(Robot& robot, const RobotParameters& p, Random& random) {
 }
 
 TEST(Robot, NoWheelIsEverFasterThanItsLimitAndNoSpeedJumps) {
-  const World world = empty();
   RobotParameters slow_to_turn;
   slow_to_turn.max_velocity = 2.2;
   slow_to_turn.max_rotation_velocity = radians(500.0);
@@ -250,29 +245,28 @@ TEST(Robot, NoWheelIsEverFasterThanItsLimitAndNoSpeedJumps) {
   slow_to_drive.acceleration = slow_to_drive.deceleration = 0.3;
   slow_to_drive.rotation_acceleration = slow_to_drive.rotation_deceleration = radians(1000.0);
   for (const RobotParameters& p : {RobotParameters{}, slow_to_turn, slow_to_drive}) {
-    Scene scene(world);
-    Robot& robot = scene.add_robot(p, {}, 1);
+    const Alone robot(p);
     Random random(7, 0);
     bool emergency = false;  // until it stands
     double at_limit = 0.0;   // [s]
     double forward = 0.0;
     double turn = 0.0;
     for (int i = 0; i < 1000; ++i) {
-      emergency |= command_at_random(robot, p, random);
+      emergency |= command_at_random(robot.robot, p, random);
       for (auto ticks = random.next() % 200; ticks > 0; --ticks) {
-        robot.tick();
-        const double left = robot.left_velocity();
-        const double right = robot.right_velocity();
+        robot->tick();
+        const double left = robot->left_velocity();
+        const double right = robot->right_velocity();
         const double faster = std::max(std::abs(left), std::abs(right));
         ASSERT_LE(faster, wheel_limit(p) + 1e-9);
         at_limit += faster > wheel_limit(p) - 1e-6 ? kTick : 0.0;
         const double most = std::max({p.acceleration, p.deceleration, emergency ? 6.0 : 0.0});
         ASSERT_LE(std::abs((left + right) / 2.0 - forward), most * kTick + 1e-9);
         const double most_turn = std::max(p.rotation_acceleration, p.rotation_deceleration);
-        ASSERT_LE(std::abs(robot.rotation_velocity() - turn), most_turn * kTick + 1e-9);
+        ASSERT_LE(std::abs(robot->rotation_velocity() - turn), most_turn * kTick + 1e-9);
         forward = (left + right) / 2.0;
-        turn = robot.rotation_velocity();
-        emergency = emergency && robot.moving();
+        turn = robot->rotation_velocity();
+        emergency = emergency && robot->moving();
       }
     }
     EXPECT_GT(at_limit, 1.0);
@@ -280,100 +274,87 @@ TEST(Robot, NoWheelIsEverFasterThanItsLimitAndNoSpeedJumps) {
 }
 
 TEST(Robot, BrakingKeepsTheVelocityForLater) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
-  robot.set_velocity(0.3);
-  robot.set_rotation_velocity(0.5);
+  const Alone robot;
+  robot->set_velocity(0.3);
+  robot->set_rotation_velocity(0.5);
   run(robot, 100);
-  robot.brake(true);
+  robot->brake(true);
   run(robot, 30);
-  EXPECT_FALSE(robot.moving());
-  EXPECT_EQ(robot.target_velocity(), 0.0);
-  robot.brake(false);
+  EXPECT_FALSE(robot->moving());
+  EXPECT_EQ(robot->target_velocity(), 0.0);
+  robot->brake(false);
   run(robot, 100);
-  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
-  EXPECT_EQ(robot.rotation_velocity(), 0.0);  // at the current heading
+  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
+  EXPECT_EQ(robot->rotation_velocity(), 0.0);  // at the current heading
 }
 
 TEST(Robot, StopsAtAWallAndNeverBehindIt) {
-  const World world = walled();
   for (const double th : {0.0, 20.0, -20.0, 60.0, -60.0, 80.0}) {
     RobotParameters parameters;
-    Scene scene(world);
-    Robot& robot = scene.add_robot(parameters, {1.0, 0.0, radians(th)}, 1);
-    robot.set_velocity(0.4);
+    const Alone robot(parameters, {1.0, 0.0, radians(th)}, 1, kWalled);
+    robot->set_velocity(0.4);
     for (int i = 0; i < 2000; ++i) {
-      robot.tick();
-      ASSERT_GE(robot.clearance(), -1e-12) << th;
+      robot->tick();
+      ASSERT_GE(robot->clearance(), -1e-12) << th;
     }
-    EXPECT_LT(robot.clearance(), 1e-6) << th;
-    EXPECT_EQ(robot.contacts(), 1) << th;
-    EXPECT_EQ(robot.velocity(), 0.0) << th;
+    EXPECT_LT(robot->clearance(), 1e-6) << th;
+    EXPECT_EQ(robot->contacts(), 1) << th;
+    EXPECT_EQ(robot->velocity(), 0.0) << th;
     // Manual 6.3.1: head on both motors stall, otherwise the one at that side.
-    EXPECT_EQ(robot.left_stalled(), th < 30.0) << th;
-    EXPECT_EQ(robot.right_stalled(), th > -30.0) << th;
+    EXPECT_EQ(robot->left_stalled(), th < 30.0) << th;
+    EXPECT_EQ(robot->right_stalled(), th > -30.0) << th;
   }
 }
 
 TEST(Robot, BacksIntoAWallTheSameWay) {
-  const World world = walled();
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, {1.0, 0.0, radians(180.0 - 60.0)}, 1);
-  robot.set_velocity(-0.4);
+  const Alone robot({}, {1.0, 0.0, radians(180.0 - 60.0)}, 1, kWalled);
+  robot->set_velocity(-0.4);
   run(robot, 2000);
-  EXPECT_GE(robot.clearance(), -1e-12);
-  EXPECT_EQ(robot.contacts(), 1);
+  EXPECT_GE(robot->clearance(), -1e-12);
+  EXPECT_EQ(robot->contacts(), 1);
   // The wall is at +x; the robot looks to 120 degrees, so it is behind and to its right.
-  EXPECT_FALSE(robot.left_stalled());
-  EXPECT_TRUE(robot.right_stalled());
+  EXPECT_FALSE(robot->left_stalled());
+  EXPECT_TRUE(robot->right_stalled());
 }
 
 TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
-  const World world = walled();
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, {1.5, 0.0, 0.0}, 1);
+  const Alone robot({}, {1.5, 0.0, 0.0}, 1, kWalled);
   for (int i = 1; i <= 3; ++i) {
-    robot.set_velocity(0.2);
+    robot->set_velocity(0.2);
     run(robot, 400);
-    EXPECT_EQ(robot.contacts(), i);
-    robot.clear_stalls();
-    robot.set_velocity(-0.2);
+    EXPECT_EQ(robot->contacts(), i);
+    robot->clear_stalls();
+    robot->set_velocity(-0.2);
     run(robot, 200);
-    EXPECT_GT(robot.clearance(), 0.2);
-    EXPECT_FALSE(robot.left_stalled());
+    EXPECT_GT(robot->clearance(), 0.2);
+    EXPECT_FALSE(robot->left_stalled());
   }
 }
 
 TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
-  const World world = empty();
   const Pose start{3.0, 4.0, 1.0};
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, start, 1);
-  robot.set_velocity(0.4);
-  robot.set_rotation_velocity(0.3);
+  const Alone robot({}, start);
+  robot->set_velocity(0.4);
+  robot->set_rotation_velocity(0.3);
   run(robot, 3000);
-  const Pose expected = compose(start, robot.pose_in_odom());
-  EXPECT_NEAR(expected.x, robot.pose_in_world().x, 1e-9);
-  EXPECT_NEAR(expected.y, robot.pose_in_world().y, 1e-9);
-  robot.set_origin();
-  EXPECT_EQ(robot.pose_in_odom(), Pose{});
+  const Pose expected = compose(start, robot->pose_in_odom());
+  EXPECT_NEAR(expected.x, robot->pose_in_world().x, 1e-9);
+  EXPECT_NEAR(expected.y, robot->pose_in_world().y, 1e-9);
+  robot->set_origin();
+  EXPECT_EQ(robot->pose_in_odom(), Pose{});
 }
 
 TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
-  robot.set_heading(1.0);
+  const Alone robot;
+  robot->set_heading(1.0);
   run(robot, 20);
-  robot.set_origin();
+  robot->set_origin();
   run(robot, 200);
-  EXPECT_NEAR(robot.pose_in_world().th, 1.0, 0.003);
+  EXPECT_NEAR(robot->pose_in_world().th, 1.0, 0.003);
 }
 
-// Manual Table 3-1 as defined in robot.hpp, over 400 robots; the bounds are four standard errors.
+// Manual Table 3-1 as defined in robot->hpp, over 400 robots; the bounds are four standard errors.
 TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
-  const World world = empty();
   RobotParameters parameters;
   parameters.encode_jitter = 0.01;
   parameters.angle_jitter = 0.02;
@@ -383,24 +364,23 @@ TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
   double squares_turn = 0.0;
   int left = 0;
   for (int i = 0; i < kRobots; ++i) {
-    Scene scene(world);
-    Robot& robot = scene.add_robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i));
-    robot.set_velocity(0.4);
+    const Alone robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i));
+    robot->set_velocity(0.4);
     run(robot, 1080);  // 4.16 m
-    const double way = robot.pose_in_world().x - 50.0;
-    const double drift = robot.pose_in_odom().th / way;
+    const double way = robot->pose_in_world().x - 50.0;
+    const double drift = robot->pose_in_odom().th / way;
     EXPECT_NEAR(std::abs(drift), 0.003, 1e-9);
     left += drift > 0.0 ? 1 : 0;
-    const double measured = std::hypot(robot.pose_in_odom().x, robot.pose_in_odom().y);
+    const double measured = std::hypot(robot->pose_in_odom().x, robot->pose_in_odom().y);
     squares_way += (measured - way) * (measured - way) / way;
-    robot.stop();
+    robot->stop();
     run(robot, 50);
-    const Pose before = robot.pose_in_odom();
-    const double before_in_world = robot.pose_in_world().th;
-    robot.set_rotation_velocity(1.0);
+    const Pose before = robot->pose_in_odom();
+    const double before_in_world = robot->pose_in_world().th;
+    robot->set_rotation_velocity(1.0);
     run(robot, 200);
-    const double turn = norm2_angle(robot.pose_in_world().th - before_in_world);
-    const double error = norm2_angle(robot.pose_in_odom().th - before.th - turn);
+    const double turn = norm2_angle(robot->pose_in_world().th - before_in_world);
+    const double error = norm2_angle(robot->pose_in_odom().th - before.th - turn);
     squares_turn += error * error / turn;
   }
   EXPECT_NEAR(std::sqrt(squares_way / kRobots), 0.01, 0.0015);
@@ -412,7 +392,6 @@ TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
 // one revolution by dead reckoning, against the true motion. The figures are those of
 // sim/README.md.
 TEST(Robot, TenMetresAndOneRevolution) {
-  const World world = empty();
   RobotParameters parameters;
   parameters.encode_jitter = 0.01;
   parameters.angle_jitter = 0.02;
@@ -425,25 +404,23 @@ TEST(Robot, TenMetresAndOneRevolution) {
   double turned = 0.0;
   double turned_squares = 0.0;
   for (int i = 0; i < kRobots; ++i) {
-    Scene scene(world);
-    Robot& robot =
-        scene.add_robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
-    robot.set_heading(0.0);
-    robot.move_by(10.0);
+    const Alone robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
+    robot->set_heading(0.0);
+    robot->move_by(10.0);
     run(robot, 2700);
-    ASSERT_FALSE(robot.moving());
-    ASSERT_NEAR(robot.left_way() + robot.right_way(), 20.0, 0.01);
-    along += robot.pose_in_world().x - 60.0;
-    along_squares += std::pow(robot.pose_in_world().x - 60.0, 2);
-    aside += std::abs(robot.pose_in_world().y - 50.0);
+    ASSERT_FALSE(robot->moving());
+    ASSERT_NEAR(robot->left_way() + robot->right_way(), 20.0, 0.01);
+    along += robot->pose_in_world().x - 60.0;
+    along_squares += std::pow(robot->pose_in_world().x - 60.0, 2);
+    aside += std::abs(robot->pose_in_world().y - 50.0);
     // The heading servo holds straight on by dead reckoning, within its deadband.
-    heading += std::abs(robot.pose_in_world().th);
-    const double before = norm2_angle(robot.pose_in_world().th - robot.pose_in_odom().th);
+    heading += std::abs(robot->pose_in_world().th);
+    const double before = norm2_angle(robot->pose_in_world().th - robot->pose_in_odom().th);
     for (const double target : {120.0, 240.0, 360.0}) {
-      robot.set_heading(radians(target));
+      robot->set_heading(radians(target));
       run(robot, 250);
     }
-    const double error = norm2_angle(robot.pose_in_world().th - robot.pose_in_odom().th - before);
+    const double error = norm2_angle(robot->pose_in_world().th - robot->pose_in_odom().th - before);
     turned += error;
     turned_squares += error * error;
   }
@@ -460,98 +437,88 @@ TEST(Robot, TenMetresAndOneRevolution) {
 }
 
 TEST(Robot, MovesAWayByATrapezoid) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot({}, {}, 1);
-  robot.move_by(1.0);
+  const Alone robot;
+  robot->move_by(1.0);
   double top = 0.0;
   double last = 0.0;
   for (int i = 0; i < 500; ++i) {
-    robot.tick();
-    top = std::max(top, robot.velocity());
-    ASSERT_LE(robot.velocity() - last, 0.5 * kTick + 1e-9);
-    ASSERT_LE(last - robot.velocity(), 2.0 * kTick + 1e-9);
-    last = robot.velocity();
-    ASSERT_LE(robot.pose_in_odom().x, 1.0005);
+    robot->tick();
+    top = std::max(top, robot->velocity());
+    ASSERT_LE(robot->velocity() - last, 0.5 * kTick + 1e-9);
+    ASSERT_LE(last - robot->velocity(), 2.0 * kTick + 1e-9);
+    last = robot->velocity();
+    ASSERT_LE(robot->pose_in_odom().x, 1.0005);
   }
-  EXPECT_NEAR(robot.pose_in_odom().x, 1.0, 0.001);
+  EXPECT_NEAR(robot->pose_in_odom().x, 1.0, 0.001);
   EXPECT_DOUBLE_EQ(top, 0.4);
-  EXPECT_FALSE(robot.moving());
-  robot.set_max_velocity(0.1);
-  robot.set_acceleration(0.1);
-  robot.set_deceleration(0.1);
-  robot.move_by(-0.5);
+  EXPECT_FALSE(robot->moving());
+  robot->set_max_velocity(0.1);
+  robot->set_acceleration(0.1);
+  robot->set_deceleration(0.1);
+  robot->move_by(-0.5);
   run(robot, 100);
-  EXPECT_NEAR(robot.velocity(), -0.1, 1e-9);
+  EXPECT_NEAR(robot->velocity(), -0.1, 1e-9);
   run(robot, 600);
-  EXPECT_NEAR(robot.pose_in_odom().x, 0.5, 0.001);
-  robot.move_by(5.0);
+  EXPECT_NEAR(robot->pose_in_odom().x, 0.5, 0.001);
+  robot->move_by(5.0);
   run(robot, 50);
-  robot.set_velocity(0.0);  // another command leaves the mode
+  robot->set_velocity(0.0);  // another command leaves the mode
   run(robot, 200);
-  EXPECT_FALSE(robot.moving());
-  EXPECT_LT(robot.pose_in_odom().x, 0.6);
+  EXPECT_FALSE(robot->moving());
+  EXPECT_LT(robot->pose_in_odom().x, 0.6);
 }
 
 TEST(Robot, NoAccelerationIsSetBeyondWhatItCan) {
-  const World world = empty();
-  Scene scene(world);
   RobotParameters parameters;
   parameters.deceleration = 0.3;
   parameters.max_acceleration = 2.0;
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_deceleration(100.0);
-  robot.set_velocity(0.4);
+  const Alone robot(parameters);
+  robot->set_deceleration(100.0);
+  robot->set_velocity(0.4);
   run(robot, 400);
-  const double from = robot.pose_in_world().x;
-  robot.set_velocity(0.0);
+  const double from = robot->pose_in_world().x;
+  robot->set_velocity(0.0);
   run(robot, 100);
-  EXPECT_FALSE(robot.moving());
-  EXPECT_NEAR(robot.pose_in_world().x - from, 0.4 * 0.4 / (2.0 * 2.0), 0.003);
+  EXPECT_FALSE(robot->moving());
+  EXPECT_NEAR(robot->pose_in_world().x - from, 0.4 * 0.4 / (2.0 * 2.0), 0.003);
 }
 
 TEST(Robot, WheelsSlipInAnEmergencyStop) {
-  const World world = empty();
-  Scene scene(world);
   RobotParameters parameters;
   parameters.max_velocity = 2.0;
-  Robot& robot = scene.add_robot(parameters, {}, 1);
-  robot.set_velocity(2.0);
+  const Alone robot(parameters);
+  robot->set_velocity(2.0);
   run(robot, 400);
-  EXPECT_EQ(robot.pose_in_odom().x, robot.pose_in_world().x);
-  const double from = robot.pose_in_world().x;
-  robot.emergency_stop();
+  EXPECT_EQ(robot->pose_in_odom().x, robot->pose_in_world().x);
+  const double from = robot->pose_in_world().x;
+  robot->emergency_stop();
   run(robot, 100);
-  EXPECT_FALSE(robot.moving());
+  EXPECT_FALSE(robot->moving());
   // v^2 / 2a, by the motors and by the grip.
-  EXPECT_NEAR(robot.pose_in_world().x - from, 0.5, 0.02);
-  EXPECT_NEAR(robot.pose_in_odom().x - from, 4.0 / 12.0, 0.02);
+  EXPECT_NEAR(robot->pose_in_world().x - from, 0.5, 0.02);
+  EXPECT_NEAR(robot->pose_in_odom().x - from, 4.0 / 12.0, 0.02);
 }
 
 TEST(Robot, WithoutPowerItStands) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot({}, {}, 1);
-  robot.enable(false);
-  robot.set_velocity(0.3);
-  robot.set_heading(1.0);
+  const Alone robot;
+  robot->enable(false);
+  robot->set_velocity(0.3);
+  robot->set_heading(1.0);
   run(robot, 100);
-  EXPECT_FALSE(robot.moving());
-  robot.enable(true);
+  EXPECT_FALSE(robot->moving());
+  robot->enable(true);
   run(robot, 300);
-  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
-  EXPECT_NEAR(robot.pose_in_odom().th, 1.0, 0.002);
+  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
+  EXPECT_NEAR(robot->pose_in_odom().th, 1.0, 0.002);
 }
 
 TEST(Robot, BumpersSayWhereItTouches) {
-  const World world = walled();
   const auto touched = [&](double th, bool rear, int switches) {
-    Scene scene(world);
-    Robot& robot = scene.add_robot({}, {1.7, 0.0, radians(th)}, 1);
-    EXPECT_EQ(robot.bumpers(switches, rear), 0);
-    robot.set_velocity(std::abs(th) < 90.0 ? 0.2 : -0.2);
+    const Alone robot({}, {1.7, 0.0, radians(th)}, 1, kWalled);
+    EXPECT_EQ(robot->bumpers(switches, rear), 0);
+    robot->set_velocity(std::abs(th) < 90.0 ? 0.2 : -0.2);
     run(robot, 500);
-    return static_cast<int>(robot.bumpers(switches, rear));
+    return static_cast<int>(robot->bumpers(switches, rear));
   };
   // Five in front: 36 degrees each, the leftmost first.
   EXPECT_EQ(touched(0.0, false, 5), 0b00100);
@@ -565,46 +532,40 @@ TEST(Robot, BumpersSayWhereItTouches) {
 }
 
 TEST(Robot, TheBatteryRunsDown) {
-  const World world = empty();
-  Scene scene(world);
-  Robot& robot = scene.add_robot({}, {}, 1);
-  EXPECT_DOUBLE_EQ(robot.battery(), 12.6);
+  const Alone robot;
+  EXPECT_DOUBLE_EQ(robot->battery(), 12.6);
   run(robot, 360000);  // an hour
-  const double rest = 12.6 - robot.battery();
+  const double rest = 12.6 - robot->battery();
   EXPECT_NEAR(rest, 12.6 * 0.13 / 4.0, 0.01);
-  robot.set_rotation_velocity(0.5);
+  robot->set_rotation_velocity(0.5);
   run(robot, 100);
-  EXPECT_LT(robot.battery(), 12.6 - rest - 0.1) << "sags under load";
+  EXPECT_LT(robot->battery(), 12.6 - rest - 0.1) << "sags under load";
   run(robot, 359900);
-  robot.stop();
+  robot->stop();
   run(robot, 100);
-  EXPECT_NEAR(12.6 - rest - robot.battery(), 2.5 * rest, 0.01);
-  robot.set_battery(11.5);
-  EXPECT_NEAR(robot.battery(), 11.5, 1e-9);
+  EXPECT_NEAR(12.6 - rest - robot->battery(), 2.5 * rest, 0.01);
+  robot->set_battery(11.5);
+  EXPECT_NEAR(robot->battery(), 11.5, 1e-9);
 }
 
 TEST(Robot, IsPlacedWhereThereIsRoom) {
-  const World world = walled();
-  Scene scene(world);
-  Robot& robot = scene.add_robot({}, {1.0, 0.0, 0.0}, 1);
-  EXPECT_FALSE(robot.place({1.9, 0.0, 0.0}));
-  EXPECT_TRUE(robot.place({2.5, 1.0, 4.0}));
-  EXPECT_EQ(robot.pose_in_world().x, 2.5);
-  EXPECT_EQ(robot.pose_in_odom(), Pose{});
+  const Alone robot({}, {1.0, 0.0, 0.0}, 1, kWalled);
+  EXPECT_FALSE(robot->place({1.9, 0.0, 0.0}));
+  EXPECT_TRUE(robot->place({2.5, 1.0, 4.0}));
+  EXPECT_EQ(robot->pose_in_world().x, 2.5);
+  EXPECT_EQ(robot->pose_in_odom(), Pose{});
 }
 
 TEST(Robot, OneSeedOneTrajectory) {
-  const World world = walled();
   RobotParameters parameters;
   parameters.encode_jitter = 0.01;
   parameters.angle_jitter = 0.02;
   const auto trajectory = [&](std::uint64_t seed) {
-    Scene scene(world);
-    Robot& robot = scene.add_robot(parameters, {}, seed);
-    robot.set_velocity(0.3);
-    robot.set_heading(2.0);
+    const Alone robot(parameters, {}, seed, kWalled);
+    robot->set_velocity(0.3);
+    robot->set_heading(2.0);
     run(robot, 1000);
-    return robot.pose_in_odom();
+    return robot->pose_in_odom();
   };
   EXPECT_EQ(trajectory(5), trajectory(5));
   EXPECT_NE(trajectory(5), trajectory(6));
