@@ -15,6 +15,7 @@
 #include "bench.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 #include "support/node_options.hpp"
 #include "support/quantile.hpp"
 
@@ -220,12 +221,9 @@ int main(int argc, char** argv) {
   app.add_option("--first", all.first, "of these agents").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     if (all.serve)
       serve(all);
     return measure(all);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-agents: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -22,6 +22,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/sim/trace.hpp"
+#include "support/guarded.hpp"
 #include "support/process.hpp"
 
 using namespace saphira;
@@ -205,10 +206,5 @@ int main(int argc, char** argv) {
                  error.what());
     return kSkipped;
   }
-  try {
-    return measure(*link, options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-delay: %s\n", error.what());
-    return 1;
-  }
+  return test::guarded([&] { return measure(*link, options); });
 }

@@ -21,6 +21,7 @@
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 
 namespace {
 
@@ -170,10 +171,5 @@ int main(int argc, char** argv) {
       .in_range(0, 3600);
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-memory: %s\n", error.what());
-    return 3;
-  }
+  return test::guarded([&] { return run(options); }, 3);
 }

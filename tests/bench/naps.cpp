@@ -27,6 +27,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/quantile.hpp"
 
 namespace {
 
@@ -240,13 +241,6 @@ class Group {
   std::uint64_t count_ = 0;
 };
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty())
-    return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
 nlohmann::json summary(const std::vector<Nap>& naps) {
   std::vector<double> times;
   for (const Nap& nap : naps)
@@ -256,9 +250,9 @@ nlohmann::json summary(const std::vector<Nap>& naps) {
           {"resumed", times.size()},
           {"resumed_in_2_s",
            std::count_if(times.begin(), times.end(), [](double time) { return time <= 2.0; })},
-          {"resume_s_p50", quantile(times, 0.5)},
-          {"resume_s_p99", quantile(times, 0.99)},
-          {"resume_s_max", quantile(times, 1.0)}};
+          {"resume_s_p50", test::quantile(times, 0.5)},
+          {"resume_s_p99", test::quantile(times, 0.99)},
+          {"resume_s_max", test::quantile(times, 1.0)}};
 }
 
 std::vector<Nap> run(const Options& options) {

@@ -27,6 +27,7 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "serial_line.hpp"
+#include "support/guarded.hpp"
 #include "support/node_options.hpp"
 #include "support/quantile.hpp"
 
@@ -229,7 +230,7 @@ int main(int argc, char** argv) {
       .one_of({"9600", "19200", "38400", "57600", "115200"});
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     const std::string domain = "198";
     const std::string name = "bench" + std::to_string(getpid());
     const std::string socket = "/tmp/saphira-" + name;
@@ -307,8 +308,5 @@ int main(int argc, char** argv) {
                               .dump()
                               .c_str());
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-reaction: %s\n", error.what());
-    return 1;
-  }
+  });
 }

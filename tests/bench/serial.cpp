@@ -18,6 +18,7 @@
 #include "saphira/cli/trace.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "serial_line.hpp"
+#include "support/guarded.hpp"
 
 using namespace saphira;
 using std::chrono::milliseconds;
@@ -110,7 +111,7 @@ int main(int argc, char** argv) {
   app.add_option("--count", count, "reactions").in_range(10, 100000);
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     const Run run = demo(baud, seed);
     const double line = baud / 10.0;
     std::printf("demo over %d baud: %s\n", baud, run.outcome.c_str());
@@ -146,8 +147,5 @@ int main(int argc, char** argv) {
                               .dump()
                               .c_str());
     return run.arrived ? 0 : 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-serial: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -26,6 +26,7 @@
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/trace.hpp"
 #include "serial_line.hpp"
+#include "support/guarded.hpp"
 
 using namespace saphira;
 using std::chrono::milliseconds;
@@ -208,7 +209,7 @@ int main(int argc, char** argv) {
   app.add_option("robots", names, "names of config/robots, or files (usual: all)");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     const std::string folder = config_folder() + "/robots";
     if (names.empty())
       names = names_in(folder, ".p");
@@ -226,8 +227,5 @@ int main(int argc, char** argv) {
       std::printf("%s\n", result.dump().c_str());
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-stops: %s\n", error.what());
-    return 1;
-  }
+  });
 }

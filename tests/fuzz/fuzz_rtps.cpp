@@ -28,6 +28,7 @@
 #include <system_error>
 #include <vector>
 
+#include "guarded.hpp"
 #include "process.hpp"
 #include "saphira/command_line/command_line.hpp"
 
@@ -336,10 +337,5 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object on the last line");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return Campaign(options).run();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-fuzz-rtps: %s\n", error.what());
-    return 3;
-  }
+  return saphira::test::guarded([&] { return Campaign(options).run(); }, 3);
 }

@@ -17,6 +17,7 @@
 #include "perception/score.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/maps/topology.hpp"
+#include "support/guarded.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -389,10 +390,5 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-floors: %s\n", error.what());
-    return 1;
-  }
+  return test::guarded([&] { return run(options); });
 }

@@ -10,6 +10,7 @@
 #include "localization/patrol.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -218,10 +219,5 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-localization: %s\n", error.what());
-    return 1;
-  }
+  return test::guarded([&] { return run(options); });
 }

@@ -9,6 +9,7 @@
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 #include "support/quantile.hpp"
 
 namespace saphira::test {
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "one JSON object on the last line");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     if (robots.empty())
       for (const std::string& name : names_in(config_folder() + "/robots", ".p"))
         if (!parameters_of(name).sonars.empty())
@@ -163,8 +164,5 @@ int main(int argc, char** argv) {
                               .dump()
                               .c_str());
     return sum.caused == 0 && sum.things == 0 && arrived == possible ? 0 : 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-people: %s\n", error.what());
-    return 1;
-  }
+  });
 }

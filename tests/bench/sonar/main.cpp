@@ -9,6 +9,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "simulated.hpp"
+#include "support/guarded.hpp"
 
 using namespace saphira::bench;
 namespace fs = std::filesystem;
@@ -232,10 +233,5 @@ int main(int argc, char** argv) {
                  "come from\n";
     return 2;
   }
-  try {
-    return run(data, plot, as_json);
-  } catch (const std::exception& error) {
-    std::cerr << "saphira-bench-sonar: " << error.what() << '\n';
-    return 2;
-  }
+  return saphira::test::guarded([&] { return run(data, plot, as_json); }, 2);
 }

@@ -16,6 +16,7 @@
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/speech/recognizer.hpp"
 #include "saphira/speech/voice.hpp"
+#include "support/guarded.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -256,10 +257,5 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-speech: %s\n", error.what());
-    return 1;
-  }
+  return test::guarded([&] { return run(options); });
 }
