@@ -10,26 +10,20 @@
 namespace saphira::test {
 namespace {
 
-struct Outcome {
-  int code = -1;
+struct Driven : Outcome {
   nlohmann::json summary;
-  std::string text;
 };
 
-Outcome demo(const std::vector<std::string>& options) {
-  const TempDir folder;
-  std::vector<std::string> argv{"saphira", "demo", "--headless", "--json"};
-  argv.insert(argv.end(), options.begin(), options.end());
-  Process process(argv, folder.path("output"));
-  Outcome outcome;
-  outcome.code = process.wait(std::chrono::minutes(4)).value_or(-1);
-  outcome.text = process.output();
-  std::string text = outcome.text;
+Driven demo(const std::vector<std::string>& options) {
+  std::vector<std::string> words{"demo", "--headless", "--json"};
+  words.insert(words.end(), options.begin(), options.end());
+  Driven driven{saphira(words, {}, std::chrono::minutes(4)), {}};
+  std::string text = driven.text;
   while (text.ends_with('\n'))
     text.pop_back();
-  outcome.summary =
+  driven.summary =
       nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, /*allow_exceptions=*/false);
-  return outcome;
+  return driven;
 }
 
 class LockstepDemo : public testing::TestWithParam<int> {};
@@ -38,13 +32,13 @@ TEST_P(LockstepDemo, ArrivesUntouchedAndIsTheSameInOneProcessAndInMany) {
   const std::vector<std::string> separate{"--lockstep", "--seed", std::to_string(GetParam())};
   std::vector<std::string> single = separate;
   single.emplace_back("--single-process");
-  const Outcome first = demo(separate);
+  const Driven first = demo(separate);
   ASSERT_EQ(first.code, 0) << first.text;
   EXPECT_TRUE(first.summary.at("arrived").get<bool>());
   EXPECT_EQ(first.summary.at("contacts"), 0);
   EXPECT_GT(first.summary.at("min_clearance_m"), 0.0);
   EXPECT_GT(first.summary.at("path_m"), 5.0);
-  const Outcome again = demo(single);
+  const Driven again = demo(single);
   ASSERT_EQ(again.code, 0) << again.text;
   EXPECT_EQ(again.summary.at("trajectory_hash"), first.summary.at("trajectory_hash"))
       << again.text << first.text;
@@ -54,8 +48,8 @@ TEST_P(LockstepDemo, ArrivesUntouchedAndIsTheSameInOneProcessAndInMany) {
 INSTANTIATE_TEST_SUITE_P(TenSeeds, LockstepDemo, testing::Range(1, 11));
 
 TEST(Demo, SeedsDiffer) {
-  const Outcome one = demo({"--lockstep", "--single-process", "--seed", "1"});
-  const Outcome two = demo({"--lockstep", "--single-process", "--seed", "2"});
+  const Driven one = demo({"--lockstep", "--single-process", "--seed", "1"});
+  const Driven two = demo({"--lockstep", "--single-process", "--seed", "2"});
   EXPECT_NE(one.summary.at("trajectory_hash"), two.summary.at("trajectory_hash"));
 }
 
@@ -65,11 +59,11 @@ std::string credentials(const TempDir& folder) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"init", "office"},
         {"add", "demo", "--role", "bridge,services,robot,operator"}}) {
-    std::vector<std::string> argv{"saphira", "security"};
-    argv.insert(argv.end(), words.begin(), words.end());
-    argv.insert(argv.end(), {"--authority", authority});
-    Process process(argv, folder.path("said"));
-    EXPECT_EQ(process.wait(std::chrono::minutes(1)), 0) << process.output();
+    std::vector<std::string> all{"security"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--authority", authority});
+    const Outcome made = saphira(all);
+    EXPECT_EQ(made.code, 0) << made.text;
   }
   return authority + "/members/demo";
 }
@@ -81,7 +75,7 @@ TEST(SecuredDemo, IsTheSameAsTheOpenOne) {
   const std::vector<std::string> open{"--lockstep", "--seed", "1"};
   std::vector<std::string> secured = open;
   secured.insert(secured.end(), {"--security", security});
-  const Outcome first = demo(secured);
+  const Driven first = demo(secured);
   ASSERT_EQ(first.code, 0) << first.text;
   EXPECT_TRUE(first.summary.at("arrived").get<bool>());
   const std::string hash = demo(open).summary.at("trajectory_hash");
@@ -92,21 +86,21 @@ TEST(SecuredDemo, IsTheSameAsTheOpenOne) {
 
 TEST(SecuredDemo, LiveArrivesUntouched) {
   const TempDir folder;
-  const Outcome live = demo({"--seed", "1", "--goal", "3", "0", "--security", credentials(folder)});
+  const Driven live = demo({"--seed", "1", "--goal", "3", "0", "--security", credentials(folder)});
   ASSERT_EQ(live.code, 0) << live.text;
   EXPECT_TRUE(live.summary.at("arrived").get<bool>());
   EXPECT_EQ(live.summary.at("contacts"), 0);
 }
 
 TEST(SecuredDemo, WithoutCredentialsNothingBegins) {
-  const Outcome none = demo({"--security", "/nowhere"});
+  const Driven none = demo({"--security", "/nowhere"});
   EXPECT_EQ(none.code, 2) << none.text;
   EXPECT_NE(none.text.find("/nowhere: there is no such folder of credentials"), std::string::npos)
       << none.text;
 }
 
 TEST(Demo, OutOfTimeIsAFailureThatSaysSo) {
-  const Outcome late = demo({"--lockstep", "--time-limit", "3"});
+  const Driven late = demo({"--lockstep", "--time-limit", "3"});
   EXPECT_EQ(late.code, 1) << late.text;
   EXPECT_FALSE(late.summary.at("arrived").get<bool>());
 }
@@ -116,12 +110,7 @@ TEST(Demo, CommandsWithoutABusFindIt) {
   const TempDir folder;
   const std::map<std::string, std::string> plain{{"SAPHIRA_DOMAIN", ""},
                                                  {"SAPHIRA_RUN", folder.path()}};
-  int calls = 0;
-  const auto status = [&] {
-    Process process({"saphira", "status"}, folder.path("status" + std::to_string(++calls)), plain);
-    process.wait();
-    return process.output();
-  };
+  const auto status = [&] { return saphira({"status"}, plain).text; };
   {
     Process demo({"saphira", "demo", "--headless"}, folder.path("demo"), plain);
     const std::string first = "of the demo that runs here (--robot demo-";

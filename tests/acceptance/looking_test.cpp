@@ -12,25 +12,10 @@
 namespace saphira::test {
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string text;
-};
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class LookingTest : public testing::Test {
  protected:
   Outcome run(const std::vector<std::string>& words) {
-    std::vector<std::string> argv{"saphira", "--robot", system.robot(), "--domain", domain()};
-    argv.insert(argv.end(), words.begin(), words.end());
-    Process process(argv, system.folder().path("look" + std::to_string(++runs)));
-    Outcome outcome;
-    outcome.code = process.wait().value_or(-1);
-    outcome.text = process.output();
-    return outcome;
+    return saphira(words, {{"SAPHIRA_ROBOT", system.robot()}});
   }
   /// Drives to a point far down the corridor.
   void drive() {
@@ -41,7 +26,6 @@ class LookingTest : public testing::Test {
 
   System system;
   v1::GoalId goal;
-  int runs = 0;
 };
 
 TEST_F(LookingTest, ShowsWhatItThinksWhileItDrives) {

@@ -12,14 +12,13 @@ namespace saphira::test {
 namespace {
 
 nlohmann::json scenario(const std::vector<std::string>& options) {
-  const TempDir folder;
-  std::vector<std::string> argv{"saphira", "scenario", "--lockstep", "--json"};
-  argv.insert(argv.end(), options.begin(), options.end());
-  Process process(argv, folder.path("output"));
-  EXPECT_TRUE(process.wait(std::chrono::minutes(8)).has_value()) << process.output();
-  const std::string text = process.output();
-  const nlohmann::json result = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  EXPECT_TRUE(result.is_object()) << text;
+  std::vector<std::string> words{"scenario", "--lockstep", "--json"};
+  words.insert(words.end(), options.begin(), options.end());
+  const Outcome played = saphira(words, {}, std::chrono::minutes(8));
+  EXPECT_GE(played.code, 0) << played.text;
+  const nlohmann::json result =
+      nlohmann::json::parse(played.text, nullptr, /*allow_exceptions=*/false);
+  EXPECT_TRUE(result.is_object()) << played.text;
   return result;
 }
 
@@ -64,9 +63,9 @@ TEST(Scenario, ACastWithAMistakeIsRefusedBeforeAnythingRuns) {
   const TempDir folder;
   const std::string file = folder.path("wrong.people");
   std::ofstream(file) << "PERSON alice EJ-247\nLIKES tea\n";
-  Process process({"saphira", "scenario", "--lockstep", "--cast", file}, folder.path("output"));
-  EXPECT_EQ(process.wait(std::chrono::seconds(30)), 2) << process.output();
-  EXPECT_NE(process.output().find("wrong.people:2:1"), std::string::npos) << process.output();
+  const Outcome refused = saphira({"scenario", "--lockstep", "--cast", file});
+  EXPECT_EQ(refused.code, 2) << refused.text;
+  EXPECT_TRUE(has(refused.text, "wrong.people:2:1")) << refused.text;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace saphira {
 namespace {
 
 using std::chrono::seconds;
+using test::has;
 
 class Situations : public testing::Test {
  protected:
@@ -25,9 +26,7 @@ class Situations : public testing::Test {
     return {command, folder_.path(name), environment_};
   }
   std::string said(const std::vector<std::string>& words) {
-    test::Process process = started(words, "said" + std::to_string(++asked_));
-    process.wait();
-    return process.output();
+    return test::saphira(words, environment_).text;
   }
   /// Asks until the answer has all of these parts; returns the last answer.
   std::string until(const std::vector<std::string>& words, const std::vector<std::string>& parts) {
@@ -57,13 +56,8 @@ class Situations : public testing::Test {
     }));
     return pid;
   }
-  static bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
-
   test::TempDir folder_;
   std::map<std::string, std::string> environment_;
-  int asked_ = 0;
   test::Process up_;
 };
 

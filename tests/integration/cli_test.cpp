@@ -31,6 +31,8 @@ namespace saphira {
 namespace {
 
 using std::chrono::milliseconds;
+using test::has;
+using test::Outcome;
 namespace topics = bus::topics;
 
 /// A bridge of a standing robot and an intentions service that answers each goal by its functor: in
@@ -130,11 +132,6 @@ class Scripted {
   std::thread thread_;
 };
 
-struct Outcome {
-  int code = -1;
-  std::string text;
-};
-
 /// `saphira` on the bus of this test.
 class CliTest : public testing::Test {
  protected:
@@ -143,14 +140,7 @@ class CliTest : public testing::Test {
     argv.insert(argv.end(), words.begin(), words.end());
     return argv;
   }
-  Outcome run(const std::vector<std::string>& words) {
-    const std::string file = folder_.path("output" + std::to_string(++runs_));
-    test::Process process(command(words), file);
-    Outcome outcome;
-    outcome.code = process.wait().value_or(-1);
-    outcome.text = process.output();
-    return outcome;
-  }
+  Outcome run(const std::vector<std::string>& words) const { return test::run(command(words)); }
   /// `saphira drive` in a terminal of its own: its process, and below 0 where there is none.
   /// terminal, name: what forkpty tells of it.
   pid_t drive(int& terminal, char* name = nullptr) const {
@@ -171,12 +161,7 @@ class CliTest : public testing::Test {
 
   const std::string robot_ = test::unique_robot();
   const test::TempDir folder_;
-  int runs_ = 0;
 };
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// The answers that need no bus.
 class Answers : public CliTest {};

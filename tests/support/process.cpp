@@ -171,6 +171,22 @@ std::string Process::violations() const {
   return found;
 }
 
+Outcome run(const std::vector<std::string>& argv,
+            const std::map<std::string, std::string>& environment,
+            std::chrono::milliseconds limit) {
+  const TempDir folder;
+  Process process(argv, folder.path("said"), environment);
+  const int code = process.wait(limit).value_or(-1);
+  return {code, process.output()};
+}
+
+Outcome saphira(std::vector<std::string> words,
+                const std::map<std::string, std::string>& environment,
+                std::chrono::milliseconds limit) {
+  words.insert(words.begin(), "saphira");
+  return run(words, environment, limit);
+}
+
 std::string program(const std::string& name) {
   return environment("SAPHIRA_BIN_DIR") + "/" + name;
 }

@@ -73,6 +73,23 @@ class Process {
   bool violations_expected_ = false;
 };
 
+/// A program that has ended: its exit code, below 0 where it has not, and all that it said.
+struct Outcome {
+  int code = -1;
+  std::string text;
+};
+Outcome run(const std::vector<std::string>& argv,
+            const std::map<std::string, std::string>& environment = {},
+            std::chrono::milliseconds limit = std::chrono::seconds(60));
+/// `saphira` with these words.
+Outcome saphira(std::vector<std::string> words,
+                const std::map<std::string, std::string>& environment = {},
+                std::chrono::milliseconds limit = std::chrono::seconds(60));
+
+inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 /// A program of this build, such as saphira-bridge; a file of the source tree, such as
 /// config/robots.
 std::string program(const std::string& name);

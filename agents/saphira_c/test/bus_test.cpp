@@ -12,6 +12,7 @@
 namespace saphira {
 namespace {
 
+using test::has;
 using test::Process;
 using test::wait_until;
 
@@ -59,14 +60,8 @@ class OnBus : public testing::Test {
         kPatience);
   }
   /// The output of a command of `saphira`.
-  std::string cli(std::vector<std::string> words) {
-    words.insert(words.begin(), test::program("saphira"));
-    Process process(words, system_.folder().path("cli"), {{"SAPHIRA_ROBOT", system_.robot()}});
-    process.wait();
-    return process.output();
-  }
-  static bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
+  std::string cli(const std::vector<std::string>& words) {
+    return test::saphira(words, {{"SAPHIRA_ROBOT", system_.robot()}}).text;
   }
   v1::AnswerCode ask(const std::string& functor, const std::string& service,
                      const std::string& process) {

@@ -132,14 +132,11 @@ TEST(BridgeDevices, FromTheCommandLine) {
   scene.robot_file = "p3dx-sh.p";
   scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  int runs = 0;
-  const auto run = [&](const std::vector<std::string>& words, int code) {
-    std::vector<std::string> argv{"saphira",  "--robot", scene.robot,
-                                  "--domain", domain(),  "device"};
-    argv.insert(argv.end(), words.begin(), words.end());
-    Process process(argv, scene.folder.path("device" + std::to_string(++runs)));
-    EXPECT_EQ(process.wait(), code) << process.output();
-    return process.output();
+  const auto run = [&](std::vector<std::string> words, int code) {
+    words.insert(words.begin(), "device");
+    const Outcome outcome = saphira(words, {{"SAPHIRA_ROBOT", scene.robot}});
+    EXPECT_EQ(outcome.code, code) << outcome.text;
+    return outcome.text;
   };
   EXPECT_NE(run({"output", "0x21"}, 0).find("output 0x21: the robot shows it"), std::string::npos);
   EXPECT_NE(run({"timer", "3"}, 0).find("timer 3: sent"), std::string::npos);
