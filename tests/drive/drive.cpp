@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "saphira/authority/robot.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::test {
 namespace {
@@ -38,6 +41,13 @@ system::Cores::Settings services_of(const DriveOptions& options,
 }
 
 }  // namespace
+
+std::string world_with(const std::string& world, const std::string& name, const std::string& more) {
+  const std::string path = std::filesystem::temp_directory_path() / ("saphira-" + name + ".wld");
+  std::ofstream(path) << read_file(config_folder() + "/worlds/" + world + ".wld") << "\n"
+                      << more << "\n";
+  return path;
+}
 
 DriveOptions registered_on(maps::Map map, DriveOptions options, bool knows_pose) {
   options.interpretation = true;

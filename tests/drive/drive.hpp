@@ -18,6 +18,12 @@
 
 namespace saphira::test {
 
+/// A world of config/worlds with additions, as a file of that name.
+std::string world_with(const std::string& world, const std::string& name, const std::string& more);
+inline std::string office_with(const std::string& name, const std::string& more) {
+  return world_with("office-floor", name, more);
+}
+
 struct DriveOptions {
   std::string world = "office-floor";            ///< a name of config/worlds
   std::shared_ptr<const sim::World> made_world;  ///< instead of it

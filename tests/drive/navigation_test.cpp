@@ -22,13 +22,6 @@ using intentions::GoalStatus;
 using saphira::Frame;
 using saphira::text;
 
-/// The office floor with additions, as a file.
-std::string office_with(const std::string& name, const std::string& more) {
-  const std::string path = testing::TempDir() + "saphira-navigation-" + name + ".wld";
-  std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n" << more;
-  return path;
-}
-
 WholeOptions office(std::uint64_t seed = 1, const std::string& world = "office-floor") {
   WholeOptions options;
   options.map = "office-floor";

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 
 #include "drive/vision_eyes.hpp"
@@ -15,14 +14,6 @@ namespace saphira::test {
 namespace {
 
 using Kind = lps::SeenThing::Kind;
-
-// The office floor with additions.
-std::string world_with(const std::string& name, const std::string& more) {
-  const std::string path = testing::TempDir() + "saphira-vision-" + name + ".wld";
-  std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n"
-                      << more << "\n";
-  return path;
-}
 
 struct Count {
   int reported = 0;  // people, cycle by cycle
@@ -117,10 +108,10 @@ TEST(VisionEyes, SeeNobodyWhereNobodyIs) {
 // back.
 TEST(VisionEyes, SeePeopleWalk) {
   const std::string world =
-      world_with("people",
-                 "person ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
-                 "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
-                 "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat");
+      office_with("people",
+                  "person ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
+                  "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
+                  "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat");
   const Count count = watch(Stereo::pictures, world, Pose{13.0, 25.0, 0.0}, {}, 300);
   EXPECT_GT(count.visible, 200);
   EXPECT_GT(count.right, 0.98 * count.reported);
@@ -129,36 +120,10 @@ TEST(VisionEyes, SeePeopleWalk) {
   EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which continues above
 }
 
-// By its cameras, not by the true state.
-TEST(VisionEyes, APersonIsFollowedAroundACorner) {
-  WholeOptions options;
-  options.drive.world = world_with(
-      "corner", "person ann 17500 10500 wait 10 walk 17500 7000 300 walk 24000 7000 300 wait 100");
-  options.map = "office-floor";
-  options.sees = vision_eyes(Stereo::pictures);
-  Whole whole(options);
-  const auto goal = whole.ask("follow-person", {saphira::number("seconds", 40.0)});
-  double nearest = 10.0;
-  whole.advance_until(
-      [&] {
-        const Vec2 ann = whole.drive().scene().persons()[0].at;
-        nearest = std::min(nearest, (ann - whole.truth().position()).norm());
-        return whole.ended(goal);
-      },
-      600);
-  EXPECT_EQ(whole.status(goal).state, intentions::GoalState::kSucceeded)
-      << whole.status(goal).reason;
-  EXPECT_GT(whole.truth().x, 20.0) << "around the corner";
-  EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 2.5);
-  EXPECT_GT(nearest, 0.6);
-  EXPECT_EQ(whole.drive().contacts(), 0);
-  EXPECT_EQ(whole.trouble(), "");
-}
-
 // Paper 4.4: the head scans, and stays on the person while the robot turns and comes near.
 TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
   WholeOptions options;
-  options.drive.world = world_with("behind", "person ann 17500 10500");
+  options.drive.world = office_with("behind", "person ann 17500 10500");
   options.drive.robot = "pioneer-head";
   options.drive.start_in_world = Pose{17.5, 14.0, radians(60.0)};
   options.map = "office-floor";
@@ -198,9 +163,8 @@ TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
 // The demo with cameras (deployments/seeing.yaml): whenever one asks, the robot finds the person,
 // who may walk away or come up to it, and follows.
 TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
-  const std::string world = testing::TempDir() + "saphira-vision-demo.wld";
-  std::ofstream(world) << read_file(config_folder() + "/worlds/small-office.wld")
-                       << read_file(config_folder() + "/people/walker.wld");
+  const std::string world =
+      world_with("small-office", "demo", read_file(config_folder() + "/people/walker.wld"));
   for (const int wait : {150, 297}) {
     WholeOptions options;
     options.drive.world = world;
@@ -225,7 +189,7 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
 // Manual 9.3, search_and_go_blob: behind its back at first.
 TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   WholeOptions options;
-  options.drive.world = world_with("can", "post can 17800 10500 80 color red tall 300");
+  options.drive.world = office_with("can", "post can 17800 10500 80 color red tall 300");
   options.drive.start_in_world = Pose{17.5, 14.0, radians(90.0)};
   options.map = "office-floor";
   options.sees = vision_eyes(Stereo::bands);

@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "localization/patrol.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/maps/edit.hpp"
 #include "saphira/maps/topology.hpp"
@@ -17,12 +16,8 @@ using Output = registration::Core::Outputs;
 using registration::Core;
 using registration::State;
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
-
 maps::Map office() {
-  return maps::load_map(source("config/maps/office-floor.map"));
+  return maps::load_map(config_folder() + "/maps/office-floor.map");
 }
 
 DriveOptions doubled(std::uint64_t seed) {
@@ -38,15 +33,6 @@ const Pose kStart{17.5, 14.0, -kPi / 2};
 /// With registration on the map of the office, from the true start on.
 DriveOptions on_office(DriveOptions options) {
   return registered_on(office(), std::move(options));
-}
-
-/// The office floor with additions, as a file.
-std::string office_with(const std::string& name, const std::string& more) {
-  const std::string path = testing::TempDir() + "saphira-" + name + ".wld";
-  std::ifstream in(source("config/worlds/office-floor.wld"));
-  std::ofstream out(path);
-  out << in.rdbuf() << "\n" << more;
-  return path;
 }
 
 TEST(Localization, OnPatrolThePoseStaysWithinAHandOfTheTruth) {
