@@ -30,9 +30,8 @@ LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
   const std::string robot_file = find_file(source("config/robots"), scene.robot, ".p");
   if (scene.single_process) {
     on_bus({"saphira-all", "--world", world, "--robot-file", robot_file, "--socket",
-            folder.path("robot"), "--trace", folder.path("trace.csv"), "--seed",
-            std::to_string(scene.seed), "--step", "--robots", source("config/robots"), "--map",
-            map});
+            folder.path("robot"), "--trace", folder.path("trace.csv"), "--seed", "1", "--step",
+            "--robots", source("config/robots"), "--map", map});
     return;
   }
   std::vector<std::string> simulator{"saphira-sim",  "--step",
@@ -40,7 +39,7 @@ LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
                                      "--robot-file", robot_file,
                                      "--socket",     folder.path("robot"),
                                      "--trace",      folder.path("trace.csv"),
-                                     "--seed",       std::to_string(scene.seed)};
+                                     "--seed",       "1"};
   std::vector<std::string> bridge{"saphira-bridge", "--link", "unix:" + folder.path("robot"),
                                   "--robot-file", robot_file};
   std::vector<std::string> intentions{"saphira-intentions"};

@@ -22,7 +22,6 @@ class LockstepSystem {
     std::string world;            ///< text of a world file
     std::string robot;            ///< a name of config/robots, or a file
     std::string map{};            ///< a file of config/maps [none: an empty map]
-    unsigned seed = 1;            ///< of the simulator's noise
     bool vision = false;          ///< with stereo cameras and the vision service
     bool single_process = false;  ///< in one thread, without a bus between the services
   };
