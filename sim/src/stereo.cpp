@@ -24,8 +24,7 @@ constexpr double kRobotHeight = 0.3;  // [m] no robot of ours is much higher
 constexpr double kShoulder = 0.83;
 constexpr double kHead = 0.42;
 constexpr double kBelt = 0.52;
-constexpr double kArmpit =
-    0.77;  // the lower edge of an outstretched arm; the upper is the shoulder
+constexpr double kArmpit = 0.77;  // below an outstretched arm; the shoulder is above it
 
 // An upright face of an object, from low to high.
 struct Face {
@@ -135,14 +134,7 @@ class Faces {
     if ((nearest_point(segment, eye_) - eye_).norm() > range_ ||
         is_outside(segment.from, segment.to, 0.0))
       return;
-    Face face;
-    face.segment = segment;
-    face.low = low;
-    face.high = high;
-    face.grey = grey;
-    face.seed = seed;
-    face.thing = thing;
-    faces_.push_back(face);
+    faces_.push_back({false, segment, {}, low, high, grey, 0.0, seed, thing, 0.0});
   }
   void add(const Disc& disc, double low, double high, double grey, std::uint32_t seed,
            double turned, double belt) {
@@ -150,17 +142,7 @@ class Faces {
     if ((disc.centre - eye_).norm() > range_ + disc.radius ||
         is_outside(disc.centre, disc.centre, disc.radius))
       return;
-    Face face;
-    face.round = true;
-    face.disc = disc;
-    face.low = low;
-    face.high = high;
-    face.grey = grey;
-    face.belt = belt;
-    face.seed = seed;
-    face.thing = things_;
-    face.turned = turned;
-    faces_.push_back(face);
+    faces_.push_back({true, {}, disc, low, high, grey, belt, seed, things_, turned});
   }
 
   void meet_segment(const Face& face, const Vec2& way, std::vector<Meeting>& meetings) const {

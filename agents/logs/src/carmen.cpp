@@ -17,6 +17,7 @@
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/logs/metrics.hpp"
 
 namespace saphira::logs {
 
@@ -254,12 +255,6 @@ bool has_no_pose(Laser laser) {
          laser == Laser::raw4;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // One place for all scans. In some corrected logs only one of the two poses is corrected: then they
 // do not give the laser's place.
 void mount(CarmenLog& log, const Parameters& parameters) {
@@ -271,8 +266,7 @@ void mount(CarmenLog& log, const Parameters& parameters) {
     y.push_back(scan.laser_in_robot.y);
     th.push_back(norm2_angle(scan.laser_in_robot.th - log.scans.front().laser_in_robot.th));
   }
-  Pose place{median_of(x), median_of(y),
-             norm2_angle(median_of(th) + log.scans.front().laser_in_robot.th)};
+  Pose place{median(x), median(y), norm2_angle(median(th) + log.scans.front().laser_in_robot.th)};
   std::size_t same = 0;
   for (const LaserScan& scan : log.scans) {
     const Pose off = relative(place, scan.laser_in_robot);

@@ -17,6 +17,8 @@ double distance(const Pose& a, const Pose& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
+}  // namespace
+
 double median(std::vector<double> values) {
   if (values.empty())
     return 0.0;
@@ -24,8 +26,6 @@ double median(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
-
-}  // namespace
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
   std::stable_sort(poses_.begin(), poses_.end(),

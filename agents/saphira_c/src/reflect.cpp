@@ -15,6 +15,13 @@ float real(double value) {
   return static_cast<float>(value);
 }
 
+/// Puts a pose into a C program's members [mm, rad].
+void put(const Pose& pose, float& x, float& y, float& th) {
+  x = mm(pose.x);
+  y = mm(pose.y);
+  th = real(pose.th);
+}
+
 cbuf to_c(const lps::SonarBuffer& buffer) {
   cbuf shown{};
   const std::vector<lps::SonarEntry>& entries = buffer.entries();
@@ -47,14 +54,8 @@ void show_vision(View& next, const protocol::VisionPacket& seen) {
 
 wall to_c(const lps::Percept& percept, const Pose& robot_in_odom, const Pose& odom_in_global) {
   wall shown{};
-  const Pose local = relative(robot_in_odom, percept.pose_in_odom);
-  const Pose global = compose(odom_in_global, percept.pose_in_odom);
-  shown.x = mm(local.x);
-  shown.y = mm(local.y);
-  shown.th = real(local.th);
-  shown.ax = mm(global.x);
-  shown.ay = mm(global.y);
-  shown.ath = real(global.th);
+  put(relative(robot_in_odom, percept.pose_in_odom), shown.x, shown.y, shown.th);
+  put(compose(odom_in_global, percept.pose_in_odom), shown.ax, shown.ay, shown.ath);
   shown.type = WALL;
   shown.cat = PERCEPT;
   shown.viewable = TRUE;
@@ -96,12 +97,9 @@ View Os::shown() {
   View next = view();
   next.cycle = cycle;
   const protocol::Information& now = state.information;
-  const Pose global = robot_in_global();
   struct robot& robot = next.robot;
   robot = {};
-  robot.ax = mm(global.x);
-  robot.ay = mm(global.y);
-  robot.ath = real(global.th);
+  put(robot_in_global(), robot.ax, robot.ay, robot.ath);
   robot.tv = mm(now.velocity);
   robot.mtv = mm(parameters.max_velocity);
   robot.rv = real(degrees(now.rotation_velocity));
@@ -141,13 +139,8 @@ void Os::show_sonars(View& next) {
       continue;
     sdata& shown = next.sonars[number];
     const Pose then = relative(robot_in_odom, bucket.pose_in_odom);
-    const Pose then_in_global = compose(odom_in_global, bucket.pose_in_odom);
-    shown.fx = mm(then.x);
-    shown.fy = mm(then.y);
-    shown.fth = real(then.th);
-    shown.afx = mm(then_in_global.x);
-    shown.afy = mm(then_in_global.y);
-    shown.afth = real(then_in_global.th);
+    put(then, shown.fx, shown.fy, shown.fth);
+    put(compose(odom_in_global, bucket.pose_in_odom), shown.afx, shown.afy, shown.afth);
     const Vec2 at = transform(then, bucket.point);
     shown.x = bucket.reading.echo ? mm(at.x()) : 0.0F;
     shown.y = bucket.reading.echo ? mm(at.y()) : 0.0F;

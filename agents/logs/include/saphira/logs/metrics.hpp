@@ -33,6 +33,9 @@ struct Pairs {
 /// The estimate at the reference's stamps, where both exist.
 Pairs pair_up(const Trajectory& estimate, const Trajectory& reference);
 
+/// The middle one in size; 0 without values.
+double median(std::vector<double> values);
+
 /// Root mean square of the distances after the best rigid alignment (Umeyama, without scale) [m].
 double ate_rmse(const Pairs& pairs);
 /// The pose of the estimate's frame in the reference's, by the same alignment.
