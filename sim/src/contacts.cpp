@@ -14,30 +14,27 @@ constexpr double kStands = 0.005;    // [m/s]
 constexpr double kTurns = 0.01;      // [rad/s]
 constexpr double kSameThing = 0.1;   // [m] a wall this near to the point does not hide it
 constexpr std::size_t kOneWall = 0;  // all walls count as one thing
-
-/// No sonar exceeds its own range, whatever the settings allow.
-ContactSettings of_robot(ContactSettings settings, const protocol::RobotParameters& parameters) {
-  settings.most_range = std::min(settings.most_range, parameters.sonar_max_range);
-  return settings;
-}
+constexpr double kTouch = 0.002;     // [m] a smaller gap is a contact...
+constexpr double kParted = 0.05;     // [m] ...which has ended when the gap is larger than this
+constexpr double kTowards = 0.05;    // [m/s] a slower robot is not to blame
+constexpr double kAtRest = 0.3;      // [s] nor one that has stood this long
+constexpr double kReaction = 0.6;    // [s] from the sound to the brakes, at worst
+// The true range for a sonar, heard or not.
+constexpr double kLobe = radians(9.0);  // [rad] to either side of the axis
+constexpr double kLeastRange = 0.2;     // [m]
+constexpr double kMostRange = 2.0;      // [m]
+constexpr double kMemory = 10.0;        // [s] older readings do not count
 
 }  // namespace
 
 ContactWatch::ContactWatch(const Scene& scene, RobotNumber robot,
-                           const protocol::RobotParameters& parameters,
-                           const ContactSettings& settings)
+                           const protocol::RobotParameters& parameters)
     : scene_(&scene),
       robot_(robot),
       parameters_(parameters),
-      settings_(of_robot(settings, parameters)),
-      near_(scene.world(), parameters.radius + std::max(kContactLookout, settings.most_range)) {
+      most_range_(std::min(kMostRange, parameters.sonar_max_range)),
+      near_(scene.world(), parameters.radius + std::max(kContactLookout, kMostRange)) {
   remember();
-}
-
-std::size_t ContactWatch::count(Blame blame) const {
-  return static_cast<std::size_t>(
-      std::count_if(contacts_.begin(), contacts_.end(),
-                    [&](const Contact& contact) { return contact.blame == blame; }));
 }
 
 void ContactWatch::tick() {
@@ -57,7 +54,7 @@ void ContactWatch::remember() {
     for (const Shin& shin : shins(person))
       past.persons.push_back(shin.disc.centre);
   past_.push_back(std::move(past));
-  if (static_cast<double>(past_.size()) * kTick > settings_.memory)
+  if (static_cast<double>(past_.size()) * kTick > kMemory)
     past_.pop_front();
 }
 
@@ -104,11 +101,9 @@ void ContactWatch::judge(const Thing& thing) {
   if (thing.kind == ThingKind::kPerson)
     closest_person_ = std::min(closest_person_, thing.gap);
   State& state = state_of(thing);
-  if (thing.gap > settings_.apart)
+  if (thing.gap > kParted)
     state.touches = false;
-  if (thing.gap > settings_.near_gap)
-    state.near = false;
-  if (thing.gap > settings_.near_gap)
+  if (state.touches || thing.gap >= kTouch)
     return;
   const Robot& robot = scene_->robot(robot_);
   const Pose& pose = robot.pose_in_world();
@@ -118,22 +113,15 @@ void ContactWatch::judge(const Thing& thing) {
       std::abs(velocity_) > std::abs(robot.velocity()) ? velocity_ : robot.velocity();
   const double towards =
       velocity * pose.direction().dot((thing.nearest - pose.position()).normalized());
-  const double speed = thing.kind == ThingKind::kPerson ? std::abs(velocity) : towards;
-  if (!state.near && speed > settings_.near_speed) {
-    state.near = true;
-    near_contacts_.push_back({scene_->ticks(), thing.kind, name_of(thing), thing.gap, speed});
-  }
-  if (!state.touches && thing.gap < settings_.touch) {
-    state.touches = true;
-    contacts_.push_back(blame(thing, towards));
-  }
+  state.touches = true;
+  contacts_.push_back(blame(thing, towards));
 }
 
 Contact ContactWatch::blame(const Thing& thing, double towards) const {
-  Contact contact{scene_->ticks(), thing.kind,   name_of(thing),     Blame::kCaused,
-                  towards,         heard(thing), settings_.reaction, thing.nearest};
+  Contact contact{scene_->ticks(), thing.kind,   name_of(thing), Blame::kCaused,
+                  towards,         heard(thing), kReaction,      thing.nearest};
   contact.needed += std::max(0.0, towards) / parameters_.deceleration;
-  if (stood_ >= settings_.at_rest || towards <= settings_.towards)
+  if (stood_ >= kAtRest || towards <= kTowards)
     contact.blame = Blame::kWalkedInto;
   else if (contact.heard < contact.needed)
     contact.blame = Blame::kUnseen;
@@ -154,18 +142,17 @@ double ContactWatch::heard(const Thing& thing) const {
 }
 
 bool ContactWatch::in_a_lobe(const Pose& robot, const Vec2& point) const {
-  const double cosine = std::cos(settings_.lobe);
-  return std::any_of(parameters_.sonars.begin(), parameters_.sonars.end(),
-                     [&](const protocol::SonarUnit& unit) {
-                       const Pose at = compose(robot, unit.pose_in_robot);
-                       const Vec2 way = point - at.position();
-                       const double range = way.norm();
-                       if (range < settings_.least_range || range > settings_.most_range ||
-                           way.dot(at.direction()) < range * cosine)
-                         return false;
-                       return !cast_ray(near_.around(robot.position()), at.position(), way / range,
-                                        range - kSameThing);
-                     });
+  const double cosine = std::cos(kLobe);
+  return std::any_of(
+      parameters_.sonars.begin(), parameters_.sonars.end(), [&](const protocol::SonarUnit& unit) {
+        const Pose at = compose(robot, unit.pose_in_robot);
+        const Vec2 way = point - at.position();
+        const double range = way.norm();
+        if (range < kLeastRange || range > most_range_ || way.dot(at.direction()) < range * cosine)
+          return false;
+        return !cast_ray(near_.around(robot.position()), at.position(), way / range,
+                         range - kSameThing);
+      });
 }
 
 std::string ContactWatch::name_of(const Thing& thing) const {

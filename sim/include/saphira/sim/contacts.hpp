@@ -32,43 +32,16 @@ struct Contact {
   Vec2 at_in_world{0.0, 0.0};
 };
 
-/// The robot passed near an object without slowing down.
-struct NearContact {
-  std::uint64_t tick = 0;
-  ThingKind kind = ThingKind::kWall;
-  std::string name;
-  double gap = 0.0;    ///< [m] at that tick
-  double speed = 0.0;  ///< [m/s] of the robot by a person, towards any other thing
-};
-
-struct ContactSettings {
-  double touch = 0.002;     ///< [m] a smaller gap is a contact...
-  double apart = 0.05;      ///< [m] ...which has ended when the gap is larger than this
-  double towards = 0.05;    ///< [m/s] a slower robot is not to blame
-  double at_rest = 0.3;     ///< [s] nor one that has stood this long
-  double reaction = 0.6;    ///< [s] from the sound to the brakes, at worst
-  double near_gap = 0.1;    ///< [m]
-  double near_speed = 0.2;  ///< [m/s]
-  // The true range for a sonar, heard or not.
-  double lobe = radians(9.0);  ///< [rad] to either side of the axis
-  double least_range = 0.2;    ///< [m]
-  double most_range = 2.0;     ///< [m]
-  double memory = 10.0;        ///< [s] older readings do not count
-};
-
 /// Watches one robot of a scene and judges its contacts, by the true state.
 class ContactWatch {
  public:
   /// The scene outlives this object.
-  ContactWatch(const Scene& scene, RobotNumber robot, const protocol::RobotParameters& parameters,
-               const ContactSettings& settings = {});
+  ContactWatch(const Scene& scene, RobotNumber robot, const protocol::RobotParameters& parameters);
 
   /// After every tick of the scene (Scene::set_watch).
   void tick();
 
   const std::vector<Contact>& contacts() const { return contacts_; }
-  const std::vector<NearContact>& near_contacts() const { return near_contacts_; }
-  std::size_t count(Blame blame) const;
   /// [m] The smallest gap to a person so far; infinite where there are none.
   double closest_person() const { return closest_person_; }
 
@@ -84,7 +57,6 @@ class ContactWatch {
     ThingKind kind = ThingKind::kWall;
     std::size_t number = 0;
     bool touches = false;
-    bool near = false;
   };
   // The past, as far back as it counts.
   struct Past {
@@ -104,12 +76,11 @@ class ContactWatch {
   const Scene* scene_;
   RobotNumber robot_;
   protocol::RobotParameters parameters_;
-  ContactSettings settings_;
+  double most_range_;  // [m] of a sonar, heard or not
   mutable Neighbourhood near_;
   std::deque<Past> past_;
   std::vector<State> states_;
   std::vector<Contact> contacts_;
-  std::vector<NearContact> near_contacts_;
   double velocity_ = 0.0;  // [m/s] at the end of the last tick
   double stood_ = 0.0;     // [s]
   double closest_person_ = std::numeric_limits<double>::infinity();
