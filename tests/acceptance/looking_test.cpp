@@ -153,7 +153,7 @@ TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
 }
 
 TEST_F(LookingTest, SaysThatNobodyIsThere) {
-  for (const char* command : {"intentions", "behaviors", "why", "beliefs", "processes"}) {
+  for (const char* command : {"intentions", "why", "processes"}) {
     const Outcome outcome = run({command});
     EXPECT_EQ(outcome.code, 1) << outcome.text;
     EXPECT_TRUE(has(outcome.text, "no program is on the bus")) << outcome.text;
