@@ -1,6 +1,6 @@
 // The gateway before strangers: wrong pages, wrong keys, broken frames, crowds. It needs no robot.
 import assert from 'node:assert/strict';
-import {spawn, spawnSync} from 'node:child_process';
+import {spawnSync} from 'node:child_process';
 import {randomBytes} from 'node:crypto';
 import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import http from 'node:http';
@@ -9,33 +9,22 @@ import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
+import {output, start, until} from './processes.mjs';
 import {frame, socketTo} from './socket.mjs';
 
-const limit = 30_000;        // [ms] generous: for broken runs
 const mostMemory = 80;       // [MB]
-let gateway, port, key, output = '';
-
-async function until(what, condition) {
-  const end = Date.now() + limit;
-  while (Date.now() < end) {
-    const value = await condition();
-    if (value) return value;
-    await new Promise(resolve => setTimeout(resolve, 50));
-  }
-  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output}`);
-}
+let gateway, port, key;
 
 before(async () => {
-  gateway = spawn(join(process.env.SAPHIRA_BIN_DIR, 'saphira-console'), ['--robot', `hostile-${process.pid}`, '--port', '0']);
-  for (const stream of [gateway.stdout, gateway.stderr]) stream.on('data', data => { output += data; });
-  const address = await until('the address', () => output.match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
+  gateway = start('saphira-console', '--robot', `hostile-${process.pid}`, '--port', '0');
+  const address = await until('the address', () => output().match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
   port = Number(address[1]);
   key = address[2];
 });
 after(async () => {
   gateway.kill('SIGTERM');
   const [code] = await new Promise(resolve => gateway.on('exit', (...end) => resolve(end)));
-  assert.equal(code, 0, output);
+  assert.equal(code, 0, output());
 });
 
 function get(path, headers = {}) {
@@ -125,12 +114,10 @@ test('with a certificate everything is encrypted, and nothing is answered in the
   const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-days', '1', '-subj', '/CN=localhost',
     '-addext', 'subjectAltName=DNS:localhost', '-keyout', keyFile, '-out', certificate]);
   assert.equal(made.status, 0, String(made.stderr));
-  const secure = spawn(join(process.env.SAPHIRA_BIN_DIR, 'saphira-console'),
-    ['--robot', `https-${process.pid}`, '--port', '0', '--certificate', certificate, '--certificate-key', keyFile]);
-  let said = '';
-  for (const stream of [secure.stdout, secure.stderr]) stream.on('data', data => { said += data; });
+  const secure = start('saphira-console', '--robot', `https-${process.pid}`, '--port', '0', '--certificate', certificate,
+    '--certificate-key', keyFile);
   t.after(() => { secure.kill('SIGTERM'); rmSync(folder, {recursive: true}); });
-  const [, at, itsKey] = await until('the address', () => said.match(/open https:\/\/localhost:(\d+)\/#(\w+)/));
+  const [, at, itsKey] = await until('the address', () => output().match(/open https:\/\/localhost:(\d+)\/#(\w+)/));
   const options = {host: 'localhost', port: Number(at), family: 4, agent: false, ca: readFileSync(certificate)};
   const status = () => new Promise((resolve, reject) =>
     https.get(options, response => { response.resume(); resolve(response.statusCode); }).on('error', reject));

@@ -1,6 +1,5 @@
 // The page as people use it, in Chromium, before a simulated robot with all that drives it.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import net from 'node:net';
@@ -8,39 +7,26 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {chromium} from 'playwright-core';
+import {end, output, sleep, start, until} from './processes.mjs';
 
 const axeSource = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const limit = 30_000;        // [ms] generous: for broken runs
 const folder = mkdtempSync(join(tmpdir(), 'saphira-console-'));
-let up, output = '', address, gatewayPid, browser;
+let up, address, browser;
 
 const bin = process.env.SAPHIRA_BIN_DIR;
 const robot = `console-${process.pid}`;
 
-async function until(what, condition) {
-  const end = Date.now() + limit;
-  while (Date.now() < end) {
-    const value = await condition();
-    if (value) return value;
-    await new Promise(resolve => setTimeout(resolve, 50));
-  }
-  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output.slice(-3000)}`);
-}
-
 before(async () => {
   // Ports of its own: a restarted gateway finds its port again, whatever runs beside it.
   const port = 20_000 + process.pid % 500 * 20;
-  up = spawn(join(bin, 'saphira'), ['--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`], {stdio: ['ignore', 'pipe', 'pipe']});
-  for (const stream of [up.stdout, up.stderr]) stream.on('data', data => { output += data; });
-  address = await until('the address', () => output.match(/open (http:\S+)/)?.[1]);
+  up = start('saphira', '--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`);
+  address = await until('the address', () => output().match(/open (http:\S+)/)?.[1]);
   browser = await chromium.launch({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
 });
 after(async () => {
   await browser?.close();
-  if (up && up.exitCode === null) {
-    up.kill('SIGTERM');
-    await new Promise(resolve => up.on('exit', resolve));
-  }
+  await end(up);
   rmSync(folder, {recursive: true, force: true});
 });
 
@@ -424,7 +410,7 @@ async function link() {
     from.on('data', data => {
       const due = Date.now() + state.delay;
       last = last.then(async () => {
-        while (Date.now() < due || state.cut) await new Promise(resolve => setTimeout(resolve, 5));
+        while (Date.now() < due || state.cut) await sleep(5);
         if (!to.destroyed) to.write(data);
       });
     });
