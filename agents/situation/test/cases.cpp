@@ -54,32 +54,18 @@ void all_is_well(std::vector<Case>& all) {
                               },
                               {"straight on", "GoToPos wants 0.30 m/s (rule Fast)", goal},
                               {"KeepOff", "left"}));
+  const auto blocked = [](Situation& s) {
+    guard(s, v1::GUARD_STOP, "something 0.12 m ahead", 0.0);
+  };
   all.push_back(while_driving(
-      "the guard stops it before a wall", "why",
-      [](Situation& s) {
-        s.robot->velocity(0.0);
-        s.grant->guard(v1::GUARD_STOP);
-        s.grant->guard_reason("something 0.12 m ahead");
-        s.grant->velocity(0.0);
-      },
+      "the guard stops it before a wall", "why", blocked,
       {"turn on the spot", "the guard beside the robot stops it (something 0.12 m ahead)"},
       {"drive ahead"}));
   all.push_back(while_driving(
-      "the same", "why not faster",
-      [](Situation& s) {
-        s.robot->velocity(0.0);
-        s.grant->guard(v1::GUARD_STOP);
-        s.grant->guard_reason("something 0.12 m ahead");
-        s.grant->velocity(0.0);
-      },
+      "the same", "why not faster", blocked,
       {"because the guard beside the robot stops it", "the behaviors want 0.30 m/s"}));
   all.push_back(while_driving("the guard slows it", "why",
-                              [](Situation& s) {
-                                s.grant->guard(v1::GUARD_SLOW);
-                                s.grant->guard_reason("0.6 m ahead");
-                                s.grant->velocity(0.1);
-                                s.robot->velocity(0.1);
-                              },
+                              [](Situation& s) { guard(s, v1::GUARD_SLOW, "0.6 m ahead", 0.1); },
                               {"0.10 m/s", "slows it (0.6 m ahead)"}));
   all.push_back(while_driving("an activity monitors what may go wrong", "why tree",
                               [](Situation& s) {
@@ -152,37 +138,20 @@ void goals(std::vector<Case>& all) {
                         },
                         {"is underway and intends no behavior now: waits for the door to open"},
                         {"nobody has asked", "no goal"}));
-  all.push_back(while_driving("just canceled: the robot still rolls", "why",
-                              [](Situation& s) {
-                                stand(s);
-                                s.robot->velocity(0.4);
-                                s.intentions->behaviors().clear();
-                                s.statuses = {
-                                    goal_status(v1::GOAL_CANCELED, "withdrawn by saphira goal")};
-                              },
+  const auto rolling = [](Situation& s) {
+    stand(s);
+    s.robot->velocity(0.4);
+    s.intentions->behaviors().clear();
+    s.statuses = {goal_status(v1::GOAL_CANCELED, "withdrawn by saphira goal")};
+  };
+  all.push_back(while_driving("just canceled: the robot still rolls", "why", rolling,
                               {"told to stop", "now it does 0.40 m/s", "canceled"}, {"stands"}));
-  all.push_back(while_driving("the same", "why not slower",
-                              [](Situation& s) {
-                                stand(s);
-                                s.robot->velocity(0.4);
-                                s.intentions->behaviors().clear();
-                                s.statuses = {goal_status(v1::GOAL_CANCELED)};
-                              },
-                              {"It does go slower"}, {"stands"}));
+  all.push_back(
+      while_driving("the same", "why not slower", rolling, {"It does go slower"}, {"stands"}));
   all.push_back(at_rest("just stopped: it still turns", "why",
                         [](Situation& s) { s.robot->rotation_velocity(radians(20.0)); },
                         {"told to stop", "turns at 20 degrees/s to the left"}, {"stands"}));
-  all.push_back(at_rest("a micro-task is suspended", "why",
-                        [](Situation& s) {
-                          v1::ProcessSet service;
-                          service.service("intentions");
-                          v1::Process process;
-                          process.name("execute-intentions");
-                          process.state(v1::PROCESS_SUSPENDED);
-                          process.since(900);
-                          service.processes({process});
-                          s.processes = {service};
-                        },
+  all.push_back(at_rest("a micro-task is suspended", "why", [](Situation& s) { suspend(s, 900); },
                         {"execute-intentions of intentions is suspended"}, {"nobody has asked"}));
   all.push_back(at_rest("behavior control is switched off", "why",
                         [](Situation& s) { s.intentions->behavior_control(false); },
@@ -218,8 +187,7 @@ void people(std::vector<Case>& all) {
   all.push_back(while_driving("the guard slows a person", "why",
                               [](Situation& s) {
                                 by_keyboard(s, 0.1, 0.0);
-                                s.grant->guard(v1::GUARD_SLOW);
-                                s.grant->guard_reason("0.6 m ahead");
+                                guard(s, v1::GUARD_SLOW, "0.6 m ahead", 0.1);
                               },
                               {"keyboard of ann", "slows it (0.6 m ahead)"}));
   const auto drove = [](Situation& s) { s.grant->waits_for_hand_back(true); };

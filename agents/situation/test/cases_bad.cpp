@@ -163,14 +163,15 @@ void bridge_gone(std::vector<Case>& all) {
                        s.grant->reason("no robot is connected");
                      }},
                      {"no robot is connected"}));
-  all.push_back(when("nothing is on the bus", "why", Situation{},
-                     {[](Situation& s) { s.listened = 3.0; }},
+  Situation nothing;
+  nothing.listened = 3.0;
+  all.push_back(when("nothing is on the bus", "why", nothing, {},
                      {"Nothing is known", "bridge, behaviors and intentions are not heard"},
                      {"stands", "nobody has asked"}));
-  all.push_back(when("the same", "trouble", Situation{}, {[](Situation& s) { s.listened = 3.0; }},
-                     {"bridge, behaviors and intentions are not heard"}));
-  all.push_back(when("the same", "drive", Situation{}, {[](Situation& s) { s.listened = 3.0; }},
-                     {"not known", "bridge is not heard"}, {"nobody"}));
+  all.push_back(
+      when("the same", "trouble", nothing, {}, {"bridge, behaviors and intentions are not heard"}));
+  all.push_back(
+      when("the same", "drive", nothing, {}, {"not known", "bridge is not heard"}, {"nobody"}));
   all.push_back(when("we have listened for a moment only", "trouble", Situation{},
                      {[](Situation& s) { s.listened = 0.1; }}, {}, {"is not heard"}));
 }
@@ -187,14 +188,7 @@ void past(std::vector<Case>& all) {
                      {[](Situation& s) {
                         s.statuses = {goal_status(v1::GOAL_FAILED, "the way is blocked")};
                         s.goals = driving().goals;
-                        v1::ProcessSet service;
-                        service.service("intentions");
-                        v1::Process process;
-                        process.name("execute-intentions");
-                        process.state(v1::PROCESS_SUSPENDED);
-                        process.since(950);
-                        service.processes({process});
-                        s.processes = {service};
+                        suspend(s, 950);
                       },
                       absent("behaviors")},
                      {"failed, the way is blocked"}, {"suspended", "is not heard"}));

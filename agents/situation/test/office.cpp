@@ -229,6 +229,25 @@ void by_keyboard(Situation& situation, double velocity, double rotation) {
   grant.rotation_velocity(rotation);
 }
 
+void guard(Situation& situation, v1::GuardAction action, const std::string& reason,
+           double velocity) {
+  situation.grant->guard(action);
+  situation.grant->guard_reason(reason);
+  situation.grant->velocity(velocity);
+  situation.robot->velocity(velocity);
+}
+
+void suspend(Situation& situation, std::uint64_t cycle) {
+  v1::Process process;
+  process.name("execute-intentions");
+  process.state(v1::PROCESS_SUSPENDED);
+  process.since(cycle);
+  v1::ProcessSet service;
+  service.service("intentions");
+  service.processes({process});
+  situation.processes = {service};
+}
+
 void remove(Situation& situation, const std::string& name) {
   std::erase_if(situation.programs, [&](const Program& one) { return one.status.name() == name; });
 }

@@ -24,6 +24,11 @@ Situation resting();
 void stand(Situation& situation, const std::string& reason = "nobody asks to drive");
 /// A person drives by keyboard: [m/s], [rad/s].
 void by_keyboard(Situation& situation, double velocity, double rotation);
+/// The guard beside the robot lets it drive at that speed, for that reason.
+void guard(Situation& situation, v1::GuardAction action, const std::string& reason,
+           double velocity);
+/// Somebody has suspended execute-intentions in that cycle.
+void suspend(Situation& situation, std::uint64_t cycle);
 /// The program is not on the bus any more.
 void remove(Situation& situation, const std::string& program);
 Program& find(Situation& situation, const std::string& program);
