@@ -58,7 +58,6 @@ INSTANTIATE_TEST_SUITE_P(EveryProgram, LossTest,
                                          Loss{"saphira-behaviors", SIGSTOP},
                                          Loss{"saphira-intentions", SIGKILL},
                                          Loss{"saphira-intentions", SIGSTOP},
-                                         // Stopped: BridgeLoss.AStoppedBridgeIsSpokenFor.
                                          Loss{"saphira-bridge", SIGKILL}),
                          [](const testing::TestParamInfo<Loss>& test) {
                            return std::string(test.param.name).substr(8) +
