@@ -7,15 +7,6 @@
 namespace saphira::lps {
 namespace {
 
-/// The id of sfGlobalOrigin.
-constexpr std::uint32_t kOriginId = 1;
-
-Artifact origin() {
-  Artifact artifact;
-  artifact.id = kOriginId;
-  return artifact;
-}
-
 void append_valid(const SonarBuffer& buffer, std::vector<Vec2>& points) {
   for (const SonarEntry& entry : buffer.entries())
     if (entry.valid)
@@ -39,9 +30,7 @@ LocalPerceptualSpace::LocalPerceptualSpace(LpsSettings settings)
       front_(settings_.front_buffer),
       left_(settings_.side_buffer),
       right_(settings_.side_buffer),
-      memory_(settings_.memory),
-      artifacts_(1, origin()),
-      last_id_(kOriginId) {}
+      memory_(settings_.memory) {}
 
 void LocalPerceptualSpace::reset() {
   *this = LocalPerceptualSpace(settings_);
@@ -60,16 +49,11 @@ void LocalPerceptualSpace::set_side_buffer(std::size_t limit) {
 
 void LocalPerceptualSpace::update(const Pose& robot_in_odom,
                                   const std::vector<SonarReading>& readings, std::uint64_t cycle) {
-  // Global and odom are the same until move_robot changes that.
-  if (!placed_) {
-    robot_in_global_ = robot_in_odom;
+  if (!std::exchange(placed_, true))
     robot_in_odom_ = robot_in_odom;
-    placed_ = true;
-  }
   const Pose moved = relative(robot_in_odom_, robot_in_odom);
   const Pose before = robot_in_odom_;
   robot_in_odom_ = robot_in_odom;
-  robot_in_global_ = compose(robot_in_global_, moved);
   cycle_ = cycle;
   memory_.move_to(robot_in_odom_);
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -77,7 +61,6 @@ void LocalPerceptualSpace::update(const Pose& robot_in_odom,
     take(readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}));
   }
   register_readings();
-  register_artifacts();
 }
 
 void LocalPerceptualSpace::touch(const Vec2& at_in_robot) {
@@ -87,10 +70,8 @@ void LocalPerceptualSpace::touch(const Vec2& at_in_robot) {
 
 LocalPerceptualSpace LocalPerceptualSpace::seen_from(const Pose& robot_in_odom) const {
   LocalPerceptualSpace seen = *this;
-  seen.robot_in_global_ = compose(robot_in_global_, relative(robot_in_odom_, robot_in_odom));
   seen.robot_in_odom_ = robot_in_odom;
   seen.register_readings();
-  seen.register_artifacts();
   return seen;
 }
 
@@ -149,70 +130,11 @@ Occupancy LocalPerceptualSpace::plane(Direction direction, Source source, double
   return occupancy_plane(points(source), direction, d, s1, s2);
 }
 
-Artifact LocalPerceptualSpace::local_point(const Pose& in_robot) const {
-  Artifact artifact;
-  artifact.local = in_robot;
-  set_global(artifact);
-  return artifact;
-}
-
-Artifact LocalPerceptualSpace::global_point(const Pose& in_global) const {
-  Artifact artifact;
-  artifact.global = in_global;
-  set_local(artifact);
-  return artifact;
-}
-
-void LocalPerceptualSpace::set_local(Artifact& artifact) const {
-  artifact.local = relative(robot_in_global_, artifact.global);
-}
-
-void LocalPerceptualSpace::set_global(Artifact& artifact) const {
-  artifact.global = compose(robot_in_global_, artifact.local);
-}
-
-std::uint32_t LocalPerceptualSpace::add(Artifact artifact) {
-  if (Artifact* const there = artifact.id != 0 ? find(artifact.id) : nullptr) {
-    *there = artifact;
-    return artifact.id;
-  }
-  if (artifact.id == 0)
-    artifact.id = last_id_ + 1;
-  last_id_ = std::max(last_id_, artifact.id);
-  artifacts_.push_back(artifact);
-  return artifact.id;
-}
-
-bool LocalPerceptualSpace::remove(std::uint32_t id) {
-  return id != kOriginId &&
-         std::erase_if(artifacts_, [&](const Artifact& a) { return a.id == id; }) != 0;
-}
-
-const Artifact* LocalPerceptualSpace::find(std::uint32_t id) const {
-  const auto found = std::find_if(artifacts_.begin(), artifacts_.end(),
-                                  [&](const Artifact& a) { return a.id == id; });
-  return found == artifacts_.end() ? nullptr : &*found;
-}
-
-Artifact* LocalPerceptualSpace::find(std::uint32_t id) {
-  return const_cast<Artifact*>(std::as_const(*this).find(id));
-}
-
-void LocalPerceptualSpace::move_robot(double dx, double dy, double dth) {
-  robot_in_global_ = compose(robot_in_global_, {dx, dy, dth});
-  register_artifacts();
-}
-
 void LocalPerceptualSpace::register_readings() {
   front_.move_to(robot_in_odom_);
   left_.move_to(robot_in_odom_);
   right_.move_to(robot_in_odom_);
   memory_.collect(robot_in_odom_);
-}
-
-void LocalPerceptualSpace::register_artifacts() {
-  for (Artifact& artifact : artifacts_)
-    set_local(artifact);
 }
 
 }  // namespace saphira::lps

@@ -148,5 +148,15 @@ TEST(Lps, UnknownSonarIsLeftOut) {
   EXPECT_TRUE(lps.obstacles().empty());
 }
 
+TEST(Lps, ResetForgets) {
+  LpsSettings settings;
+  settings.sonars = {{0, {}}};
+  LocalPerceptualSpace lps(settings);
+  lps.update({5.0, 0.0, 0.0}, {{0, 1.0, true}}, 7);
+  lps.reset();
+  EXPECT_TRUE(lps.front().entries().empty());
+  EXPECT_TRUE(lps.obstacles().empty());
+}
+
 }  // namespace
 }  // namespace saphira::lps

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
-#include "saphira/lps/artifact.hpp"
 #include "saphira/lps/obstacle_memory.hpp"
 #include "saphira/lps/occupancy.hpp"
 #include "saphira/lps/sonar_buffer.hpp"
@@ -68,8 +67,6 @@ class LocalPerceptualSpace {
 
   const LpsSettings& settings() const { return settings_; }
   const Pose& robot_in_odom() const { return robot_in_odom_; }
-  /// sfRobotOrigin's global place.
-  const Pose& robot_in_global() const { return robot_in_global_; }
   std::uint64_t cycle() const { return cycle_; }
 
   const SonarBuffer& front() const { return front_; }
@@ -90,46 +87,19 @@ class LocalPerceptualSpace {
   /// sfOccPlane and sfOccPlaneRet.
   Occupancy plane(Direction direction, Source source, double d, double s1, double s2) const;
 
-  /// sfCreateLocalPoint, sfCreateGlobalPoint: an ARTIFACT of type POS, not yet added.
-  Artifact local_point(const Pose& in_robot) const;
-  Artifact global_point(const Pose& in_global) const;
-  /// sfSetLocalCoords, sfSetGlobalCoords: the one set of coordinates from the other.
-  void set_local(Artifact& artifact) const;
-  void set_global(Artifact& artifact) const;
-
-  /// sfAddPoint: registers the artifact from now on. Returns its id, which is new where it has
-  /// none; an artifact with the same id is replaced (sfAddPointCheck).
-  std::uint32_t add(Artifact artifact);
-  /// sfRemPoint. False where there was none.
-  bool remove(std::uint32_t id);
-  /// sfFindArtifact; nullptr where there is none. Good until the next add, remove or reset.
-  Artifact* find(std::uint32_t id);
-  const Artifact* find(std::uint32_t id) const;
-  /// The pointlist, in order of addition. The global origin (sfGlobalOrigin) is always the first.
-  const std::vector<Artifact>& artifacts() const { return artifacts_; }
-
-  /// sfMoveRobot: the robot's true place is (dx, dy, dth) [m, rad], in its own frame, from its
-  /// global one. Artifacts keep their global place, so their local one changes; sonar readings,
-  /// which are relative to the robot, stay.
-  void move_robot(double dx, double dy, double dth);
-
  private:
   void take(const SonarReading& reading, const Pose& robot_in_odom);
   /// The remembered obstacles, in the present frame of the robot.
   void register_readings();
-  void register_artifacts();
 
   LpsSettings settings_;
   bool placed_ = false;  ///< an odometry pose has come
   Pose robot_in_odom_;
-  Pose robot_in_global_;
   std::uint64_t cycle_ = 0;
   SonarBuffer front_;
   SonarBuffer left_;
   SonarBuffer right_;
   ObstacleMemory memory_;
-  std::vector<Artifact> artifacts_;
-  std::uint32_t last_id_ = 0;
 };
 
 }  // namespace saphira::lps
