@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include "../free_path.hpp"
 #include "program.hpp"
@@ -203,130 +206,105 @@ constexpr Type kI = Type::integer;
 constexpr Type kP = Type::point;
 constexpr Type kN = Type::nothing;
 
+/// The language's type for a C++ type.
+template <class T>
+constexpr Type kTypeOf = std::is_same_v<T, Pose> ? Type::point
+                         : std::is_integral_v<T> ? Type::integer
+                                                 : Type::real;
+
+template <class T>
+T take(const double*& arguments) {
+  if constexpr (std::is_same_v<T, Pose>)
+    return point(std::exchange(arguments, arguments + 3));
+  else
+    return *arguments++;
+}
+void put(double value, double* out) {
+  *out = value;
+}
+
+template <class F, class R, class... A>
+Function entry(const char* name, const char* meaning, R (F::*)(A...) const) {
+  return {name,
+          kTypeOf<R>,
+          {kTypeOf<A>...},
+          [](Call&, [[maybe_unused]] const double* a, double* out) {
+            // Braces take the arguments in order.
+            put(std::apply(F{}, std::tuple<A...>{take<A>(a)...}), out);
+          },
+          meaning};
+}
+template <class F, class R>
+Function entry(const char* name, const char* meaning, R (F::*)(const Context&) const) {
+  return {name,
+          kTypeOf<R>,
+          {},
+          [](Call& call, const double*, double* out) { put(F{}(*call.context), out); },
+          meaning};
+}
+/// A function of points and numbers, or of the context. Its types are those of the language.
+template <class F>
+Function entry(const char* name, const char* meaning, F /*function*/) {
+  return entry(name, meaning, &F::operator());
+}
+
 }  // namespace
 
 const std::vector<Function>& functions() {
   using D = const double*;
   static const std::vector<Function> all_functions{
       // Points and lines (manual 6.6.3.1).
-      {"sfPointPhi",
-       kR,
-       {kP},
-       [](Call&, D a, double* o) { *o = lps::phi(point(a)); },
-       "bearing of a point from the robot, left is positive"},
-      {"sfPointDist",
-       kR,
-       {kP},
-       [](Call&, D a, double* o) { *o = lps::distance(point(a)); },
-       "distance of a point from the robot"},
-      {"sfPointNormalDist",
-       kR,
-       {kP},
-       [](Call&, D a, double* o) { *o = lps::normal_distance(point(a)); },
-       "distance of the robot from the line through a point, along its direction"},
-      {"sfPointDistPoint",
-       kR,
-       {kP, kP},
-       [](Call&, D a, double* o) { *o = lps::distance(point(a), point(a + 3)); },
-       "distance between two points"},
-      {"sfPointNormalDistPoint",
-       kR,
-       {kP, kP},
-       [](Call&, D a, double* o) { *o = lps::normal_distance(point(a), point(a + 3)); },
-       "distance of the second point from the line through the first"},
-      {"sfPointXo",
-       kR,
-       {kP},
-       [](Call&, D a, double* o) { *o = lps::xo(point(a)); },
-       "x of the robot in the coordinates of a point"},
-      {"sfPointYo",
-       kR,
-       {kP},
-       [](Call&, D a, double* o) { *o = lps::yo(point(a)); },
-       "y of the robot in the coordinates of a point"},
-      {"sfPointXoPoint",
-       kR,
-       {kP, kP},
-       [](Call&, D a, double* o) { *o = lps::xo(point(a), point(a + 3)); },
-       "x of the second point in the coordinates of the first"},
-      {"sfPointYoPoint",
-       kR,
-       {kP, kP},
-       [](Call&, D a, double* o) { *o = lps::yo(point(a), point(a + 3)); },
-       "y of the second point in the coordinates of the first"},
-      {"sfPointBaricenter",
-       kP,
-       {kP, kP},
-       [](Call&, D a, double* o) { put(lps::baricenter(point(a), point(a + 3)), o); },
-       "the point midway between two"},
-      {"sfPointMove",
-       kP,
-       {kP, kR, kR},
-       [](Call&, D a, double* o) { put(lps::move(point(a), a[3], a[4]), o); },
-       "a point moved by dx and dy in its own coordinates"},
-      {"sfPointTurn",
-       kP,
-       {kP, kR},
-       [](Call&, D a, double* o) {
-         put({a[0], a[1], norm2_angle(a[2] + a[3])}, o);
-       },
-       "a point with its direction turned by an angle"},
-      {"sfPoint",
-       kP,
-       {kR, kR, kR},
-       [](Call&, D a, double* o) { put(point(a), o); },
-       "a point from x, y and th, before the robot"},
-      {"sfChangeVP",
-       kP,
-       {kP, kP},
-       [](Call&, D a, double* o) { put(lps::change_vp(point(a), point(a + 3)), o); },
-       "the second point in the coordinates of the first"},
-      {"sfUnchangeVP",
-       kP,
-       {kP, kP},
-       [](Call&, D a, double* o) { put(lps::unchange_vp(point(a), point(a + 3)), o); },
-       "the second point, given in the coordinates of the first, before the robot"},
-      {"sfGiven",
-       kI,
-       {kP},
-       [](Call&, D a, double* o) { *o = std::isnan(a[0]) || std::isnan(a[1]) ? 0.0 : 1.0; },
-       "1 where an optional point was given, else 0"},
+      entry("sfPointPhi", "bearing of a point from the robot, left is positive",
+            [](Pose p) { return lps::phi(p); }),
+      entry("sfPointDist", "distance of a point from the robot",
+            [](Pose p) { return lps::distance(p); }),
+      entry("sfPointNormalDist",
+            "distance of the robot from the line through a point, along its direction",
+            [](Pose p) { return lps::normal_distance(p); }),
+      entry("sfPointDistPoint", "distance between two points",
+            [](Pose p, Pose q) { return lps::distance(p, q); }),
+      entry("sfPointNormalDistPoint",
+            "distance of the second point from the line through the first",
+            [](Pose p, Pose q) { return lps::normal_distance(p, q); }),
+      entry("sfPointXo", "x of the robot in the coordinates of a point",
+            [](Pose p) { return lps::xo(p); }),
+      entry("sfPointYo", "y of the robot in the coordinates of a point",
+            [](Pose p) { return lps::yo(p); }),
+      entry("sfPointXoPoint", "x of the second point in the coordinates of the first",
+            [](Pose p, Pose q) { return lps::xo(p, q); }),
+      entry("sfPointYoPoint", "y of the second point in the coordinates of the first",
+            [](Pose p, Pose q) { return lps::yo(p, q); }),
+      entry("sfPointBaricenter", "the point midway between two",
+            [](Pose p, Pose q) { return lps::baricenter(p, q); }),
+      entry("sfPointMove", "a point moved by dx and dy in its own coordinates",
+            [](Pose p, double x, double y) { return lps::move(p, x, y); }),
+      entry("sfPointTurn", "a point with its direction turned by an angle",
+            [](Pose p, double x) {
+              return Pose{p.x, p.y, norm2_angle(p.th + x)};
+            }),
+      entry("sfPoint", "a point from x, y and th, before the robot",
+            [](double x, double y, double z) {
+              return Pose{x, y, z};
+            }),
+      entry("sfChangeVP", "the second point in the coordinates of the first",
+            [](Pose p, Pose q) { return lps::change_vp(p, q); }),
+      entry("sfUnchangeVP",
+            "the second point, given in the coordinates of the first, before the robot",
+            [](Pose p, Pose q) { return lps::unchange_vp(p, q); }),
+      entry("sfGiven", "1 where an optional point was given, else 0",
+            [](Pose p) { return !(std::isnan(p.x) || std::isnan(p.y)); }),
       // Angles.
-      {"sfNormAngle",
-       kR,
-       {kR},
-       [](Call&, D a, double* o) { *o = norm_angle(a[0]); },
-       "the angle in [0, 2 pi)"},
-      {"sfNorm2Angle",
-       kR,
-       {kR},
-       [](Call&, D a, double* o) { *o = norm2_angle(a[0]); },
-       "the angle in (-pi, pi]"},
-      {"sfNorm3Angle",
-       kR,
-       {kR},
-       [](Call&, D a, double* o) { *o = norm3_angle(a[0]); },
-       "the angle in [-pi/2, pi/2]"},
-      {"sfAddAngle",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = add_angle(a[0], a[1]); },
-       "the sum in [0, 2 pi)"},
-      {"sfSubAngle",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = sub_angle(a[0], a[1]); },
-       "the difference in [0, 2 pi)"},
-      {"sfAdd2Angle",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = add2_angle(a[0], a[1]); },
-       "the sum in (-pi, pi]"},
-      {"sfSub2Angle",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = sub2_angle(a[0], a[1]); },
-       "the difference in (-pi, pi]"},
+      entry("sfNormAngle", "the angle in [0, 2 pi)", [](double x) { return norm_angle(x); }),
+      entry("sfNorm2Angle", "the angle in (-pi, pi]", [](double x) { return norm2_angle(x); }),
+      entry("sfNorm3Angle", "the angle in [-pi/2, pi/2]", [](double x) { return norm3_angle(x); }),
+      entry("sfAddAngle", "the sum in [0, 2 pi)",
+            [](double x, double y) { return add_angle(x, y); }),
+      entry("sfSubAngle", "the difference in [0, 2 pi)",
+            [](double x, double y) { return sub_angle(x, y); }),
+      entry("sfAdd2Angle", "the sum in (-pi, pi]",
+            [](double x, double y) { return add2_angle(x, y); }),
+      entry("sfSub2Angle", "the difference in (-pi, pi]",
+            [](double x, double y) { return sub2_angle(x, y); }),
       // Sonars (manual 6.6.2) and the obstacle memory.
       {"sfOccBox",
        kR,
@@ -374,83 +352,40 @@ const std::vector<Function>& functions() {
        {kR, kR, kR},
        wide_way,
        "the nearest direction, up to 60 degrees away, that leads so far past everything, or as far "
-       "as "
-       "can be: direction, distance, reach"},
+       "as can be: direction, distance, reach"},
       // The robot.
-      {"sfRobotRadius",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->model.radius * kMillimetres; },
-       "of the hull"},
-      {"sfRobotDecel",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->model.deceleration * kMillimetres; },
-       "mm/s2 of a stop"},
-      {"sfRobot.tv",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->robot.velocity * kMillimetres; },
-       "velocity"},
-      {"sfRobot.rv",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = degrees(c.context->robot.rotation_velocity); },
-       "deg/s of rotation, counter-clockwise"},
-      {"sfRobot.mtv",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->model.max_velocity * kMillimetres; },
-       "the highest velocity"},
-      {"sfRobot.mrv",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = degrees(c.context->model.max_rotation_velocity); },
-       "deg/s, the highest velocity of rotation"},
-      {"sfRobot.ax",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->robot.pose_in_odom.x * kMillimetres; },
-       "x by dead reckoning"},
-      {"sfRobot.ay",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->robot.pose_in_odom.y * kMillimetres; },
-       "y by dead reckoning"},
-      {"sfRobot.ath",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->robot.pose_in_odom.th; },
-       "heading by dead reckoning"},
-      {"sfCycle",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = static_cast<double>(c.context->cycle); },
-       "number of the cycle; ten are a second"},
+      entry("sfRobotRadius", "of the hull",
+            [](const Context& c) { return c.model.radius * kMillimetres; }),
+      entry("sfRobotDecel", "mm/s2 of a stop",
+            [](const Context& c) { return c.model.deceleration * kMillimetres; }),
+      entry("sfRobot.tv", "velocity",
+            [](const Context& c) { return c.robot.velocity * kMillimetres; }),
+      entry("sfRobot.rv", "deg/s of rotation, counter-clockwise",
+            [](const Context& c) { return degrees(c.robot.rotation_velocity); }),
+      entry("sfRobot.mtv", "the highest velocity",
+            [](const Context& c) { return c.model.max_velocity * kMillimetres; }),
+      entry("sfRobot.mrv", "deg/s, the highest velocity of rotation",
+            [](const Context& c) { return degrees(c.model.max_rotation_velocity); }),
+      entry("sfRobot.ax", "x by dead reckoning",
+            [](const Context& c) { return c.robot.pose_in_odom.x * kMillimetres; }),
+      entry("sfRobot.ay", "y by dead reckoning",
+            [](const Context& c) { return c.robot.pose_in_odom.y * kMillimetres; }),
+      entry("sfRobot.ath", "heading by dead reckoning",
+            [](const Context& c) { return c.robot.pose_in_odom.th; }),
+      entry("sfCycle", "number of the cycle; ten are a second",
+            [](const Context& c) { return static_cast<double>(c.cycle); }),
       // Values that behaviors pass to those of higher priority.
-      {"sfGoalKnown",
-       kI,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->shared.goal_bearing ? 1.0 : 0.0; },
-       "1 where a behavior below has said where it goes, else 0"},
-      {"sfGoalPhi",
-       kR,
-       {},
-       [](Call& c, D, double* o) { *o = c.context->shared.goal_bearing.value_or(0.0); },
-       "where a behavior below goes: bearing; 0 where none has said it"},
-      {"sfGoalDist",
-       kR,
-       {},
-       [](Call& c, D, double* o) {
-         *o = c.context->shared.goal_bearing ? c.context->shared.goal_distance * kMillimetres : 1e9;
-       },
-       "where a behavior below goes: how far; 1e9 where none has said it"},
+      entry("sfGoalKnown", "1 where a behavior below has said where it goes, else 0",
+            [](const Context& c) { return c.shared.goal_bearing.has_value(); }),
+      entry("sfGoalPhi", "where a behavior below goes: bearing; 0 where none has said it",
+            [](const Context& c) { return c.shared.goal_bearing.value_or(0.0); }),
+      entry("sfGoalDist", "where a behavior below goes: how far; 1e9 where none has said it",
+            [](const Context& c) {
+              return c.shared.goal_bearing ? c.shared.goal_distance * kMillimetres : 1e9;
+            }),
       {"sfSetGoal", kN, {kR, kR}, set_goal, "says where this behavior goes: bearing and distance"},
-      {"sfPreferredTurn",
-       kI,
-       {},
-       [](Call& c, D, double* o) { *o = static_cast<double>(c.context->shared.preferred_turn); },
-       "the value of sfPreferredTurnDir"},
+      entry("sfPreferredTurn", "the value of sfPreferredTurnDir",
+            [](const Context& c) { return static_cast<int>(c.shared.preferred_turn); }),
       {"sfSetPreferredTurn", kN, {kI}, set_preferred, "sets sfPreferredTurnDir"},
       {"sfDrawLane",
        kN,
@@ -458,22 +393,15 @@ const std::vector<Function>& functions() {
        draw_lane,
        "shows the lane: a point on it, directed along it; to its left edge, to its right edge"},
       // Numbers.
-      {"sqrt", kR, {kR}, [](Call&, D a, double* o) { *o = std::sqrt(a[0]); }, "square root"},
-      {"sin", kR, {kR}, [](Call&, D a, double* o) { *o = std::sin(a[0]); }, "sine"},
-      {"cos", kR, {kR}, [](Call&, D a, double* o) { *o = std::cos(a[0]); }, "cosine"},
-      {"tan", kR, {kR}, [](Call&, D a, double* o) { *o = std::tan(a[0]); }, "tangent"},
-      {"atan2",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = std::atan2(a[0], a[1]); },
-       "the angle of (x, y) from y and x"},
-      {"hypot",
-       kR,
-       {kR, kR},
-       [](Call&, D a, double* o) { *o = std::hypot(a[0], a[1]); },
-       "the length of (x, y)"},
-      {"floor", kR, {kR}, [](Call&, D a, double* o) { *o = std::floor(a[0]); }, "rounded down"},
-      {"ceil", kR, {kR}, [](Call&, D a, double* o) { *o = std::ceil(a[0]); }, "rounded up"},
+      entry("sqrt", "square root", [](double x) { return std::sqrt(x); }),
+      entry("sin", "sine", [](double x) { return std::sin(x); }),
+      entry("cos", "cosine", [](double x) { return std::cos(x); }),
+      entry("tan", "tangent", [](double x) { return std::tan(x); }),
+      entry("atan2", "the angle of (x, y) from y and x",
+            [](double x, double y) { return std::atan2(x, y); }),
+      entry("hypot", "the length of (x, y)", [](double x, double y) { return std::hypot(x, y); }),
+      entry("floor", "rounded down", [](double x) { return std::floor(x); }),
+      entry("ceil", "rounded up", [](double x) { return std::ceil(x); }),
   };
   return all_functions;
 }
