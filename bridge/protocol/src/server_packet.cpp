@@ -6,14 +6,11 @@
 #include <utility>
 
 #include "fields.hpp"
+#include "saphira/base/overloaded.hpp"
 
 namespace saphira::protocol {
 
 namespace {
-
-Bytes begin(PacketType type) {
-  return {static_cast<std::uint8_t>(type)};
-}
 
 Bytes finish(Bytes body) {
   body.resize(std::min(body.size(), kMaxBody));
@@ -252,11 +249,11 @@ Packet read_packet(Fields& in) {
   return out;
 }
 
-template <class Packet>
-Bytes write_packet(PacketType type, const Packet& packet) {
-  Bytes body = begin(type);
-  fields(packet, Put{body});
-  return finish(std::move(body));
+template <class... Packets>
+std::optional<ServerPacket> read_one_of(PacketType type, Fields& in) {
+  std::optional<ServerPacket> out;
+  ((type == Packets::kType && (out = read_packet<Packets>(in), true)) || ...);
+  return out;
 }
 
 std::optional<ServerPacket> decode_known(PacketType type, Fields& in) {
@@ -276,26 +273,9 @@ std::optional<ServerPacket> decode_known(PacketType type, Fields& in) {
       return AuxPacket{2, in.rest()};
     case PacketType::kAux3:
       return AuxPacket{3, in.rest()};
-    case PacketType::kEncoder:
-      return read_packet<EncoderPacket>(in);
-    case PacketType::kIo:
-      return read_packet<IoPacket>(in);
-    case PacketType::kGripper:
-      return read_packet<GripperPacket>(in);
-    case PacketType::kGyro:
-      return read_packet<GyroPacket>(in);
-    case PacketType::kJoystick:
-      return read_packet<JoystickPacket>(in);
-    case PacketType::kBattery:
-      return read_packet<BatteryPacket>(in);
-    case PacketType::kVision:
-      return read_packet<VisionPacket>(in);
-    case PacketType::kSimLaser:
-      return read_packet<SimLaserPacket>(in);
-    case PacketType::kSimStatus:
-      return read_packet<SimStatusPacket>(in);
     default:
-      return std::nullopt;
+      return read_one_of<EncoderPacket, IoPacket, GripperPacket, GyroPacket, JoystickPacket,
+                         BatteryPacket, VisionPacket, SimLaserPacket, SimStatusPacket>(type, in);
   }
 }
 
@@ -328,58 +308,26 @@ bool is_read(PacketType type) {
   return decode_known(type, in).has_value();
 }
 
-Bytes encode(const ConfigPacket& packet) {
-  return write_packet(PacketType::kConfig, packet);
-}
-
-Bytes encode(const EncoderPacket& packet) {
-  return write_packet(PacketType::kEncoder, packet);
-}
-
-Bytes encode(const IoPacket& packet) {
-  return write_packet(PacketType::kIo, packet);
-}
-
-Bytes encode(const GripperPacket& packet) {
-  return write_packet(PacketType::kGripper, packet);
-}
-
-Bytes encode(const GyroPacket& packet) {
-  return write_packet(PacketType::kGyro, packet);
-}
-
-Bytes encode(const JoystickPacket& packet) {
-  return write_packet(PacketType::kJoystick, packet);
-}
-
-Bytes encode(const BatteryPacket& packet) {
-  return write_packet(PacketType::kBattery, packet);
-}
-
-Bytes encode(const VisionPacket& packet) {
-  return write_packet(PacketType::kVision, packet);
-}
-
-Bytes encode(const SimLaserPacket& packet) {
-  return write_packet(PacketType::kSimLaser, packet);
-}
-
-Bytes encode(const SimStatusPacket& packet) {
-  return write_packet(PacketType::kSimStatus, packet);
-}
-
-Bytes encode(const AuxPacket& packet) {
-  Bytes body = begin(packet.line <= 1   ? PacketType::kAux1
-                     : packet.line == 2 ? PacketType::kAux2
-                                        : PacketType::kAux3);
-  body.insert(body.end(), packet.bytes.begin(), packet.bytes.end());
-  return finish(std::move(body));
-}
-
-Bytes encode(const OtherPacket& packet) {
-  Bytes body{packet.type};
-  body.insert(body.end(), packet.data.begin(), packet.data.end());
-  return finish(std::move(body));
+Bytes encode(const ServerPacket& packet) {
+  const auto of_bytes = [](std::uint8_t type, const Bytes& bytes) {
+    Bytes body{type};
+    body.insert(body.end(), bytes.begin(), bytes.end());
+    return finish(std::move(body));
+  };
+  return std::visit(Overloaded{[](const InformationPacket& p) { return encode(p); },
+                               [&](const AuxPacket& p) {
+                                 const PacketType type = p.line <= 1   ? PacketType::kAux1
+                                                         : p.line == 2 ? PacketType::kAux2
+                                                                       : PacketType::kAux3;
+                                 return of_bytes(static_cast<std::uint8_t>(type), p.bytes);
+                               },
+                               [&](const OtherPacket& p) { return of_bytes(p.type, p.data); },
+                               [](const auto& p) {
+                                 Bytes body{static_cast<std::uint8_t>(p.kType)};
+                                 fields(p, Put{body});
+                                 return finish(std::move(body));
+                               }},
+                    packet);
 }
 
 std::string_view packet_type_name(std::uint8_t type) {

@@ -53,6 +53,7 @@ enum class PacketType : std::uint8_t {
 /// CONFIGpac, the answer to CONFIG. Clients take their limits from it: with zeros in the velocities
 /// and accelerations they do not drive. Fields behind the packet's end are zero.
 struct ConfigPacket {
+  static constexpr PacketType kType = PacketType::kConfig;
   std::string robot_class;
   std::string subclass;
   std::string serial;
@@ -115,6 +116,7 @@ struct ConfigPacket {
 
 /// ENCODERpac. Counts since the controller started; they roll over.
 struct EncoderPacket {
+  static constexpr PacketType kType = PacketType::kEncoder;
   std::int32_t left = 0;
   std::int32_t right = 0;
   bool operator==(const EncoderPacket&) const = default;
@@ -122,6 +124,7 @@ struct EncoderPacket {
 
 /// IOpac.
 struct IoPacket {
+  static constexpr PacketType kType = PacketType::kIo;
   Bytes digital_inputs;   ///< eight bits a byte
   Bytes digital_outputs;  ///< likewise
   std::vector<std::uint16_t> analogs;
@@ -130,6 +133,7 @@ struct IoPacket {
 
 /// GRIPPERpac.
 struct GripperPacket {
+  static constexpr PacketType kType = PacketType::kGripper;
   std::uint8_t kind = 0;  ///< 0: none, 1: at the user I/O, 2: at the general I/O
   std::uint8_t state = 0;
   std::uint8_t grasp_time = 0;
@@ -145,6 +149,7 @@ struct AuxPacket {
 
 /// GYROpac.
 struct GyroPacket {
+  static constexpr PacketType kType = PacketType::kGyro;
   struct Reading {
     std::uint16_t rate = 512;      ///< centre 512
     std::uint8_t temperature = 0;  ///< counts
@@ -156,6 +161,7 @@ struct GyroPacket {
 
 /// JOYpac.
 struct JoystickPacket {
+  static constexpr PacketType kType = PacketType::kJoystick;
   std::uint8_t button1 = 0;
   std::uint8_t button2 = 0;
   std::uint16_t x = 512;  ///< centre 512, as the others
@@ -166,6 +172,7 @@ struct JoystickPacket {
 
 /// The batteries' own data.
 struct BatteryPacket {
+  static constexpr PacketType kType = PacketType::kBattery;
   std::uint8_t batteries = 0;
   std::uint8_t bytes_each = 0;
   Bytes data;
@@ -191,12 +198,14 @@ struct VisionChannel {
 /// its layout: type and order are ours. For each channel, in the order A, B, C: mode (byte), x, y,
 /// area; in kBlobWithBox then height and width; in kLine mode, x, first, count.
 struct VisionPacket {
+  static constexpr PacketType kType = PacketType::kVision;
   std::array<VisionChannel, 3> channels{};
   bool operator==(const VisionPacket&) const = default;
 };
 
 /// One piece of the simulated laser's scan.
 struct SimLaserPacket {
+  static constexpr PacketType kType = PacketType::kSimLaser;
   std::int16_t x = 0;
   std::int16_t y = 0;
   std::int16_t th = 0;
@@ -208,6 +217,7 @@ struct SimLaserPacket {
 
 /// The answer to SIM_STAT.
 struct SimStatusPacket {
+  static constexpr PacketType kType = PacketType::kSimStatus;
   std::uint32_t flags = 0;
   std::uint16_t sim_interval = 0;   ///< [ms]
   std::uint16_t real_interval = 0;  ///< [ms]
@@ -248,18 +258,7 @@ bool is_read(PacketType type);
 
 /// The whole packet (frame included); data that do not fit are left out. AuxPacket's line is
 /// clamped to 1 to 3.
-Bytes encode(const ConfigPacket& packet);
-Bytes encode(const EncoderPacket& packet);
-Bytes encode(const IoPacket& packet);
-Bytes encode(const GripperPacket& packet);
-Bytes encode(const AuxPacket& packet);
-Bytes encode(const GyroPacket& packet);
-Bytes encode(const JoystickPacket& packet);
-Bytes encode(const BatteryPacket& packet);
-Bytes encode(const VisionPacket& packet);
-Bytes encode(const SimLaserPacket& packet);
-Bytes encode(const SimStatusPacket& packet);
-Bytes encode(const OtherPacket& packet);
+Bytes encode(const ServerPacket& packet);
 
 /// The name of the type; empty for a type without one.
 std::string_view packet_type_name(std::uint8_t type);
