@@ -2,13 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "saphira/bus/node.hpp"
+
 namespace saphira::cli {
-
-namespace {
-
-constexpr const char* kOpen = "none";
-
-}  // namespace
 
 std::string to_text(const RunningBus& bus) {
   return nlohmann::json{{"what", bus.what},
@@ -50,7 +46,7 @@ std::optional<RunningBus> bus_meant(const RunningBus& usual, const std::vector<R
     }
     // A person's own credentials come before those of a service.
     if (given.security || bus.security.empty() ||
-        (bus.security != kOpen && usual.security != kOpen))
+        (bus.security != bus::kOpenBus && usual.security != bus::kOpenBus))
       bus.security = usual.security;
     if (options_of(bus, usual).empty())
       return std::nullopt;
