@@ -50,10 +50,6 @@ double PoseFilter::sigma_position() const {
   return std::sqrt((a + b) / 2.0 + std::sqrt((a - b) * (a - b) / 4.0 + c * c));
 }
 
-double PoseFilter::sigma_heading() const {
-  return std::sqrt(covariance_(2, 2));
-}
-
 void PoseFilter::set_pose(const Pose& pose, const Eigen::Matrix3d& covariance) {
   state_.head<3>() << pose.x, pose.y, norm2_angle(pose.th);
   const double drift_variance = covariance_(3, 3);

@@ -103,14 +103,6 @@ std::string ProcessTable::request(std::string_view name, ProcessAction action,
   return {};
 }
 
-std::string ProcessTable::suspended() const {
-  std::string names;
-  for (const auto& process : processes_)
-    if (process->state() == kSuspend)
-      names += (names.empty() ? "" : ", ") + process->name();
-  return names;
-}
-
 bool ProcessTable::take_changed() {
   bool changed = std::exchange(asked_, false) || told_.size() != processes_.size();
   const bool all = changed;

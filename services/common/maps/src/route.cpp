@@ -468,18 +468,6 @@ RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const 
   return find_route(topology, from_in_map, place, settings);
 }
 
-RouteResult find_route(const Topology& topology, std::string_view from_name_or_id,
-                       std::string_view to_name_or_id, const RouteSettings& settings) {
-  const auto from = topology.place(from_name_or_id);
-  if (!from)
-    return {std::nullopt, topology.no_place(from_name_or_id)};
-  if (!from->point && from->regions.empty())
-    return {std::nullopt, from->name + " is in no corridor, junction or room of the map"};
-  const Vec2 at =
-      from->point.value_or(topology.regions()[from->regions.front()].area.pose_in_map.position());
-  return find_route(topology, at, to_name_or_id, settings);
-}
-
 std::string text(const Topology& topology, const Route& route) {
   std::string out;
   for (const Leg& leg : route.legs) {

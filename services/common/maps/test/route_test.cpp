@@ -89,7 +89,7 @@ TEST(Route, TheShortestOfSeveral) {
 }
 
 TEST(Route, FromPlaceToPlaceAndToAPosition) {
-  const auto rooms = find_route(floor(), "EJ-241", "EJ-242");
+  const auto rooms = find_route(floor(), Vec2(14.0, 22.0), "EJ-242");
   ASSERT_TRUE(rooms.route) << rooms.reason;
   EXPECT_EQ(text(floor(), *rooms.route),
             "room 241 (EJ-241), door 1241, corridor 2 (central corridor), door 1242, room 242 "

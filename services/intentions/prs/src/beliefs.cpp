@@ -88,11 +88,6 @@ Value Beliefs::get(std::string_view name, const World& world) const {
   return belief == nullptr ? Value() : belief->value;
 }
 
-bool Beliefs::known(std::string_view name) const {
-  return stored(name) != nullptr ||
-         (functions_ != nullptr && functions_->condition(name) != nullptr);
-}
-
 std::vector<Belief> Beliefs::set_by_activities() const {
   std::vector<Belief> result;
   for (const auto& [name, belief] : set_)

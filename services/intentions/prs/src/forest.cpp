@@ -486,10 +486,6 @@ bool Forest::is_activity(std::uint32_t id) const {
   return node != nullptr && node->activity != nullptr;
 }
 
-std::size_t Forest::size() const {
-  return nodes_.size();
-}
-
 bool Forest::ends_with_intention(std::string_view belief) const {
   return whiles_.contains(normal(belief));
 }

@@ -44,7 +44,6 @@ class PoseFilter {
   const Covariance& covariance() const { return covariance_; }
   Eigen::Matrix3d pose_covariance() const { return covariance_.topLeftCorner<3, 3>(); }
   double sigma_position() const;  ///< [m] along the worst direction
-  double sigma_heading() const;   ///< [rad]
   void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
   /// Another pose; the drift stays.
   void set_pose(const Pose& pose, const Eigen::Matrix3d& covariance);

@@ -93,8 +93,6 @@ class ProcessTable {
 
   /// Carries out a request; empty, or the reason for a failure with the existing names.
   std::string request(std::string_view name, ProcessAction action, std::uint32_t cycles = 0);
-  /// The names of suspended processes; empty where all work.
-  std::string suspended() const;
   /// True when some state has changed since the last call. A process's own sleep for some cycles
   /// does not count.
   bool take_changed();

@@ -82,9 +82,6 @@ RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const 
 /// To a position.
 RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const Vec2& to_in_map,
                        const RouteSettings& settings = {});
-/// From one place to another: from its point, or else from the middle of its first region.
-RouteResult find_route(const Topology& topology, std::string_view from_name_or_id,
-                       std::string_view to_name_or_id, const RouteSettings& settings = {});
 
 /// The zone that forbids a way from a position on; empty: none. The legs need no points: they are
 /// found anew. `end`: the last point of the way. The last leg counts even where it began in the

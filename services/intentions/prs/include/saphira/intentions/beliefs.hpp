@@ -50,7 +50,6 @@ class Beliefs {
 
   /// nil where unknown.
   Value get(std::string_view name, const World& world) const;
-  bool known(std::string_view name) const;
   /// The newest value of a name from activities or claims; nullptr: none.
   const Belief* stored(std::string_view name) const;
   /// By name.

@@ -114,7 +114,6 @@ class Forest {
   bool contains(std::uint32_t id) const;
   /// True for an intention that is not a behavior.
   bool is_activity(std::uint32_t id) const;
-  std::size_t size() const;
   /// The outcomes of finished roots since the last call; the roots are gone.
   std::map<std::uint32_t, Outcome> take_ended();
   std::vector<Said> take_said();
