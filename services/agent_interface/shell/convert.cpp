@@ -13,11 +13,6 @@ constexpr EnumPairs<TriggerKind, v1::TriggerKind, 3> kKinds{{{
     {TriggerKind::data, v1::TRIGGER_DATA},
     {TriggerKind::event, v1::TRIGGER_EVENT},
 }}};
-constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
-    {Frame::robot, v1::FRAME_ROBOT},
-    {Frame::odom, v1::FRAME_ODOM},
-    {Frame::map, v1::FRAME_MAP},
-}}};
 
 Parameter from_bus(const v1::CapabilityParameter& parameter) {
   Parameter result;
@@ -29,7 +24,7 @@ Parameter from_bus(const v1::CapabilityParameter& parameter) {
   result.low = limited ? parameter.low() : -kUnlimited;
   result.high = limited ? parameter.high() : kUnlimited;
   result.choices = parameter.choices();
-  result.frame = kFrames.ours(parameter.frame(), Frame::odom);
+  result.frame = saphira::from_bus(parameter.frame());
   return result;
 }
 

@@ -170,11 +170,9 @@ Robot from_bus(const v1::RobotState& robot) {
 }
 
 std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors) {
-  std::vector<BehaviorLevel> result;
-  result.reserve(behaviors.behaviors().size());
-  for (const v1::BehaviorState& behavior : behaviors.behaviors())
-    result.push_back({behavior.name(), behavior.goal(), behavior.progress()});
-  return result;
+  return converted(behaviors.behaviors(), [](const v1::BehaviorState& behavior) {
+    return BehaviorLevel{behavior.name(), behavior.goal(), behavior.progress()};
+  });
 }
 
 std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
@@ -184,11 +182,9 @@ std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
 }
 
 std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors) {
-  std::vector<BehaviorTrouble> result;
-  result.reserve(behaviors.missing().size());
-  for (const v1::MissingBehavior& missing : behaviors.missing())
-    result.push_back({missing.name(), missing.reason()});
-  return result;
+  return converted(behaviors.missing(), [](const v1::MissingBehavior& missing) {
+    return BehaviorTrouble{missing.name(), missing.reason()};
+  });
 }
 
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
@@ -279,11 +275,9 @@ std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception&
                                                            std::uint64_t odom) {
   if (perception.stamp().cycle() + kRegistrationLease < cycle)
     return std::nullopt;
-  std::vector<lps::Percept> percepts;
-  if (perception.odom() == odom)
-    for (const v1::Percept& percept : perception.percepts())
-      percepts.push_back(lps::from_bus(percept));
-  return percepts;
+  if (perception.odom() != odom)
+    return std::vector<lps::Percept>();
+  return converted(perception.percepts(), [](const auto& each) { return lps::from_bus(each); });
 }
 
 }  // namespace saphira::intentions

@@ -11,11 +11,8 @@ constexpr std::size_t kMostPercepts = 256;  // the bound of Perception.percepts
 
 v1::Perception to_bus(const Output& output) {
   v1::Perception sample;
-  for (const lps::Percept& percept : output.percepts) {
-    if (sample.percepts().size() == kMostPercepts)
-      break;
-    sample.percepts().push_back(lps::to_bus(percept));
-  }
+  sample.percepts(converted(
+      output.percepts, [](const auto& percept) { return lps::to_bus(percept); }, kMostPercepts));
   sample.left_wall(output.left_wall ? output.left_wall->id : 0);
   sample.right_wall(output.right_wall ? output.right_wall->id : 0);
   return sample;

@@ -1,25 +1,19 @@
 #include "registration/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::registration {
 namespace {
 
 constexpr std::size_t kMostMatches = 256;  // the bound of Registration.matches
 
-v1::RegistrationState to_bus(State state) {
-  switch (state) {
-    case State::off:
-      return v1::REGISTRATION_OFF;
-    case State::unplaced:
-      return v1::REGISTRATION_UNPLACED;
-    case State::lost:
-      return v1::REGISTRATION_LOST;
-    case State::tracking:
-      break;
-  }
-  return v1::REGISTRATION_TRACKING;
-}
+constexpr EnumPairs<State, v1::RegistrationState, 4> kStates{{{
+    {State::tracking, v1::REGISTRATION_TRACKING},
+    {State::off, v1::REGISTRATION_OFF},
+    {State::unplaced, v1::REGISTRATION_UNPLACED},
+    {State::lost, v1::REGISTRATION_LOST},
+}}};
 
 v1::Match to_bus(const Core::Matched& match) {
   v1::Match result;
@@ -37,7 +31,7 @@ v1::Match to_bus(const Core::Matched& match) {
 
 v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) {
   v1::Registration sample;
-  sample.state(to_bus(outputs.state));
+  sample.state(kStates.theirs(outputs.state));
   sample.reason(outputs.reason);
   sample.pose_in_map(lps::to_bus(outputs.pose_in_map));
   sample.odom_in_map(lps::to_bus(compose(outputs.pose_in_map, relative(pose_in_odom, Pose{}))));
@@ -50,11 +44,8 @@ v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) 
   sample.confidence(outputs.confidence);
   sample.environment(outputs.environment);
   sample.closed_doors(outputs.closed_doors);
-  for (const Core::Matched& match : outputs.matches) {
-    if (sample.matches().size() == kMostMatches)
-      break;
-    sample.matches().push_back(to_bus(match));
-  }
+  sample.matches(converted(
+      outputs.matches, [](const auto& match) { return to_bus(match); }, kMostMatches));
   return sample;
 }
 

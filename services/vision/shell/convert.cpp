@@ -31,11 +31,8 @@ Channels from_bus(const v1::VisionChannels& channels) {
 
 v1::Vision to_bus(const std::vector<lps::SeenThing>& things) {
   v1::Vision sample;
-  for (const lps::SeenThing& thing : things) {
-    if (sample.things().size() == kMostThings)
-      break;
-    sample.things().push_back(lps::to_bus(thing));
-  }
+  sample.things(converted(
+      things, [](const auto& thing) { return lps::to_bus(thing); }, kMostThings));
   return sample;
 }
 

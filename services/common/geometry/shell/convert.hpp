@@ -1,5 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
 #include "common.h"
 #include "saphira/geometry/pose.hpp"
 
@@ -14,6 +21,18 @@ inline v1::Pose2 to_bus(const Pose& pose) {
   result.x(pose.x);
   result.y(pose.y);
   result.th(pose.th);
+  return result;
+}
+
+/// The converted items, in their order: the first `most`, which is the bound of the sequence.
+template <class Items, class Convert>
+auto converted(const Items& items, Convert&& convert,
+               std::size_t most = std::numeric_limits<std::size_t>::max()) {
+  std::vector<decltype(convert(*items.begin()))> result;
+  const std::size_t count = std::min<std::size_t>(items.size(), most);
+  result.reserve(count);
+  std::transform(items.begin(), std::next(items.begin(), static_cast<std::ptrdiff_t>(count)),
+                 std::back_inserter(result), std::forward<Convert>(convert));
   return result;
 }
 

@@ -39,11 +39,9 @@ v1::ArtifactType to_bus(PointType type) {
 }
 
 std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description) {
-  std::vector<SonarMount> mounts;
-  mounts.reserve(description.sonars().size());
-  for (const v1::SonarPose& sonar : description.sonars())
-    mounts.push_back({sonar.sonar(), from_bus(sonar.pose_in_robot())});
-  return mounts;
+  return converted(description.sonars(), [](const v1::SonarPose& sonar) {
+    return SonarMount{sonar.sonar(), from_bus(sonar.pose_in_robot())};
+  });
 }
 
 LpsSettings settings_from_bus(const v1::RobotDescription& description) {
@@ -56,11 +54,9 @@ LpsSettings settings_from_bus(const v1::RobotDescription& description) {
 }
 
 std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state) {
-  std::vector<SonarReading> readings;
-  readings.reserve(state.sonars().size());
-  for (const v1::SonarReading& reading : state.sonars())
-    readings.push_back({reading.sonar(), static_cast<double>(reading.range()), reading.echo()});
-  return readings;
+  return converted(state.sonars(), [](const v1::SonarReading& reading) {
+    return SonarReading{reading.sonar(), reading.range(), reading.echo()};
+  });
 }
 
 Percept from_bus(const v1::Percept& percept) {

@@ -45,17 +45,13 @@ v1::MapArtifact to_bus(const Feature& feature) {
 
 Map from_bus(const v1::FloorMap& map) {
   Map result;
-  result.features.reserve(map.artifacts().size());
-  for (const v1::MapArtifact& artifact : map.artifacts())
-    result.features.push_back(from_bus(artifact));
+  result.features = converted(map.artifacts(), [](const auto& each) { return from_bus(each); });
   return result;
 }
 
 v1::FloorMap to_bus(const Map& map) {
   v1::FloorMap result;
-  result.artifacts().reserve(map.features.size());
-  for (const Feature& feature : map.features)
-    result.artifacts().push_back(to_bus(feature));
+  result.artifacts(converted(map.features, [](const auto& each) { return to_bus(each); }));
   return result;
 }
 

@@ -41,6 +41,10 @@ v1::ArgumentKind to_bus(ArgumentKind kind) {
   return kKinds.theirs(kind);
 }
 
+Frame from_bus(v1::Frame frame) {
+  return kFrames.ours(frame, Frame::odom);
+}
+
 Argument from_bus(const v1::Argument& argument) {
   switch (argument.kind()) {
     case v1::ARGUMENT_NUMBER:
@@ -52,8 +56,7 @@ Argument from_bus(const v1::Argument& argument) {
     case v1::ARGUMENT_POINT:
       if (argument.frame() > v1::FRAME_MAP)
         break;  // a point in an unknown frame has no place
-      return {argument.name(),
-              PlacedPoint{from_bus(argument.point()), kFrames.ours(argument.frame(), Frame::odom)}};
+      return {argument.name(), PlacedPoint{from_bus(argument.point()), from_bus(argument.frame())}};
     case v1::ARGUMENT_UNBOUND:
       break;
   }
@@ -75,17 +78,11 @@ v1::Argument to_bus(const Argument& argument) {
 }
 
 Arguments from_bus(const std::vector<v1::Argument>& arguments) {
-  Arguments result;
-  for (const v1::Argument& argument : arguments)
-    result.push_back(from_bus(argument));
-  return result;
+  return converted(arguments, [](const auto& each) { return from_bus(each); });
 }
 
 std::vector<v1::Argument> to_bus(const Arguments& arguments) {
-  std::vector<v1::Argument> result;
-  for (const Argument& argument : arguments)
-    result.push_back(to_bus(argument));
-  return result;
+  return converted(arguments, [](const auto& each) { return to_bus(each); });
 }
 
 Request from_bus(const v1::Request& request) {

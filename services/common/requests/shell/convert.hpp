@@ -9,6 +9,8 @@ namespace saphira {
 /// A kind that is not of the contract reads as unbound.
 ArgumentKind from_bus(v1::ArgumentKind kind);
 v1::ArgumentKind to_bus(ArgumentKind kind);
+/// A frame that is not of the contract reads as odom.
+Frame from_bus(v1::Frame frame);
 /// Takes only the member that counts. An argument with a kind or frame that is not of the contract
 /// is unbound.
 Argument from_bus(const v1::Argument& argument);
