@@ -11,6 +11,7 @@
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/notes.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/sender.hpp"
@@ -39,9 +40,8 @@ std::uint64_t milliseconds_since_1970() {
 
 /// The parameter files of a robot, in words.
 std::string looked_for(const protocol::RobotIdentity& robot) {
-  std::string names;
-  for (const std::string& name : protocol::parameter_file_names(robot.robot_class, robot.subclass))
-    names += (names.empty() ? "" : ", ") + name;
+  const std::string names =
+      joined(protocol::parameter_file_names(robot.robot_class, robot.subclass));
   return names.empty() ? "nothing (the robot names no class)" : names;
 }
 

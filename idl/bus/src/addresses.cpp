@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::bus::internal {
 
 bool Addresses::due(const Set& seen, Time now) {
@@ -28,9 +30,7 @@ std::string Addresses::wait() const {
     return {};
   if (only_.empty())
     return "this machine has no network address yet: only its own programs are reached";
-  std::string all;
-  for (const std::string& address : seen_)
-    all += (all.empty() ? "" : ", ") + address;
+  const std::string all = joined(seen_);
   return "interface " + only_ + " is no address of this machine" +
          (all.empty() ? ", which has none yet" : ", which has " + all) +
          ": only its own programs are reached";

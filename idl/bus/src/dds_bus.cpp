@@ -17,6 +17,7 @@
 #include "dds_presence.hpp"
 #include "dds_types.hpp"
 #include "log.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace saphira::bus::internal {
@@ -272,9 +273,7 @@ void Bus::look_at_network() {
 }
 
 void Bus::tell_waits(std::chrono::nanoseconds now) {
-  std::string text;
-  for (const std::string& wait : waits())
-    text += (text.empty() ? "" : "; ") + wait;
+  const std::string text = joined(waits(), "; ");
   if (text == told_) {
     waits_since_ = {};
     return;

@@ -5,15 +5,13 @@
 #include <tuple>
 
 #include "internal.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::bus {
 namespace {
 
 std::string no_such(const std::string& topic) {
-  std::string names;
-  for (const TopicEntry& known : known_topics())
-    names += (names.empty() ? "" : ", ") + known.name;
-  return "no topic \"" + topic + "\"; there are " + names;
+  return "no topic \"" + topic + "\"; there are " + joined(known_topics(), ", ", &TopicEntry::name);
 }
 
 }  // namespace

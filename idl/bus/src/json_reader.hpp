@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira_visit.hpp"
 
 namespace saphira::bus::internal {
@@ -88,9 +89,7 @@ class JsonReader {
   }
   static void unknown(const nlohmann::json& json, const std::vector<std::string>& names,
                       const std::string& place) {
-    std::string all;
-    for (const std::string& name : names)
-      all += (all.empty() ? "" : ", ") + name;
+    const std::string all = joined(names);
     for (const auto& [key, value] : json.items())
       if (std::find(names.begin(), names.end(), key) == names.end()) {
         const std::string meant = guess(key, names);

@@ -56,9 +56,7 @@ std::string role_for(const std::string& folder, const std::string& program, cons
   const auto has = [&](const std::string& role) {
     return std::find(there.begin(), there.end(), role) != there.end();
   };
-  std::string all;
-  for (const std::string& role : there)
-    all += (all.empty() ? "" : ", ") + role;
+  const std::string all = joined(there);
   const Role* const named = roles.of_program(program);
   if (named != nullptr) {
     if (has(named->name))

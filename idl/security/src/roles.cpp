@@ -15,9 +15,7 @@ namespace {
 constexpr const char* kAny = "any";
 
 std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
+  const std::string text = saphira::joined(words);
   return text.empty() ? "nobody" : text;
 }
 

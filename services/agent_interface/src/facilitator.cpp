@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -454,9 +455,8 @@ Facilitator::Outputs Facilitator::step(double now) {
       end(id, kName, candidates(open).value_or(Answer{AnswerCode::too_late, "no time is left"}));
       continue;
     }
-    std::string names;
-    for (const Asked& asked : open.asked)
-      names += (names.empty() ? "" : ", ") + agents_.at(asked.agent).name;
+    const std::string names =
+        joined(open.asked, ", ", [&](const Asked& asked) { return agents_.at(asked.agent).name; });
     Answer answer{AnswerCode::done, counted(open.got) + "; not in time: " + names};
     if (open.got == 0)
       answer = {AnswerCode::too_late, names + " did not answer in time"};

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "free_path.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/behaviors/foresight.hpp"
 
 namespace saphira::behaviors {
@@ -301,12 +302,8 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, 
     keep();
     return {};
   }
-  if (schema == nullptr) {
-    std::string names;
-    for (const std::string& name : registry_.names())
-      names += (names.empty() ? "" : ", ") + name;
-    return "unknown schema \"" + wanted.schema + "\"; there are " + names;
-  }
+  if (schema == nullptr)
+    return "unknown schema \"" + wanted.schema + "\"; there are " + joined(registry_.names());
   std::string trouble;
   std::optional<Parameters> parameters =
       Parameters::check(schema->parameters, wanted.parameters, robot_in_odom, trouble);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/behaviors/language.hpp"
 
 namespace saphira::behaviors {
@@ -159,10 +160,7 @@ Registry load_behaviors(const std::string& folder) {
   Registry registry;
   const Folder::News news = Folder(folder).look(registry);
   if (!news.faults.empty()) {
-    std::string all;
-    for (const std::string& fault : news.faults)
-      all += (all.empty() ? "" : "\n") + fault;
-    throw std::runtime_error(all);
+    throw std::runtime_error(joined(news.faults, "\n"));
   }
   return registry;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -24,12 +25,9 @@ std::string fault(const ParameterSpec& spec, const Argument& argument) {
       return "expected a number from " + plain(spec.low) + " to " + plain(spec.high) + " (" +
              spec.meaning + "), got " + plain(argument.number);
   } else if (argument.kind == Kind::text) {
-    if (std::find(spec.choices.begin(), spec.choices.end(), argument.text) == spec.choices.end()) {
-      std::string expected;
-      for (const std::string& choice : spec.choices)
-        expected += (expected.empty() ? "" : " or ") + choice;
-      return "expected " + expected + ", got \"" + argument.text.substr(0, 40) + "\"";
-    }
+    if (std::find(spec.choices.begin(), spec.choices.end(), argument.text) == spec.choices.end())
+      return "expected " + joined(spec.choices, " or ") + ", got \"" + argument.text.substr(0, 40) +
+             "\"";
   } else {
     if (!finite(argument.point))
       return "expected a point with finite coordinates";

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::runtime {
 namespace {
 
@@ -13,9 +15,9 @@ Line& line_of(std::vector<Line>& lines, const std::string& topic) {
 }
 
 std::string names(const std::vector<Line::End>& ends, const std::vector<Unit>& units) {
-  std::string text;
-  for (const Line::End& end : ends)
-    text += (text.empty() ? "" : ", ") + units[end.unit].name + " (" + word(end.use) + ")";
+  const std::string text = joined(ends, ", ", [&](const Line::End& end) {
+    return units[end.unit].name + " (" + word(end.use) + ")";
+  });
   return text.empty() ? "-" : text;
 }
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira {
 
 Process::Process(std::string name, std::string effect, Function function)
@@ -77,9 +79,8 @@ std::string ProcessTable::request(std::string_view name, ProcessAction action,
                                   std::uint32_t cycles) {
   Process* const process = find(name);
   if (process == nullptr) {
-    std::string names;
-    for (const auto& one : processes_)
-      names += (names.empty() ? "" : ", ") + one->name();
+    const std::string names =
+        joined(processes_, ", ", [&](const auto& one) { return one->name(); });
     return "no process \"" + std::string(name) + "\"; there are " +
            (names.empty() ? "none" : names);
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "saphira/base/shortest_ways.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::maps {
 
@@ -195,9 +196,8 @@ std::string Search::why_zones_forbid(const Route& free, const Place& to) const {
     if (zone->rule == ZoneRule::keep_out &&
         (zone->covers(free.legs.back().region) || (zone->area && maps::contains(*zone->area, end))))
       return with_article(to) + " " + zone->inside;
-  std::string names;
-  for (const Zone* const zone : forbidding)
-    names += (names.empty() ? "" : ", ") + zone->text;
+  const std::string names =
+      joined(forbidding, ", ", [&](const Zone* const zone) { return zone->text; });
   return "no way to " + with_article(to) + " keeps the rules of the zones: " + names;
 }
 

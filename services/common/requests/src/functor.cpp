@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira {
 namespace {
@@ -78,9 +79,7 @@ std::string found(const Argument& argument) {
 }
 
 std::string takes(const Functor& functor) {
-  std::string names;
-  for (const Parameter& parameter : functor.parameters)
-    names += (names.empty() ? "" : ", ") + parameter.name;
+  const std::string names = joined(functor.parameters, ", ", &Parameter::name);
   return names.empty() ? "no arguments" : names;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira {
 
 std::string describe(const Request& request) {
@@ -14,11 +16,9 @@ std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& req
     return one.name == request.functor;
   });
   if (functor == functors.end()) {
-    std::string names;
-    for (const Functor& one : functors)
-      names += (names.empty() ? "" : ", ") + one.name;
-    return Answer{AnswerCode::unknown_functor,
-                  "functor " + quoted(request.functor) + " is not known here: expected " + names};
+    return Answer{AnswerCode::unknown_functor, "functor " + quoted(request.functor) +
+                                                   " is not known here: expected " +
+                                                   joined(functors, ", ", &Functor::name)};
   }
   if (const std::string wrong = complete(*functor, request.arguments); !wrong.empty())
     return Answer{AnswerCode::bad_argument, wrong};

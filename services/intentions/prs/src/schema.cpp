@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/functions.hpp"
 
 namespace saphira::intentions {
@@ -81,9 +82,7 @@ bool fits(const Parameter& parameter, const Argument& argument) {
 }
 
 std::string names_of(const std::vector<Parameter>& parameters) {
-  std::string names;
-  for (const Parameter& parameter : parameters)
-    names += (names.empty() ? "" : ", ") + parameter.name;
+  const std::string names = saphira::joined(parameters, ", ", &Parameter::name);
   return names.empty() ? "no arguments" : names;
 }
 

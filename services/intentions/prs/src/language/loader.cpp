@@ -47,9 +47,7 @@ void check_mention(const Schema& activity, const Mention& mention, const Registr
               mention.line_text);
     return;
   }
-  std::string list;
-  for (const std::string& name : names)
-    list += (list.empty() ? "" : ", ") + name;
+  const std::string list = joined(names);
   for (std::size_t i = 0; i < mention.arguments.size(); ++i) {
     const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
       return normal(name) == normal(mention.arguments[i]);

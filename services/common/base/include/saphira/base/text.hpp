@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -92,6 +93,15 @@ std::string cannot_be(const std::string& path, std::string_view done);
 
 /// "1 program", "2 programs".
 std::string counted(std::size_t count, const std::string& thing);
+
+/// A list in words: each item by `words`, with `between` before all but the first.
+template <class Items, class Words = std::identity>
+std::string joined(const Items& items, std::string_view between = ", ", Words words = {}) {
+  std::string text;
+  for (const auto& item : items)
+    text.append(text.empty() ? "" : between).append(std::invoke(words, item));
+  return text;
+}
 
 /// The kind of file, in words, of a text that begins as a file of another program; empty for any
 /// other text.
