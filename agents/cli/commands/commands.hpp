@@ -3,7 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "saphira/base/numbers.hpp"
+#include "saphira/base/units.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/program.hpp"
 
@@ -43,6 +47,18 @@ inline CLI::Validator at_least_zero() {
 }
 inline CLI::Validator above_zero() {
   return number_that("more than 0", [](double value) { return value > 0.0; });
+}
+
+/// Makes the number of an option out of a number with or without its unit: "30cm" is 0.3 in m.
+inline CLI::Validator number_in_unit(const std::string& unit) {
+  return {[=](std::string& text) {
+            const std::optional<double> value = measured(text, unit);
+            const std::string found = text.substr(0, 40);
+            if (value)
+              text = exact(*value);
+            return value ? std::string() : "expected a number in " + unit + ", found " + found;
+          },
+          ""};
 }
 
 void add_demo(CLI::App& app, Chosen& chosen);

@@ -173,13 +173,16 @@ struct DirectOptions {
 };
 
 CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, const char* help,
-              const char* value, const std::shared_ptr<DirectOptions>& options) {
+              const char* value, const char* unit, const std::shared_ptr<DirectOptions>& options) {
   CLI::App* command = app.add_subcommand(name, help);
-  command->add_option("value", options->value, value)->required()->check(CLI::Number);
+  command->add_option("value", options->value, value)
+      ->required()
+      ->check(CLI::Number)
+      ->transform(number_in_unit(unit));
   command->footer(
       "The robot stops when this ends. The guard beside it holds; a person's keyboard is "
       "stronger,\n"
-      "goals are weaker. Exit code 0: done.");
+      "goals are weaker. Numbers may have a unit: 30cm, 1.5rad, 0.2m/s. Exit code 0: done.");
   chosen.when(command, [=](const bus::NodeOptions& node, const bus::Stop& stop) -> int {
     const double wish = kind == Move::Kind::turn ? radians(options->value) : options->value;
     const Move wanted{kind, name, wish, options->speed};
@@ -197,17 +200,19 @@ CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, 
 void add_direct(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::move, "move", "Drive so far straight on, and say when it is done",
-      "METERS, below 0: back", options)
+      "METERS, below 0: back", "m", options)
       ->add_option("--speed", options->speed, "[m/s] at most")
-      ->check(above_zero());
+      ->check(above_zero())
+      ->transform(number_in_unit("m/s"));
   options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::turn, "turn", "Turn on the spot, and say when it is done",
-      "DEGREES to the left, below 0: to the right", options);
+      "DEGREES to the left, below 0: to the right", "deg", options);
   options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::speed, "speed", "Drive at a speed, until Ctrl-C", "METERS a second",
-      options)
+      "m/s", options)
       ->add_option("--for", options->seconds, "[s] so long")
-      ->check(above_zero());
+      ->check(above_zero())
+      ->transform(number_in_unit("s"));
 }
 
 }  // namespace saphira::cli

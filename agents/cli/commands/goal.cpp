@@ -308,12 +308,14 @@ void add_goal(CLI::App& app, Chosen& chosen) {
                       "ACTIVITY name=value... | list | cancel ID | activities [ACTIVITY]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
-      ->check(at_least_zero());
+      ->check(at_least_zero())
+      ->transform(number_in_unit("s"));
   command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
   command->footer(
-      "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
+      "Values: 0.3 (SI units), 90deg, 30cm, 0.3m/s, x,y or x,y,th with @odom, @robot or @map, "
+      "text.\n"
       "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
     if (!options->words.empty() && options->words[0] == "cancel")

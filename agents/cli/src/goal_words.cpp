@@ -8,6 +8,7 @@
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/base/units.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::cli {
@@ -131,12 +132,14 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
   std::size_t bare = 0;
   while (bare < rest.size() && rest[bare].find('=') == std::string::npos)
     ++bare;
-  const auto expect = [&](std::size_t count, const std::string& form) {
+  const auto expect = [&](std::size_t count, const std::string& form, const char* unit) {
     if (bare != count)
       throw std::invalid_argument("expected " + form + ", found " + counted(bare, "word") +
                                   " after " + words[0]);
     for (std::size_t i = 0; i < count; ++i)
-      if (!parse_number(rest[i]))
+      if (const auto value = measured(rest[i], unit))
+        rest[i] = exact(*value);
+      else
         throw std::invalid_argument("expected " + form + ", found \"" + rest[i] + "\"");
   };
   const auto with = [&](const std::string& first) {
@@ -150,11 +153,10 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     --bare;
   }
   // Lengths may have their unit; one alone may be a name.
-  if (words[0] == "go" && bare >= 2)
+  if (words[0] == "go" && bare >= 2 && measured(rest[0], "m"))
     for (std::size_t i = 0; i < bare; ++i)
-      if (const std::string number = rest[i].substr(0, rest[i].size() - 1);
-          rest[i].ends_with("m") && parse_number(number))
-        rest[i] = number;
+      if (const auto length = measured(rest[i], "m"); length && !parse_number(rest[i]))
+        rest[i] = exact(*length);
   // The name of a place can have several words; one number is an artifact's id.
   if (words[0] == "go" && bare >= 1 && (bare == 1 || !parse_number(rest[0]))) {
     std::string place = rest[0];
@@ -163,20 +165,19 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     return parse_goal("go-to-place", with("place=" + place));
   }
   if (words[0] == "go") {
-    expect(2, "go X Y [m, in odom] or go PLACE");
+    expect(2, "go X Y [m, in odom] or go PLACE", "m");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
   // The activity drive in its long form also requires a speed.
   if (words[0] == "drive" && std::none_of(rest.begin(), rest.end(), [](const std::string& word) {
         return word.starts_with("speed=");
       })) {
-    expect(1, "drive SPEED [m/s]");
+    expect(1, "drive SPEED [m/s]", "m/s");
     return parse_goal("drive", with("speed=" + rest[0]));
   }
   if (words[0] == "turn") {
-    expect(1, "turn DEGREES");
-    return parse_goal("turn_to",
-                      with("heading=" + rest[0] + (rest[0].ends_with("deg") ? "" : "deg")));
+    expect(1, "turn DEGREES", "deg");
+    return parse_goal("turn_to", with("heading=" + rest[0] + "deg"));
   }
   return parse_goal(words[0], rest);
 }

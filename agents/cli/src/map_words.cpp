@@ -3,12 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
 #include "lps/shell/convert.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/base/units.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::cli {
@@ -52,17 +54,12 @@ constexpr std::array<Form, 16> kForms{
                               (words.empty() ? "" : ", found \"" + words.front() + "\""));
 }
 
-double number(const std::string& word, const char* what) {
-  std::size_t used = 0;
-  double value = NAN;
-  try {
-    value = std::stod(word, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used != word.size() || !std::isfinite(value))
-    throw std::invalid_argument(std::string("expected ") + what + ", found \"" + word + "\"");
-  return value;
+double number(const std::string& word, const std::string& what, const char* unit) {
+  const std::optional<double> value = measured(word, unit);
+  if (!value)
+    throw std::invalid_argument("expected " + what + (*unit == '\0' ? "" : " [") + unit +
+                                (*unit == '\0' ? "" : "]") + ", found \"" + word + "\"");
+  return *value;
 }
 
 bool on_or_off(const std::string& word) {
@@ -92,8 +89,8 @@ Arguments artifact(const std::string& line) {
 
 Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {
   if (words.size() == 4)
-    return {number(words[1], "x [m]"), number(words[2], "y [m]"),
-            norm2_angle(number(words[3], "the heading [rad]"))};
+    return {number(words[1], "x", "m"), number(words[2], "y", "m"),
+            norm2_angle(number(words[3], "the heading", "rad"))};
   if (words.size() != 2)
     complain(words);
   const auto places = maps::named(map, lps::PointType::position, words[1]);
@@ -119,7 +116,7 @@ Request parse_map_request(const std::vector<std::string>& words, const maps::Map
   if (verb == "put" && count == 2)
     return {"put", artifact(words[1])};
   if (verb == "remove" && count == 2) {
-    const double id = number(words[1], "the id of an artifact");
+    const double id = number(words[1], "the id of an artifact", "");
     if (id < 1.0 || id != std::floor(id) || id > 4294967295.0)
       throw std::invalid_argument("expected the id of an artifact, found \"" + words[1] + "\"");
     return {"remove", {{"id", id}}};

@@ -82,6 +82,10 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"go", "3m"}), "go-to-place(place=\"3m\")");
   EXPECT_EQ(said({"go", "124"}), "go-to-place(place=\"124\")");
   EXPECT_EQ(said({"go", "door", "124"}), "go-to-place(place=\"door 124\")");
+  EXPECT_EQ(said({"go", "300cm", "-1500mm"}), "go_to(position=(3, -1.5) in odom)");
+  EXPECT_EQ(said({"drive", "0.3m/s"}), said({"drive", "0.3"}));
+  EXPECT_EQ(said({"drive", "30cm/s"}), said({"drive", "0.3"}));
+  EXPECT_EQ(said({"turn", "90deg"}), said({"turn", "90"}));
   EXPECT_EQ(said({"go", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"go", "to", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"go", "meeting", "room"}), "go-to-place(place=\"meeting room\")");
@@ -113,6 +117,10 @@ TEST(GoalWords, WrongShortFormsAreRefused) {
                                                     {"go", "3", "b"},
                                                     {"drive"},
                                                     {"drive", "fast"},
+                                                    {"drive", "90deg"},
+                                                    {"drive", "0.3m"},
+                                                    {"turn", "1m"},
+                                                    {"go", "3", "1deg"},
                                                     {"turn"},
                                                     {"turn", "left"},
                                                     {"stop", "now"},

@@ -45,6 +45,7 @@ TEST(MapWords, AreRequests) {
   EXPECT_EQ(parsed({"snap", "off"}), "snap on=no");
   EXPECT_EQ(parsed({"remove", "12"}), "remove id=12");
   EXPECT_EQ(parsed({"place", "1.5", "-2", "0.5"}), "place position=(1.5, -2, 0.5)");
+  EXPECT_EQ(parsed({"place", "150cm", "-2m", "90deg"}), "place position=(1.5, -2, 1.5708)");
   const Pose named = point_of(parse({"place", "start"}).arguments, "position");
   EXPECT_EQ(named.x, 1.0);
   EXPECT_NEAR(named.th, std::numbers::pi / 2, 1e-12);
@@ -70,6 +71,7 @@ TEST(MapWords, SayWhatWasExpected) {
   EXPECT_EQ(complaint({"place", "nowhere"}),
             "expected place X Y TH [m, rad] or the name of a POS; the map has no POS \"nowhere\"");
   EXPECT_EQ(complaint({"place", "1", "x", "0"}), "expected y [m], found \"x\"");
+  EXPECT_EQ(complaint({"place", "1", "2", "0m"}), "expected the heading [rad], found \"0m\"");
   EXPECT_EQ(complaint({"features", "maybe"}), "expected on or off, found \"maybe\"");
   EXPECT_NE(complaint({"put", "DOR (3) 1, 2, 3, 4"}).find("the line:1:1"), std::string::npos);
   EXPECT_NE(complaint({"put", ""}).find("expected one artifact"), std::string::npos);

@@ -1,6 +1,7 @@
 #include "saphira/agent_interface/grammar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <utility>
 
@@ -13,6 +14,9 @@ constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no comm
 constexpr std::size_t kLongestName = 3;        // words
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
+/// Units behind a number without a blank, and their words in the grammars.
+constexpr std::array<std::pair<const char*, const char*>, 3> kUnits{
+    {{"m", "meters"}, {"deg", "degrees"}, {"s", "seconds"}}};
 
 bool is_letter(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -41,8 +45,16 @@ std::vector<std::string> words_of(std::string_view said) {
   std::vector<std::string> words;
   std::string word;
   const auto end = [&] {
-    if (!word.empty())
-      words.push_back(std::exchange(word, {}));
+    if (word.empty())
+      return;
+    // "2m" and "90deg", as people write them.
+    const std::size_t unit = word.find_first_not_of("0123456789.");
+    for (const auto& [written, spoken] : kUnits)
+      if (unit != 0 && unit != std::string::npos && word.compare(unit, word.npos, written) == 0) {
+        words.push_back(word.substr(0, unit));
+        word = spoken;
+      }
+    words.push_back(std::exchange(word, {}));
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];

@@ -60,6 +60,10 @@ TEST(Grammar, WordsAreSmallAndWithoutPunctuation) {
             (std::vector<std::string>{"flakey", "this", "is", "karen", "'s", "office"}));
   EXPECT_EQ(words_of("go 1.5 m to EJ-231."),
             (std::vector<std::string>{"go", "1.5", "m", "to", "ej-231"}));
+  EXPECT_EQ(words_of("go 1.5m, turn 90deg, wait 5s"),
+            (std::vector<std::string>{"go", "1.5", "meters", "turn", "90", "degrees", "wait", "5",
+                                      "seconds"}));
+  EXPECT_EQ(words_of("3b 12mm m 2-m"), (std::vector<std::string>{"3b", "12mm", "m", "2-m"}));
   EXPECT_EQ(words_of("Don't"), std::vector<std::string>{"dont"});
 }
 

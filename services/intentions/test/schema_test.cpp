@@ -48,6 +48,23 @@ TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
             "neither");
 }
 
+TEST(Schema, ANumberMayHaveItsUnit) {
+  const Registry registry = built_in();
+  Arguments complete;
+  EXPECT_EQ(check_arguments(*registry.find("go_to"),
+                            {point("position", {3, 1, 0}), text("speed", "20cm/s"),
+                             text("radius", "0.5 m"), text("patience", "1min")},
+                            complete),
+            "");
+  EXPECT_EQ(find(complete, "speed")->number, 0.2);
+  EXPECT_EQ(find(complete, "radius")->number, 0.5);
+  EXPECT_EQ(find(complete, "patience")->number, 60.0);
+  EXPECT_EQ(complaint("drive", {text("speed", "3m/s")}),
+            "argument \"speed\": expected a number from -0.2 to 2 m/s, got 3");
+  EXPECT_EQ(complaint("drive", {text("speed", "0.3m")}),
+            "argument \"speed\": expected a number from -0.2 to 2 m/s, got the text \"0.3m\"");
+}
+
 TEST(Schema, RefusesWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -5,6 +5,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/base/units.hpp"
 #include "saphira/intentions/functions.hpp"
 
 namespace saphira::intentions {
@@ -177,6 +178,11 @@ std::string check_arguments(const Schema& schema, const Arguments& arguments, Ar
     if (!parameter->any && parameter->kind == ArgumentKind::text &&
         taken.kind == ArgumentKind::number)
       taken = text(parameter->name, plain(taken.number));
+    // A number with its unit is a text on the bus.
+    if (!parameter->any && parameter->kind == ArgumentKind::number &&
+        taken.kind == ArgumentKind::text && !parameter->unit.empty())
+      if (const auto value = measured(taken.text, parameter->unit))
+        taken = number(parameter->name, *value);
     if (!fits(*parameter, taken))
       return "argument " + quoted(argument->name) + ": expected " + expected(*parameter) +
              ", got " + came(*argument);

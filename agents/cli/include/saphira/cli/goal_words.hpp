@@ -17,6 +17,7 @@ using situation::describe;
 ///   position=3,1               a point x,y [m] in odom
 ///   position=3,1,1.57@robot    with a heading [rad] (or 90deg), and the frame: odom, robot or map
 ///   door=kitchen               text
+///   speed=30cm/s               text, which the activity's declared unit makes a number
 ///
 /// std::invalid_argument with the expected form for any other word.
 v1::Argument parse_argument(const std::string& word);
@@ -32,7 +33,8 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
 ///   drive SPEED   drive speed=SPEED        [m/s]
 ///   turn DEGREES  turn_to heading=DEGREESdeg
 ///
-/// each with further name=value words behind it. std::invalid_argument as above.
+/// The numbers may have a unit behind them (30cm, 0.3m/s, 1.57rad). Each with further name=value
+/// words behind it. std::invalid_argument as above.
 v1::Goal parse_request(const std::vector<std::string>& words);
 
 /// Advice where this goal has failed; empty: none.

@@ -1,10 +1,11 @@
 #include "language/reader.hpp"
 
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <utility>
+
+#include "saphira/base/units.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -12,27 +13,6 @@ namespace {
 constexpr int kDeepest = 100;  ///< nested parentheses
 /// A file with more errors is no file of activities.
 constexpr std::size_t kMostTroubles = 100;
-
-struct Unit {
-  std::string_view name;
-  double factor;
-};
-constexpr std::array<Unit, 16> kUnits = {{{"m", 1.0},
-                                          {"mm", 1e-3},
-                                          {"cm", 1e-2},
-                                          {"km", 1e3},
-                                          {"s", 1.0},
-                                          {"ms", 1e-3},
-                                          {"min", 60.0},
-                                          {"h", 3600.0},
-                                          {"deg", kPi / 180.0},
-                                          {"rad", 1.0},
-                                          {"m/s", 1.0},
-                                          {"mm/s", 1e-3},
-                                          {"cm/s", 1e-2},
-                                          {"deg/s", kPi / 180.0},
-                                          {"rad/s", 1.0},
-                                          {"%", 1e-2}}};
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
@@ -254,16 +234,12 @@ Form Reader::read_atom() {
   form.unit.assign(parsed.ptr, last);
   if (form.unit.empty())
     return form;
-  for (const Unit& unit : kUnits) {
-    if (unit.name == form.unit) {
-      form.number *= unit.factor;
-      return form;
-    }
+  if (const Unit* const unit = find_unit(form.unit)) {
+    form.number *= unit->factor;
+    return form;
   }
   fail(form.line, form.column + static_cast<int>(parsed.ptr - form.text.data()),
-       "expected a unit (m mm cm km s ms min h deg rad m/s mm/s cm/s deg/s rad/s %) or none, "
-       "found " +
-           quoted(form.unit));
+       "expected a unit (" + unit_names() + ") or none, found " + quoted(form.unit));
 }
 
 namespace {
