@@ -108,12 +108,23 @@ std::string read_or_set_aside(const std::string& path,
          ": " + why;
 }
 
-bool can_replace_file(const std::string& path) {
+namespace {
+
+/// A device, a socket or a folder stays: a file in its place would break what uses it. Sets errno.
+bool is_file_or_new(const std::string& path) {
   std::error_code error;
-  if (fs::is_directory(path, error)) {
-    errno = EISDIR;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_regular_file(status) || !fs::exists(status))
+    return true;  // an unknown one fails at its name, with the system's reason
+  errno = fs::is_directory(status) ? EISDIR : ENOTSUP;
+  return false;
+}
+
+}  // namespace
+
+bool can_replace_file(const std::string& path) {
+  if (!is_file_or_new(path))
     return false;
-  }
   const std::string fresh = path + ".new";
   if (!File(fresh, O_WRONLY | O_CREAT | O_TRUNC).opened())
     return false;
@@ -122,6 +133,8 @@ bool can_replace_file(const std::string& path) {
 }
 
 bool replace_file(const std::string& path, std::string_view text, bool sync) {
+  if (!is_file_or_new(path))
+    return false;
   const std::string fresh = path + ".new";
   const auto written = [&] {
     const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);

@@ -152,7 +152,10 @@ std::string read_file(const std::string& path) {
 
 std::string cannot_be(const std::string& path, std::string_view done) {
   const int why = errno;
-  return path + ": cannot be " + std::string(done) + ": " + std::generic_category().message(why);
+  return path + ": cannot be " + std::string(done) + ": " +
+         // of replace_file
+         (why == ENOTSUP ? "expected a file or a new name, found a device, a pipe or a socket"
+                         : std::generic_category().message(why));
 }
 
 std::string counted(std::size_t count, const std::string& thing) {

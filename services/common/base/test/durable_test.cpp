@@ -1,6 +1,7 @@
 #include "saphira/base/durable.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -84,6 +85,33 @@ TEST(Durable, AFileIsReplacedWhole) {
   EXPECT_FALSE(replace_file(folder.path("full"), "four"));
   EXPECT_EQ(errno, EISDIR);
   EXPECT_FALSE(std::filesystem::exists(folder.path("full.new")));
+}
+
+TEST(Durable, OnlyAFileIsReplaced) {
+  const test::TempDir folder;
+  const std::string pipe = folder.path("pipe");
+  const std::string link = folder.path("link");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/null", link);
+  for (const std::string& path : {pipe, link, std::string("/dev/null")}) {
+    EXPECT_FALSE(replace_file(path, "text"));
+    EXPECT_EQ(errno, ENOTSUP);
+    EXPECT_EQ(cannot_be(path, "written"),
+              path +
+                  ": cannot be written: expected a file or a new name, found a device, a pipe "
+                  "or a socket");
+    EXPECT_FALSE(can_replace_file(path));
+    EXPECT_EQ(errno, ENOTSUP);
+    EXPECT_FALSE(std::filesystem::is_regular_file(path));
+    EXPECT_FALSE(std::filesystem::exists(path + ".new"));
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  // A link to a file, and one to nothing.
+  write(folder.path("old"), "old");
+  std::filesystem::create_symlink(folder.path("old"), folder.path("to-old"));
+  std::filesystem::create_symlink(folder.path("nothing"), folder.path("to-nothing"));
+  EXPECT_TRUE(replace_file(folder.path("to-old"), "new"));
+  EXPECT_TRUE(replace_file(folder.path("to-nothing"), "new"));
 }
 
 TEST(Durable, AFileIsTriedAndStaysAsItIs) {

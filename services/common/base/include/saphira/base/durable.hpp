@@ -29,7 +29,8 @@ std::string read_or_set_aside(const std::string& path,
 
 /// Replaces a file: a crash leaves the old one or the new one, whole. `sync`: also a power cut
 /// does, at the cost of disk time. False where it cannot be written: errno gives the reason, and
-/// the old file is unchanged.
+/// the old file is unchanged. A name that exists must be that of a regular file (a folder: EISDIR;
+/// a device, pipe or socket: ENOTSUP).
 bool replace_file(const std::string& path, std::string_view text, bool sync = false);
 
 /// True where replace_file could begin to write the file, which stays as it is. Otherwise errno
