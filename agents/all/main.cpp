@@ -21,7 +21,9 @@
 
 #include "agent_interface/shell/dialogue_shell.hpp"
 #include "bridge/shell/shell.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/fnv1a.hpp"
+#include "saphira/base/log_line.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/gateway.hpp"
@@ -259,8 +261,9 @@ int main(int argc, char** argv) {
         if (stereo->given())
           programs.robot.stereo_socket = stereo->text();
         programs.link.robot_port = "unix:" + socket;
-        programs.robot.log = [](const std::string& line) {
-          std::fprintf(stderr, "sim: %s\n", line.c_str());
+        programs.robot.log = [](const std::string& text) {
+          const std::string line = log_line(unix_time(), "info", "sim", text);
+          std::fprintf(stderr, "%s\n", line.c_str());
         };
         Talk& talk = programs.talk;
         if (!talk.grammar.empty()) {

@@ -1,12 +1,12 @@
 // saphira-sim: a simulated robot behind a local socket or a TCP port.
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/log_line.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/stop_signals.hpp"
@@ -161,8 +161,10 @@ int main(int argc, char** argv) {
         saphira::protocol::load_parameters(file);
       return 0;
     }
-    const auto logger = spdlog::stderr_color_mt("sim");
-    options.log = [&logger](const std::string& text) { logger->info("{}", text); };
+    options.log = [](const std::string& text) {
+      const std::string line = saphira::log_line(saphira::unix_time(), "info", "sim", text);
+      std::fprintf(stderr, "%s\n", line.c_str());
+    };
     saphira::sim::run(options, saphira::stop_on_signals());
     return 0;
   } catch (const std::exception& error) {

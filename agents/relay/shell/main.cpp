@@ -54,8 +54,7 @@ int main(int argc, char** argv) {
   try {
     const int stop = stop_on_signals();
     relay::Relay server(options, read_robots(robots));
-    std::printf("listens for robots on port %d\n", options.dial_port);
-    std::fflush(stdout);
+    relay::say("listens for robots on port " + std::to_string(options.dial_port));
     server.run(stop);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "saphira-relay: %s\n", error.what());

@@ -13,6 +13,7 @@
 
 #include "loop.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/log_line.hpp"
 #include "splice.hpp"
 
 namespace saphira::relay {
@@ -26,6 +27,15 @@ constexpr const char* kCarry = "saphira.carry";
 constexpr std::string_view kBearer = "Bearer ";
 
 using web::header;
+
+}  // namespace
+
+void say(const std::string& text) {
+  std::printf("%s\n", log_line(unix_time(), "info", "relay", text).c_str());
+  std::fflush(stdout);
+}
+
+namespace {
 
 /// An unguessable ticket.
 std::string new_ticket() {
@@ -118,8 +128,7 @@ int Relay::Impl::dialled(lws* wsi, Leg& leg) {
     lws_set_timeout(gateway.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
   gateway = {wsi, {"port " + std::to_string(leg.dialled->port)}};
   lws_callback_on_writable(wsi);
-  std::printf("%s has dialled in\n", leg.dialled->name.c_str());
-  std::fflush(stdout);
+  say(leg.dialled->name + " has dialled in");
   return 0;
 }
 
@@ -145,8 +154,7 @@ void Relay::Impl::hung_up(lws* wsi, const Leg& leg) {
   if (found == gateways.end() || found->second.wsi != wsi)
     return;
   gateways.erase(found);
-  std::printf("%s has hung up\n", leg.dialled->name.c_str());
-  std::fflush(stdout);
+  say(leg.dialled->name + " has hung up");
 }
 
 /// A visitor has come to the port of a robot.

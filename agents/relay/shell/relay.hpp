@@ -14,6 +14,9 @@ struct RelayOptions {
   std::string certificate_key;
 };
 
+/// Prints a line of the relay's log, to stdout.
+void say(const std::string& text);
+
 /// The relay: gateways dial in, people come to the port of a robot, and the relay carries bytes
 /// between them. The traffic is encrypted from end to end; the relay has no key of it. For one
 /// thread.

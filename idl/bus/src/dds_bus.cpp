@@ -222,7 +222,7 @@ void Bus::run() {
         machines_->forget_told();  // by programs that the new session has to find again
       renew(Side::local, true);
       renew(Side::network, true);
-      write_log(v1::LOG_WARNING, options_.name + ": began anew on the bus");
+      write_log(v1::LOG_WARNING, options_.name, "began anew on the bus");
     }
     if (++turns_ % kTurnsToLook == 0)
       look_at_network();
@@ -286,9 +286,9 @@ void Bus::tell_waits(std::chrono::nanoseconds now) {
   waits_since_ = {};
   told_ = text;
   if (text.empty())
-    write_log(v1::LOG_INFO, options_.name + ": is on the network");
+    write_log(v1::LOG_INFO, options_.name, "is on the network");
   else
-    write_log(v1::LOG_WARNING, options_.name + ": " + text);
+    write_log(v1::LOG_WARNING, options_.name, text);
 }
 
 // A burst of samples or goals leaves free memory between blocks that are in use. malloc alone never
@@ -319,7 +319,7 @@ void Bus::renew(Side side, bool after_sleep) {
   try {
     fresh = make(side);
   } catch (const std::exception& error) {
-    write_log(v1::LOG_WARNING, options_.name + ": " + error.what() + "; tried again");
+    write_log(v1::LOG_WARNING, options_.name, std::string(error.what()) + "; tried again");
     if (side == Side::local) {
       renewal_due_ = true;
       return;
@@ -353,7 +353,7 @@ void Bus::replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep) {
   } catch (const std::exception& error) {
     // A program with half of its endpoints is better than one that nobody restarts, and worse than
     // one that has ended.
-    write_log(v1::LOG_ERROR, options_.name + ": could not begin anew: " + error.what());
+    write_log(v1::LOG_ERROR, options_.name, std::string("could not begin anew: ") + error.what());
     std::_Exit(kExitBroken);
   }
   {

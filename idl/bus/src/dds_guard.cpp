@@ -122,11 +122,11 @@ void Guard::look(const std::string& program) {
     const security::Revoked list = security::load_revoked(folder_, credentials_.authority);
     if (list.number > number_) {
       take(list);
-      write_log(v1::LOG_WARNING,
-                program + ": takes list " + std::to_string(list.number) + " of what was revoked");
+      write_log(v1::LOG_WARNING, program,
+                "takes list " + std::to_string(list.number) + " of what was revoked");
       if (list.members.contains(security::common_name(credentials_.subject))) {
-        write_log(v1::LOG_ERROR, program + ": the certificate of " + own_.text() +
-                                     " was revoked; this program ends");
+        write_log(v1::LOG_ERROR, program,
+                  "the certificate of " + own_.text() + " was revoked; this program ends");
         ::kill(::getpid(), SIGTERM);
       }
     }
@@ -134,11 +134,9 @@ void Guard::look(const std::string& program) {
     trouble = error.what();
   }
   if (!trouble.empty() && trouble != trouble_)
-    write_log(
-        v1::LOG_ERROR,
-        program +
-            ": the list of what was revoked cannot be taken, and the last one goes on to hold: " +
-            trouble);
+    write_log(v1::LOG_ERROR, program,
+              "the list of what was revoked cannot be taken, and the last one goes on to hold: " +
+                  trouble);
   trouble_ = trouble;
 }
 

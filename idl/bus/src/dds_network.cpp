@@ -53,9 +53,9 @@ class DdsLog : public fdds::LogConsumer {
   void Consume(const fdds::Log::Entry& entry) override {
     if (is_refusal(entry.message))
       return;
-    const std::string text = "Fast DDS: " + entry.message;
     // An error of Fast DDS is logged as a warning, since the program goes on.
-    write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, text);
+    write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, "Fast DDS",
+              entry.message);
   }
 };
 

@@ -75,7 +75,7 @@ class Sieve : public transport::ChainingTransport {
     try {
       next->OnDataReceived(buffer, size, local, remote);
     } catch (const std::exception& error) {
-      write_log(v1::LOG_DEBUG, std::string("dropped a packet: ") + error.what());
+      write_log(v1::LOG_DEBUG, "Fast DDS", std::string("dropped a packet: ") + error.what());
     }
   }
 

@@ -7,8 +7,8 @@
 
 namespace saphira::bus::internal {
 
-/// To stderr, at once.
-void write_log(v1::LogLevel level, const std::string& text);
+/// To stderr, at once, as a log_line of that program.
+void write_log(v1::LogLevel level, const std::string& program, const std::string& text);
 /// True after an error was logged.
 std::atomic<bool>& has_erred();
 /// debug, info, warning or error; lower levels are not written. False for any other name.

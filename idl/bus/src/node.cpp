@@ -106,7 +106,7 @@ struct Node::Impl {
     // The text of a person's file or message may have a line without an end.
     if (text.size() > kLongestLog)
       text = text.substr(0, kLongestLog) + "... (" + std::to_string(text.size()) + " characters)";
-    internal::write_log(level, options.name + ": " + text);
+    internal::write_log(level, options.name, text);
     if (level == v1::LOG_DEBUG)
       return;
     v1::LogRecord record;

@@ -132,7 +132,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     return kExitUsage;
   }
   if (app.program() == "saphira-" + name)
-    internal::write_log(v1::LOG_ERROR, options.name + ": " + what);
+    internal::write_log(v1::LOG_ERROR, options.name, what);
   else  // a command that people give, no service with a log
     std::fprintf(stderr, "%s: %s\n", app.program().c_str(), what.c_str());
   return kExitBroken;
