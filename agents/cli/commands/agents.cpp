@@ -137,14 +137,14 @@ void add_ask(CLI::App& app, Chosen& chosen) {
   command->add_option("--of", options->agent, "the agent that is meant (usual: whichever can)");
   command->add_option("--answers", options->answers, "how many are wanted; 0: of each that can")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   command
       ->add_option("--deadline", options->deadline,
                    "[s] for the answer (usual: 10 s, and while the agent says that it is at work)")
       ->check(CLI::Range(0.1, 3600.0));
   command->add_flag("--json", options->json,
                     "one JSON object for each answer: agent, code, text, values");
-  command->footer("Exit code 0: it was answered; 1: it was not, and why.");
+  command->footer("Exit code 0: it was answered; 1: it was refused or not answered, and why.");
   command->callback([options, &chosen] {
     if (options->functor.empty() != options->list)
       throw CLI::ValidationError("ask", "expected a functor, or --list");

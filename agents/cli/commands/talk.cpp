@@ -100,6 +100,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   print("%s\n", line_of(utterance).c_str());
   const auto began = Clock::now();
   bool answered = false;
+  int code = bus::kExitFailed;  // that of the newest reply
   while (!stop.requested()) {
     node.wait(milliseconds(200), &stop);
     processes.poll();
@@ -107,10 +108,11 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
       if (sample.info.disposed || sample.data.answers().writer() != node.instance())
         continue;
       answered = true;
+      code = acknowledges(sample.data) ? bus::kExitOk : bus::kExitFailed;
       print("%s\n", line_of(sample.data, options.robot).c_str());
       std::fflush(stdout);
       if (sample.data.end() || say_options.quick)
-        return sample.data.text().starts_with("what?") ? bus::kExitFailed : bus::kExitOk;
+        return code;
     }
     if (answered)
       continue;
@@ -119,10 +121,10 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
                       "A sentence for the robot begins with its keyword, such as \"Flakey, stop\"");
         !why.empty()) {
       complain("saphira: %s\n", why.c_str());
-      return bus::kExitFailed;
+      return code;
     }
   }
-  return bus::kExitFailed;
+  return code;
 }
 
 /// The sentence, addressed to the robot. A reply to its question needs no keyword.
@@ -166,7 +168,7 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
         continue;
       answered = true;
       over = over || sample.data.end();
-      code = text.starts_with("what?") ? bus::kExitFailed : bus::kExitOk;
+      code = acknowledges(sample.data) ? bus::kExitOk : bus::kExitFailed;
     }
     while (const auto line = input.next()) {
       const v1::Utterance utterance = situation::typed(
@@ -245,8 +247,10 @@ void add_say(CLI::App& app, Chosen& chosen) {
   command->add_option("--as", options->speaker, "who says it (usual: your name here)");
   command->add_flag("--quick", options->quick, "do not wait for the end of what it does");
   command->footer(
-      "Sentences that are understood: config/grammars/flakey.grammar. Exit code 0: it was "
-      "understood; 1: not.\n"
+      "Sentences that are understood: config/grammars/flakey.grammar.\n"
+      "Exit code 0: the robot answered the question, or does as it was told (also if that fails "
+      "later); 1: it asked\n"
+      "back (\"what?\"), refused, or did not answer.\n"
       "Ctrl-C ends the command, not what the robot does: say \"Flakey, stop\" for that.");
   chosen.when(command, options, say);
 }
@@ -265,7 +269,9 @@ void add_talk(CLI::App& app, Chosen& chosen) {
       "robot do not need it.\n"
       "Ends with the input, or with Ctrl-C; without a terminal, when all is done that the last "
       "line led to.\n"
-      "Exit code 0: the last line was understood; 1: not.");
+      "Exit code 0: the robot did as the last line said, or answered it; 1: it asked back, "
+      "refused, "
+      "or did not answer.");
   command->callback([options, &chosen] {
     try {
       options->grammar = find_file(config_folder() + "/grammars", options->grammar, ".grammar");

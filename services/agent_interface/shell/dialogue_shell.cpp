@@ -217,7 +217,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
     sample.answers().number(said.answers.second);
     sample.listener(said.listener);
     sample.text(said.text);
-    sample.confidence(1.0);
+    sample.confidence(said.refused ? 0.0 : 1.0);
     sample.end(said.end);
     said_.write(sample);
   }

@@ -39,6 +39,10 @@ void Dialogue::say(const Utterance& utterance, const std::string& text, bool end
   out.said.push_back({utterance.id, utterance.speaker, text, end});
 }
 
+void Dialogue::refuse(const Utterance& utterance, const std::string& text, Outputs& out) const {
+  out.said.push_back({utterance.id, utterance.speaker, text, true, true});
+}
+
 void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
                     Arguments arguments, double deadline) {
   const auto is_in = [&](const auto& functors) {
@@ -64,11 +68,11 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
   } else if (meaning.functor == "move") {
     const double distance = number_of(meaning, "distance");
     if (distance <= 0.0) {
-      say(utterance, "that is no way to go", true, out);
+      refuse(utterance, "that is no way to go", out);
       return true;
     }
     if (distance > kLongestWay) {
-      say(utterance, "I go up to " + plain(kLongestWay) + " m at a time", true, out);
+      refuse(utterance, "I go up to " + plain(kLongestWay) + " m at a time", out);
       return true;
     }
     if (slot(meaning, "direction") == "back") {
@@ -81,11 +85,11 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
     const bool around = meaning.functor == "turn_around";
     const double degrees = around ? 180.0 : number_of(meaning, "degrees");
     if (degrees <= 0.0) {
-      say(utterance, "that is no turn", true, out);
+      refuse(utterance, "that is no turn", out);
       return true;
     }
     if (degrees > 180.0) {
-      say(utterance, "I turn by up to 180 degrees at a time", true, out);
+      refuse(utterance, "I turn by up to 180 degrees at a time", out);
       return true;
     }
     const double angle = degrees / 180.0 * std::numbers::pi;
@@ -137,7 +141,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     else if (!name.empty() && !knowledge_.place_of(name).empty())
       want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     else
-      say(utterance, wrong, true, out);
+      refuse(utterance, wrong, out);
   } else if (functor == "deliver") {
     want(meaning, utterance, "deliver",
          {text("object", "the " + slot(meaning, "object")), text("from", whom("from")),
@@ -145,7 +149,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
   } else if (functor == "fetch") {
     const std::string to = bring_to(utterance, situation);
     if (to.empty())
-      say(utterance, "I do not know where to bring it: where I am has no name", true, out);
+      refuse(utterance, "I do not know where to bring it: where I am has no name", out);
     else
       want(meaning, utterance, "deliver",
            {text("object", "the " + slot(meaning, "object")), text("from", whom("person")),
@@ -181,7 +185,7 @@ void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& ut
   if (all.size() < 2)
     text = "several things";
   text = "what? That may mean " + text;
-  say(utterance, text, true, out);
+  refuse(utterance, text, out);
 }
 
 /// The answer to a question of an activity, or of this dialogue.
@@ -224,7 +228,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     const bool person = place(name, situation).empty();
     value = place_or_person(name, situation);
     if (open && person && !knowledge_.findable(name)) {
-      say(utterance, "nobody has told me where " + name + " is", true, out);
+      refuse(utterance, "nobody has told me where " + name + " is", out);
       return true;
     }
     if (person)
@@ -234,7 +238,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     std::string wrong;
     value = referred(meaning, situation, out, artifact, wrong);
     if (open && value.empty()) {
-      say(utterance, wrong, true, out);
+      refuse(utterance, wrong, out);
       return true;
     }
     if (const std::string who = slot(meaning, "who"); !who.empty())
@@ -267,7 +271,7 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
       correction(meaning, utterance, situation, out) ||
       naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
-  say(utterance, "I understand " + meaning.functor + ", and do not know how to do it", true, out);
+  refuse(utterance, "I understand " + meaning.functor + ", and do not know how to do it", out);
 }
 
 void Dialogue::add(Tasks::Outputs more, Outputs& out) {
@@ -331,14 +335,14 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
     const bool meant = understood.addressed && !understood.meanings.empty();
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
     if (meant && understood.meanings.empty()) {
-      say(utterance, "that is too long for me", true, out);
+      refuse(utterance, "that is too long for me", out);
       return out;
     }
   }
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   if (understood.meanings.empty() || utterance.confidence < kSure) {
-    say(utterance, "what?", true, out);
+    refuse(utterance, "what?", out);
   } else if (understood.meanings.size() > 1) {
     choices(understood.meanings, utterance, out);
   } else {

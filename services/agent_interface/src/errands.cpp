@@ -48,8 +48,7 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
     want(with(meaning, "place", spot->place), utterance, "come-back",
          {text("place", spot->place), point("spot", spot->pose_in_map, Frame::map)});
   else
-    say(utterance, "I do not know where that is: my map has no place called home or start", true,
-        out);
+    refuse(utterance, "I do not know where that is: my map has no place called home or start", out);
 }
 
 bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
@@ -62,7 +61,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     std::string wrong;
     const std::string found = referred(referring, situation, out, artifact, wrong);
     if (found.empty())
-      say(utterance, wrong, true, out);
+      refuse(utterance, wrong, out);
     return found;
   };
   const auto back = [&] { return text("back", bring_to(utterance, situation)); };
@@ -93,7 +92,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     const double unit = slot(meaning, "unit") == "minutes" ? 60.0 : 1.0;
     const double seconds = number_of(meaning, "time") * unit;
     if (seconds <= 0.0 || seconds > kLongestWait)
-      say(utterance, "I wait for up to an hour", true, out);
+      refuse(utterance, "I wait for up to an hour", out);
     else
       want(meaning, utterance, "pause", {number("seconds", seconds)});
   } else if (functor == "wait_there") {

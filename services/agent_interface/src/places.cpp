@@ -228,22 +228,22 @@ bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
   const bool corridor = slot(meaning, "kind") == "corridor";
   const std::string known = place(lowered(name), situation);
   if (!situation.pose_in_map) {
-    say(utterance, kLost, true, out);
+    refuse(utterance, kLost, out);
     return true;
   }
   const maps::Feature* const feature = feature_at(situation.map, situation.pose_in_map->position(),
                                                   situation.pointing_in_map, corridor);
   if (feature == nullptr) {
-    say(utterance,
-        std::string("I know no ") + (corridor ? "corridor" : "room or doorway") +
-            (situation.pointing_in_map ? " where you point" : " here"),
-        true, out);
+    refuse(utterance,
+           std::string("I know no ") + (corridor ? "corridor" : "room or doorway") +
+               (situation.pointing_in_map ? " where you point" : " here"),
+           out);
+  } else if (feature->name == known && !known.empty()) {
+    say(utterance, "I know: this is " + feature->name, true, out);
   } else if (!feature->name.empty()) {
-    say(utterance,
-        (feature->name == known ? "I know: this is " : "on my map this is ") + feature->name, true,
-        out);
+    refuse(utterance, "on my map this is " + feature->name, out);
   } else if (!known.empty()) {
-    say(utterance, "my map has " + known + " at another place", true, out);
+    refuse(utterance, "my map has " + known + " at another place", out);
   } else {
     out.namings.push_back(*feature);
     out.namings.back().name = name;

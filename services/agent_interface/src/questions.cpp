@@ -109,13 +109,16 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
     std::uint32_t artifact = 0;
     std::string wrong;
     const std::string at = referred(meaning, situation, out, artifact, wrong);
-    say(utterance,
-        at.empty() ? wrong
-        : at == place
-            ? "I know: I am in " + at
-            : (place.empty() ? "" : "I think that I am in " + place + ". ") + "To put me in " + at +
-                  " I need the exact place: saphira map place X Y HEADING, or saphira map find",
-        true, out);
+    if (!at.empty() && at == place)
+      say(utterance, "I know: I am in " + at, true, out);
+    else
+      refuse(utterance,
+             at.empty() ? wrong
+                        : (place.empty() ? "" : "I think that I am in " + place + ". ") +
+                              "To put me in " + at +
+                              " I need the exact place: saphira map place X Y HEADING, or saphira "
+                              "map find",
+             out);
   } else if (functor == "what_are_you_doing") {
     say(utterance, doing(situation), true, out);
   } else if (functor == "why") {
@@ -192,7 +195,7 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
       std::string wrong;
       at = referred(meaning, situation, out, artifact, wrong);
       if (at.empty()) {
-        say(utterance, wrong, true, out);
+        refuse(utterance, wrong, out);
         return true;
       }
     }

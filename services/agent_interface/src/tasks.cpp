@@ -94,7 +94,7 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
                         (other->doing.empty() ? "I am at work for " + owner + ": " + other->what
                                               : "I am " + other->doing + " for " + owner) +
                             ". Shall I drop that?",
-                        true});
+                        true, true});
     question_ = Question{std::move(first), utterance};
     return out;
   }

@@ -43,10 +43,10 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
   }
   // A person's place changes all the time; the owner of an office does not.
   if (known != nullptr && advice.kind == Advice::Kind::office_of) {
-    say(utterance,
-        named_person(known->speaker) + " told me that " + describe(*known) + ". Is it now " +
-            advice.value + "?",
-        true, out);
+    refuse(utterance,
+           named_person(known->speaker) + " told me that " + describe(*known) + ". Is it now " +
+               advice.value + "?",
+           out);
     doubt_ = Doubt{advice, utterance};
     return;
   }
@@ -103,7 +103,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     return true;
   }
   if (!wrong.empty()) {
-    say(utterance, wrong, true, out);
+    refuse(utterance, wrong, out);
   } else {
     take(advice, utterance, out);
     answer_with(advice, utterance, situation, out);
@@ -149,7 +149,7 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
     std::string no_place;
     const std::string place = referred(where, situation, unnamed, artifact, no_place);
     if (!no_place.empty()) {
-      say(utterance, no_place, true, out);
+      refuse(utterance, no_place, out);
       return true;
     }
     doubt(office ? Kind::office_of : Kind::person_at, place);

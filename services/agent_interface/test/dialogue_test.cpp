@@ -77,6 +77,35 @@ TEST_F(DialogueTest, WhatIsNotUnderstoodIsAskedBackAndNotActedOn) {
   EXPECT_TRUE(last.goals.empty());
 }
 
+TEST_F(DialogueTest, ANumberMayHaveItsUnit) {
+  EXPECT_EQ(said("Flakey, go forward 2m"), "I go forward 2 m");
+  EXPECT_EQ(goals(), "go_to position=(2, 0, 0)");
+  EXPECT_NE(said("Flakey, turn left 45deg").find("I turn 45 degrees to the left"),
+            std::string::npos);
+}
+
+TEST_F(DialogueTest, ARefusalSaysSo) {
+  for (const char* const sentence :
+       {"Flakey, go upstairs", "Flakey, go to EJ-232", "Flakey, go forward 200 meters",
+        "Flakey, go forward 0 meters", "Flakey, turn left 300 degrees", "Flakey, go home"}) {
+    hear(sentence);
+    ASSERT_EQ(last.said.size(), 1U) << sentence;
+    EXPECT_TRUE(last.said.at(0).refused && last.said.at(0).end) << last.said.at(0).text;
+  }
+  for (const char* const sentence :
+       {"Flakey, where are you", "Flakey, what do you know", "Flakey, what are you doing",
+        "Flakey, EJ-231 is Karen's office", "Flakey, go forward 2 meters"}) {
+    hear(sentence);
+    ASSERT_FALSE(last.said.empty()) << sentence;
+    for (const Said& one : last.said)
+      EXPECT_FALSE(one.refused) << one.text;
+  }
+  EXPECT_FALSE(dialogue.ended({last.goals.at(0).tag, false, "blocked"}).said.at(0).refused);
+  // A question to people waits for their reply.
+  said("Flakey, EJ-233 is Karen's office");
+  EXPECT_TRUE(last.said.at(0).refused) << last.said.at(0).text;
+}
+
 TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
   const Utterance utterance{{7, 1}, "Alice", "flakey go forward"};
   EXPECT_EQ(dialogue.hear(utterance, situation).goals.size(), 1u);

@@ -169,6 +169,8 @@ class Dialogue {
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
             Arguments arguments, double deadline = 0.0);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
+  /// The answer to an utterance that changes nothing: asks back, or says why not. Ends it.
+  void refuse(const Utterance& utterance, const std::string& text, Outputs& out) const;
   /// The robot's present goals in words: its own one, and those of others.
   std::string doing(const Situation& situation) const;
   /// The destination "here" of things to bring; empty: none.

@@ -26,7 +26,8 @@ struct Said {
   UtteranceId answers{};  ///< 0, 0: to none
   std::string listener;
   std::string text;
-  bool end = false;  ///< no more answers to that utterance follow
+  bool end = false;      ///< no more answers to that utterance follow
+  bool refused = false;  ///< nothing is done about that utterance: asked back, or refused
 };
 
 /// A goal on the bus: its asker, and its number there.
