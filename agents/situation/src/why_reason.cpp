@@ -114,13 +114,15 @@ std::string Reason::meanwhile() const {
   const double speed = stands ? 0.0 : told_speed();
   std::vector<std::string> parts;
   if (std::abs(velocity - speed) >= kFarFromTold)
-    parts.push_back(speed_text(velocity));
+    parts.push_back(std::abs(velocity) < kNoSpeed ? "stands"
+                    : velocity > 0.0              ? "drives at " + speed_text(velocity)
+                                                  : "backs up at " + speed_text(-velocity));
   // A robot without speed may well turn towards its heading setpoint.
   if (stands && std::abs(rotation) >= kTurning)
     parts.push_back("turns " + turn_text(rotation, true));
   if (parts.empty())
     return {};
-  return " (now it does " + listed(parts) + ")";
+  return " (now it " + listed(parts, " and ") + ")";
 }
 
 const v1::RuleText* Reason::text_of(const v1::BehaviorState& behavior,

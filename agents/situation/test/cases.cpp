@@ -44,7 +44,7 @@ void all_is_well(std::vector<Case>& all) {
                               {"no running behavior wants that", "GoToPos wants 0.30 m/s"}));
   all.push_back(while_driving("it has just begun to drive", "why not faster",
                               [](Situation& s) { s.robot->velocity(0.1); },
-                              {"It does go faster", "now it does 0.10 m/s"}));
+                              {"It does go faster", "now it drives at 0.10 m/s"}));
   all.push_back(while_driving("only one behavior, straight on", "why",
                               [](Situation& s) {
                                 auto& behaviors = s.behaviors->behaviors();
@@ -145,7 +145,8 @@ void goals(std::vector<Case>& all) {
     s.statuses = {goal_status(v1::GOAL_CANCELED, "withdrawn by saphira goal")};
   };
   all.push_back(while_driving("just canceled: the robot still rolls", "why", rolling,
-                              {"told to stop", "now it does 0.40 m/s", "canceled"}, {"stands"}));
+                              {"told to stop", "now it drives at 0.40 m/s", "canceled"},
+                              {"stands"}));
   all.push_back(
       while_driving("the same", "why not slower", rolling, {"It does go slower"}, {"stands"}));
   all.push_back(at_rest("just stopped: it still turns", "why",
@@ -213,7 +214,7 @@ void people(std::vector<Case>& all) {
                                 pressed(s);
                                 s.robot->velocity(0.35);
                               },
-                              {"EMERGENCY STOP", "now it does 0.35 m/s"}));
+                              {"EMERGENCY STOP", "now it drives at 0.35 m/s"}));
   all.push_back(
       while_driving("the same", "why not faster", pressed, {"It does not go faster", "EMERGENCY"}));
   all.push_back(while_driving("the same", "drive", pressed, {"EMERGENCY STOP, pressed by panel"}));

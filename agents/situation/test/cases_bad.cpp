@@ -287,7 +287,7 @@ void wheels(std::vector<Case>& all) {
                      {"no goal is underway"}, {off}));
   all.push_back(when("the motors were switched off as it drove: it still rolls", "why", driving(),
                      {no_power, [](Situation& s) { s.robot->velocity(0.2); }},
-                     {"now it does 0.20 m/s"}, {off}));
+                     {"now it drives at 0.20 m/s"}, {off}));
   all.push_back(when("a goal failed, of a robot that does not report its motors", "why", resting(),
                      {failed},
                      {"failed, no nearer",
