@@ -84,21 +84,17 @@ Condition past_condition(const Situation& s, const std::string& program) {
   return {Health::late, "left this cycle out"};
 }
 
-Condition present_condition(const Situation& s, const std::string& name) {
-  const Program* const program = find(s.programs, name);
-  // A present program may not have published yet.
-  if (program == nullptr)
-    return s.listened < kListened
-               ? Condition{}
-               : Condition{Health::absent, "is not heard (not running, hung, or cut off)"};
-  if (program->age > kLostAge)
-    return {Health::lost, "has not been heard for " + seconds_text(program->age) +
+/// That of one instance. The cyclic samples have no mark of their writer: they count for the
+/// instance that `counts`.
+Condition present_condition(const Situation& s, const Program& program, bool counts) {
+  if (program.age > kLostAge)
+    return {Health::lost, "has not been heard for " + seconds_text(program.age) +
                               " (it is dead, hangs, or is cut off)"};
-  const v1::ServiceStatus& status = program->status;
+  const v1::ServiceStatus& status = program.status;
   if (status.state() == v1::SERVICE_STARTING || status.state() == v1::SERVICE_WAITING)
     return {Health::waiting, std::string("is ") + name_of(status.state()) +
                                  (status.reason().empty() ? "" : ": " + status.reason())};
-  const auto wanted = expected(s, name);
+  const auto wanted = counts ? expected(s, status.name()) : std::nullopt;
   if (wanted && s.now > 0 && s.listened >= kListened) {
     if (wanted->known.newest == 0)
       return {Health::hung, "is on the bus, and says nothing (it hangs, or is cut off)"};
@@ -114,9 +110,21 @@ Condition present_condition(const Situation& s, const std::string& name) {
   return {};
 }
 
+Condition present_condition(const Situation& s, const std::string& name) {
+  const Program* const program = find(s.programs, name);
+  if (program != nullptr)
+    return present_condition(s, *program, true);
+  // A present program may not have published yet.
+  return s.listened < kListened
+             ? Condition{}
+             : Condition{Health::absent, "is not heard (not running, hung, or cut off)"};
+}
+
 nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
   const v1::ServiceStatus& status = program.status;
-  const Condition how = condition(s, status.name());
+  const bool counts = &program == find(s.programs, status.name());
+  const Condition how =
+      s.past ? past_condition(s, status.name()) : present_condition(s, program, counts);
   nlohmann::ordered_json json;
   json["name"] = status.name();
   json["state"] = program.age > kLostAge ? "lost" : name_of(status.state());

@@ -36,6 +36,30 @@ TEST(Condition, TheWaitingCopyOfASecondDeploymentDoesNotCount) {
   EXPECT_EQ(condition(s, "bridge").health, Health::waiting);
 }
 
+TEST(Condition, InTheJsonEachInstanceHasItsOwn) {
+  Situation s = driving();
+  s.behaviors_known.newest = s.now - 10;  // hung
+  Program waiting = test::program("behaviors");
+  waiting.status.state(v1::SERVICE_WAITING);
+  waiting.status.reason("another behaviors has this robot");
+  waiting.namesake = true;
+  Program silent = test::program("behaviors");
+  silent.age = 9.0;
+  Program second = test::program("behaviors");
+  second.namesake = true;
+  s.programs.insert(s.programs.end(), {waiting, silent, second});
+  std::vector<std::string> conditions;
+  const auto json = nlohmann::json::parse(to_json(s));
+  for (const auto& one : json.at("programs"))
+    if (one.at("name") == "behaviors")
+      conditions.push_back(one.at("condition"));
+  EXPECT_EQ(conditions,
+            (std::vector<std::string>{
+                "has said nothing for 1.0 s (it hangs, or is cut off)",
+                "is waiting: another behaviors has this robot",
+                "has not been heard for 9.0 s (it is dead, hangs, or is cut off)", ""}));
+}
+
 TEST(Condition, LateIsHeardAndHungIsNot) {
   Situation s = driving();
   s.behaviors_known.newest = s.now - 2;
