@@ -120,8 +120,9 @@ std::optional<std::string> find_behavior(const std::string& name, const v1::Beha
                                          const v1::Intentions* intentions, const Mind& mind,
                                          std::vector<std::string>& names) {
   for (const v1::BehaviorState& state : behaviors.behaviors()) {
-    names.push_back(state.name());
-    if (state.name() != name && state.schema() != name)
+    names.push_back(without_instance(state.name()));
+    if (state.name() != name && state.schema() != name && names.back() != name &&
+        instance_words(state.name()) != name)
       continue;
     const v1::IntendedBehavior* intended = nullptr;
     if (intentions != nullptr)

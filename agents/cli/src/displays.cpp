@@ -97,9 +97,16 @@ const v1::BehaviorState* find_state(const v1::BehaviorSet* behaviors, const std:
   return nullptr;
 }
 
+/// The instance in brackets: "Stop (rest, instance 32)", "GoToPos (instance 7)".
+std::string with_instance(const std::string& schema, const std::string& name) {
+  const bool same = name != schema && without_instance(name) == schema;
+  return schema + " (" +
+         (same ? instance_words(name).substr(schema.size() + 2) : instance_words(name)) + ")";
+}
+
 TreeLine behavior_line(const std::string& indent, bool blocking, const std::string& schema,
                        const std::string& name, const v1::BehaviorSet* behaviors) {
-  TreeLine line{indent + (blocking ? "* " : "o ") + schema + " (" + name + ") B", ""};
+  TreeLine line{indent + (blocking ? "* " : "o ") + with_instance(schema, name) + " B", ""};
   if (const v1::BehaviorState* const state = find_state(behaviors, name))
     line.right = format("activity %.2f, goal %.2f",
                         std::max(state->turn_activity(), state->speed_activity()), state->goal());
@@ -107,11 +114,13 @@ TreeLine behavior_line(const std::string& indent, bool blocking, const std::stri
 }
 
 TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node) {
-  TreeLine line{indent + (node.blocking() ? "* " : "o ") + node.schema() + " (" +
-                    (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ")" +
-                    (node.label().empty() ? "" : " then " + node.label()),
-                node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
-                    node.step()};
+  TreeLine line{
+      indent + (node.blocking() ? "* " : "o ") +
+          with_instance(node.schema(),
+                        node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) +
+          (node.label().empty() ? "" : " then " + node.label()),
+      node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
+          node.step()};
   const char* how = "";
   switch (node.state()) {
     case v1::INTENTION_SUSPENDED:
@@ -200,6 +209,18 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
   return text;
 }
 
+std::string without_instance(const std::string& name) {
+  const std::size_t mark = name.rfind('#');
+  const bool numbered = mark != std::string::npos && mark > 0 && mark + 1 < name.size() &&
+                        name.find_first_not_of("0123456789", mark + 1) == std::string::npos;
+  return numbered ? name.substr(0, mark) : name;
+}
+
+std::string instance_words(const std::string& name) {
+  const std::string bare = without_instance(name);
+  return bare == name ? name : bare + ", instance " + name.substr(bare.size() + 1);
+}
+
 std::string behaviors_display(const v1::BehaviorSet& behaviors) {
   if (behaviors.behaviors().empty() && behaviors.trouble().empty())
     return "no behavior is intended\n";
@@ -207,8 +228,8 @@ std::string behaviors_display(const v1::BehaviorSet& behaviors) {
   std::vector<std::string> names;
   for (const v1::BehaviorState& state : behaviors.behaviors()) {
     names.push_back(state.name() == state.schema() || state.schema().empty()
-                        ? state.name()
-                        : state.schema() + " (" + state.name() + ")");
+                        ? instance_words(state.name())
+                        : with_instance(state.schema(), state.name()));
     width = std::max(width, names.back().size());
   }
   const auto row = [&](const std::string& mark, const std::string& name,
@@ -288,8 +309,10 @@ std::string unknown_behavior(const std::string& name, std::vector<std::string> n
 std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::IntendedBehavior* intended,
                              const v1::BehaviorSchema* schema) {
-  std::string text = behavior.name() +
-                     (behavior.name() == behavior.schema() ? "" : " (" + behavior.schema() + ")");
+  std::string text =
+      instance_words(behavior.name()) + (without_instance(behavior.name()) == behavior.schema()
+                                             ? ""
+                                             : " (" + behavior.schema() + ")");
   if (schema != nullptr && !schema->summary().empty())
     text += ": " + schema->summary();
   text += "\n\n";
@@ -387,7 +410,7 @@ std::string processes_table(std::vector<v1::ProcessSet> services) {
       {"SERVICE", "PROCESS", "STATE", "SINCE CYCLE", "DOES"}};
   for (const v1::ProcessSet& service : services)
     for (const v1::Process& process : service.processes())
-      rows.push_back({service.service(), process.name(), state_text(process),
+      rows.push_back({service.service(), instance_words(process.name()), state_text(process),
                       std::to_string(process.since()), process.effect()});
   return rows.size() == 1 ? "" : table(rows);
 }

@@ -61,6 +61,33 @@ TEST(IntentionsDisplay, IsFigure10) {
 )");
 }
 
+TEST(Displays, TheInstanceIsInWords) {
+  EXPECT_EQ(instance_words("rest#32"), "rest, instance 32");
+  EXPECT_EQ(without_instance("rest#32"), "rest");
+  for (const char* const name : {"rest", "#32", "rest#", "rest#x", "re#st"}) {
+    EXPECT_EQ(instance_words(name), name);
+    EXPECT_EQ(without_instance(name), name);
+  }
+  v1::Intentions all;
+  all.behavior_control(true);
+  all.nodes({node(1, 0, true, "go_to", "go_to1", "S1")});
+  all.behaviors({behavior(1, true, "Stop", "rest#32"), behavior(1, false, "GoToPos", "GoToPos#7")});
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) then S1
+  * Stop (rest, instance 32) B
+  o GoToPos (instance 7) B
+)");
+  v1::BehaviorState state;
+  state.schema("Stop");
+  state.name("rest#32");
+  EXPECT_TRUE(behavior_display(state, nullptr, nullptr).starts_with("rest, instance 32 (Stop)\n"));
+  v1::ProcessSet set;
+  set.service("intentions");
+  v1::Process process;
+  process.name("rest#32");
+  set.processes({process});
+  EXPECT_NE(processes_table({set}).find("rest, instance 32"), std::string::npos);
+}
+
 TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
   v1::Intentions all;
   all.behavior_control(false);

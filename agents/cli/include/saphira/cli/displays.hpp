@@ -10,6 +10,12 @@
 
 namespace saphira::cli {
 
+/// The name of an intention or a behavior without the number of its instance, which the activities'
+/// executor appends: "rest" of "rest#32".
+std::string without_instance(const std::string& name);
+/// In words: "rest, instance 32".
+std::string instance_words(const std::string& name);
+
 /// The intention display (paper, Figure 10): a line for each intention and each behavior, with the
 /// marker * (blocking) or o, the schema, the instance, and the next state or B; then the present
 /// step. `behaviors` adds the satisfaction of each.
