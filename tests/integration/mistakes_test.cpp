@@ -1,6 +1,8 @@
 // The answer to a newcomer's mistake at the command line gives the error and advice.
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -28,12 +30,18 @@ const std::vector<Mistake>& mistakes() {
       {{"status", "--jsn"}, {"--jsn", "--json"}},
       {{"status", "--json", "--watch"}, {"--json", "--watch"}},
       {{"--versoin"}, {"did you mean --version?"}},
-      {{"--profile", "wifi", "status"}, {"wifi", "host"}},
+      {{"--profile", "wifi", "status"},
+       {"saphira: --profile: expected host, lan or wan, found wifi\n"}},
+      {{"--profile", "hots", "status"}, {"did you mean host?"}},
+      {{"--interface", "lo", "status"}, {"--interface: expected an IPv4 address", "found lo"}},
+      {{"security"}, {"security: expected a command (init, add,", "found none"}},
+      {{"log", "map", "/nowhere/a.log", "a.map"},
+       {"expected a file, found nothing at /nowhere/a.log"}},
       {{"--domain", "300", "status"}, {"300", "231"}},
       {{"stop", "nothing"}, {"no deployment"}, 1},
       {{"bench", "nothing"}, {"no benchmark", "nothing"}},
       // echo and log
-      {{"echo"}, {"topic is required"}},
+      {{"echo"}, {"saphira: topic: expected a value (such as robot/state), found none\n"}},
       {{"echo", "robot/stat"}, {"no topic \"robot/stat\"", "did you mean robot/state?"}},
       {{"echo", "xyz"}, {"no topic \"xyz\"", "robot/state"}},
       {{"echo", "robot/state", "-n", "0"}, {"expected more than 0, found 0"}},
@@ -67,7 +75,7 @@ const std::vector<Mistake>& mistakes() {
       {{"why", "turn", "left"}, {"expected why, or why not turn left"}},
       {{"why", "--cycle", "now"}, {"--cycle", "now"}},
       // deployments
-      {{"up"}, {"deployment is required"}},
+      {{"up"}, {"deployment: expected a value", "such as demo", "found none"}},
       {{"up", "dmeo"}, {"no \"dmeo\"", "did you mean demo?"}},
       {{"demo", "--seed", "x"},
        {"saphira: --seed: expected a whole number of 0 or more, found x\n"}},
@@ -80,7 +88,7 @@ const std::vector<Mistake>& mistakes() {
        {"/tmp: expected a file, found a folder", "1 of its programs does not take"}},
       {{"check", "demo", "--set", "activities=/nonexist"},
        {"/nonexist: expected a folder of activity files", "1 of its programs would not run"}},
-      {{"demo", "--goal", "1"}, {"--goal", "2 required"}},
+      {{"demo", "--goal", "1"}, {"--goal: expected 2 values", "found 1"}},
       {{"demo", "--time-limit", "-1"}, {"--time-limit", "-1"}},
       {{"up", "demo", "--set", "x"}, {"\"x\" sets nothing", "world="}},
       {{"up", "demo", "--set", "nothing=1"}, {"nothing"}},
@@ -104,14 +112,18 @@ const std::vector<Mistake>& mistakes() {
       {{"map", "snap", "maybe"}, {"expected on or off, found \"maybe\""}},
       // driving
       {{"drive"}, {"drive needs a terminal"}},
-      {{"move"}, {"value is required"}},
+      {{"move"}, {"value: expected a value (METERS, below 0: back), found none"}},
       {{"move", "0"}, {"expected meters from -100 to 100 and not 0, found 0"}},
-      {{"move", "far"}, {"far"}},
+      {{"move", "far"}, {"value: expected a number in m, found far"}},
+      {{"move", "90deg"}, {"value: expected a number in m, found 90deg"}},
+      {{"move", "1m", "--speed", "0.2s"}, {"--speed: expected a number in m/s, found 0.2s"}},
+      {{"turn", "1m"}, {"value: expected a number in deg, found 1m"}},
+      {{"goal", "drive", "90deg"}, {"expected drive SPEED [m/s], found \"90deg\""}},
       {{"turn", "400"}, {"expected degrees from -180 to 180 and not 0, found 400"}},
       {{"speed", "9"}, {"expected meters a second from -5 to 5, found 9"}},
       // writing
-      {{"write"}, {"is required"}},
-      {{"write", "drive/direct"}, {"json is required"}},
+      {{"write"}, {"topic: expected a value", "found none"}},
+      {{"write", "drive/direct"}, {"json: expected a value", "found none"}},
       {{"write", "drive/dirct", "{}"}, {"no topic", "did you mean drive/direct?"}},
       {{"write", "drive/direct", "{velocity: 1}"}, {"this is not JSON, at character 2"}},
       {{"write", "drive/direct", R"({"velocty": 1})"},
@@ -132,19 +144,35 @@ const std::vector<Mistake>& mistakes() {
   return all;
 }
 
+/// The answer of `saphira` to those words, with an empty input.
+struct Answer {
+  std::optional<int> code;
+  std::string said;
+};
+Answer answer_to(const std::vector<std::string>& typed) {
+  const test::TempDir folder;
+  std::vector<std::string> words{"/bin/sh", "-c", "exec \"$0\" \"$@\" </dev/null",
+                                 test::program("saphira")};
+  words.insert(words.end(), typed.begin(), typed.end());
+  test::Process process(words, folder.path("said"), {{"SAPHIRA_ROBOT", test::unique_robot()}});
+  const std::optional<int> code = process.wait();
+  return {code, process.output()};
+}
+
+/// The words of the parser, which no answer repeats.
+void expect_our_words(const Answer& answer, const std::string& typed) {
+  for (const char* const raw : {" is required", " not in {", " requires ", " excludes ",
+                                "File does not exist", "Run with --help", "RequiredError"})
+    EXPECT_EQ(answer.said.find(raw), std::string::npos) << typed << ": " << answer.said;
+}
+
 class Mistakes : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   const Mistake& mistake = mistakes()[GetParam()];
-  const test::TempDir folder;
-  std::vector<std::string> words{"saphira"};
-  words.insert(words.end(), mistake.words.begin(), mistake.words.end());
-  // Its input is empty.
-  words.insert(words.begin(), {"/bin/sh", "-c", "exec \"$0\" \"$@\" </dev/null"});
-  words[3] = test::program("saphira");
-  test::Process process(words, folder.path("said"), {{"SAPHIRA_ROBOT", test::unique_robot()}});
-  const std::optional<int> code = process.wait();
-  const std::string said = process.output();
+  const Answer answer = answer_to(mistake.words);
+  const auto& [code, said] = answer;
+  expect_our_words(answer, testing::PrintToString(mistake.words));
   const std::string typed = testing::PrintToString(mistake.words);
   EXPECT_EQ(code, mistake.code) << typed << ": " << said;
   for (const std::string& part : mistake.said)
@@ -152,6 +180,28 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   // The answer names the mistake, and does not list all valid forms.
   EXPECT_LT(said.size(), 2000U) << typed;
   EXPECT_EQ(said.find("terminate"), std::string::npos) << typed << ": " << said;
+}
+
+TEST(EachCommand, NamesAnUnknownOptionInOurWords) {
+  std::istringstream help(answer_to({"help"}).said);
+  std::size_t commands = 0;
+  bool below = false;
+  for (std::string line; std::getline(help, line);) {
+    below = below || line == "Subcommands:";
+    if (!below || !line.starts_with("  ") || line[2] == ' ')
+      continue;
+    const std::string command = line.substr(2, line.find(' ', 2) - 2);
+    ++commands;
+    if (command == "bench")  // the options behind its name are not its own
+      continue;
+    const Answer answer = answer_to({command, "--nonsense"});
+    EXPECT_EQ(answer.code, 2) << command << ": " << answer.said;
+    EXPECT_TRUE(answer.said.find("\"--nonsense\" is not understood") != std::string::npos ||
+                answer.said.find(": expected ") != std::string::npos)
+        << command << ": " << answer.said;
+    expect_our_words(answer, command);
+  }
+  EXPECT_GT(commands, 30U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Mistakes, testing::Range<std::size_t>(0, mistakes().size()));

@@ -1,8 +1,11 @@
 #include "saphira/command_line/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <sstream>
 #include <stdexcept>
 
 #include "saphira/base/guess.hpp"
@@ -14,11 +17,197 @@ namespace {
 
 constexpr int kUsage = 2;
 
+/// The command that was chosen, and the ones that it belongs to, from the program on.
+std::vector<const CLI::App*> chosen(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty())
+    commands.push_back(commands.back()->get_subcommands().front());
+  return commands;
+}
+
+/// nullptr: there is no such option.
+const CLI::Option* option_of(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* const command : chosen(app))
+    for (const CLI::Option* const option : command->get_options())
+      if (option->get_name() == name)
+        return option;
+  return nullptr;
+}
+
+/// The kind of value that the option of that name takes.
+std::string kind_of(const CLI::App& app, const std::string& name) {
+  const CLI::Option* const option = option_of(app, name);
+  if (option == nullptr)
+    return "another value";
+  if (option->get_expected_max() == 0)  // a flag
+    return "true, false or no value";
+  const std::string type = option->get_type_name();
+  return type.starts_with("UINT")  ? "a whole number of 0 or more"
+         : type.starts_with("INT") ? "a whole number"
+                                   : "a number";
+}
+
+/// " (which host to use)", from the help of that option.
+std::string help_of(const CLI::App& app, const std::string& name) {
+  const CLI::Option* const option = option_of(app, name);
+  return option == nullptr || option->get_description().empty()
+             ? std::string()
+             : " (" + option->get_description() + ")";
+}
+
+/// "laser, sonar or bumper"
+std::string one_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string meant = guess(word, known);
+  return meant.empty() ? std::string() : ": did you mean " + meant + "?";
+}
+
+/// The nearest name in the folder of a file that does not exist.
+std::string nearest_file(const std::string& file) {
+  const std::filesystem::path path(file);
+  const std::filesystem::path folder = path.parent_path();
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, error), end;
+       !error && it != end; it.increment(error))
+    names.push_back(it->path().filename().string());
+  std::sort(names.begin(), names.end());
+  const std::string meant = guess(path.filename().string(), names);
+  return meant.empty() ? std::string() : ": did you mean " + (folder / meant).string() + "?";
+}
+
+/// The part of a text between two others; empty: it has not both.
+std::string between(const std::string& text, const std::string& before, const std::string& behind) {
+  const std::size_t begin = text.find(before);
+  const std::size_t end = begin == std::string::npos ? begin : text.find(behind, begin);
+  return end == std::string::npos ? std::string()
+                                  : text.substr(begin + before.size(), end - begin - before.size());
+}
+/// That behind the first `before`.
+std::string behind(const std::string& text, const std::string& before) {
+  const std::size_t at = text.find(before);
+  return at == std::string::npos ? std::string() : text.substr(at + before.size());
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);)
+    parts.push_back(part);
+  return parts;
+}
+
+/// The complaint of a validator of CLI11 about a value, in our words; our own stays as it is.
+std::string about_value(const std::string& complaint) {
+  if (complaint.starts_with("Value ") && complaint.find(" not in range ") != std::string::npos) {
+    const double low = std::strtod(between(complaint, " not in range ", " to ").c_str(), nullptr);
+    const double high = std::strtod(complaint.substr(complaint.rfind(" to ") + 4).c_str(), nullptr);
+    constexpr double kNoEnd = 1e300;  // of CLI::PositiveNumber
+    return "expected a number " +
+           (high > kNoEnd ? "above " + plain(low)
+                          : "between " + plain(low) + " and " + plain(high)) +
+           ", found " + between(complaint, "Value ", " not in range ");
+  }
+  for (const auto& [before, expected] : {std::pair("File does not exist: ", "a file"),
+                                         {"Directory does not exist: ", "a folder"},
+                                         {"Path does not exist: ", "a file or a folder"}})
+    if (complaint.starts_with(before)) {
+      const std::string path = behind(complaint, before);
+      return std::string("expected ") + expected + ", found nothing at " + path +
+             nearest_file(path);
+    }
+  if (complaint.starts_with("File is actually a directory: "))
+    return "expected a file, found the folder " + behind(complaint, ": ");
+  if (complaint.starts_with("Directory is actually a file: "))
+    return "expected a folder, found the file " + behind(complaint, ": ");
+  if (complaint.starts_with("Path already exists: "))
+    return "expected a new name, found " + behind(complaint, ": ") + ", which exists";
+  if (const std::size_t in = complaint.rfind(" not in {"); in != std::string::npos) {
+    const std::string word = complaint.substr(0, in);
+    const std::vector<std::string> words = split(between(complaint.substr(in), "{", "}"), ',');
+    return "expected " + one_of(words) + ", found " + word + did_you_mean(word, words);
+  }
+  if (complaint.starts_with("Failed parsing "))
+    return "expected a number, found " + between(complaint, "Failed parsing ", " as a ");
+  return complaint;
+}
+
+/// An error of CLI11 in our words: the place of the mistake, the expected, the found.
+std::string in_words(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string what = error.what();
+  const std::string kind = error.get_name();
+  const std::string name = what.substr(0, what.find(": "));
+  const std::string rest = behind(what, ": ");
+  if (what.starts_with("Could not convert: ")) {
+    const std::string option = between(what, ": ", " = ");
+    return option + ": expected " + kind_of(app, option) + ", found " + behind(what, " = ");
+  }
+  if (kind == "RequiredError" && what.starts_with("A subcommand")) {
+    const CLI::App& command = *chosen(app).back();
+    std::vector<std::string> commands;
+    for (const CLI::App* const each : command.get_subcommands({}))
+      if (!each->get_name().empty() && !each->get_group().empty())
+        commands.push_back(each->get_name());
+    return command.get_name() + ": expected a command (" + one_of(commands) + "), found none";
+  }
+  if (kind == "RequiredError" && what.ends_with(" is required")) {
+    const std::string option = what.substr(0, what.rfind(" is required"));
+    return option + ": expected a value" + help_of(app, option) + ", found none";
+  }
+  if (kind == "RequiresError") {
+    const std::string other = behind(what, " requires ");
+    return what.substr(0, what.find(" requires ")) + ": expected " + other + " beside it" +
+           help_of(app, other) + ", found none";
+  }
+  if (kind == "ExcludesError")
+    return what.substr(0, what.find(" excludes ")) + ": expected no " + behind(what, " excludes ") +
+           " beside it, found both";
+  if (kind == "ArgumentMismatch") {
+    const auto values = [](const std::string& number) {
+      return number == "1" ? std::string("a value") : number + " values";
+    };
+    if (const std::string number = between(rest, "At least ", " required"); !number.empty()) {
+      const CLI::Option* const option = option_of(app, name);
+      const bool exactly =
+          option != nullptr && option->get_expected_min() == option->get_expected_max();
+      return name + ": expected " + (exactly ? "" : "at least ") + values(number) +
+             help_of(app, name) + ", found " + behind(rest, "received ");
+    }
+    if (const std::string number = between(rest, "At Most ", " required"); !number.empty())
+      return name + ": expected " + (number == "1" ? "one value" : "at most " + values(number)) +
+             ", found " + behind(rest, "received ");
+    if (rest.ends_with(" missing")) {
+      const std::string number = rest.substr(0, rest.find(' '));
+      return name + ": expected " + values(number) + help_of(app, name) + ", found " +
+             (number == "1" ? "none" : "fewer");
+    }
+    if (const std::string option = between(what, " arguments to ", ", got "); !option.empty())
+      return option + ": expected " + (what.starts_with("Expected at least ") ? "at least " : "") +
+             values(between(what, what.starts_with("Expected at least ") ? "at least " : "exactly ",
+                            " arguments")) +
+             help_of(app, option) + ", found " + behind(what, ", got ");
+    if (what.ends_with(" was given a disallowed flag override"))
+      return what.substr(0, what.find(' ')) + ": expected no value, found one";
+  }
+  if (kind == "ConversionError") {
+    if (what.starts_with("The value "))
+      return behind(what, " is not an allowed value for ") +
+             ": expected true, false or no value, found " +
+             between(what, "The value ", " is not an allowed value");
+    return name + ": expected true, false or no value, found another";
+  }
+  return kind == "ValidationError" && !rest.empty() ? name + ": " + about_value(rest) : what;
+}
+
 /// Reports an unknown word, with the most similar option or command.
 int not_understood(const CLI::App& app) {
-  const CLI::App* command = &app;
-  while (!command->get_subcommands().empty())
-    command = command->get_subcommands().front();
+  const CLI::App* const command = chosen(app).back();
   std::vector<std::string> known;
   for (const CLI::App* const each : command->get_subcommands({}))
     known.push_back(each->get_name());
@@ -32,44 +221,6 @@ int not_understood(const CLI::App& app) {
       stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
       meant.empty() ? "; --help lists the options" : (": did you mean " + meant + "?").c_str());
   return kUsage;
-}
-
-/// The kind of value that the option of that name takes.
-std::string kind_of(const CLI::App& app, const std::string& name) {
-  for (const CLI::App* command = &app; command != nullptr;
-       command = command->get_subcommands().empty() ? nullptr : command->get_subcommands().front())
-    for (const CLI::Option* const option : command->get_options())
-      if (option->get_name() == name) {
-        const std::string type = option->get_type_name();
-        return type.starts_with("UINT")  ? "a whole number of 0 or more"
-               : type.starts_with("INT") ? "a whole number"
-                                         : "a number";
-      }
-  return "another value";
-}
-
-/// An error of CLI11 about a value, in our words; empty for others.
-std::string about_value(const CLI::App& app, const std::string& error) {
-  const auto between = [&](const std::string& before, const std::string& behind) {
-    const std::size_t begin = error.find(before);
-    const std::size_t end = begin == std::string::npos ? begin : error.find(behind, begin);
-    return end == std::string::npos
-               ? std::string()
-               : error.substr(begin + before.size(), end - begin - before.size());
-  };
-  if (const std::string name = between("Could not convert: ", " = "); !name.empty())
-    return name + ": expected " + kind_of(app, name) + ", found " +
-           error.substr(error.find(" = ") + 3);
-  if (const std::string value = between(": Value ", " not in range "); !value.empty()) {
-    const double low = std::strtod(between(" not in range ", " to ").c_str(), nullptr);
-    const double high = std::strtod(error.substr(error.rfind(" to ") + 4).c_str(), nullptr);
-    constexpr double kNoEnd = 1e300;  // of CLI::PositiveNumber
-    return error.substr(0, error.find(": Value ")) + ": expected a number " +
-           (high > kNoEnd ? "above " + plain(low)
-                          : "between " + plain(low) + " and " + plain(high)) +
-           ", found " + value;
-  }
-  return {};
 }
 
 bool has_default(const std::string& value) {
@@ -139,7 +290,14 @@ const Option& Option::existing_file() const {
 }
 
 const Option& Option::ipv4() const {
-  option_->check(CLI::ValidIPV4);
+  // The validator of CLI11 names no whole address in its complaint.
+  option_->check(CLI::Validator(
+      [](const std::string& text) {
+        return CLI::ValidIPV4(text).empty()
+                   ? std::string()
+                   : "expected an IPv4 address, such as 192.168.1.7, found " + text;
+      },
+      "IPV4"));
   return *this;
 }
 
@@ -251,11 +409,10 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   } catch (const CLI::ExtrasError&) {
     return not_understood(*app_);
   } catch (const CLI::ParseError& error) {
-    if (const std::string text = about_value(*app_, error.what()); !text.empty()) {
-      std::fprintf(stderr, "%s: %s\n", program().c_str(), text.c_str());
-      return kUsage;
-    }
-    return app_->exit(error) == 0 ? 0 : kUsage;
+    if (error.get_exit_code() == 0)  // --help, --version
+      return app_->exit(error);
+    std::fprintf(stderr, "%s: %s\n", program().c_str(), in_words(*app_, error).c_str());
+    return kUsage;
   }
   return std::nullopt;
 }
