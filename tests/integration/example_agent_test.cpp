@@ -121,6 +121,17 @@ TEST(ExampleAgent, TheTenMinutesOfTheDocumentWorkAsTheyAreWritten) {
   }
   EXPECT_EQ(asked, 3);
   EXPECT_EQ(left_running.size(), 1U);
+  // A mistake in its arguments.
+  for (const auto& [arguments, said] :
+       {std::pair("karen", "expected PERSON=PLACE, found \"karen\""),
+        {"karen=", "expected PERSON=PLACE, found \"karen=\""},
+        {"karen=library Karen=lobby", "expected one place for each person, found two for karen"},
+        {"", "entries: expected a value"}}) {
+    const auto mistaken =
+        start(folder.path("calendar/calendar") + " " + arguments, folder.path("log"), environment);
+    EXPECT_EQ(mistaken->wait(), 2) << arguments;
+    EXPECT_NE(mistaken->output().find(said), std::string::npos) << mistaken->output();
+  }
   EXPECT_NE(text.find("library"), std::string::npos) << text;
 }
 
