@@ -366,10 +366,12 @@ class Serving {
       stations_.push_back(std::make_unique<Station>(options, simulation, i));
     if (view_ == nullptr)
       return;
-    world_ = describe_world(
-        simulation.scene().world(),
-        {options.worlds, options.robots, std::filesystem::path(options.world).stem().string()});
-    view_->tell(world_, true);
+    choice_ = [worlds = options.worlds, robots = options.robots,
+               world = std::filesystem::path(options.world).stem().string()] {
+      using Names = std::vector<std::string>;
+      return Choice{worlds ? worlds() : Names(), robots ? robots() : Names(), world};
+    };
+    view_->tell(describe_world(simulation.scene().world(), choice_()), true);
   }
 
   bool serve(int stop_fd, int most_ms) {
@@ -493,7 +495,9 @@ class Serving {
   }
 
   void serve_view() {
-    const bool asked = view_->serve(world_, [this](const std::string& text) { return obey(text); });
+    const bool asked =
+        view_->serve([this] { return describe_world(simulation_.scene().world(), choice_()); },
+                     [this](const std::string& text) { return obey(text); });
     const std::uint64_t ticks = simulation_.scene().ticks();
     if (!view_->watched() || (!asked && shown_ && ticks < *shown_ + kTicksPerPacket))
       return;
@@ -505,7 +509,10 @@ class Serving {
   std::string obey(const std::string& text) {
     std::string trouble;
     try {
-      trouble = obey(parse_wish(text));
+      const Wish wish = parse_wish(text);
+      if (std::holds_alternative<ListFiles>(wish))
+        return describe_files(choice_());
+      trouble = obey(wish);
     } catch (const std::invalid_argument& error) {
       trouble = error.what();
     }
@@ -539,7 +546,7 @@ class Serving {
 
   Simulation& simulation_;
   ViewFeed* view_;
-  std::string world_;                   // as the view describes it
+  std::function<Choice()> choice_;      // of files, at present
   std::optional<std::uint64_t> shown_;  // [ticks] time of the newest view
   std::optional<Load> load_;
   bool unpaced_;
@@ -590,8 +597,8 @@ void offer_files(HostOptions& options, const std::string& config) {
   };
   const std::vector<std::string> worlds{folder_of(options.world), config + "/worlds"};
   const std::vector<std::string> robots{folder_of(options.robot), config + "/robots"};
-  options.worlds = names(found(worlds, ".wld"));
-  options.robots = names(found(robots, ".p"));
+  options.worlds = [=] { return names(found(worlds, ".wld")); };
+  options.robots = [=] { return names(found(robots, ".p")); };
   options.world_file = finder(worlds, ".wld");
   options.robot_file = finder(robots, ".p");
 }

@@ -129,6 +129,11 @@ std::string set_input(Simulation& simulation, const SetInput& input) {
 
 }  // namespace
 
+std::string describe_files(const Choice& choice) {
+  const Json all{{"type", "files"}, {"worlds", choice.worlds}, {"robots", choice.robots}};
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string describe_world(const World& world, const Choice& choice) {
   Json walls = Json::array();
   for (const Segment& wall : world.segments)
@@ -221,9 +226,11 @@ Wish parse_wish(std::string_view text) {
     return Disconnect{robot_in(json)};
   if (what == "load")
     return Load{name_in(json, "world", true), name_in(json, "robot", true)};
+  if (what == "files")
+    return ListFiles{};
   throw std::invalid_argument(
-      "\"do\": expected place, person, point, box, door, input, pause, step, rate, disconnect or "
-      "load");
+      "\"do\": expected place, person, point, box, door, input, pause, step, rate, disconnect, "
+      "load or files");
 }
 
 std::string change_scene(Simulation& simulation, const Wish& wish) {

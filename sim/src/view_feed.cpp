@@ -44,11 +44,11 @@ bool ViewFeed::send(Viewer& viewer) {
   return true;
 }
 
-bool ViewFeed::serve(const std::string& world,
+bool ViewFeed::serve(const std::function<std::string()>& world,
                      const std::function<std::string(const std::string&)>& obey) {
   bool any = false;
   for (Fd fd = listener_.accept(); fd && viewers_.size() < kMostViewers; fd = listener_.accept()) {
-    viewers_.push_back({std::move(fd), {}, world});
+    viewers_.push_back({std::move(fd), {}, world()});
     any = true;
   }
   std::erase_if(viewers_, [&](Viewer& viewer) {

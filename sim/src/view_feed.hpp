@@ -18,9 +18,10 @@ class ViewFeed {
 
   void add_to(std::vector<pollfd>& fds) const;
   bool watched() const { return !viewers_.empty(); }
-  /// Takes new viewers and sends them `world`; passes the viewers' lines to `obey`, whose result
-  /// goes back to the sender. True where there was any input.
-  bool serve(const std::string& world, const std::function<std::string(const std::string&)>& obey);
+  /// Takes new viewers and sends them the line of `world`; passes the viewers' lines to `obey`,
+  /// whose result goes back to the sender. True where there was any input.
+  bool serve(const std::function<std::string()>& world,
+             const std::function<std::string(const std::string&)>& obey);
   /// Sends to each viewer that has read the earlier lines; `must`: to the others too.
   void tell(const std::string& line, bool must);
 

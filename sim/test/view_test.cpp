@@ -235,6 +235,13 @@ TEST(View, OwnWorldsAreBesideTheGivenOne) {
   viewer.say(R"({"do":"load","world":"arena"})");
   EXPECT_EQ(viewer.next("world").at("width"), 9.0) << "the own one comes first";
   write(folder.path("new.wld"), kRoom);
+  viewer.say(R"({"do":"files"})");
+  const json files = viewer.next("files");
+  const auto worlds = files.at("worlds").get<std::vector<std::string>>();
+  EXPECT_EQ(std::count(worlds.begin(), worlds.end(), std::string("new")), 1);
+  EXPECT_FALSE(files.at("robots").empty());
+  Viewer later(host, folder.path("view"));
+  EXPECT_EQ(later.next("world").at("worlds"), files.at("worlds"));
   viewer.say(R"({"do":"load","world":"new"})");
   EXPECT_EQ(viewer.next("world").at("world"), "new");
 }

@@ -62,6 +62,10 @@ function App() {
     if (socket.current?.readyState === WebSocket.OPEN) socket.current.send(JSON.stringify(what));
     else setTrouble('There is no connection to the console.');
   };
+  // A person may have written a file since. The answer is a message of type files.
+  const lookForFiles = () => {
+    if (mayMove && socket.current?.readyState === WebSocket.OPEN) socket.current.send(JSON.stringify({do: 'files'}));
+  };
   const put = (thing: Thing, x: number, y: number, th = thing.th) => {
     if (thing.kind === 'robot') wish({do: 'place', robot: Number(thing.name), x, y, th});
     else if (thing.kind === 'person') wish({do: 'person', name: thing.name, x, y});
@@ -99,6 +103,8 @@ function App() {
           made.setWorld(told);
           setWorld(told);
           setLoad({world: told.world, robot: ''});
+        } else if (told.type === 'files') {
+          setWorld(w => w && {...w, worlds: told.worlds, robots: told.robots});
         } else if (told.type === 'scene') {
           made.setScene(told);
           setScene(told);
@@ -206,9 +212,9 @@ function App() {
         </div>
         <h2>World and robot</h2>
         <div class="row">
-          <label class="check">World <select value={load.world} onChange={e => setLoad({...load, world: (e.target as HTMLSelectElement).value})}>
+          <label class="check">World <select value={load.world} onFocus={lookForFiles} onPointerEnter={lookForFiles} onChange={e => setLoad({...load, world: (e.target as HTMLSelectElement).value})}>
             {[...new Set([...(world?.worlds ?? []), world?.world ?? ''])].map(w => <option key={w} value={w}>{w}</option>)}</select></label>
-          <label class="check">Robot <select value={load.robot} onChange={e => setLoad({...load, robot: (e.target as HTMLSelectElement).value})}>
+          <label class="check">Robot <select value={load.robot} onFocus={lookForFiles} onPointerEnter={lookForFiles} onChange={e => setLoad({...load, robot: (e.target as HTMLSelectElement).value})}>
             <option value="">as it is</option>{world?.robots.map(r => <option key={r} value={r}>{r}</option>)}</select></label>
           <button disabled={!mayMove || !world} title={why} onClick={() => wish({do: 'load', world: load.world === world!.world ? '' : load.world, robot: load.robot})}>Load</button>
         </div>

@@ -59,9 +59,9 @@ struct HostOptions {
   std::optional<std::string> stereo_socket;
   /// Local socket of the simulator's own view (view.hpp): the true state, and people's actions.
   std::optional<std::string> view_socket;
-  /// The files that the view may load, by name; empty: none.
-  std::vector<std::string> worlds;
-  std::vector<std::string> robots;
+  /// The names of the files that the view may load, looked for anew each time; absent: none.
+  std::function<std::vector<std::string>()> worlds;
+  std::function<std::vector<std::string>()> robots;
   /// The file of such a world or robot.
   std::function<std::string(const std::string& name)> world_file;
   std::function<std::string(const std::string& name)> robot_file;

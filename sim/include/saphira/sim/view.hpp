@@ -15,12 +15,16 @@ namespace saphira::sim {
 // The simulator's own view: the true state, for people who look at the simulator and not through
 // the robot's sensors, and their actions on it. One JSON object a line, both ways; README, "View".
 
-/// The static part: walls and posts of the world, and the loadable files.
+/// The loadable files, by name.
 struct Choice {
   std::vector<std::string> worlds;
   std::vector<std::string> robots;
-  std::string world;  ///< name of the loaded one
+  std::string world;  ///< the loaded one
 };
+/// The names as a line of their own.
+std::string describe_files(const Choice& choice);
+
+/// The static part: walls and posts of the world, and the loadable files.
 std::string describe_world(const World& world, const Choice& choice);
 
 /// The moving part, at present. Meters, radians, in the world.
@@ -75,8 +79,9 @@ struct Load {
   std::string world;  ///< a name from Choice [empty: the same]
   std::string robot;  ///< likewise
 };
+struct ListFiles {};  ///< those that may be loaded, anew
 using Wish = std::variant<PlaceRobot, PlacePerson, RaiseArm, PlaceBox, SetDoor, SetInput, Pause,
-                          StepOnce, SetRate, Disconnect, Load>;
+                          StepOnce, SetRate, Disconnect, Load, ListFiles>;
 
 /// std::invalid_argument gives the expected form.
 Wish parse_wish(std::string_view text);
