@@ -4,6 +4,7 @@ import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
 import {ahead, askInstead, nameOf, quoted} from './goals';
+import {Legend} from './legend';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
 import type {ConsoleInfo, Grant, Registration, RobotState, Why} from './types';
@@ -258,6 +259,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         <button title="the whole map" onClick={() => act(() => v!.fit())}>All</button>
         <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
         <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
+        <Legend />
       </div>
       {layers && <details class="layers" onToggle={() => act(() => {})}><summary>Layers</summary>
         {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
@@ -280,7 +282,8 @@ function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
     const [v, h] = corner.split(' ');
     return points.every(p => Math.abs(p.x - x(h)) > width + aside || Math.abs(p.y - y(v)) > height + beside[v]);
   };
-  const corners = ['bottom right', ...(document.querySelector('.layers[open]') ? [] : ['top right']), 'top left',
+  const corners = ['bottom right', ...(document.querySelector('.layers[open]') ? [] : ['top right']),
+    ...(document.querySelector('#legend:not([hidden])') ? [] : ['top left']),
     ...(view.bottom > 0 ? [] : ['bottom left'])];   // the stick
   if (corners.includes(was) && free(was)) return was;
   const far = (corner: string) => Math.hypot(points[0].x - x(corner.split(' ')[1]), points[0].y - y(corner.split(' ')[0]));

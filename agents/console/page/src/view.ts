@@ -17,7 +17,7 @@ const small = 20;            // [pixels/m] from which on down the labels are sma
 const apart = 4;             // [pixels] between two labels
 const rankOf: {[type: string]: number} = {ARTIFACT_OFFICE: 0, ARTIFACT_CORRIDOR: 1, ARTIFACT_DOOR: 2};
 const otherRank = 3;
-const zoneColor: {[rule: string]: string} = {ZONE_KEEP_OUT: '#d32f2f', ZONE_SLOW: '#e69f00', ZONE_ONE_WAY: '#1976d2', ZONE_PREFERRED: '#2e9d55'};
+export const zoneColor: {[rule: string]: string} = {ZONE_KEEP_OUT: '#d32f2f', ZONE_SLOW: '#e69f00', ZONE_ONE_WAY: '#1976d2', ZONE_PREFERRED: '#2e9d55'};
 const regionTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'ARTIFACT_JUNCTION'];
 
 export interface Layers { grid: boolean; sonar: boolean; map: boolean; percepts: boolean; areas: boolean; wake: boolean }

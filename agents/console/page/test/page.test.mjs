@@ -143,6 +143,39 @@ for (const [name, options] of [['light', {colorScheme: 'light'}], ['dark', {colo
     await leave(page);
   });
 
+test('the legend opens and closes by mouse and by keyboard, and lists what is drawn', async () => {
+  for (const options of [{}, {viewport: {width: 390, height: 844}, hasTouch: true, isMobile: true}]) {
+    const page = await person({...options, bypassCSP: true});
+    await open(page);
+    const button = page.getByRole('button', {name: 'Legend'}), legend = page.getByRole('region', {name: 'Legend'});
+    assert.equal(await button.getAttribute('aria-expanded'), 'false');
+    assert.equal(await legend.count(), 0);
+    await button.click();
+    assert.equal(await button.getAttribute('aria-expanded'), 'true');
+    for (const words of ['the robot and its nose', 'a goal', 'a sonar echo; larger: a new one', 'a person; with an arm: who points', 'a door that was closed', 'a zone to keep out of'])
+      await legend.getByText(words, {exact: true}).waitFor();
+    // Each line has its sign, in a colour of the map.
+    assert.equal(await legend.locator('li').count(), await legend.locator('li svg > *').count());
+    assert.ok(await legend.locator('li').count() >= 25);
+    await page.addScriptTag({content: axeSource});
+    const {violations} = await page.evaluate(() => window.axe.run());
+    assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), []);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    await legend.focus();
+    await page.keyboard.press('Escape');
+    assert.equal(await legend.count(), 0);
+    assert.ok(await button.evaluate(b => b === document.activeElement));
+    await page.keyboard.press('Enter');
+    await legend.waitFor();
+    await page.keyboard.press('Escape');
+    await until('it is closed', async () => await legend.count() === 0);
+    // It covers none of the other buttons.
+    const [box, layers] = [await button.boundingBox(), await page.locator('.layers').boundingBox()];
+    assert.ok(box.x + box.width <= layers.x, `${box.x + box.width} ${layers.x}`);
+    await leave(page);
+  }
+});
+
 test('a click sends the robot, with an answer and a cancel button', async () => {
   const page = await person();
   await open(page);
@@ -524,6 +557,20 @@ test('the simulator is paused, stepped, rearranged and given another world, and 
   assert.equal(await stranger.getByRole('button', {name: 'Pause'}).isDisabled(), true);
 
   const worlds = page.locator('label', {hasText: /^World/}).locator('select');
+  // The list is read anew when it is opened.
+  await page.evaluate(() => {
+    const send = WebSocket.prototype.send;
+    window.sent = [];
+    WebSocket.prototype.send = function (data) {
+      window.sent.push(data);
+      this.addEventListener('message', event => { if (JSON.parse(event.data).type === 'files') window.files = event.data; });
+      return send.call(this, data);
+    };
+  });
+  await worlds.focus();
+  const files = await until('the list of worlds', () => page.evaluate(() => window.files));
+  assert.deepEqual(await page.evaluate(() => window.sent), ['{"do":"files"}']);
+  assert.ok(JSON.parse(files).worlds.includes('arena'));
   await worlds.selectOption('arena');
   await page.getByRole('button', {name: 'Load'}).click();
   await until('another world', async () => await worlds.inputValue() === 'arena' && (await at())[0] < 11);
