@@ -33,7 +33,7 @@ TEST_F(LookingTest, ShowsWhatItThinksWhileItDrives) {
   Outcome seen = run({"intentions"});
   EXPECT_EQ(seen.code, 0) << seen.text;
   EXPECT_TRUE(has(seen.text, "* go_to (")) << seen.text;
-  EXPECT_TRUE(has(seen.text, "  * GoToPos (GoToPos")) << seen.text;
+  EXPECT_TRUE(has(seen.text, "  * GoToPos (instance ")) << seen.text;
   seen = run({"behaviors"});
   EXPECT_EQ(seen.code, 0) << seen.text;
   EXPECT_TRUE(has(seen.text, "* GoToPos")) << seen.text;

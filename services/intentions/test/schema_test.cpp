@@ -60,7 +60,7 @@ TEST(Schema, ANumberMayHaveItsUnit) {
   EXPECT_EQ(find(complete, "radius")->number, 0.5);
   EXPECT_EQ(find(complete, "patience")->number, 60.0);
   EXPECT_EQ(complaint("drive", {text("speed", "3m/s")}),
-            "argument \"speed\": expected a number from -0.2 to 2 m/s, got 3");
+            "argument \"speed\": expected a number from -0.2 to 2 m/s, got the text \"3m/s\"");
   EXPECT_EQ(complaint("drive", {text("speed", "0.3m")}),
             "argument \"speed\": expected a number from -0.2 to 2 m/s, got the text \"0.3m\"");
 }
