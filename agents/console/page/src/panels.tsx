@@ -5,7 +5,7 @@ import {degrees} from './geometry';
 import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
-import {clock, forPage, keyless, percent} from './words';
+import {clock, forPage, instanceWords, keyless, percent} from './words';
 
 const word = (name: string) => name.replace(/^[A-Z]+_/, '').toLowerCase().replace(/_/g, ' ');
 export const nothing = (text: string) => <p class="nothing">{text}</p>;
@@ -130,13 +130,13 @@ function BehaviorTable({state}: {state: Behaviors}) {
     {state.behaviors.length === 0 && nothing('No behavior is intended: the robot has no goal.')}
     {state.behaviors.length > 0 && <table class="behaviors">
       <thead><tr><th scope="col">Behavior</th><th scope="col">Turn, weight</th><th scope="col">Speed, weight</th></tr></thead>
-      <tbody>{state.behaviors.map(b => <BehaviorRow key={b.name} b={b} name={alone(b) ? b.schema : b.name} open={open === b.name} toggle={() => setOpen(open === b.name ? '' : b.name)} />)}</tbody>
+      <tbody>{state.behaviors.map(b => <BehaviorRow key={b.name} b={b} name={alone(b) ? b.schema : instanceWords(b.name)} open={open === b.name} toggle={() => setOpen(open === b.name ? '' : b.name)} />)}</tbody>
       <tfoot><tr><th scope="row">Together</th>
         <td><Turn says={state.turning} turn={state.turn} /></td>
         <td><Speed says={state.moving} speed={state.speed} /></td></tr></tfoot>
     </table>}
     {state.limit_reason && <p class="small">{forPage(state.limit_reason)}</p>}
-    {state.missing.map(m => <p class="told bad" key={m.name}>{m.name}: {m.reason}</p>)}
+    {state.missing.map(m => <p class="told bad" key={m.name}>{instanceWords(m.name)}: {m.reason}</p>)}
   </>;
 }
 function BehaviorRow({b, name, open, toggle}: {b: BehaviorState; name: string; open: boolean; toggle: () => void}) {
@@ -148,7 +148,7 @@ function BehaviorRow({b, name, open, toggle}: {b: BehaviorState; name: string; o
       <td><Speed says={b.recommends_speed} speed={b.speed} weight={b.speed_weight} /></td>
     </tr>
     {open && <tr class="rules"><td colSpan={3}>
-      <p class="small">{b.name}, priority {b.priority}{b.running ? '' : ', not running'}; goal {percent(b.goal)}, progress {percent(b.progress)}</p>
+      <p class="small">{instanceWords(b.name)}, priority {b.priority}{b.running ? '' : ', not running'}; goal {percent(b.goal)}, progress {percent(b.progress)}</p>
       <ul>{b.rules.map(r => <li key={r.name} class="rule"><span>{r.name}</span><Bar value={r.strength} label={`strength of ${r.name}`} />
         <span class="small">{percent(r.strength)}</span><span class="small">{ruleText(r.action, r.value)}</span></li>)}</ul>
     </td></tr>}
@@ -189,7 +189,7 @@ function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
     if (held || resting.has(node.parent)) resting.add(node.id);
     return <li key={node.id} class={`depth-${depth} row`}><div class="grow">
       <div><span class="marker" title={node.blocking ? 'its parent waits for it' : 'its parent goes on'}>{node.blocking ? '∗' : '○'}</span>
-        <strong>{node.schema}</strong> {node.name !== node.schema && <span class="faint">{node.name}</span>} <span class="chip">{node.label && !held ? `then ${node.label}` : word(node.state)}</span></div>
+        <strong>{node.schema}</strong> {node.name !== node.schema && <span class="faint">{instanceWords(node.name)}</span>} <span class="chip">{node.label && !held ? `then ${node.label}` : word(node.state)}</span></div>
       {node.step && <div class="small">{node.step}</div>}
       {node.arguments && <div class="small faint">{node.arguments}</div>}</div>
       {button && <Interrupt link={link} service="intentions" process={`I${node.id}`} name={node.schema} held={held} />}
@@ -245,7 +245,7 @@ export function Programs({link, now}: {link: Link; now: number}) {
     {services.map(([key, {data}]) => <details key={key}><summary>{data.service} ({data.processes.length})</summary>
       <ul class="processes">{data.processes.map(p => {
         const held = p.state === 'PROCESS_SUSPENDED' || p.state === 'PROCESS_INTERRUPTED';
-        return <li key={p.name} class="row"><span class="grow"><strong>{p.name}</strong> <span class="chip">{word(p.state)}</span><br />
+        return <li key={p.name} class="row"><span class="grow"><strong>{instanceWords(p.name)}</strong> <span class="chip">{word(p.state)}</span><br />
           <span class="small faint">{p.effect}</span></span>
           {link.mayDrive && <Interrupt link={link} service={data.service} process={p.name} name={p.name} held={held} />}</li>;
       })}</ul></details>)}

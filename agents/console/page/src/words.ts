@@ -13,3 +13,8 @@ export function clock(time: number): string {
   const at = new Date(time);
   return `${two(at.getHours())}:${two(at.getMinutes())}:${two(at.getSeconds())}`;
 }
+
+// The name of an activity's behavior ends with the number of its instance: rest#32.
+export function instanceWords(name: string): string {
+  return name.replace(/^(.+)#(\d+)$/, '$1, instance $2');
+}
