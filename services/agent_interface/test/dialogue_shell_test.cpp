@@ -39,8 +39,10 @@ class DialogueOnTheBus : public testing::Test {
   }
   std::string answers() {
     std::string all;
-    for (const auto& sample : said.take())
+    for (const auto& sample : said.take()) {
       all += (all.empty() ? "" : " / ") + sample.data.text();
+      confidence = sample.data.confidence();
+    }
     return all;
   }
   /// The newest status of a goal; the robot's words then.
@@ -78,6 +80,7 @@ class DialogueOnTheBus : public testing::Test {
   std::optional<bus::Node> service;
   std::unique_ptr<DialogueShell> dialogue;
   std::uint64_t number = 0;
+  double confidence = -1.0;  ///< of the newest answer
 };
 
 TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
@@ -114,6 +117,15 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   registration.stamp().cycle(111);
   registrations.write(registration);
   EXPECT_EQ(say("Flakey, this is Bob's office"), "I know now that north is bob's office");
+}
+
+TEST_F(DialogueOnTheBus, ARefusalIsMarked) {
+  EXPECT_EQ(say("Flakey, go upstairs"), "what?");
+  EXPECT_EQ(confidence, 0.0);
+  EXPECT_EQ(say("Flakey, go forward 200 meters"), "I go up to 20 m at a time");
+  EXPECT_EQ(confidence, 0.0);
+  EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
+  EXPECT_EQ(confidence, 1.0);
 }
 
 TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
