@@ -47,6 +47,7 @@ const std::vector<Mistake>& mistakes() {
       {{"echo", "robot/state", "-n", "0"}, {"expected more than 0, found 0"}},
       {{"echo", "robot/state", "-n", "few"}, {"few"}},
       {{"echo", "robot/state", "--timeout", "-1"}, {"expected more than 0, found -1"}},
+      {{"echo", "robot/state", "--timeout", "2m"}, {"--timeout: expected a number in s, found 2m"}},
       {{"echo", "robot/state", "--once", "-n", "3"}, {"--once", "--count"}},
       {{"log", "-n", "-3"}, {"-n"}},
       // goals

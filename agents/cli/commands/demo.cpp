@@ -532,6 +532,7 @@ void add_demo(CLI::App& app, Chosen& chosen) {
   command->add_flag("--json", options->json, "the summary as JSON on the last line");
   command->add_option("--time-limit", options->time_limit, "[s] of robot time")
       ->check(CLI::PositiveNumber)
+      ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->add_option("--world", options->world,
                       "in place of the office: a name of config/worlds, or a file");
@@ -539,6 +540,7 @@ void add_demo(CLI::App& app, Chosen& chosen) {
                       "in place of the Pioneer 1: a name of config/robots, or a file");
   command->add_option("--goal", options->goal, "X Y [m], seen from where the robot starts")
       ->expected(2)
+      ->transform(number_in_unit("m"))
       ->capture_default_str();
   command->add_option("--trace", options->trace, "keep the true trajectory in this file (CSV)");
   command->add_flag("--verbose,-v", options->verbose, "show what the programs say");

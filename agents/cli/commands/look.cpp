@@ -135,7 +135,8 @@ void add_echo(CLI::App& app, Chosen& chosen) {
           ->check(above_zero());
   command->add_flag("--once", options->once, "end after one")->excludes(count);
   command->add_option("--timeout", options->timeout, "[s] end then; exit code 1: it came to less")
-      ->check(above_zero());
+      ->check(above_zero())
+      ->transform(number_in_unit("s"));
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
     return echo(options->topic, options->once ? 1 : options->count, options->timeout, node, stop);
   });

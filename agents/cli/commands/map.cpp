@@ -506,6 +506,7 @@ void add_map(CLI::App& app, Chosen& chosen) {
   command->add_option("words", *words, "what to do, as below");
   command->add_option("--seconds", *seconds, "show: how long the way is followed")
       ->check(CLI::Range(0.0, 1e6))
+      ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->footer(kMapWords);
   chosen.when(command, [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {

@@ -346,6 +346,7 @@ void add_scenario(CLI::App& app, Chosen& chosen) {
       ->capture_default_str();
   command->add_option("--time-limit", options->time_limit, "[s] of robot time")
       ->check(CLI::PositiveNumber)
+      ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->add_flag("--json", options->json, "the result as JSON");
   command->add_option(

@@ -222,7 +222,8 @@ void add_write(CLI::App& app, Chosen& chosen) {
                    "one object, such as '{\"velocity\": 0.2}'; - : one on each line of the input")
       ->required();
   command->add_option("--for", options->seconds, "[s] drive/..., goals: end then")
-      ->check(above_zero());
+      ->check(above_zero())
+      ->transform(number_in_unit("s"));
   command->add_flag("--force", options->force, "also a topic that one program writes by design");
   command->footer(
       "Members that are not named are 0, false or empty; saphira echo shows the form of a sample.\n"
