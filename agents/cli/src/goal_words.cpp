@@ -157,8 +157,8 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     for (std::size_t i = 0; i < bare; ++i)
       if (const auto length = measured(rest[i], "m"); length && !parse_number(rest[i]))
         rest[i] = exact(*length);
-  // The name of a place can have several words; one number is an artifact's id.
-  if (words[0] == "go" && bare >= 1 && (bare == 1 || !parse_number(rest[0]))) {
+  // The name of a place can have several words.
+  if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
     std::string place = rest[0];
     for (std::size_t i = 1; i < bare; ++i)
       place += " " + rest[i];
