@@ -306,6 +306,7 @@ TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
       answer.id().number(texts.size());
       answer.answers(sample.data.id());
       answer.text("I heard " + sample.data.text());
+      answer.confidence(1.0);
       answer.end(true);
       said.write(answer);
     }
