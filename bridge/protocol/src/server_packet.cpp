@@ -252,7 +252,7 @@ Packet read_packet(Fields& in) {
 template <class... Packets>
 std::optional<ServerPacket> read_one_of(PacketType type, Fields& in) {
   std::optional<ServerPacket> out;
-  ((type == Packets::kType && (out = read_packet<Packets>(in), true)) || ...);
+  static_cast<void>(((type == Packets::kType && (out = read_packet<Packets>(in), true)) || ...));
   return out;
 }
 
