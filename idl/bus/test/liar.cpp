@@ -1,8 +1,10 @@
 #include "liar.hpp"
 
+#include <condition_variable>
 #include <fastdds/dds/core/status/StatusMask.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -24,10 +26,13 @@ struct Liar::Impl {
                 internal::Guard::make(options)) {
     presence.open(session, false);
     ticks = std::jthread([this](const std::stop_token& stop) {
-      while (!stop.stop_requested()) {
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      const std::chrono::milliseconds period(internal::Peers::kTickMs);
+      do
         presence.tick();
-        std::this_thread::sleep_for(std::chrono::milliseconds(internal::Peers::kTickMs));
-      }
+      while (!std::condition_variable_any().wait_for(lock, stop, period,
+                                                     [&] { return stop.stop_requested(); }));
     });
   }
   ~Impl() {

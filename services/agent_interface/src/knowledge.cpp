@@ -65,8 +65,11 @@ const char* describe(Advice::Kind kind) {
 
 std::string describe(const Advice& advice) {
   switch (advice.kind) {
-    case Advice::Kind::office_of:
-      return advice.value + " is " + advice.about + "'s office";
+    case Advice::Kind::office_of: {
+      const std::string office = advice.about + "'s office";
+      // A place without a name got this one.
+      return advice.value == office ? office + " is on my map" : advice.value + " is " + office;
+    }
     case Advice::Kind::person_at:
       return advice.about + " is at " + advice.value;
     case Advice::Kind::knows_where:

@@ -131,7 +131,7 @@ TEST_F(DialogueTest, AnOfficeOnASideIsOnThatSideAndANamelessDoorwayGetsAName) {
   EXPECT_EQ(said("Flakey, the office on the left is Karen's"),
             "I know now that EJ-231 is karen's office");
   EXPECT_EQ(said("Flakey, the door on the right is Bob's office"),
-            "I know now that bob's office is bob's office");
+            "I know now that bob's office is on my map");
   ASSERT_EQ(last.namings.size(), 1u);
   EXPECT_EQ(last.namings[0].id, 1235u);
   EXPECT_EQ(last.namings[0].name, "bob's office");
@@ -149,7 +149,7 @@ TEST_F(DialogueTest, ThisOfficeIsTheOneAtWhichAPersonPoints) {
   EXPECT_EQ(said("Flakey, this is Karen's office"), "I know now that EJ-233 is karen's office");
   EXPECT_EQ(dialogue.knowledge().all().at(0).artifact, 1233u);
   points(-130.0);
-  EXPECT_EQ(said("Flakey, this office is Bob's"), "I know now that bob's office is bob's office");
+  EXPECT_EQ(said("Flakey, this office is Bob's"), "I know now that bob's office is on my map");
   EXPECT_EQ(last.namings.at(0).id, 1235u);
   points(-10.0);
   EXPECT_EQ(said("Flakey, this is Ann's office"), "I know now that EJ-233 is ann's office");

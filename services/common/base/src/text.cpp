@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -152,10 +153,12 @@ std::string read_file(const std::string& path) {
 
 std::string cannot_be(const std::string& path, std::string_view done) {
   const int why = errno;
+  std::error_code none;
+  const bool refused =  // by replace_file
+      why == ENOTSUP && std::filesystem::is_other(path, none);
   return path + ": cannot be " + std::string(done) + ": " +
-         // of replace_file
-         (why == ENOTSUP ? "expected a file or a new name, found a device, a pipe or a socket"
-                         : std::generic_category().message(why));
+         (refused ? "expected a file or a new name, found a device, a pipe or a socket"
+                  : std::generic_category().message(why));
 }
 
 std::string counted(std::size_t count, const std::string& thing) {

@@ -219,7 +219,7 @@ void Topology::meet(std::size_t a, std::size_t b) {
   Vec2 at = middle(common);
   if (first.kind == RegionKind::corridor && second.kind == RegionKind::junction)
     at = on_axis(first.area, second.area.pose_in_map.position());
-  join({LinkKind::meeting, 0, {at.x(), at.y(), 0.0}, 0.0, a, b});
+  join({LinkKind::meeting, 0, {at.x(), at.y(), 0.0}, 0.0, a, b, {}});
 }
 
 void Topology::open(const Feature& gate, LinkKind kind) {
@@ -239,7 +239,7 @@ void Topology::open(const Feature& gate, LinkKind kind) {
     }
     return std::optional<std::size_t>{};
   };
-  Link link{kind, gate.id, gate.pose_in_map, gate.width, 0, std::nullopt};
+  Link link{kind, gate.id, gate.pose_in_map, gate.width, 0, std::nullopt, gate.name};
   const auto front = probe(1.0, std::nullopt);
   const auto back = probe(-1.0, front);
   if (!front && !back)
@@ -294,6 +294,8 @@ std::string Topology::no_place(std::string_view name) const {
     add(region.area.name);
   for (const Feature& position : positions_)
     add(position.name);
+  for (const Link& link : links_)
+    add(link.name);
   // A map that the robot built has no names.
   const auto add_id = [&](std::string known) {
     std::replace(known.begin(), known.end(), ' ', '-');
@@ -303,7 +305,7 @@ std::string Topology::no_place(std::string_view name) const {
     if (regions_[i].area.id != 0 && regions_[i].area.name.empty())
       add_id(text(i));
   for (const Link& link : links_)
-    if (link.id != 0 && !link.b)
+    if (link.id != 0 && link.name.empty() && !link.b)
       add_id(text(link));
   std::string out = "the map has no place \"" + std::string(name) + "\"";
   if (const std::string meant = guess(name, names); !meant.empty())
@@ -357,26 +359,24 @@ std::optional<Place> Topology::place_called(std::string_view name_or_id) const {
         place.name += " (" + position.name + ")";
       return place;
     }
-    return std::nullopt;
-  };
-
-  if (id != 0) {
-    if (auto found = search([&](const Feature& feature) { return feature.id == id; }))
-      return found;
     for (const Link& link : links_) {
-      if (link.id != id)
+      if (!meant(link))
         continue;
-      Place place;
       place.regions = {link.a};
       place.point = transform(link.pose_in_map, {0.6, 0.0});
       place.name = text(link);
       return place;
     }
-  }
-  if (auto found = search([&](const Feature& feature) { return feature.name == name_or_id; }))
+    return std::nullopt;
+  };
+
+  if (id != 0)
+    if (auto found = search([&](const auto& artifact) { return artifact.id == id; }))
+      return found;
+  if (auto found = search([&](const auto& artifact) { return artifact.name == name_or_id; }))
     return found;
   const std::string small = lowered(name_or_id);
-  return search([&](const Feature& feature) { return lowered(feature.name) == small; });
+  return search([&](const auto& artifact) { return lowered(artifact.name) == small; });
 }
 
 std::string Topology::text(const Link& link) {

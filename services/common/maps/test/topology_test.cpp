@@ -130,10 +130,17 @@ TEST(Topology, EveryShippedMapHangsTogether) {
 TEST(Topology, OfAMapWithoutNamesKindsAndIdsAreShown) {
   const Topology t(
       parse_map("CORRIDOR (1) 0, 0, 0, 10000, 1600\nDOOR (3) 1000, 800, -90, 900\n"
-                "POS (4) 0, 0, 0 \"start\"\n",
+                "POS (4) 0, 0, 0 \"start\"\n"
+                "DOOR (5) 3000, 800, -90, 900 \"Karen's office\"\n",
                 "built.map"));
   EXPECT_EQ(t.no_place("library"),
-            "the map has no place \"library\": it has start, corridor-1, door-3");
+            "the map has no place \"library\": it has start, Karen's office, corridor-1, door-3");
+  // A named door without a room behind it is a place as well: before the door.
+  const std::optional<Place> office = t.place("karen's office");
+  ASSERT_TRUE(office);
+  EXPECT_EQ(office->name, "door 5");
+  ASSERT_TRUE(office->point);
+  EXPECT_NEAR((*office->point - Vec2(3.0, 0.2)).norm(), 0.0, 1e-9);
 }
 
 TEST(Topology, PlacesByNameAndId) {

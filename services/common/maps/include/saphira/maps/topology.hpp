@@ -35,6 +35,7 @@ struct Link {
   double width = 0.0;    ///< [m] of doors and breaks
   std::size_t a = 0;
   std::optional<std::size_t> b;  ///< none: the other side is not on the map
+  std::string name;              ///< of the door or break
 };
 
 /// The region or link of a name or an id.
