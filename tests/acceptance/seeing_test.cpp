@@ -115,9 +115,9 @@ TEST_F(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
 }
 
 TEST_F(SeeingDeployment, ItsPersonIsFollowed) {
-  Process follow(saphira({"goal", "follow-person", "seconds=10"}), folder_.path("follow"));
+  Process follow(saphira({"goal", "follow-person", "seconds=4"}), folder_.path("follow"));
   EXPECT_EQ(follow.wait(std::chrono::minutes(2)), 0) << follow.output() << up_.output();
-  EXPECT_NE(follow.output().find("followed for 10 s"), std::string::npos) << follow.output();
+  EXPECT_NE(follow.output().find("followed for 4 s"), std::string::npos) << follow.output();
 }
 
 }  // namespace

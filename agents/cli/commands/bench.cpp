@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "environment.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/cli/deployment.hpp"
 
 namespace saphira::cli {
@@ -37,13 +38,8 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
     return bus::kExitFailed;
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    const std::string meant = guess(name, names);
-    std::cerr << "saphira: no benchmark \"" << name
-              << "\": " << (meant.empty() ? "" : "did you mean " + meant + "? ")
-              << "expected one of";
-    for (const std::string& known : names)
-      std::cerr << ' ' << known;
-    std::cerr << '\n';
+    std::cerr << "saphira: no benchmark \"" << name << '"' << did_you_mean(name, names, ":")
+              << " expected one of " << joined(names, " ") << '\n';
     return bus::kExitUsage;
   }
   std::vector<std::string> words{bin + "/" + kPrefix + name};

@@ -103,11 +103,9 @@ std::optional<std::string> unknown_topic(const std::string& topic) {
     names.push_back(entry.name);
   if (std::find(names.begin(), names.end(), topic) != names.end())
     return std::nullopt;
-  const std::string meant = guess(topic, names);
-  return "no topic \"" + topic.substr(0, 200) + "\": " +
-         (meant.empty() ? "expected one such as robot/state; saphira wiring shows all, "
-                        : "did you mean " + meant + "? There are others: ") +
-         "saphira list shows those of what runs";
+  return "no topic \"" + topic.substr(0, 200) + '"' +
+         did_you_mean(topic, names, ": expected one such as robot/state;") +
+         " saphira wiring shows all, saphira list those of what runs";
 }
 
 std::string qos_of(const std::string& topic) {

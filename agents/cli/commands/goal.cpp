@@ -287,10 +287,8 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
   if (!known->trouble().empty())
     std::printf("%s\n", known->trouble().c_str());
   if (!any && options.words.size() == 2) {
-    const std::string meant = guess(options.words[1], names);
-    std::cerr << "saphira: there is no activity \"" << options.words[1] << "\""
-              << (meant.empty() ? "; saphira goal activities lists them"
-                                : ": did you mean " + meant + "?")
+    std::cerr << "saphira: there is no activity \"" << options.words[1] << '"'
+              << did_you_mean(options.words[1], names, "; saphira goal activities lists them")
               << '\n';
   } else if (!any) {
     std::cerr << "saphira: there are no activities\n";

@@ -23,10 +23,8 @@ int print_help(const CLI::App& root, const std::string& name) {
     std::fputs(command->help(root.get_name()).c_str(), stdout);
     return bus::kExitOk;
   }
-  const std::string meant = guess(name, names);
-  std::fprintf(
-      stderr, "saphira: no command \"%s\"%s\n", name.c_str(),
-      meant.empty() ? "; `saphira help` lists them" : (": did you mean " + meant + "?").c_str());
+  std::fprintf(stderr, "saphira: no command \"%s\"%s\n", name.c_str(),
+               did_you_mean(name, names, "; `saphira help` lists them").c_str());
   return bus::kExitUsage;
 }
 

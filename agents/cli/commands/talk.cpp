@@ -108,7 +108,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
       if (sample.info.disposed || sample.data.answers().writer() != node.instance())
         continue;
       answered = true;
-      code = acknowledges(sample.data) ? bus::kExitOk : bus::kExitFailed;
+      code = sample.data.refused() ? bus::kExitFailed : bus::kExitOk;
       print("%s\n", line_of(sample.data, options.robot).c_str());
       std::fflush(stdout);
       if (sample.data.end() || say_options.quick)
@@ -168,7 +168,7 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
         continue;
       answered = true;
       over = over || sample.data.end();
-      code = acknowledges(sample.data) ? bus::kExitOk : bus::kExitFailed;
+      code = sample.data.refused() ? bus::kExitFailed : bus::kExitOk;
     }
     while (const auto line = input.next()) {
       const v1::Utterance utterance = situation::typed(

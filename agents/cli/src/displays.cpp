@@ -291,19 +291,8 @@ std::string schema_display(const v1::BehaviorSchema& schema) {
 std::string unknown_behavior(const std::string& name, std::vector<std::string> names) {
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
-  std::vector<std::string> small;
-  std::string list;
-  for (const std::string& each : names) {
-    small.push_back(lowered(each));
-    list += (list.empty() ? " " : ", ") + each;
-  }
-  const auto meant = std::find(small.begin(), small.end(), guess(lowered(name), small));
-  return "no behavior \"" + name.substr(0, 200) + "\": " +
-         (meant == small.end()
-              ? "there are"
-              : "did you mean " + names[static_cast<std::size_t>(meant - small.begin())] +
-                    "? There are") +
-         (list.empty() ? " none now" : list);
+  return "no behavior \"" + name.substr(0, 200) + '"' + did_you_mean(name, names, ".") +
+         " There are " + (names.empty() ? "none now" : joined(names));
 }
 
 std::string behavior_display(const v1::BehaviorState& behavior,

@@ -112,10 +112,6 @@ bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, 
   return utterance.answers().writer() == instance || age <= listened;
 }
 
-bool acknowledges(const v1::Utterance& reply) {
-  return reply.confidence() > 0.0 && !reply.text().starts_with("what?");
-}
-
 std::string line_of(const v1::Utterance& utterance, const std::string& robot) {
   const std::string speaker = robot.empty() ? utterance.speaker() : robot;
   return (speaker.empty() ? "somebody" : speaker) + ": " + utterance.text();

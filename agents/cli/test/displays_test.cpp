@@ -202,8 +202,8 @@ TEST(BehaviorDisplay, AnUnknownNameGetsAGuessAndTheList) {
               "no behavior \"" + std::string(name) +
                   "\": did you mean GoToPos? There are GoToPos, Stop, go-to-pos1");
   EXPECT_EQ(unknown_behavior("Fly", names),
-            "no behavior \"Fly\": there are GoToPos, Stop, go-to-pos1");
-  EXPECT_EQ(unknown_behavior("Fly", {}), "no behavior \"Fly\": there are none now");
+            "no behavior \"Fly\". There are GoToPos, Stop, go-to-pos1");
+  EXPECT_EQ(unknown_behavior("Fly", {}), "no behavior \"Fly\". There are none now");
 }
 
 TEST(BehaviorDisplay, IsFigure26) {

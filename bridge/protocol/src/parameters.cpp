@@ -159,16 +159,6 @@ bool is_keyword(const std::string& name) {
                      [&name](const std::string& known) { return lowered(known) == name; });
 }
 
-/// The keyword that a mistyped one may mean.
-std::string keyword_like(const std::string& name) {
-  std::vector<std::string> small;
-  for (const std::string& known : keywords())
-    small.push_back(lowered(known));
-  const std::string meant = guess(name, small);
-  const auto found = std::find(small.begin(), small.end(), meant);
-  return meant.empty() ? "" : keywords()[static_cast<std::size_t>(found - small.begin())];
-}
-
 class Parser {
  public:
   Parser(std::string_view text, const std::string& file) : lines_(split_lines(text)) {
@@ -266,11 +256,8 @@ class Parser {
       to_value(in);
       parameters_.encoder_unit = kMillimetre / in.number("EncoderTicksPerMM", 0.1, 10000.0);
     } else {
-      const std::string meant = keyword_like(name);
-      in.fail(
-          meant.empty()
-              ? "expected a keyword of a robot parameter file (such as RobotRadius or SonarUnit)"
-              : "expected a keyword of a robot parameter file: did you mean " + meant + "?");
+      in.fail("expected a keyword of a robot parameter file" +
+              did_you_mean(name, keywords(), " (such as RobotRadius or SonarUnit)"));
     }
   }
 

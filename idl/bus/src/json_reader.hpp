@@ -91,12 +91,9 @@ class JsonReader {
                       const std::string& place) {
     const std::string all = joined(names);
     for (const auto& [key, value] : json.items())
-      if (std::find(names.begin(), names.end(), key) == names.end()) {
-        const std::string meant = guess(key, names);
-        fail(place, "no member \"" + key.substr(0, 60) + "\"" +
-                        (meant.empty() ? "" : ": did you mean " + meant + "?") + "; there are " +
-                        all);
-      }
+      if (std::find(names.begin(), names.end(), key) == names.end())
+        fail(place, "no member \"" + key.substr(0, 60) + '"' + did_you_mean(key, names, ";") +
+                        " there are " + all);
   }
   template <class T>
   static void integer(const nlohmann::json& json, T& item, const std::string& place) {

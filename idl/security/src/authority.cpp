@@ -162,10 +162,8 @@ Authority::Member& Authority::known(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [other, member] : members_)
     names.push_back(other);
-  const std::string meant = guess(name, names);
-  throw std::invalid_argument(
-      "there is no member \"" + name + "\" of " + site_ +
-      (meant.empty() ? "; saphira security list names them" : ": did you mean " + meant + "?"));
+  throw std::invalid_argument("there is no member \"" + name + "\" of " + site_ +
+                              did_you_mean(name, names, "; saphira security list names them"));
 }
 
 std::string Authority::add(const std::string& name, const std::vector<std::string>& roles,
@@ -181,12 +179,9 @@ std::string Authority::add(const std::string& name, const std::vector<std::strin
   for (const Role& role : roles_.roles)
     known_roles.push_back(role.name);
   for (const std::string& role : roles)
-    if (roles_.find(role) == nullptr) {
-      const std::string meant = guess(role, known_roles);
+    if (roles_.find(role) == nullptr)
       throw std::invalid_argument("there is no role \"" + role + "\" in " + folder_ + "/" +
-                                  kRolesFile +
-                                  (meant.empty() ? "" : ": did you mean " + meant + "?"));
-    }
+                                  kRolesFile + did_you_mean(role, known_roles));
   if (roles.empty())
     throw std::invalid_argument("a member needs a role: --role operator");
   Member member;

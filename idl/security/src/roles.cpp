@@ -84,13 +84,8 @@ class Parser {
   void only(const YAML::Node& node, const std::vector<std::string>& keys) const {
     for (const auto& entry : map(node, "keys"))
       if (std::find(keys.begin(), keys.end(), entry.first.Scalar()) == keys.end())
-        fail(entry.first.Mark(),
-             "unknown key \"" + entry.first.Scalar() + "\"" + meant(entry.first.Scalar(), keys));
-  }
-
-  static std::string meant(const std::string& word, const std::vector<std::string>& known) {
-    const std::string near = guess(word, known);
-    return near.empty() ? "" : ": did you mean " + near + "?";
+        fail(entry.first.Mark(), "unknown key \"" + entry.first.Scalar() + "\"" +
+                                     did_you_mean(entry.first.Scalar(), keys));
   }
 
   std::string word(const YAML::Node& node, const std::string& what) const {
@@ -130,7 +125,8 @@ class Parser {
     made.topic = name.Scalar();
     if (topics_ != nullptr &&
         std::find(topics_->begin(), topics_->end(), made.topic) == topics_->end())
-      fail(name.Mark(), "there is no topic \"" + made.topic + "\"" + meant(made.topic, *topics_));
+      fail(name.Mark(),
+           "there is no topic \"" + made.topic + "\"" + did_you_mean(made.topic, *topics_));
     only(node, {"write", "read"});
     made.writers = roles_in(member(node, name, "write", "write: [roles]"));
     made.readers = roles_in(member(node, name, "read", "read: [roles]"));
@@ -146,7 +142,7 @@ class Parser {
       if (role == kAny)
         found.insert(known.begin(), known.end());
       else if (roles_.find(role) == nullptr)
-        fail(at.Mark(), "there is no role \"" + role + "\"" + meant(role, known));
+        fail(at.Mark(), "there is no role \"" + role + "\"" + did_you_mean(role, known));
       else
         found.insert(role);
     }

@@ -217,7 +217,8 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
     sample.answers().number(said.answers.second);
     sample.listener(said.listener);
     sample.text(said.text);
-    sample.confidence(said.refused ? 0.0 : 1.0);
+    sample.confidence(1.0);
+    sample.refused(said.refused);
     sample.end(said.end);
     said_.write(sample);
   }

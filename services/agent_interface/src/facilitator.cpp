@@ -137,11 +137,9 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
       return Answer{AnswerCode::nobody, "there is no agent " + quoted(request.service)};
     if (!wrong.empty())
       return Answer{AnswerCode::bad_argument, wrong};
-    const std::string meant = guess(request.functor, known);
-    return Answer{AnswerCode::nobody, "no agent " +
-                                          (request.service.empty() ? "" : request.service + " ") +
-                                          "can do " + quoted(request.functor) +
-                                          (meant.empty() ? "" : ": did you mean " + meant + "?")};
+    return Answer{AnswerCode::nobody,
+                  "no agent " + (request.service.empty() ? "" : request.service + " ") + "can do " +
+                      quoted(request.functor) + did_you_mean(request.functor, known)};
   }
   std::sort(fit.begin(), fit.end());
   for (const auto& one : fit)

@@ -41,7 +41,7 @@ class DialogueOnTheBus : public testing::Test {
     std::string all;
     for (const auto& sample : said.take()) {
       all += (all.empty() ? "" : " / ") + sample.data.text();
-      confidence = sample.data.confidence();
+      refused = sample.data.refused();
     }
     return all;
   }
@@ -80,7 +80,7 @@ class DialogueOnTheBus : public testing::Test {
   std::optional<bus::Node> service;
   std::unique_ptr<DialogueShell> dialogue;
   std::uint64_t number = 0;
-  double confidence = -1.0;  ///< of the newest answer
+  bool refused = false;  ///< the newest answer
 };
 
 TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
@@ -121,11 +121,11 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
 
 TEST_F(DialogueOnTheBus, ARefusalIsMarked) {
   EXPECT_EQ(say("Flakey, go upstairs"), "what?");
-  EXPECT_EQ(confidence, 0.0);
+  EXPECT_TRUE(refused);
   EXPECT_EQ(say("Flakey, go forward 200 meters"), "I go up to 20 m at a time");
-  EXPECT_EQ(confidence, 0.0);
+  EXPECT_TRUE(refused);
   EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
-  EXPECT_EQ(confidence, 1.0);
+  EXPECT_FALSE(refused);
 }
 
 TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {

@@ -73,7 +73,7 @@ TEST_F(Navigation, APathIsRegionsAndTheWaysBetween) {
   EXPECT_EQ(spoken(call("why-no-path", {Value(), "nowhere"})),
             "the map has no place \"nowhere\": it has hall, cross, north, south, corner");
   EXPECT_EQ(spoken(call("why-no-place", {"nrth"})),
-            "the map has no place \"nrth\": did you mean \"north\"?");
+            "the map has no place \"nrth\": did you mean north?");
 }
 
 TEST_F(Navigation, OutOfARoomThroughItsDoor) {

@@ -8,11 +8,12 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {chromium} from 'playwright-core';
 import {end, output, sleep, start, until} from './processes.mjs';
+import {socketTo} from './socket.mjs';
 
 const axeSource = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const limit = 30_000;        // [ms] generous: for broken runs
 const folder = mkdtempSync(join(tmpdir(), 'saphira-console-'));
-let up, address, browser;
+let up, address, machine, browser;  // machine: all processes of the browser
 
 const bin = process.env.SAPHIRA_BIN_DIR;
 const robot = `console-${process.pid}`;
@@ -22,10 +23,12 @@ before(async () => {
   const port = 20_000 + process.pid % 500 * 20;
   up = start('saphira', '--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`);
   address = await until('the address', () => output().match(/open (http:\S+)/)?.[1]);
-  browser = await chromium.launch({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
+  machine = await chromium.launchServer({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
+  browser = await chromium.connect(machine.wsEndpoint());
 });
 after(async () => {
   await browser?.close();
+  await machine?.close();
   await end(up);
   rmSync(folder, {recursive: true, force: true});
 });
@@ -103,9 +106,11 @@ async function choosePlace(page) {
   await page.mouse.click(box.x + box.width / 2 + 60, box.y + box.height / 2);
   await page.getByRole('dialog').waitFor();
 }
+const childrenOf = pid => readFileSync(`/proc/${pid}/task/${pid}/children`, 'utf8').trim().split(' ').filter(child => child);
+const familyOf = pid => [pid, ...childrenOf(pid).flatMap(familyOf)];
 async function gatewayProcess() {
   return until('the console process', async () => {
-    for (const pid of readFileSync(`/proc/${up.pid}/task/${up.pid}/children`, 'utf8').trim().split(' '))
+    for (const pid of childrenOf(up.pid))
       if (readFileSync(`/proc/${pid}/cmdline`, 'utf8').startsWith(join(bin, 'saphira-console') + '\0')) return Number(pid);
     return undefined;
   });
@@ -419,7 +424,72 @@ test('a gateway that hangs is told, the robot stands, and afterwards the page on
   await leave(watcher);
 });
 
-test('reload and the back button keep the key, a behavior that is edited is seen', async () => {
+// Somebody else's look at the robot, beside the browser.
+async function watch() {
+  const {host, port, hash} = new URL(address), headers = {Host: host, Origin: `http://${host}`};
+  const self = await socketTo(Number(port), 'saphira.telemetry', headers);
+  self.say({type: 'hello', key: hash.slice(1), name: 'watcher'});
+  self.speed = () => {
+    for (const frame of self.texts.splice(0)) {
+      for (const {t, d} of frame.items ?? []) if (t === 'robot/state') self.velocity = d.velocity;
+      if (frame.seq !== undefined) self.say({type: 'ack', frame: frame.seq});
+    }
+    return Math.abs(self.velocity);
+  };
+  return self;
+}
+
+test('a laptop that sleeps: the robot stands, and afterwards the page only watches', async () => {
+  const page = await person(), watcher = await watch();
+  await open(page);
+  await takeControl(page, 'ann');
+  await driveByKey(page, 'i', true);
+  await until('the robot moves', () => watcher.speed() > 0.04);
+  const asleep = familyOf(machine.process().pid);
+  for (const pid of asleep) process.kill(pid, 'SIGSTOP');
+  try {
+    await until('the robot stands', () => watcher.speed() < 0.02);
+    await sleep(1500);
+    assert.ok(watcher.speed() < 0.02);
+  } finally {
+    for (const pid of asleep) process.kill(pid, 'SIGCONT');
+  }
+  await page.locator('.link.live').waitFor();
+  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
+  await stands(page);  // the key is held all the time
+  await page.keyboard.up('i');
+  await handBack(page);
+  watcher.socket.destroy();
+  await leave(page);
+});
+
+test('a behavior that is edited while it runs is seen; a broken version changes nothing and says where', async () => {
+  const shipped = readFileSync(join(process.env.SAPHIRA_SOURCE_DIR, 'config/behaviors/constant-velocity.beh'), 'utf8');
+  const edit = text => writeFileSync(join(folder, 'constant-velocity.beh'), text);
+  const page = await person();
+  await open(page);
+  await send(page, 'drive 0.05');
+  await page.getByRole('tab', {name: 'Behaviors'}).click();
+  await page.getByRole('button', {name: 'ConstantVelocity'}).click();
+  const rule = name => page.locator('.rule', {hasText: name}).waitFor();
+  await rule('go');
+  edit(shipped.replace('go If', 'creep If'));
+  await rule('creep');
+  edit(shipped.replace('go If', 'go Iff'));
+  await page.getByRole('tab', {name: 'Messages'}).click();
+  await page.getByLabel('everything that programs log').check();
+  await page.locator('.lines li', {hasText: 'constant-velocity.beh:7:'}).first().waitFor();
+  await page.getByRole('tab', {name: 'Behaviors'}).click();
+  await page.getByRole('button', {name: 'ConstantVelocity'}).click();
+  await rule('creep');
+  rmSync(join(folder, 'constant-velocity.beh'));
+  await rule('go');
+  await page.getByRole('tab', {name: 'Goals'}).click();
+  await endAll(page);
+  await leave(page);
+});
+
+test('reload and the back button keep the key', async () => {
   const page = await person();
   await open(page);
   await page.reload();
@@ -428,10 +498,6 @@ test('reload and the back button keep the key, a behavior that is edited is seen
   await page.goBack();
   await page.locator('.link.live').waitFor();
   await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
-  await page.getByRole('tab', {name: 'Messages'}).click();
-  await page.getByLabel('everything that programs log').check();
-  writeFileSync(join(folder, 'broken.beh'), 'BeginBehavior Broken\nthis is no behavior\n');
-  await page.locator('.lines li', {hasText: 'broken.beh'}).first().waitFor();
   await leave(page);
 });
 

@@ -137,8 +137,8 @@ function row(link, velocity, what, stands, then) {
 }
 
 const bad = [100, 0.05];
-test('over 100 ms and 5 % loss each way it drives; cuts of 0.3, 2 and 20 s', async () => {
-  for (const cut of [0.3, 2, 20]) {
+test('over 100 ms and 5 % loss each way it drives; cuts of 0.3, 2 and 8 s', async () => {
+  for (const cut of [0.3, 2, 8]) {
     const far = await link(...bad), ann = await operator(far.port, `ann${cut}`);
     const velocity = await drives(ann);
     const from = now();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/base/guess.hpp"
+
 namespace saphira::behaviors::language {
 namespace {
 
@@ -17,38 +19,6 @@ constexpr const char* kComposed[] = {"f_greater", "f_smaller", "f_eq", "f_not"};
 
 bool is_constant(std::string_view name) {
   return std::ranges::any_of(constants(), [&](const Constant& c) { return name == c.name; });
-}
-
-/// Levenshtein's, for names of usual length.
-std::size_t distance(const std::string& a, const std::string& b) {
-  if (a.size() > 40 || b.size() > 40)
-    return 40;
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j)
-    row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t corner = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, corner + (a[i - 1] == b[j - 1] ? 0U : 1U)});
-      corner = above;
-    }
-  }
-  return row[b.size()];
-}
-
-std::string meant(const std::string& name, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t least = std::min<std::size_t>(name.size() / 2 + 1, 4);
-  for (const std::string& known : names) {
-    const std::size_t d = distance(name, known);
-    if (d < least) {
-      least = d;
-      best = known;
-    }
-  }
-  return best.empty() ? "" : "; did you mean \"" + best + "\"?";
 }
 
 }  // namespace
@@ -79,7 +49,7 @@ std::string meant_variable(const std::string& name, const Variables& variables) 
     names.push_back(known);
   for (const Constant& constant : constants())
     names.emplace_back(constant.name);
-  return meant(name, names);
+  return did_you_mean(name, names);
 }
 
 std::string meant_function(const std::string& name) {
@@ -89,7 +59,7 @@ std::string meant_function(const std::string& name) {
   for (const Quick& quick : kQuick)
     names.emplace_back(quick.name);
   names.insert(names.end(), std::begin(kComposed), std::end(kComposed));
-  return meant(name, names);
+  return did_you_mean(name, names);
 }
 
 }  // namespace saphira::behaviors::language

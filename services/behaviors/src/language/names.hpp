@@ -35,7 +35,7 @@ const Function* find_function(std::string_view name);
 bool reserved(std::string_view name);
 bool is_function(std::string_view name);
 
-/// "; did you mean ...?" where a similar name exists.
+/// ": did you mean ...?" where a similar name exists.
 std::string meant_variable(const std::string& name, const Variables& variables);
 std::string meant_function(const std::string& name);
 

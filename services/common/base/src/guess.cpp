@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira {
 namespace {
 
@@ -31,12 +33,13 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string guess(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.empty() || word.size() > kLongest)
     return "";
+  const std::string small = lowered(word);
   std::string best;
   std::size_t nearest = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest)
       continue;
-    const std::size_t far = distance(word, candidate);
+    const std::size_t far = distance(small, lowered(candidate));
     if (far < nearest) {
       nearest = far;
       best = candidate;
@@ -44,10 +47,16 @@ std::string guess(std::string_view word, const std::vector<std::string>& candida
   }
   if (!best.empty() || word.size() < 2)
     return best;
-  const auto longer =
-      std::find_if(candidates.begin(), candidates.end(),
-                   [&](const std::string& candidate) { return candidate.starts_with(word); });
+  const auto longer = std::find_if(
+      candidates.begin(), candidates.end(),
+      [&](const std::string& candidate) { return lowered(candidate).starts_with(small); });
   return longer == candidates.end() ? "" : *longer;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,
+                         std::string_view otherwise) {
+  const std::string meant = guess(word, candidates);
+  return meant.empty() ? std::string(otherwise) : ": did you mean " + meant + "?";
 }
 
 }  // namespace saphira

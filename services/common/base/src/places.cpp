@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira {
 
@@ -63,14 +64,9 @@ std::string find_file(const std::string& folder, const std::string& name,
     throw std::invalid_argument(name + ": expected a file, found " +
                                 (fs::is_directory(name, error) ? "a folder" : "a device"));
   const std::vector<std::string> names = names_in(folder, extension);
-  std::string list;
-  for (const std::string& known : names)
-    list += " " + known;
-  if (const std::string meant = guess(name, names); !meant.empty())
-    throw std::invalid_argument("no \"" + name + "\" in " + folder + ": did you mean " + meant +
-                                "? There are also:" + list);
   throw std::invalid_argument("no \"" + name + "\" in " + folder +
-                              ": expected a file, or one of those that are shipped:" + list);
+                              did_you_mean(name, names, ": expected a file, or a shipped one;") +
+                              " There are: " + joined(names, " "));
 }
 
 }  // namespace saphira

@@ -13,6 +13,8 @@ TEST(Guess, FindsWhatWasMeant) {
   EXPECT_EQ(guess("estopp", kCommands), "estop") << "one too many";
   EXPECT_EQ(guess("behaviours", kCommands), "behaviors");
   EXPECT_EQ(guess("stat", kCommands), "status") << "the beginning";
+  EXPECT_EQ(guess("radiusrobt", {"RadiusRobot"}), "RadiusRobot") << "whatever the case";
+  EXPECT_EQ(did_you_mean("gaol", kCommands, "; help lists them"), ": did you mean goal?");
 }
 
 TEST(Guess, IsSilentWhereNothingIsNear) {
@@ -21,6 +23,8 @@ TEST(Guess, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(guess("x", kCommands), "");
   EXPECT_EQ(guess(std::string(100'000, 'g'), kCommands), "");
   EXPECT_EQ(guess("goal", {}), "");
+  EXPECT_EQ(did_you_mean("fly", kCommands), "");
+  EXPECT_EQ(did_you_mean("fly", kCommands, "; help lists them"), "; help lists them");
 }
 
 }  // namespace

@@ -100,6 +100,13 @@ TEST(Text, OneThingIsNoPlural) {
   EXPECT_EQ(counted(2, "program"), "2 programs");
 }
 
+TEST(Text, EveryItemOfAListIsSeparated) {
+  EXPECT_EQ(joined(std::vector<std::string>{}), "");
+  EXPECT_EQ(joined(std::vector<std::string>{"", "b", ""}, "/"), "/b/");
+  EXPECT_EQ(joined(std::vector<int>{1, 2}, " and ", [](int n) { return std::to_string(n); }),
+            "1 and 2");
+}
+
 TEST(Text, UnreadableFileIsNamed) {
   try {
     read_file("/nonexistent/file.wld");

@@ -63,11 +63,6 @@ std::string one_of(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string meant = guess(word, known);
-  return meant.empty() ? std::string() : ": did you mean " + meant + "?";
-}
-
 /// The nearest name in the folder of a file that does not exist.
 std::string nearest_file(const std::string& file) {
   const std::filesystem::path path(file);
@@ -216,10 +211,8 @@ int not_understood(const CLI::App& app) {
       known.push_back("--" + name);
   const std::vector<std::string> words = app.remaining(true);
   const std::string word = words.empty() ? "" : words.front();
-  const std::string meant = guess(word, known);
-  std::fprintf(
-      stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
-      meant.empty() ? "; --help lists the options" : (": did you mean " + meant + "?").c_str());
+  std::fprintf(stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
+               did_you_mean(word, known, "; --help lists the options").c_str());
   return kUsage;
 }
 

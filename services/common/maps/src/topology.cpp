@@ -307,9 +307,9 @@ std::string Topology::no_place(std::string_view name) const {
   for (const Link& link : links_)
     if (link.id != 0 && link.name.empty() && !link.b)
       add_id(text(link));
-  std::string out = "the map has no place \"" + std::string(name) + "\"";
-  if (const std::string meant = guess(name, names); !meant.empty())
-    return out + ": did you mean \"" + meant + "\"?";
+  std::string out = "the map has no place \"" + std::string(name) + '"';
+  if (const std::string meant = did_you_mean(name, names); !meant.empty())
+    return out + meant;
   out += names.empty() ? ", and none that has a name" : ": it has ";
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
     out += (i == 0 ? "" : ", ") + names[i];

@@ -19,9 +19,6 @@ v1::Argument parse_slot(const std::string& word);
 /// age: [s] of the utterance.
 bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, double listened);
 
-/// The robot does what it was told, or answers the question. False: it asks back, or refuses.
-bool acknowledges(const v1::Utterance& reply);
-
 /// Such as "alice: Flakey, stop"; the robot's own with its name.
 std::string line_of(const v1::Utterance& utterance, const std::string& robot = {});
 

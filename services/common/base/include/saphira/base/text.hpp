@@ -98,8 +98,11 @@ std::string counted(std::size_t count, const std::string& thing);
 template <class Items, class Words = std::identity>
 std::string joined(const Items& items, std::string_view between = ", ", Words words = {}) {
   std::string text;
-  for (const auto& item : items)
-    text.append(text.empty() ? "" : between).append(std::invoke(words, item));
+  std::string_view before;
+  for (const auto& item : items) {
+    text.append(before).append(std::invoke(words, item));
+    before = between;
+  }
   return text;
 }
 
