@@ -1,6 +1,7 @@
 #include "saphira/recorder/recording.hpp"
 
 #include <zlib.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <array>
@@ -54,6 +55,16 @@ std::uint32_t checksum(std::string_view bytes) {
       crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
+constexpr std::string_view kZstd = "zstd";
+
+std::string compressed(std::string_view bytes) {
+  std::string out(ZSTD_compressBound(bytes.size()), '\0');
+  // The library fails only for want of space.
+  out.resize(
+      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), ZSTD_CLEVEL_DEFAULT));
+  return out;
+}
+
 /// The fields of a record, one after the other.
 class Fields {
  public:
@@ -85,6 +96,17 @@ class Fields {
   std::string_view bytes_;
   std::uint64_t place_;
 };
+
+/// The `size` bytes that a chunk says it has.
+std::string decompressed(std::string_view packed, std::uint64_t size, const Fields& chunk) {
+  if (size > kLongest)
+    chunk.complain("a part of " + std::to_string(size) + " bytes");
+  std::string out(size, '\0');
+  const std::size_t made = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
+  if (ZSTD_isError(made) != 0 || made != size)
+    chunk.complain("damaged: this part cannot be decompressed");
+  return out;
+}
 
 nlohmann::json schema_of(const nlohmann::json& value) {
   if (value.is_object()) {
@@ -172,9 +194,10 @@ bool Writer::flush() {
   put(body, chunk_last_);
   put(body, static_cast<std::uint64_t>(chunk_.size()));
   put(body, checksum(chunk_));
-  put(body, std::string_view());  // no compression
-  put(body, static_cast<std::uint64_t>(chunk_.size()));
-  body += chunk_;
+  const std::string packed = compressed(chunk_);
+  put(body, kZstd);
+  put(body, static_cast<std::uint64_t>(packed.size()));
+  body += packed;
   const std::string chunk = record(kChunk, body);
   const std::uint64_t chunk_at = at_;
   std::string indices;
@@ -203,8 +226,8 @@ bool Writer::flush() {
   put(entry, static_cast<std::uint64_t>(chunk.size()));
   put(entry, std::string_view(places));
   put(entry, static_cast<std::uint64_t>(indices.size()));
-  put(entry, std::string_view());
-  put(entry, static_cast<std::uint64_t>(chunk_.size()));
+  put(entry, kZstd);
+  put(entry, static_cast<std::uint64_t>(packed.size()));
   put(entry, static_cast<std::uint64_t>(chunk_.size()));
   chunk_indices_ += record(kChunkIndex, entry);
   ++chunks_;
@@ -329,12 +352,19 @@ bool Reader::read_record() {
 void Reader::take_record(std::uint8_t code, std::string_view body, std::uint64_t place) {
   Fields fields(body, place);
   if (code == kChunk) {
-    fields.take(3 * sizeof(std::uint64_t));
+    fields.take(2 * sizeof(std::uint64_t));
+    const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
-    if (const std::string_view compression = fields.text(); !compression.empty())
-      fields.complain("compressed with " + std::string(compression) +
-                      "; `mcap decompress` makes a file without");
-    const std::string_view records = fields.take(fields.number<std::uint64_t>());
+    const std::string_view compression = fields.text();
+    std::string_view records = fields.take(fields.number<std::uint64_t>());
+    std::string unpacked;
+    if (compression == kZstd) {
+      unpacked = decompressed(records, size, fields);
+      records = unpacked;
+    } else if (!compression.empty()) {
+      fields.complain("compressed with " + std::string(compression.substr(0, 20)) +
+                      "; `mcap compress --compression zstd` makes a file that can be read");
+    }
     if (crc != 0 && crc != checksum(records))
       fields.complain("damaged: the checksum of this part is another");
     for (Fields inside(records, place); !inside.empty();) {

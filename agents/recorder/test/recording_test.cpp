@@ -78,9 +78,37 @@ TEST(Recording, SaysWhatIsWrongAndWhere) {
   };
   EXPECT_EQ(error("P5 640 480"), "not an MCAP file: its first bytes are others");
   EXPECT_EQ(error(""), "not an MCAP file: its first bytes are others");
-  std::string file = two_topics();
-  file.at(file.find("1.5")) = '7';
-  EXPECT_NE(error(file).find("damaged"), std::string::npos) << error(file);
+  const std::string file = two_topics();
+  const std::size_t packed = file.find("\x28\xB5\x2F\xFD");
+  ASSERT_NE(packed, std::string::npos);
+  for (const std::size_t place : {packed, packed + 20}) {
+    std::string damaged = file;
+    damaged.at(place) = static_cast<char>(damaged.at(place) ^ 0x55);
+    EXPECT_NE(error(damaged).find("byte 32: damaged"), std::string::npos) << error(damaged);
+  }
+  std::string other = file;
+  other.replace(other.find("zstd"), 4, "lzma");
+  EXPECT_NE(error(other).find("byte 32: compressed with lzma"), std::string::npos) << error(other);
+}
+
+TEST(Recording, RepetitionCostsLittle) {
+  std::ostringstream out;
+  Writer writer(out);
+  const std::uint16_t state = writer.add_channel({"robot/state", "State", "flakey"});
+  const std::string json = R"({"pose":{"x":1.5,"y":2.25,"th":0.125},"battery":12.5})";
+  for (int i = 0; i < 100; ++i)
+    writer.add({state, i, json});
+  EXPECT_TRUE(writer.flush());
+  std::istringstream in(out.str());
+  Reader reader(in);
+  int samples = 0;
+  while (const auto sample = reader.next()) {
+    EXPECT_EQ(sample->json, json);
+    ++samples;
+  }
+  EXPECT_EQ(samples, 100);
+  // The index alone has 16 bytes a sample.
+  EXPECT_LT(writer.bytes(), 100 * json.size() / 2);
 }
 
 TEST(Recording, AFullDiskIsNoticed) {

@@ -197,6 +197,8 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
     setLayers({...v.layers});
     link.onFrame(() => v.news());
     let fitted = false;
+    // Between two samples the picture moves on, where people do not mind.
+    const calm = matchMedia('(prefers-reduced-motion: reduce)');
     const draw = () => {
       const robot = link.get<RobotState>('robot/state');
       // The whole map at first; the robot with what is around it where there is no map.
@@ -205,7 +207,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         if (v.onMap()) v.fit();
       }
       const moving = robot && performance.now() - robot.at < 300 && (robot.data.velocity !== 0 || robot.data.rotation_velocity !== 0);
-      if (v.dirty || moving) {
+      if (v.dirty || moving && !calm.matches) {
         v.draw();
         if (v.target && card.current) setCorner(was => cornerFor(v, card.current!, was));
       }

@@ -27,7 +27,7 @@ struct Sample {
 };
 
 /// Writes a recording: an MCAP file (https://mcap.dev, version 0) of JSON messages, each channel
-/// with a JSON schema. Samples are kept in chunks with an index. A file without its end, as after a
+/// with a JSON schema. Samples are kept in chunks, compressed with zstd, with an index. A file without its end, as after a
 /// kill, has every chunk that was flushed.
 class Writer {
  public:
@@ -78,7 +78,7 @@ class Reader {
   explicit Reader(std::istream& in);
 
   /// The next sample in the order of the file; none: the end. std::invalid_argument: a part that is
-  /// damaged, compressed or no JSON, with its place in the file.
+  /// damaged, compressed otherwise or no JSON, with its place in the file.
   std::optional<Sample> next();
   /// Of a sample that next() has given.
   const Channel& channel(std::uint16_t id) const { return channels_.at(id); }
