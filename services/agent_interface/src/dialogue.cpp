@@ -32,6 +32,33 @@ bool is_yes_or_no(const Meaning& meaning) {
   return meaning.functor == "yes" || meaning.functor == "no";
 }
 
+/// A sentence that changes the knowledge of the robot.
+bool is_fact(const Meaning& meaning) {
+  constexpr std::array kFacts{"office_of", "person_at",     "knows_where", "hazard", "no_hazard",
+                              "not_at",    "not_office_of", "not_knows",   "forget", "name_of"};
+  return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
+}
+
+bool is_question(std::string_view text) {
+  const std::size_t last = text.find_last_not_of(" \t\"'.!");
+  return last != std::string_view::npos && text[last] == '?';
+}
+
+/// Puts the speaker where a slot has "me". False: the speaker has no name.
+bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
+  bool named = true;
+  const auto name = [&](Meaning& meaning) {
+    for (auto& [slot, value] : meaning.slots)
+      if (value == "me") {
+        value = lowered(speaker);
+        named = named && !speaker.empty();
+      }
+  };
+  name(understood.meanings.front());
+  std::for_each(understood.then.begin(), understood.then.end(), name);
+  return named;
+}
+
 }  // namespace
 
 void Dialogue::say(const Utterance& utterance, const std::string& text, bool end,
@@ -345,6 +372,11 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
     refuse(utterance, "what?", out);
   } else if (understood.meanings.size() > 1) {
     choices(understood.meanings, utterance, out);
+  } else if (is_fact(understood.meanings.front()) && is_question(utterance.text) &&
+             !understood.polite) {
+    refuse(utterance, "is that a question? Without the question mark I take it as a fact", out);
+  } else if (!name_speaker(understood, utterance.speaker)) {
+    refuse(utterance, "I do not know who you are", out);
   } else {
     act_on_all(understood, utterance, situation, out);
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 
 namespace saphira::agent_interface {
@@ -31,6 +32,31 @@ bool is_number(const std::string& word) {
          std::count(word.begin(), word.end(), '.') <= 1;
 }
 
+/// Small letters, and the signs of typographers as those of a keyboard.
+std::string plain(std::string_view said) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{
+      {{"\u2018", "'"},
+       {"\u2019", "'"},
+       {"\u201c", " "},
+       {"\u201d", " "},
+       {"\u2013", " "},
+       {"\u2014", " "},
+       {"\u2026", " "},
+       {"\u00a0", " "},
+       {"\u00b0", " degrees "}}};
+  std::string text = lowered(said);
+  for (const auto& [sign, key] : kSigns)
+    for (std::size_t at = 0; (at = text.find(sign, at)) != std::string::npos; at += key.size())
+      text.replace(at, sign.size(), key);
+  return text;
+}
+
+/// Behind these words 's is short for "is"; behind others it tells the owner.
+bool is_subject(const std::string& word) {
+  constexpr std::array kSubjects{"where", "who", "what", "how", "that", "it", "he", "she", "there"};
+  return std::find(kSubjects.begin(), kSubjects.end(), word) != kSubjects.end();
+}
+
 }  // namespace
 
 std::string describe(const Meaning& meaning) {
@@ -41,10 +67,12 @@ std::string describe(const Meaning& meaning) {
 }
 
 std::vector<std::string> words_of(std::string_view said) {
-  const std::string text = lowered(said);
+  const std::string text = plain(said);
   std::vector<std::string> words;
   std::string word;
   const auto end = [&] {
+    if (word.find_first_not_of('-') == std::string::npos)
+      word.clear();
     if (word.empty())
       return;
     // "2m" and "90deg", as people write them.
@@ -62,14 +90,14 @@ std::vector<std::string> words_of(std::string_view said) {
         i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
     if (is_letter(c)) {
       word += c;
-    } else if (c == '.' && is_number(word) && digit_follows) {
-      word += c;
+    } else if (c == '.' && digit_follows && (word.empty() || is_number(word))) {
+      word += word.empty() ? "0." : ".";
     } else if (c == '\'' && !word.empty()) {
       const bool owner = i + 1 < text.size() && text[i + 1] == 's' &&
                          (i + 2 == text.size() || !is_letter(text[i + 2]));
       if (owner) {
         end();
-        word = "'s";
+        word = !words.empty() && is_subject(words.back()) ? "is" : "'s";
         end();
         ++i;
       }
@@ -89,6 +117,13 @@ std::string joined(const std::vector<std::string>& words, std::size_t from) {
   for (std::size_t i = from; i < words.size(); ++i)
     text += (text.empty() || words[i] == "'s" ? "" : " ") + words[i];
   return text;
+}
+
+bool is_greeting(const std::string& word) {
+  constexpr std::array kGreetings{"hey",    "hi",   "hello",  "ok",      "okay",    "oh",
+                                  "no",     "well", "please", "so",      "now",     "thanks",
+                                  "excuse", "me",   "good",   "morning", "evening", "afternoon"};
+  return std::find(kGreetings.begin(), kGreetings.end(), word) != kGreetings.end();
 }
 
 bool has_rest(const Grammar::Node& node) {
@@ -120,6 +155,7 @@ class Grammar::Reader {
         indented ? pattern() : header();
     }
     check_last();
+    check_steps();
     if (grammar_.keywords_.empty())
       fail("expected a line such as \"keyword: flakey\" in the file");
   }
@@ -167,8 +203,8 @@ class Grammar::Reader {
 
   void header() {
     const std::size_t from = at_;
-    const std::string first =
-        word("keyword, names, no-names, steps, list, typed, reply, urgent, later or a functor");
+    const std::string first = word(
+        "keyword, names, no-names, steps, polite, list, typed, reply, urgent, later or a functor");
     if (first == "keyword") {
       expect(':');
       do
@@ -184,9 +220,20 @@ class Grammar::Reader {
       names();
     } else if (first == "steps") {
       expect(':');
-      do
+      do {
+        skip();
+        steps_.push_back({number_, at_, std::string(line_)});
         grammar_.steps_.push_back(word("a functor"));
-      while (take('|'));
+      } while (take('|'));
+    } else if (first == "polite") {
+      expect(':');
+      do {
+        std::vector<std::string>& words = grammar_.polite_.emplace_back();
+        do {
+          words.push_back(heard_word());
+          skip();
+        } while (at_ < line_.size() && line_[at_] != '|');
+      } while (take('|'));
     } else if (first == "list") {
       list();
     } else {
@@ -215,7 +262,13 @@ class Grammar::Reader {
 
   /// list side: left | to the left = left | right
   void list() {
+    skip();
+    const std::size_t from = at_;
     const std::string name = word("the name of the list");
+    if (grammar_.lists_.contains(name)) {
+      at_ = from;
+      fail("the list \"" + name + "\" stands above already");
+    }
     expect(':');
     std::vector<Entry>& entries = grammar_.lists_[name];
     std::size_t unnamed = entries.size();
@@ -259,7 +312,16 @@ class Grammar::Reader {
       const std::size_t end = line_.find('"', at_);
       if (end == std::string_view::npos)
         fail("expected \" at the end of the paraphrase");
-      rule.paraphrases.emplace_back(line_.substr(at_, end - at_));
+      const std::string_view text = line_.substr(at_, end - at_);
+      for (std::size_t i = text.find('$'); i != std::string_view::npos; i = text.find('$', i + 1)) {
+        const std::string_view slot = text.substr(
+            i + 1, text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", i + 1) - i - 1);
+        if (!rule.meaning.slots.contains(std::string(slot))) {
+          at_ += i;
+          fail("the functor " + functor + " has no slot \"" + std::string(slot) + "\"");
+        }
+      }
+      rule.paraphrases.emplace_back(text);
       at_ = end + 1;
     }
     grammar_.rules_.push_back(std::move(rule));
@@ -271,6 +333,18 @@ class Grammar::Reader {
     throw FileError(file_, last_.number, static_cast<int>(last_.at) + 1,
                     "expected a line with words below " + grammar_.rules_.back().meaning.functor,
                     last_.line);
+  }
+
+  void check_steps() const {
+    std::vector<std::string> functors;
+    for (const Rule& rule : grammar_.rules_)
+      functors.push_back(rule.meaning.functor);
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (const std::string& step = grammar_.steps_[i];
+          std::find(functors.begin(), functors.end(), step) == functors.end())
+        throw FileError(file_, steps_[i].number, static_cast<int>(steps_[i].at) + 1,
+                        "there is no functor \"" + step + "\"" + did_you_mean(step, functors),
+                        steps_[i].line);
   }
 
   void pattern() {
@@ -304,7 +378,9 @@ class Grammar::Reader {
   }
 
   Node inner(char closing) {
-    ++depth_;
+    constexpr int kDeepest = 50;
+    if (++depth_ > kDeepest)
+      fail("expected no more than " + std::to_string(kDeepest) + " brackets within each other");
     Node node = parts(closing);
     --depth_;
     return node;
@@ -366,8 +442,9 @@ class Grammar::Reader {
   std::string_view line_;
   int number_ = 0;
   std::size_t at_ = 0;
-  int depth_ = 0;  ///< of brackets
-  Place last_;     ///< the newest functor's
+  int depth_ = 0;               ///< of brackets
+  std::vector<Place> steps_{};  ///< of each in grammar_.steps_
+  Place last_;                  ///< the newest functor's
 };
 
 Grammar::Grammar(std::string_view text, const std::string& file) {
@@ -480,19 +557,25 @@ std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<s
 Grammar::Understood Grammar::understand(std::string_view text, bool replies) const {
   Understood result;
   std::vector<std::string> words = words_of(text);
-  for (const char* const greeting : {"hey", "hello", "ok", "okay"})
-    if (words.size() > 1 && words[0] == greeting &&
-        std::find(keywords_.begin(), keywords_.end(), words[1]) != keywords_.end())
-      words.erase(words.begin());
-  if (!words.empty() &&
-      std::find(keywords_.begin(), keywords_.end(), words[0]) != keywords_.end()) {
+  const auto is_keyword = [this](const std::string& word) {
+    return std::find(keywords_.begin(), keywords_.end(), word) != keywords_.end();
+  };
+  const auto keyword = std::find_if_not(words.begin(), words.end(), is_greeting);
+  if (keyword != words.end() && is_keyword(*keyword)) {
     result.addressed = true;
-    words.erase(words.begin());
+    words.erase(words.begin(), keyword + 1);
+  } else if (words.size() > 1 && is_keyword(words.back())) {
+    // "Stop, Flakey!"
+    words.pop_back();
+    result.meanings = look(words, true, false, Among::urgent);
+    result.addressed = !result.meanings.empty();
+    return result;
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
-  if (words.size() <= kLongestUtterance)
+  const auto whole = [&] {
     result.meanings = look(words, result.addressed, replies, Among::usual);
-  if (result.meanings.empty() && result.addressed && words.size() <= kLongestUtterance) {
+    if (!result.meanings.empty() || !result.addressed)
+      return;
     // Of several ways to divide it, the one with the fewest steps.
     std::vector<std::vector<Meaning>> ways = divided(words, true);
     std::stable_sort(ways.begin(), ways.end(),
@@ -501,12 +584,35 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       result.meanings = {ways[0].front()};
       result.then.assign(ways[0].begin() + 1, ways[0].end());
     }
+  };
+  if (words.size() <= kLongestUtterance) {
+    whole();
+    if (result.meanings.empty() && result.addressed && make_plain_order(words)) {
+      whole();
+      result.polite = true;
+    }
   }
   if (result.meanings.empty() && words.size() <= kLongestUtterance)
     result.meanings = look(words, result.addressed, replies, Among::reply);
   if (result.meanings.empty())
     result.meanings = look(words, result.addressed, replies, Among::urgent);
   return result;
+}
+
+/// "Could you go home" becomes "please go home". So it is an order, or nothing: no line for facts
+/// or questions begins with "please".
+bool Grammar::make_plain_order(std::vector<std::string>& words) const {
+  const std::size_t begin = !words.empty() && words.front() == "please" ? 1 : 0;
+  for (const std::vector<std::string>& polite : polite_) {
+    const auto from = words.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (words.size() - begin <= polite.size() || !std::equal(polite.begin(), polite.end(), from))
+      continue;
+    words.erase(words.begin(), from + static_cast<std::ptrdiff_t>(polite.size()));
+    if (words.front() != "please")
+      words.insert(words.begin(), "please");
+    return true;
+  }
+  return false;
 }
 
 std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool addressed,

@@ -539,8 +539,35 @@ TEST_F(DialogueTest, RepliesAreClaimedAsWhatWasAskedFor) {
   EXPECT_EQ(last.claims[0].value, "EJ-233");
   hear("no, sorry");
   EXPECT_EQ(last.claims.at(0).value, "no");
-  EXPECT_EQ(said("good morning"), "nobody has told me where good morning is");
+  EXPECT_EQ(said("good morning"), "");
+  EXPECT_EQ(said("ask Sam"), "nobody has told me where sam is");
   EXPECT_TRUE(last.claims.empty());
+}
+
+TEST_F(DialogueTest, AQuestionIsNoFact) {
+  hear("Flakey, Karen is in EJ-233");
+  const std::string asks = "is that a question? Without the question mark I take it as a fact";
+  for (const char* const question :
+       {"Flakey, Karen left?", "Flakey, Karen is in EJ-231?", "Flakey, John knows where Karen is?",
+        "Flakey, there is a leak in EJ-231?", "Flakey, you can go to EJ-231?"})
+    EXPECT_EQ(said(question), asks) << question;
+  EXPECT_EQ(said("Flakey, could you keep out of EJ-231?"),
+            "I know now that I am to keep out of EJ-231");
+  EXPECT_EQ(said("Flakey, where is Karen?"), "Alice said that karen is at EJ-233");
+}
+
+TEST_F(DialogueTest, MyOfficeIsTheSpeakers) {
+  EXPECT_EQ(said("Flakey, EJ-233 is my office", "John"), "I know now that EJ-233 is john's office");
+  EXPECT_EQ(said("Flakey, EJ-233 is my office", ""), "I do not know who you are");
+  EXPECT_EQ(said("Flakey, go to my office", "Karen"), "nobody has told me where karen's office is");
+  hear("Flakey, go to my office", "John");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+}
+
+TEST_F(DialogueTest, AWayIsNothingToCarry) {
+  EXPECT_EQ(said("Flakey, take the upper corridor to EJ-233"),
+            "I find the way myself: say \"go to\" and the place");
+  EXPECT_EQ(goals(), "");
 }
 
 TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {

@@ -217,6 +217,14 @@ TEST(Grammar, MistakesNameLineAndColumn) {
   EXPECT_EQ(mistake("keyword: f\ntell(x)\n  tell (a {x ...} | b) c\n"),
             "3:19: expected the end of the line after {x ...}");
   EXPECT_EQ(mistake("keyword: f\nstop( \"I stop\"\n  stop\n"), "2:7: expected the name of a slot");
+  EXPECT_EQ(mistake("keyword: f\nsteps: trun\nturn()\n  turn\n"),
+            "2:8: there is no functor \"trun\": did you mean turn?");
+  EXPECT_EQ(mistake("keyword: f\nturn(side) \"I turn $sid\"\n  turn\n"),
+            "2:20: the functor turn has no slot \"sid\"");
+  EXPECT_EQ(mistake("keyword: f\nlist a: b\nlist a: c\n"),
+            "3:6: the list \"a\" stands above already");
+  EXPECT_EQ(mistake("keyword: f\nstop()\n  " + std::string(20'000, '(')),
+            "3:54: expected no more than 50 brackets within each other");
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ class Grammar {
 
   struct Understood {
     bool addressed = false;         ///< it began with the keyword
+    bool polite = false;            ///< an order in the form of a question: "can you ..."
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
     std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
   };
@@ -109,6 +110,7 @@ class Grammar {
   class Reader;
   class GraphMaker;
 
+  bool make_plain_order(std::vector<std::string>& words) const;
   std::vector<Match> match(const Node& node, const std::vector<std::string>& words,
                            const Match& from) const;
   std::vector<Match> sequence(const std::vector<Node>& parts, const std::vector<std::string>& words,
@@ -126,8 +128,9 @@ class Grammar {
 
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
-  std::vector<std::string> no_names_;  ///< words that no name contains
-  std::vector<std::string> steps_;     ///< functors that a sequence may have
+  std::vector<std::string> no_names_;             ///< words that no name contains
+  std::vector<std::string> steps_;                ///< functors that a sequence may have
+  std::vector<std::vector<std::string>> polite_;  ///< words before an order, as "can you"
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;
 };
