@@ -85,7 +85,8 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
       known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
       say(utterance,
-          rule == maps::ZoneRule::slow || rule == maps::ZoneRule::preferred
+          rule == maps::ZoneRule::keep_out ? "nobody told me to keep out of " + advice.value
+          : rule == maps::ZoneRule::slow || rule == maps::ZoneRule::preferred
               ? "I did not know that " + describe(advice)
               : "I knew of no " + advice.about + " at " + advice.value,
           true, out);
