@@ -301,6 +301,15 @@ TEST(Language, MistakesAreShownWhereTheyAre) {
   }
 }
 
+TEST(Language, AFileOfAnotherKindGivesOneMessage) {
+  const Compiled compiled = compile(std::string("\xff\xfe"
+                                                "B\0e\0g\0i\0n\0\n\0",
+                                                14),
+                                    "m.beh");
+  ASSERT_EQ(compiled.errors.size(), 1u) << all(compiled.errors);
+  EXPECT_EQ(compile("# a comment\nBeginBehavior Own\n", "m.beh").errors.size(), 1u);
+}
+
 TEST(Language, SeveralMistakesAreToldAtOnceWithTheLineAndACaret) {
   const Compiled compiled = compile(with_update("x = foo;\nv = bar(1);\nfloat y = ;\nfloat z = 1;",
                                                 "If x Then Fly\nIf x Then Speed v"),

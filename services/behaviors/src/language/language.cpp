@@ -38,7 +38,9 @@ Compiled compile(std::string_view text, const std::string& file) {
     messages.error({}, "expected a file of at most a million bytes");
   } else {
     const std::vector<language::Token> tokens = language::tokenize(text, messages);
-    const std::vector<language::ParsedBehavior> parsed = language::parse(tokens, messages);
+    std::vector<language::ParsedBehavior> parsed;
+    if (messages.errors.empty())
+      parsed = language::parse(tokens, messages);
     if (parsed.empty() && messages.errors.empty())
       messages.error({}, "expected \"BeginBehavior\"; there is no behavior in this file");
     for (const language::ParsedBehavior& behavior : parsed) {

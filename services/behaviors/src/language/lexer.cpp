@@ -100,26 +100,14 @@ class Lexer {
         return token;
       }
     if (std::string_view("+-*/%<>=!?:;,.(){}|").find(c) == std::string_view::npos) {
-      // All bytes of a multi-byte character, so that there is one message.
-      do
-        ++at_;
-      while ((static_cast<unsigned char>(peek()) & 0xC0U) == 0x80U);
+      // The rest may be no text of this language at all.
       messages_.error(token.place, "expected a name, a number or a sign of the language");
-      skip_blanks();
-      return next_or_end();
+      at_ = text_.size();
+      token.kind = TokenKind::end;
+      return token;
     }
     ++at_;
     token.text = text_.substr(begin, 1);
-    return token;
-  }
-
-  /// After an invalid character: iterative in all(), so that a file of such characters does not
-  /// recurse deeply.
-  Token next_or_end() {
-    Token token;
-    token.place = place();
-    token.kind = TokenKind::mark;
-    token.text = ";";
     return token;
   }
 
