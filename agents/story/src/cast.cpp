@@ -37,16 +37,26 @@ std::string without_article(std::string object) {
 
 Cast::Cast(std::string_view text, const std::string& file) {
   std::optional<Spot> near;
+  const auto knows_person = [this](const std::string& name) {
+    return std::any_of(people_.begin(), people_.end(),
+                       [&](const Person& one) { return one.name == name; });
+  };
   for (const saphira::Line& line : split_lines(text)) {
     LineReader reader(file, line);
     const std::string_view word = reader.word(kWords);
     if (word == "PERSON") {
       Person person;
       person.name = reader.word("a name");
+      if (lowered(person.name) != person.name)
+        reader.fail("expected a name in small letters, such as " + lowered(person.name));
+      if (knows_person(person.name))
+        reader.fail("expected another name: there is a PERSON " + person.name + " above");
       person.place = reader.word("a place of the map");
       people_.push_back(std::move(person));
     } else if (word == "SAYS") {
       const std::string speaker(reader.word("a name"));
+      if (!knows_person(speaker))
+        reader.fail("expected the name of a PERSON above, found " + speaker);
       if (line.words.size() < 3)
         reader.fail("expected what " + speaker + " says");
       lines_.push_back({speaker, rest(line, 2), std::exchange(near, std::nullopt)});

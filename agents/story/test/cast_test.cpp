@@ -56,10 +56,13 @@ TEST(Cast, MistakesNameLineAndColumn) {
   EXPECT_EQ(mistake("HAS report\n"), "1:1");
   EXPECT_EQ(mistake("PERSON karen\n"), "1:13");
   EXPECT_EQ(mistake("PERSON karen kitchen\nLIKES tea\n"), "2:1");
-  EXPECT_EQ(mistake("SAYS alice\n"), "1:6");
+  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alice\n"), "2:6");
+  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alise go\n"), "2:6");
+  EXPECT_EQ(mistake("PERSON alice N1\nPERSON alice N2\n"), "2:8");
+  EXPECT_EQ(mistake("PERSON Alice N1\n"), "1:8");
   EXPECT_EQ(mistake("ENDS\n"), "1:1");
   EXPECT_EQ(mistake("NEAR kitchen 1\n"), "1:1");
-  EXPECT_EQ(mistake("SAYS alice go\nNEAR kitchen far\n"), "2:14");
+  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alice go\nNEAR kitchen far\n"), "3:14");
 }
 
 TEST(Cast, TheEndIsWhatTheRobotSaysLast) {
