@@ -1,5 +1,7 @@
 #include "server.hpp"
 
+#include <arpa/inet.h>
+#include <net/if.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -42,6 +44,13 @@ Channel channel_of(const char* protocol) {
   return std::strcmp(protocol, kCommands) == 0    ? Channel::commands
          : std::strcmp(protocol, kSimulator) == 0 ? Channel::simulator
                                                   : Channel::telemetry;
+}
+
+/// libwebsockets reports no error for another word, and listens nowhere.
+bool is_address(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1 || if_nametoindex(text.c_str()) != 0;
 }
 
 }  // namespace
@@ -228,6 +237,10 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
 Server::Server(const ServerOptions& options, const AccessSettings& access,
                std::vector<PageFile> files, Events events)
     : impl_(std::make_unique<Impl>()) {
+  if (!is_address(options.address))
+    throw std::invalid_argument(
+        "--listen: expected an address or an interface of this machine, such as 0.0.0.0, found \"" +
+        options.address + "\"");
   impl_->access = access;
   impl_->files = std::move(files);
   impl_->events = std::move(events);
