@@ -56,6 +56,12 @@ TEST(ActivityErrors, OfParenthesesAndTexts) {
             List({"1:37 a ) too many: expected (defintention ...)"}));
   EXPECT_EQ(troubles("(defintention :a :goals '((EXECUTE (say \"x))))"),
             List({"1:41 expected a \" for this one"}));
+  for (const char* const wrong :
+       {"(WAIT -5s)", "(WAIT-FOR t :timeout -5)", "(WAIT-FOR t :timeout 60deg)",
+        "(INTEND :turn_to () :blocking t :timeout 2m)"})
+    EXPECT_NE(troubles(goals(wrong)).at(0).find("expected a time in seconds, such as 60s, found"),
+              std::string::npos)
+        << wrong;
   EXPECT_EQ(troubles("(defintention :a :goals '((WAIT-FOR t :timeout 5parsec)))"),
             List({"1:49 expected a unit (m mm cm km s ms min h deg rad m/s mm/s cm/s deg/s rad/s "
                   "%) or none, found \"parsec\""}));

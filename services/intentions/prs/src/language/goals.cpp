@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "saphira/base/units.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -261,13 +263,22 @@ void Goals::tell(std::size_t at, const Form& condition) {
     step(at).words = known->summary.substr(kWhether.size());
 }
 
+/// [s] A constant has no other unit, and is not negative.
+Expression Goals::duration(const Form& form) {
+  const Unit* const unit = find_unit(form.unit);
+  if (form.kind == Form::Kind::kNumber &&
+      (form.number < 0.0 || (unit != nullptr && unit->si != "s")))
+    definition_.fail(form, "expected a time in seconds, such as 60s" + found(form));
+  return expressions_.expression(form, false);
+}
+
 /// Waits for the end of its time only.
 bool Goals::pause(const Form& form) {
   const Parts given = definition_.parts(form, 1, {});
   expect_items(form, given, 1, 1, "(WAIT seconds), such as (WAIT 5s)");
   const std::size_t at = add(Step::Op::kWait, form);
   step(at).text = to_text(*given.items[0]);
-  step(at).timeout = expressions_.expression(*given.items[0], false);
+  step(at).timeout = duration(*given.items[0]);
   Form nothing = form;
   nothing.kind = Form::Kind::kName;
   nothing.text = "nil";
@@ -285,7 +296,7 @@ bool Goals::wait(const Form& form) {
   tell(at, *given.items[0]);
   const Form* const timeout = given.option("timeout");
   if (timeout != nullptr)
-    step(at).timeout = expressions_.expression(*timeout, false);
+    step(at).timeout = duration(*timeout);
   if (given.option("else") != nullptr && timeout == nullptr)
     definition_.fail(*given.option("else"), "expected :else together with :timeout");
   if (timeout == nullptr && program_.timeout <= 0.0 && given.option("forever") == nullptr)
@@ -344,7 +355,7 @@ bool Goals::ask(const Form& form) {
   const std::size_t waits = add(Step::Op::kWait, form);
   take(waits, of_question("answered"), false);
   step(waits).text = "an answer to " + functor.text;
-  step(waits).timeout = expressions_.expression(*given.option("timeout"), false);
+  step(waits).timeout = duration(*given.option("timeout"));
   const std::size_t tests = add(Step::Op::kTest, form);
   take(tests, of_question("answered-well"), false);
   step(tests).reason = expressions_.expression(of_question("answer-text"), false);
@@ -385,7 +396,7 @@ bool Goals::intend(const Form& form) {
     intend->name = name->text;
   }
   if (const Form* const timeout = given.option("timeout"))
-    intend->timeout = expressions_.expression(*timeout, false);
+    intend->timeout = duration(*timeout);
   if (const Form* const priority = given.option("priority"))
     intend->priority = expressions_.expression(*priority, false);
   step(at).text = "intends " + intend->schema;

@@ -26,6 +26,7 @@ class Goals {
   bool test(const Form& form);
   bool assign(const Form& form);
   void tell(std::size_t at, const Form& condition);
+  Expression duration(const Form& form);
   bool pause(const Form& form);
   bool wait(const Form& form);
   bool ask(const Form& form);
