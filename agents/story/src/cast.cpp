@@ -36,6 +36,7 @@ std::string without_article(std::string object) {
 }  // namespace
 
 Cast::Cast(std::string_view text, const std::string& file) {
+  expect_own_format(text, file, "a file of people");
   std::optional<Spot> near;
   for (const saphira::Line& line : split_lines(text)) {
     LineReader reader(file, line);

@@ -175,14 +175,32 @@ std::string_view other_format(std::string_view text) {
       {"<?xml", "an XML file"},
       {"<sdf", "a world of Gazebo"},
       {"#VRML", "a world of Webots"},
-      {"\xFF\xFE", "a text in UTF-16: save it as UTF-8"},
-      {"\xFE\xFF", "a text in UTF-16: save it as UTF-8"},
+      {"\xFF\xFE", "a text in UTF-16 (save it as UTF-8)"},
+      {"\xFE\xFF", "a text in UTF-16 (save it as UTF-8)"},
+      {"#ROSBAG", "a recording of ROS (rosbag)"},
+      {"SQLite format 3", "a database (SQLite), such as recordings of ROS 2 (.db3)"},
+      {"\x89MCAP", "a recording (MCAP)"},
+      {"## Player", "a log of Player"},
+      {"VERTEX_SE2", "a graph of poses (g2o)"},
+      {"BZh", "a packed file (bzip2)"},
+      {"PK\x03\x04", "a packed file (zip)"},
+      {"\x1f\x8b", "a packed file (gzip)"},
+      {"define ", "a world of Stage"},
+      {"include ", "a world of Stage"},
+      {"driver", "a configuration of Player"},
+      {"{", "a JSON file"},
   };
   for (const auto& [beginning, name] : kBeginnings)
     if (text.starts_with(beginning) && (beginning.size() > 2 || text.size() == 2 ||
                                         beginning[0] != 'P' || blank(text[2]) || text[2] == '\n'))
       return name;
   return {};
+}
+
+void expect_own_format(std::string_view text, const std::string& file, std::string_view expected) {
+  if (const std::string_view other = other_format(text); !other.empty())
+    throw FileError(file, 1, 1,
+                    "this is " + std::string(other) + ", and not " + std::string(expected));
 }
 
 }  // namespace saphira

@@ -86,6 +86,17 @@ TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_EQ(other_format("POS (1) 0, 0, 0\n"), "");
   EXPECT_EQ(other_format("P50 0 0\n"), "");
   EXPECT_EQ(other_format(""), "");
+  EXPECT_EQ(other_format("#ROSBAG V2.0\n"), "a recording of ROS (rosbag)");
+  EXPECT_EQ(other_format("\x1f\x8b\x08"), "a packed file (gzip)");
+  EXPECT_EQ(other_format("define floorplan model\n"), "a world of Stage");
+  EXPECT_NO_THROW(expect_own_format("width 1000\n", "a.wld", "a world"));
+  try {
+    expect_own_format("\xFF\xFEw", "a.wld", "a world");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_STREQ(error.what(),
+                 "a.wld:1:1: this is a text in UTF-16 (save it as UTF-8), and not a world");
+  }
 }
 
 TEST(Text, TheReasonStandsBehindTheFile) {

@@ -27,8 +27,8 @@ std::string sealed(std::string text);
 std::string_view unsealed(std::string_view text, const std::string& file);
 
 /// Gives the content of a file to `understand`. Where that throws, or the file cannot be read, the
-/// file is set aside as "FILE.damaged" (where files stay, it is only said). Returns the error and the consequence, in words. Empty
-/// without an error, and for a missing or empty file.
+/// file is set aside as "FILE.damaged" (where files stay, it is only said). Returns the error and
+/// the consequence, in words. Empty without an error, and for a missing or empty file.
 std::string read_or_set_aside(const std::string& path,
                               const std::function<void(const std::string& content)>& understand);
 
