@@ -46,7 +46,7 @@ std::vector<std::string> names_in(const std::string& folder, const std::string& 
   std::error_code error;
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == extension)
+    if (entry.path().extension() == extension && !entry.path().filename().string().starts_with('.'))
       names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
