@@ -42,6 +42,34 @@ TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
   }
 }
 
+TEST(Text, OfALongLineThePartAroundThePlaceIsShown) {
+  const std::string many(1000, 'a');
+  const std::string part(49, 'a');
+  EXPECT_EQ(
+      FileError("a.p", 1, 1001, "bad", many + "b" + many).what(),
+      "a.p:1:1001: bad\n    ..." + part + "b" + part + "a...\n    " + std::string(52, ' ') + "^");
+  EXPECT_EQ(FileError("a.p", 1, 1, "bad", many).what(),
+            "a.p:1:1: bad\n    " + many.substr(0, 100) + "...\n    ^");
+  const std::string line = "n " + many;
+  const auto words = split_lines(line);
+  LineReader reader("a.p", words[0]);
+  reader.word("a name");
+  try {
+    reader.number("x");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("found \"" + many.substr(0, 100) + "...\"\n"),
+              std::string::npos);
+  }
+}
+
+TEST(Text, ControlCharactersDoNotEndAMessage) {
+  EXPECT_STREQ(
+      FileError("a.p", 1, 2, std::string("bad \0", 5) + "x", std::string_view("\0\t\x1B[1m", 6))
+          .what(),
+      "a.p:1:2: bad ?x\n    ?\t?[1m\n     ^");
+}
+
 TEST(Text, ATextThatEndsWithinALineWasCutOff) {
   for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 \n", "a 1; comment", "a 1\n\n"})
     EXPECT_NO_THROW(expect_last_line_break(whole, "a.p")) << whole;
