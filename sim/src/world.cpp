@@ -22,12 +22,10 @@ class Parser {
   /// The text has to outlive the parser.
   void read(std::string_view text, const std::string& file) {
     file_ = file;
-    if (const std::string_view other = other_format(text); !other.empty())
-      throw FileError(file, 1, 1,
-                      "this is " + std::string(other) +
-                          ", and not a world of this simulator, which says \"width MM\", \"height "
-                          "MM\" and then a line \"X Y X Y\" for each wall, in mm (as the lines "
-                          "behind LINES in a 2D-Map do)");
+    expect_own_format(text, file,
+                      "a world of this simulator, which says \"width MM\", \"height "
+                      "MM\" and then a line \"X Y X Y\" for each wall, in mm (as the lines "
+                      "behind LINES in a 2D-Map do)");
     if (world_.file.empty())
       world_.file = file;
     int last = 1;
@@ -190,12 +188,14 @@ World parse_world(std::string_view text, const std::string& file) {
 World load_world(const std::string& path, const std::string& things) {
   Parser parser;
   const std::string text = read_file(path);
-  expect_last_line_break(text, path);
+  if (other_format(text).empty())
+    expect_last_line_break(text, path);
   parser.read(text, path);
   std::string more;
   if (!things.empty()) {
     more = read_file(things);
-    expect_last_line_break(more, things);
+    if (other_format(more).empty())
+      expect_last_line_break(more, things);
     parser.read(more, things);
   }
   return parser.finish();

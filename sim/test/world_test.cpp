@@ -64,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
     Files, BrokenWorld,
     ::testing::Values(Broken{"", 1, 1, "expected width"},
                       Broken{"2D-Map\nLINES\n0 0 1 1\n", 1, 1, "a map of ARIA and MobileSim"},
+                      Broken{"define wall model\n", 1, 1, "a world of Stage"},
                       Broken{"width 10\n", 1, 1, "expected height"},
                       Broken{"0 0 1 1\n", 1, 1, "width and height of the world before"},
                       Broken{"width 10\nheight\n", 2, 7, "expected height of the world"},

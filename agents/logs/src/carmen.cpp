@@ -406,6 +406,7 @@ std::optional<double> find_no_return(const std::vector<LaserScan>& scans) {
 }
 
 CarmenLog parse_carmen(std::string_view text, const std::string& file) {
+  expect_own_format(text, file, "a log of CARMEN (FLASER, ROBOTLASER1 or RAWLASER1 lines)");
   CarmenLog log;
   log.file = file;
   Parameters parameters;

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::recorder {
 
 namespace {
@@ -302,8 +304,14 @@ void Writer::write(std::string_view bytes) {
 Reader::Reader(std::istream& in) : in_(in) {
   std::string magic(kMagic.size(), '\0');
   in_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic != kMagic)
-    throw std::invalid_argument("not an MCAP file: its first bytes are others");
+  if (magic != kMagic) {
+    std::string more(kMagic.size(), '\0');
+    in_.read(more.data(), static_cast<std::streamsize>(more.size()));
+    const std::string_view other = magic.starts_with("\x89MCAP") ? "" : other_format(magic + more);
+    throw std::invalid_argument("not an MCAP file: " + (other.empty()
+                                                            ? "its first bytes are others"
+                                                            : "this is " + std::string(other)));
+  }
   at_ = kMagic.size();
 }
 

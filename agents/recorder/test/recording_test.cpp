@@ -76,7 +76,11 @@ TEST(Recording, SaysWhatIsWrongAndWhere) {
     }
     return "";
   };
-  EXPECT_EQ(error("P5 640 480"), "not an MCAP file: its first bytes are others");
+  EXPECT_EQ(error("P5 640 480"),
+            "not an MCAP file: this is a picture (PGM), such as occupancy grids are kept in");
+  EXPECT_EQ(error("SQLite format 3"),
+            "not an MCAP file: this is a database (SQLite), such as recordings of ROS 2 (.db3)");
+  EXPECT_EQ(error("\x89MCAP1\r\n"), "not an MCAP file: its first bytes are others");
   EXPECT_EQ(error(""), "not an MCAP file: its first bytes are others");
   const std::string file = two_topics();
   const std::size_t packed = file.find("\x28\xB5\x2F\xFD");

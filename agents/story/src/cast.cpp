@@ -36,6 +36,7 @@ std::string without_article(std::string object) {
 }  // namespace
 
 Cast::Cast(std::string_view text, const std::string& file) {
+  expect_own_format(text, file, "a file of people");
   std::optional<Spot> near;
   const auto knows_person = [this](const std::string& name) {
     return std::any_of(people_.begin(), people_.end(),

@@ -162,6 +162,7 @@ bool is_keyword(const std::string& name) {
 class Parser {
  public:
   Parser(std::string_view text, const std::string& file) : lines_(split_lines(text)) {
+    expect_own_format(text, file, "a parameter file (.p)");
     expect_last_line_break(text, file);
     parameters_.file = file;
   }

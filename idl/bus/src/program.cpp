@@ -8,6 +8,7 @@
 
 #include "internal.hpp"
 #include "log.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -105,6 +106,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     return *code;
   internal::has_worked() = false;
   internal::has_erred() = false;
+  files_stay() = options.dry_run;
   std::string what;
   std::string usage;  // the first such error, for the person who gave the input
   try {

@@ -7,6 +7,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -448,6 +449,7 @@ class Grammar::Reader {
 };
 
 Grammar::Grammar(std::string_view text, const std::string& file) {
+  expect_own_format(text, file, "a grammar");
   Reader(*this, file).read(text);
 }
 

@@ -63,6 +63,8 @@ bool MemoryFile::begin(Memory& memory) {
   std::vector<Ending>& endings = memory.endings;
   if (endings.size() > most_)
     endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most_));
+  if (files_stay())
+    return can_replace_file(path_);
   // Written to a new file and renamed: a crash in between leaves the old file whole.
   const std::string fresh = path_ + ".new";
   std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "we"));

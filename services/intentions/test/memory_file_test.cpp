@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 
 #include "process.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {
@@ -143,6 +145,18 @@ TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   EXPECT_EQ(read_file(path), write_line(kEnding));
   EXPECT_TRUE(MemoryFile(path).troubles().empty());
   EXPECT_THROW(MemoryFile{dir.path("no/such/folder")}, std::runtime_error);
+}
+
+TEST(MemoryFile, ADryRunChangesNoFile) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.txt");
+  std::ofstream(path) << "my goals\n";
+  files_stay() = true;
+  const MemoryFile memory(path);
+  files_stay() = false;
+  EXPECT_EQ(memory.troubles().size(), 1U);
+  EXPECT_EQ(read_file(path), "my goals\n");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }
 
 TEST(MemoryFile, RemembersTheWorkAndSetsAsideWhatIsDamagedOfIt) {

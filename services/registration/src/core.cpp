@@ -103,8 +103,15 @@ std::optional<Pose> start_pose(const std::string& start, const maps::Map& map) {
     if (error != std::errc{})
       break;
     at = next;
-    if (i == 2 && at == end && !maps::problem(Pose{values[0], values[1], values[2]}))
+    if (i == 2 && at == end && !maps::problem(Pose{values[0], values[1], values[2]})) {
+      if (std::abs(values[2]) > 2.0 * kPi)
+        throw std::invalid_argument("start \"" + start +
+                                    "\": expected th between -2 pi and 2 pi; it is in radians; 90 "
+                                    "degrees are 1.5708");
+      if (const auto why = maps::outside(map, {values[0], values[1]}, kOutside))
+        throw std::invalid_argument("start \"" + start + "\": " + *why + "; x and y are in metres");
       return Pose{values[0], values[1], norm2_angle(values[2])};
+    }
   }
   throw std::invalid_argument("start \"" + start +
                               "\": expected x,y,th in metres and radians, the name of a POS of the "

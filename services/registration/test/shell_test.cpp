@@ -328,6 +328,21 @@ TEST(StartPose, IsAPlaceOrAPose) {
   EXPECT_THROW(start_pose("1.5,nan,0", {}), std::invalid_argument);
   EXPECT_THROW(start_pose("1.5,-1e13,0", {}), std::invalid_argument);
   EXPECT_THROW(start_pose("kitchen", map), std::invalid_argument);
+  const auto said = [&](const char* start) -> std::string {
+    try {
+      start_pose(start, map);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(said("1,2,6.28"), "");
+  EXPECT_EQ(
+      said("1,2,90"),
+      "start \"1,2,90\": expected th between -2 pi and 2 pi; it is in radians; 90 degrees are "
+      "1.5708");
+  EXPECT_EQ(said("1500,7000,0").substr(0, 48),
+            "start \"1500,7000,0\": expected a place on the map");
 }
 
 TEST(MemoryFile, ReadsWhatItWrote) {

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "program.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -36,6 +37,9 @@ Compiled compile(std::string_view text, const std::string& file) {
   Compiled out;
   if (text.size() > most_bytes) {
     messages.error({}, "expected a file of at most a million bytes");
+  } else if (const std::string_view other = other_format(text); !other.empty()) {
+    messages.errors.emplace_back(file, 1, 1,
+                                 "this is " + std::string(other) + ", and not a file of behaviors");
   } else {
     const std::vector<language::Token> tokens = language::tokenize(text, messages);
     std::vector<language::ParsedBehavior> parsed;

@@ -169,8 +169,7 @@ FileError Messages::made(const Place& place, const std::string& message) const {
   std::string_view line = rest.substr(0, rest.find('\n'));
   if (!line.empty() && line.back() == '\r')
     line.remove_suffix(1);
-  // The start of a long line shows the place.
-  return FileError(file_, place.line, place.column, message, line.substr(0, 400));
+  return FileError(file_, place.line, place.column, message, line);
 }
 
 void Messages::error(const Place& place, const std::string& message) {

@@ -46,7 +46,7 @@ std::vector<std::string> names_in(const std::string& folder, const std::string& 
   std::error_code error;
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == extension)
+    if (entry.path().extension() == extension && !entry.path().filename().string().starts_with('.'))
       names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -63,9 +63,18 @@ std::string find_file(const std::string& folder, const std::string& name,
   if (fs::exists(name, error))
     throw std::invalid_argument(name + ": expected a file, found " +
                                 (fs::is_directory(name, error) ? "a folder" : "a device"));
+  if (name.find('/') != std::string::npos) {
+    const fs::path path(name);
+    const std::string meant = guess(path.stem().string(), names_in(folder_of(name), extension));
+    throw std::invalid_argument(
+        name + ": there is no such file" +
+        (meant.empty()
+             ? ""
+             : ": did you mean " + (path.parent_path() / meant).string() + extension + "?"));
+  }
   const std::vector<std::string> names = names_in(folder, extension);
   throw std::invalid_argument("no \"" + name + "\" in " + folder +
-                              did_you_mean(name, names, ": expected a file, or a shipped one;") +
+                              did_you_mean(name, names, ": expected a file, or a shipped one.") +
                               " There are: " + joined(names, " "));
 }
 

@@ -1,5 +1,6 @@
 #include "saphira/base/text.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -15,15 +16,49 @@ namespace saphira {
 
 namespace {
 
+constexpr std::size_t kLongest = 100;  // letters of a quotation
+
+/// Without control characters: a NUL would end the text there, others would drive the terminal.
+std::string printable(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n')
+      c = '?';
+  return out;
+}
+
+/// The start of a word.
+std::string quoted(std::string_view word) {
+  return '"' + std::string(word.substr(0, kLongest)) + (word.size() > kLongest ? "...\"" : "\"");
+}
+
 std::string describe(const std::string& file, int line, int column, const std::string& message,
                      std::string_view line_text) {
   std::string out =
-      file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message;
+      file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + printable(message);
   if (!line_text.empty()) {
-    out += "\n    " + std::string(line_text) + "\n    ";
+    // Of a long line the part around the place, of whole UTF-8 letters.
+    const auto within = [&](std::size_t i) {
+      return i < line_text.size() && (static_cast<unsigned char>(line_text[i]) & 0xC0U) == 0x80U;
+    };
+    std::string shown(line_text);
+    if (line_text.size() > kLongest) {
+      const auto place = std::min(static_cast<std::size_t>(column), line_text.size());
+      std::size_t begin = place > kLongest / 2 ? place - kLongest / 2 : 0;
+      for (int i = 0; i < 3 && within(begin); ++i)
+        ++begin;
+      std::size_t end = std::min(begin + kLongest, line_text.size());
+      for (int i = 0; i < 3 && within(end); ++i)
+        --end;
+      const std::string before = begin > 0 ? "..." : "";
+      shown = before + std::string(line_text.substr(begin, end - begin)) +
+              (end < line_text.size() ? "..." : "");
+      column += static_cast<int>(before.size()) - static_cast<int>(begin);
+    }
+    out += "\n    " + printable(shown) + "\n    ";
     // Tabs are kept so that the caret stands under the place whatever their width.
     for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(column); ++i)
-      out += i < line_text.size() && line_text[i] == '\t' ? '\t' : ' ';
+      out += i < shown.size() && shown[i] == '\t' ? '\t' : ' ';
     out += '^';
   }
   return out;
@@ -90,7 +125,7 @@ double LineReader::number(std::string_view what, double low, double high) {
   const std::string_view text = word(what);
   const auto value = number_in<double>(text.substr(text.starts_with('+') ? 1 : 0));
   if (!value || !std::isfinite(*value))
-    fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
+    fail("expected a number (" + std::string(what) + "), found " + quoted(text));
   if (*value < low || *value > high) {
     std::ostringstream range;
     range << "expected " << what << " between " << low << " and " << high << ", found " << text;
@@ -109,8 +144,7 @@ long LineReader::integer(std::string_view what, long low, long high) {
 void LineReader::expect_end() const {
   if (!at_end()) {
     const Word& extra = line_->words[next_];
-    fail_at(extra.column,
-            "expected the end of the line, found \"" + std::string(extra.text) + "\"");
+    fail_at(extra.column, "expected the end of the line, found " + quoted(extra.text));
   }
 }
 
@@ -175,14 +209,32 @@ std::string_view other_format(std::string_view text) {
       {"<?xml", "an XML file"},
       {"<sdf", "a world of Gazebo"},
       {"#VRML", "a world of Webots"},
-      {"\xFF\xFE", "a text in UTF-16: save it as UTF-8"},
-      {"\xFE\xFF", "a text in UTF-16: save it as UTF-8"},
+      {"\xFF\xFE", "a text in UTF-16 (save it as UTF-8)"},
+      {"\xFE\xFF", "a text in UTF-16 (save it as UTF-8)"},
+      {"#ROSBAG", "a recording of ROS (rosbag)"},
+      {"SQLite format 3", "a database (SQLite), such as recordings of ROS 2 (.db3)"},
+      {"\x89MCAP", "a recording (MCAP)"},
+      {"## Player", "a log of Player"},
+      {"VERTEX_SE2", "a graph of poses (g2o)"},
+      {"BZh", "a packed file (bzip2)"},
+      {"PK\x03\x04", "a packed file (zip)"},
+      {"\x1f\x8b", "a packed file (gzip)"},
+      {"define ", "a world of Stage"},
+      {"include ", "a world of Stage"},
+      {"driver", "a configuration of Player"},
+      {"{", "a JSON file"},
   };
   for (const auto& [beginning, name] : kBeginnings)
     if (text.starts_with(beginning) && (beginning.size() > 2 || text.size() == 2 ||
                                         beginning[0] != 'P' || blank(text[2]) || text[2] == '\n'))
       return name;
   return {};
+}
+
+void expect_own_format(std::string_view text, const std::string& file, std::string_view expected) {
+  if (const std::string_view other = other_format(text); !other.empty())
+    throw FileError(file, 1, 1,
+                    "this is " + std::string(other) + ", and not " + std::string(expected));
 }
 
 }  // namespace saphira

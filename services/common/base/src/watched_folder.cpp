@@ -27,7 +27,9 @@ WatchedFolder::Changes WatchedFolder::look() {
       break;
     const fs::directory_entry& entry = *entries;
     std::error_code gone;  // an editor may have replaced it in this moment
-    if (entry.path().extension() != extension_ || !entry.is_regular_file(gone))
+    // An editor and a copy from another system leave hidden files.
+    if (entry.path().filename().string().starts_with('.') ||
+        entry.path().extension() != extension_ || !entry.is_regular_file(gone))
       continue;
     struct stat file {};
     if (stat(entry.path().c_str(), &file) != 0)

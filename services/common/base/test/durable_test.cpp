@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "process.hpp"
@@ -68,6 +69,24 @@ TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
   write(path, "worse");
   EXPECT_NE(read_or_set_aside(path, understand), "");
   EXPECT_EQ(read_file(path + ".damaged"), "worse");
+}
+
+TEST(Durable, ADryRunChangesNoFile) {
+  const test::TempDir folder;
+  const std::string path = folder.path("notes.txt");
+  write(path, "mine");
+  files_stay() = true;
+  EXPECT_EQ(read_or_set_aside(
+                path, [](const std::string&) { throw std::runtime_error("it is not ours"); }),
+            path + " cannot be used; a start would set it aside as " + path +
+                ".damaged, and begin it anew: it is not ours");
+  EXPECT_TRUE(replace_file(path, "other"));
+  EXPECT_TRUE(can_replace_file(path));
+  EXPECT_FALSE(replace_file(folder.path("nowhere/state"), "other"));
+  EXPECT_EQ(errno, ENOENT);
+  files_stay() = false;
+  EXPECT_EQ(read_file(path), "mine");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(Durable, AFileIsReplacedWhole) {

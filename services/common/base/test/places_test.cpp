@@ -43,6 +43,18 @@ TEST(Places, AFolderIsNoFile) {
     }
 }
 
+TEST(Places, APathIsNoShippedName) {
+  for (const auto& [path, said] :
+       {std::pair(std::string("/tmp/nowhere/pioneer.p"), std::string()),
+        {kRobots + "/pionere.p", ": did you mean " + kRobots + "/pioneer.p?"}})
+    try {
+      find_file(kRobots, path, ".p");
+      FAIL() << "found";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), path + ": there is no such file" + said);
+    }
+}
+
 TEST(Places, WhatIsNotThereIsAnErrorThatListsWhatIs) {
   try {
     find_file(kRobots, "nonesuch", ".p");

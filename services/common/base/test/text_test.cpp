@@ -42,6 +42,34 @@ TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
   }
 }
 
+TEST(Text, OfALongLineThePartAroundThePlaceIsShown) {
+  const std::string many(1000, 'a');
+  const std::string part(49, 'a');
+  EXPECT_EQ(
+      FileError("a.p", 1, 1001, "bad", many + "b" + many).what(),
+      "a.p:1:1001: bad\n    ..." + part + "b" + part + "a...\n    " + std::string(52, ' ') + "^");
+  EXPECT_EQ(FileError("a.p", 1, 1, "bad", many).what(),
+            "a.p:1:1: bad\n    " + many.substr(0, 100) + "...\n    ^");
+  const std::string line = "n " + many;
+  const auto words = split_lines(line);
+  LineReader reader("a.p", words[0]);
+  reader.word("a name");
+  try {
+    reader.number("x");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("found \"" + many.substr(0, 100) + "...\"\n"),
+              std::string::npos);
+  }
+}
+
+TEST(Text, ControlCharactersDoNotEndAMessage) {
+  EXPECT_STREQ(
+      FileError("a.p", 1, 2, std::string("bad \0", 5) + "x", std::string_view("\0\t\x1B[1m", 6))
+          .what(),
+      "a.p:1:2: bad ?x\n    ?\t?[1m\n     ^");
+}
+
 TEST(Text, ATextThatEndsWithinALineWasCutOff) {
   for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 \n", "a 1; comment", "a 1\n\n"})
     EXPECT_NO_THROW(expect_last_line_break(whole, "a.p")) << whole;
@@ -86,6 +114,17 @@ TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_EQ(other_format("POS (1) 0, 0, 0\n"), "");
   EXPECT_EQ(other_format("P50 0 0\n"), "");
   EXPECT_EQ(other_format(""), "");
+  EXPECT_EQ(other_format("#ROSBAG V2.0\n"), "a recording of ROS (rosbag)");
+  EXPECT_EQ(other_format("\x1f\x8b\x08"), "a packed file (gzip)");
+  EXPECT_EQ(other_format("define floorplan model\n"), "a world of Stage");
+  EXPECT_NO_THROW(expect_own_format("width 1000\n", "a.wld", "a world"));
+  try {
+    expect_own_format("\xFF\xFEw", "a.wld", "a world");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_STREQ(error.what(),
+                 "a.wld:1:1: this is a text in UTF-16 (save it as UTF-8), and not a world");
+  }
 }
 
 TEST(Text, TheReasonStandsBehindTheFile) {

@@ -19,6 +19,7 @@ TEST(WatchedFolder, SaysWhatCameChangedAndWent) {
   EXPECT_FALSE(folder.look().any());
   std::ofstream(temporary.path("a.act")) << "one";
   std::ofstream(temporary.path("b.txt")) << "other";
+  std::ofstream(temporary.path("._a.act")) << "hidden";
   EXPECT_EQ(folder.look().changed, Names{"a.act"});
   EXPECT_FALSE(folder.look().any());
   std::ofstream(temporary.path("a.act")) << "longer";

@@ -278,13 +278,10 @@ std::optional<ZoneRule> zone_rule(std::string_view word) {
 Map parse_map(std::string_view text, const std::string& file) {
   Map map;
   std::map<std::uint32_t, int> lines_of_ids;
-  if (const std::string_view other = other_format(text); !other.empty())
-    throw FileError(
-        file, 1, 1,
-        "this is " + std::string(other) +
-            ", and not a map of Saphira's, which has a line for each corridor, door and "
-            "wall (config/maps/README.md). A robot can make one: saphira map build; from "
-            "laser scans: saphira log map");
+  expect_own_format(text, file,
+                    "a map of Saphira's, which has a line for each corridor, door and "
+                    "wall (config/maps/README.md). A robot can make one: saphira map build; from "
+                    "laser scans: saphira log map");
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     Scanner in(file, text.substr(0, end), number);
@@ -297,7 +294,7 @@ Map parse_map(std::string_view text, const std::string& file) {
 
 Map load_map(const std::string& path) {
   const std::string text = read_file(path);
-  if (!text.ends_with('"'))  // a name is whole
+  if (!text.ends_with('"') && other_format(text).empty())  // a name is whole
     expect_last_line_break(text, path);
   return parse_map(text, path);
 }

@@ -237,6 +237,14 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
     EXPECT_EQ(error.line(), 2);
     EXPECT_NE(std::string(error.what()).find("cut off"), std::string::npos);
   }
+  try {
+    load(
+        "\xFF\xFE"
+        "D O O R");
+    ADD_FAILURE() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("this is a text in UTF-16"), std::string::npos);
+  }
   std::remove(path.c_str());
 }
 

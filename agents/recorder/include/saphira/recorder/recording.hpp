@@ -27,8 +27,8 @@ struct Sample {
 };
 
 /// Writes a recording: an MCAP file (https://mcap.dev, version 0) of JSON messages, each channel
-/// with a JSON schema. Samples are kept in chunks, compressed with zstd, with an index. A file without its end, as after a
-/// kill, has every chunk that was flushed.
+/// with a JSON schema. Samples are kept in chunks, compressed with zstd, with an index. A file
+/// without its end, as after a kill, has every chunk that was flushed.
 class Writer {
  public:
   /// `out`: binary, and empty. It outlives the writer.

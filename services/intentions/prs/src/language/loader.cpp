@@ -92,6 +92,12 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
   std::vector<Each> each(files.size());
   std::map<std::string, std::string> defined;
   for (std::size_t i = 0; i < files.size(); ++i) {
+    if (const std::string_view other = other_format(files[i].content); !other.empty()) {
+      each[i].troubles.push_back(
+          {true, files[i].name, 1, 1,
+           "this is " + std::string(other) + ", and not a file of activities", ""});
+      continue;
+    }
     Reader reader(files[i].name, files[i].content, each[i].troubles);
     const std::vector<Form> forms = reader.read();
     // Some editors empty a file before they write it.

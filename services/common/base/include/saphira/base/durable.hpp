@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,6 +10,10 @@
 /// disk, a power cut, an editor); it is set aside and begun anew. No state is worth a refusal to
 /// start.
 namespace saphira {
+
+/// True in a program that only checks what it was given (--dry-run): then no function here changes
+/// a file.
+std::atomic<bool>& files_stay();
 
 /// The line behind its checksum: "9ae16a3b placed ...".
 std::string sealed_line(std::string_view line);
@@ -22,8 +27,8 @@ std::string sealed(std::string text);
 std::string_view unsealed(std::string_view text, const std::string& file);
 
 /// Gives the content of a file to `understand`. Where that throws, or the file cannot be read, the
-/// file is set aside as "FILE.damaged". Returns the error and the consequence, in words. Empty
-/// without an error, and for a missing or empty file.
+/// file is set aside as "FILE.damaged" (where files stay, it is only said). Returns the error and
+/// the consequence, in words. Empty without an error, and for a missing or empty file.
 std::string read_or_set_aside(const std::string& path,
                               const std::function<void(const std::string& content)>& understand);
 

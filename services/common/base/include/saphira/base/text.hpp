@@ -110,4 +110,7 @@ std::string joined(const Items& items, std::string_view between = ", ", Words wo
 /// other text.
 std::string_view other_format(std::string_view text);
 
+/// FileError "this is a picture (PNG), and not EXPECTED" where the text is of such a kind.
+void expect_own_format(std::string_view text, const std::string& file, std::string_view expected);
+
 }  // namespace saphira
