@@ -722,8 +722,51 @@ TEST_F(Answers, UpInTheBackgroundIsRefusedASecondTime) {
   const Outcome again = run({"up", file, "-d"});
   EXPECT_EQ(again.code, 3) << again.text;
   EXPECT_TRUE(has(again.text, "saphira: this deployment is running already: ")) << again.text;
-  const Outcome stopped = run({"stop", "twice-" + robot_});
+  const std::string other = "other-" + robot_;
+  const Outcome spared = test::run({"saphira", "--robot", other, "stop"});
+  EXPECT_EQ(spared.code, 1) << spared.text;
+  EXPECT_TRUE(has(spared.text, "saphira: no deployment of robot " + other)) << spared.text;
+  EXPECT_TRUE(has(spared.text, " runs; there are: ")) << spared.text;
+  EXPECT_TRUE(has(spared.text, "twice-" + robot_)) << spared.text;
+  const Outcome stopped = run({"stop"});
   EXPECT_EQ(stopped.code, 0) << stopped.text;
+}
+
+TEST_F(Answers, AnAuthorityThatIsNamedWinsOverTheOneOfTheEnvironment) {
+  const std::map<std::string, std::string> environment{{"SAPHIRA_AUTHORITY", "/elsewhere"}};
+  const auto said = [&](const std::vector<std::string>& words) {
+    return test::run(command(words), environment).text;
+  };
+  const std::string named = said({"security", "revoke", "eve", "--authority", "/nothere"});
+  EXPECT_TRUE(has(named, "/nothere holds no authority")) << named;
+  const std::string other = said({"security", "revoke", "eve"});
+  EXPECT_TRUE(has(other, "/elsewhere holds no authority")) << other;
+}
+
+TEST_F(Answers, RecordSparesAFileWithOtherContent) {
+  const std::string file = write("notes.mcap", "notes");
+  const Outcome outcome = run({"record", file, "--for", "0.1"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.text, "saphira: " + file +
+                              ": a file with other content is there; give a new name, such as "
+                              "NAME.mcap\n");
+  EXPECT_EQ(read_file(file), "notes");
+}
+
+TEST_F(Answers, LogMapSparesTheLogAndWritesNoMapWithoutWalls) {
+  const std::string scans =
+      "FLASER 3 81 81 81 0 0 0 0 0 0 1 h 1\nFLASER 3 81 81 81 1 0 0 1 0 0 2 h 2\n";
+  const std::string log = write("far.log", scans);
+  const Outcome same = run({"log", "map", log, folder_.path("./far.log")});
+  EXPECT_EQ(same.code, 2);
+  EXPECT_TRUE(has(same.text, "far.log: this is the log itself; expected another file"))
+      << same.text;
+  EXPECT_EQ(read_file(log), scans);
+  const std::string map = write("old.map", "POS (1) 0, 0, 0 \"home\"\n");
+  const Outcome none = run({"log", "map", log, map});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_TRUE(has(none.text, "far.log: no wall was found; nothing is written")) << none.text;
+  EXPECT_EQ(read_file(map), "POS (1) 0, 0, 0 \"home\"\n");
 }
 
 TEST_F(Answers, UpNamesTheMistakeInADeployment) {

@@ -102,6 +102,7 @@ const std::vector<Mistake>& mistakes() {
       {{"map", "show", "nope.txt"}, {"nope.txt: expected a name that ends with .svg"}},
       {{"record", "/nowhere/x.mcap", "--for", "1"},
        {"/nowhere/x.mcap: cannot be written: No such file or directory"}},
+      {{"record", "notes.txt", "--for", "1"}, {"notes.txt: expected a name that ends with .mcap"}},
       {{"replay", "/nowhere/x.mcap"},
        {"/nowhere/x.mcap: cannot be read: No such file or directory"}},
       {{"map", "build", "/nowhere/x.map"},
@@ -135,6 +136,10 @@ const std::vector<Mistake>& mistakes() {
        {"rotation: expected one of ROTATION_NONE", "found \"LEFT\""}},
       {{"write", "device/servo", R"({"arguments": [{"number": true}]})"},
        {"arguments[0].number: expected a number, found true"}},
+      {{"write", "drive/direct", R"({"velocity": 1e999})"},
+       {"drive/direct: velocity: expected a finite number, found 1e999\n"}},
+      {{"write", "device/servo", R"({"arguments": [{"name": "a"}, {"number": -1e999}]})"},
+       {"device/servo: arguments.number: expected a finite number, found -1e999\n"}},
       // processes, beliefs, devices
       {{"processes", "interrupt"}, {"expected processes, or processes interrupt"}},
       {{"processes", "stop", "a", "b"}, {"expected processes, or processes interrupt"}},

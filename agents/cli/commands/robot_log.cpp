@@ -70,11 +70,20 @@ int map(const RobotLogOptions& options, const bus::Stop& stop) {
   // Tried before the work of minutes.
   if (!options.drawing.empty())
     expect_ending(options.drawing, ".svg");
-  for (const std::string& path : {options.map, options.drawing})
+  for (const std::string& path : {options.map, options.drawing}) {
     if (!path.empty() && !can_replace_file(path))
       throw std::runtime_error(cannot_be(path, "written"));
+    std::error_code none;
+    if (std::filesystem::equivalent(options.log, path, none))
+      throw std::runtime_error(path + ": this is the log itself; expected another file to write");
+  }
   const logs::DataSet log = read(options);
   const logs::LogMap mapped = map_log(log, stop);
+  if (mapped.walls.features.empty()) {
+    std::fprintf(stderr, "saphira: %s: no wall was found; nothing is written\n",
+                 options.log.c_str());
+    return bus::kExitFailed;
+  }
   write(options.map, maps::to_text(mapped.walls));
   if (options.drawing.empty())
     return bus::kExitOk;

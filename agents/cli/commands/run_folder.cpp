@@ -70,14 +70,15 @@ RunFolder::RunFolder() {
     throw std::runtime_error(cannot_be(path_, "made") + kElsewhere);
 }
 
-RunFolder::RunFolder(const std::string& name) {
+RunFolder::RunFolder(const std::string& name, const std::string& robot, unsigned domain) {
   path_ = own_folder() + "/" + name;
   make_own(path_);
   lock_ = lock(path_ + "/lock");
   if (lock_ < 0)
     throw std::runtime_error("this deployment is running already: " + path_ +
                              "/lock is held; saphira stop ends it");
-  fill(lock_, path_ + "/lock", std::to_string(getpid()));
+  fill(lock_, path_ + "/lock",
+       std::to_string(getpid()) + " " + std::to_string(domain) + " " + robot);
 }
 
 RunFolder::~RunFolder() {
@@ -101,8 +102,10 @@ std::vector<Running> running_deployments() {
       close(file);
       continue;
     }
-    Running running{entry.path().filename(), 0};
-    std::ifstream(path) >> running.pid;
+    Running running{entry.path().filename(), 0, {}, 0};
+    std::ifstream in(path);
+    in >> running.pid >> running.domain >> std::ws;
+    std::getline(in, running.robot);
     if (running.pid > 0)
       all.push_back(running);
   }

@@ -15,8 +15,8 @@ class RunFolder {
   /// A temporary folder, removed with the object.
   RunFolder();
   /// The folder of that name, /tmp/saphira-<uid>/<name>, which stays. std::runtime_error when
-  /// another process holds it.
-  explicit RunFolder(const std::string& name);
+  /// another process holds it. robot, domain: of its deployment, for running_deployments.
+  RunFolder(const std::string& name, const std::string& robot, unsigned domain);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
@@ -32,6 +32,8 @@ class RunFolder {
 struct Running {
   std::string name;  ///< name of its folder, such as demo-pioneer-0
   pid_t pid = 0;     ///< of its saphira up
+  std::string robot;
+  unsigned domain = 0;
 };
 std::vector<Running> running_deployments();
 /// The path of the log file of that deployment, for its output without a terminal.

@@ -1,6 +1,7 @@
 // security: the authority of a site, and the credentials of its members.
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -143,7 +144,9 @@ int check(const Words& words, const bus::NodeOptions& options) {
 
 void add_security(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<Words>();
-  words->folder = user_folder() + "/authority";
+  // Once: an option bound to the variable in each subcommand would set the folder again in all.
+  const char* const given = std::getenv("SAPHIRA_AUTHORITY");
+  words->folder = given != nullptr && *given != '\0' ? given : user_folder() + "/authority";
   CLI::App* command = app.add_subcommand(
       "security",
       "Keys and certificates of a site, and the roles of its members (docs/security.md)");
@@ -151,8 +154,7 @@ void add_security(CLI::App& app, Chosen& chosen) {
   const auto action = [&](const std::string& name, const std::string& about,
                           int (*run)(const Words&)) {
     CLI::App* one = command->add_subcommand(name, about);
-    one->add_option("--authority", words->folder, "folder of the authority")
-        ->envname("SAPHIRA_AUTHORITY")
+    one->add_option("--authority", words->folder, "folder of the authority (Env:SAPHIRA_AUTHORITY)")
         ->capture_default_str();
     chosen.when(one,
                 [words, run](const bus::NodeOptions&, const bus::Stop&) { return run(*words); });

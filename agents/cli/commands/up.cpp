@@ -68,6 +68,10 @@ std::string name_of(const Deployment& deployment, const bus::NodeOptions& option
          deployment.bus.robot.value_or(options.robot) + "-" +
          std::to_string(deployment.bus.domain.value_or(options.domain));
 }
+RunFolder folder_of(const Deployment& deployment, const bus::NodeOptions& options) {
+  return {name_of(deployment, options), deployment.bus.robot.value_or(options.robot),
+          deployment.bus.domain.value_or(options.domain)};
+}
 
 /// Its bus, for other commands.
 RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options) {
@@ -135,7 +139,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
        const bus::NodeOptions& options, const bus::Stop& stop) {
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
-  const RunFolder folder(name_of(deployment, options));
+  const RunFolder folder = folder_of(deployment, options);
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<std::string> left_out;
@@ -225,7 +229,9 @@ int detach(const std::string& name, const std::vector<std::string>& set,
     std::cerr << "saphira: " << text << '\n';
   const std::string running = name_of(deployment, options);
   const std::string log = log_of(running);
-  { const RunFolder unheld(running); }  // the log of a running one stays as it is
+  {
+    const RunFolder unheld = folder_of(deployment, options);
+  }  // the log of a running one stays as it is
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0600);
   if (file < 0)
     throw std::runtime_error(cannot_be(log, "written"));
@@ -252,20 +258,43 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   return bus::kExitFailed;
 }
 
-/// The running deployment with that name, or the only one; nothing, with the reason on stderr,
+/// A deployment that a person means. Without a value: any.
+struct Meant {
+  std::string name;
+  std::optional<std::string> robot;
+  std::optional<unsigned> domain;
+};
+
+/// root: whose --robot and --domain, or their variables, were given.
+Meant meant_by(const std::string& name, const CLI::App& root, const bus::NodeOptions& options) {
+  Meant result{name, {}, {}};
+  if (root.get_option("--robot")->count() > 0)
+    result.robot = options.robot;
+  if (root.get_option("--domain")->count() > 0)
+    result.domain = options.domain;
+  return result;
+}
+
+/// The running deployment that is meant, or the only one; nothing, with the reason on stderr,
 /// where it is ambiguous. `code` is the program's exit code then.
-std::optional<Running> running_one(const std::string& name, int& code) {
+std::optional<Running> running_one(const Meant& wanted, int& code) {
+  const std::string& name = wanted.name;
   std::vector<Running> meant;
   std::string names;
   for (const Running& one : running_deployments()) {
     names += (names.empty() ? "" : ", ") + one.name;
-    if (name.empty() || one.name == name || one.name.starts_with(name + "-"))
+    if ((name.empty() || one.name == name || one.name.starts_with(name + "-")) &&
+        one.robot == wanted.robot.value_or(one.robot) &&
+        one.domain == wanted.domain.value_or(one.domain))
       meant.push_back(one);
   }
   if (meant.size() != 1) {
+    const std::string none = "no deployment" + (name.empty() ? "" : " " + name) +
+                             (wanted.robot ? " of robot " + *wanted.robot : "") +
+                             (wanted.domain ? " in domain " + std::to_string(*wanted.domain) : "");
     std::cerr << "saphira: "
               << (names.empty()   ? "no deployment of yours runs on this machine"
-                  : meant.empty() ? "no deployment " + name + " runs; there are " + names
+                  : meant.empty() ? none + " runs; there are: " + names
                                   : "several deployments run: say which one, " + names)
               << '\n';
     code = names.empty() || meant.empty() ? bus::kExitFailed : bus::kExitUsage;
@@ -282,9 +311,9 @@ bool send(const Running& running, int signal) {
   return false;
 }
 
-int renew_running(const std::string& name) {
+int renew_running(const Meant& wanted) {
   int code = bus::kExitOk;
-  const std::optional<Running> running = running_one(name, code);
+  const std::optional<Running> running = running_one(wanted, code);
   if (!running)
     return code;
   if (!send(*running, SIGUSR1))
@@ -294,9 +323,9 @@ int renew_running(const std::string& name) {
   return bus::kExitOk;
 }
 
-int stop_running(const std::string& name, const bus::Stop& stop) {
+int stop_running(const Meant& wanted, const bus::Stop& stop) {
   int code = bus::kExitOk;
-  const std::optional<Running> running = running_one(name, code);
+  const std::optional<Running> running = running_one(wanted, code);
   if (!running)
     return code;
   if (!send(*running, SIGTERM))
@@ -322,8 +351,8 @@ void add_stop(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("stop", "Stop a deployment that saphira up has started");
   command->add_option("deployment", *name, "such as demo; needed where several run");
-  chosen.when(command, [name](const bus::NodeOptions&, const bus::Stop& stop) {
-    return stop_running(*name, stop);
+  chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop& stop) {
+    return stop_running(meant_by(*name, app, options), stop);
   });
 }
 
@@ -332,8 +361,9 @@ void add_renew(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "renew", "Let a deployment take in new versions of its programs, one after the other");
   command->add_option("deployment", *name, "such as demo; needed where several run");
-  chosen.when(command,
-              [name](const bus::NodeOptions&, const bus::Stop&) { return renew_running(*name); });
+  chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop&) {
+    return renew_running(meant_by(*name, app, options));
+  });
 }
 
 void add_up(CLI::App& app, Chosen& chosen) {

@@ -109,9 +109,8 @@ Request parse_map_request(const std::vector<std::string>& words, const maps::Map
   const std::size_t count = words.size();
   if (verb == "load" && count == 2) {
     const std::string file = find_file(config_folder() + "/maps", words[1], ".map");
-    const std::string text = read_file(file);
-    maps::parse_map(text, file);
-    return {"load", {{"name", file}, {"text", text}}};
+    maps::load_map(file);  // refuses a file that is cut off, too
+    return {"load", {{"name", file}, {"text", read_file(file)}}};
   }
   if (verb == "put" && count == 2)
     return {"put", artifact(words[1])};

@@ -1,7 +1,10 @@
 #include "saphira/cli/map_words.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <fstream>
 #include <numbers>
 #include <stdexcept>
 
@@ -75,6 +78,20 @@ TEST(MapWords, SayWhatWasExpected) {
   EXPECT_EQ(complaint({"features", "maybe"}), "expected on or off, found \"maybe\"");
   EXPECT_NE(complaint({"put", "DOR (3) 1, 2, 3, 4"}).find("the line:1:1"), std::string::npos);
   EXPECT_NE(complaint({"put", ""}).find("expected one artifact"), std::string::npos);
+}
+
+TEST(MapWords, LoadRefusesAFileThatWasCutOff) {
+  const std::string path =
+      testing::TempDir() + "saphira-cut-words-" + std::to_string(::getpid()) + ".map";
+  const auto loaded = [&path](const std::string& text) {
+    std::ofstream(path) << text;
+    return complaint({"load", path});
+  };
+  EXPECT_EQ(loaded("DOOR (2) 1000, 2000, 90, 900\n"), "nothing");
+  const std::string said = loaded("DOOR (2) 1000, 2000, 90, 90");
+  EXPECT_NE(said.find(".map:1:"), std::string::npos) << said;
+  EXPECT_NE(said.find("cut off"), std::string::npos) << said;
+  std::remove(path.c_str());
 }
 
 TEST(MapWords, DescribeWhereTheRobotIs) {

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 #include "recorder.hpp"
@@ -38,8 +40,29 @@ std::string usual_name(const std::string& robot) {
   return robot + time.data();
 }
 
+/// std::invalid_argument where a recording of that name would lose something else.
+void expect_name_of_recording(const std::string& file) {
+  if (!file.ends_with(".mcap"))
+    throw std::invalid_argument(file +
+                                ": expected a name that ends with .mcap, the kind of file that "
+                                "this writes");
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none))
+    return;
+  std::ifstream in(file, std::ios::binary);
+  if (in && in.peek() == std::ifstream::traits_type::eof())
+    return;
+  try {
+    recorder::Reader begins(in);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(
+        file + ": a file with other content is there; give a new name, such as NAME.mcap");
+  }
+}
+
 int record(const bus::NodeOptions& node_options, const Options& options, const bus::Stop& stop) {
   const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
+  expect_name_of_recording(file);
   const auto topics = recorder::recorded_topics(options.topics);
   std::ofstream out(file, std::ios::binary);
   const auto failed = [&](int code) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -32,6 +33,8 @@ class JsonReader {
     } else if constexpr (std::is_floating_point_v<T>) {
       // Null is what stands for NaN in a sample's JSON.
       expect(json.is_number() || json.is_null(), json, place, "a number");
+      expect(json.is_null() || std::isfinite(json.get<T>()), json, place,
+             "a number from -3.4e38 to 3.4e38");
       item = json.is_null() ? std::numeric_limits<T>::quiet_NaN() : json.get<T>();
     } else if constexpr (std::is_integral_v<T>) {
       integer(json, item, place);
@@ -124,6 +127,27 @@ class JsonReader {
   }
 };
 
+/// The place of a number that is too large to read: its members' names.
+inline std::string place_of_overflow(const std::string& text) {
+  std::vector<std::string> names;
+  const auto follow = [&names](int depth, nlohmann::json::parse_event_t event,
+                               const nlohmann::json& json) {
+    if (event == nlohmann::json::parse_event_t::key) {
+      names.resize(static_cast<std::size_t>(depth));
+      names.back() = json.get<std::string>();
+    } else if (event == nlohmann::json::parse_event_t::object_end) {
+      names.resize(static_cast<std::size_t>(depth));
+    }
+    return true;
+  };
+  try {
+    [[maybe_unused]] const auto none = nlohmann::json::parse(text, follow);
+  } catch (const nlohmann::json::out_of_range&) {
+    std::erase(names, "");  // lists
+  }
+  return joined(names, ".");
+}
+
 template <class T>
 void from_json(const std::string& text, T& sample) {
   nlohmann::json json;
@@ -132,6 +156,14 @@ void from_json(const std::string& text, T& sample) {
   } catch (const nlohmann::json::parse_error& error) {
     throw std::invalid_argument("this is not JSON, at character " + std::to_string(error.byte) +
                                 ": " + text.substr(0, 60));
+  } catch (const nlohmann::json::out_of_range& error) {
+    // Its message has the number in quotation marks.
+    const std::string said = error.what();
+    const std::size_t begin = std::min(said.find('\''), said.size() - 1) + 1;
+    const std::string place = place_of_overflow(text);
+    throw std::invalid_argument((place.empty() ? "" : place + ": ") +
+                                "expected a finite number, found " +
+                                said.substr(begin, said.find('\'', begin) - begin).substr(0, 60));
   }
   JsonReader().structure(json, sample, "");
 }
