@@ -461,7 +461,8 @@ TEST_F(DialogueTest, PlacesToKeepOutOfAreHazardsUntilTheRobotMayGoThere) {
   EXPECT_EQ(last.claims[0].name, "hazards");
   EXPECT_EQ(last.claims[0].value, "keep-out at EJ-233");
   EXPECT_EQ(said("Flakey, you may go to EJ-231"), "nobody told me to keep out of EJ-231");
-  EXPECT_EQ(said("Flakey, you may enter this corridor"), "nobody told me to keep out of upper corridor");
+  EXPECT_EQ(said("Flakey, you may enter this corridor"),
+            "nobody told me to keep out of upper corridor");
   EXPECT_EQ(said("Flakey, you may go to EJ-233 again"), "good: I may go to EJ-233 again");
   EXPECT_EQ(last.claims.at(0).value, "");
   EXPECT_EQ(said("Flakey, keep out of the attic"), "I know no place called attic");
