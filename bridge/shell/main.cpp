@@ -49,14 +49,17 @@ int main(int argc, char** argv) {
         app.add_option("--robot-file", options.parameter_file,
                        "parameter file of the robot, or the name of one in that folder (usual: the "
                        "one that is named after the subclass or class that the robot names)");
-        app.add_option("--lease-ms", lease_ms, "a command drives for so long");
+        app.add_option("--lease-ms", lease_ms, "a command drives for so long")
+            .in_range(50.0, 2000.0);
         app.add_option("--quiet-ms", quiet_ms,
                        "after a person has driven, autonomy drives again when the person's program "
                        "has said for so long that it does not drive (usual: never, only when it is "
-                       "handed back)");
+                       "handed back)")
+            .in_range(0.0, 600000.0);
         app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
         app.add_option("--contact-speed", options.contact_speed,
-                       "m/s at the most, up to 0.15, where a driver means contact; 0: never");
+                       "m/s at the most, up to 0.15, where a driver means contact; 0: never")
+            .in_range(0.0, 0.15);
         app.add_option("--state", options.state_file,
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", options.free_step, "lockstep: step without a permit");

@@ -156,9 +156,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (dry_run) {
-      saphira::sim::load_world(options.world, options.things);
-      for (const std::string& file : robots)
-        saphira::protocol::load_parameters(file);
+      saphira::sim::check(options);
       return 0;
     }
     options.log = [](const std::string& text) {

@@ -28,6 +28,7 @@
 #include "saphira/sim/view.hpp"
 #include "stereo_feed.hpp"
 #include "view_feed.hpp"
+#include "world_check.hpp"
 
 namespace saphira::sim {
 
@@ -625,9 +626,11 @@ std::string numbered(const std::string& path, std::size_t number) {
 }
 
 struct Host::Parts {
-  Parts(const HostOptions& options, ViewFeed* view)
-      : world(load_world(options.world, options.things)) {
+  /// The world with its robots, which nobody serves yet.
+  explicit Parts(const HostOptions& options) : world(load_world(options.world, options.things)) {
     add_robots(options);
+  }
+  Parts(const HostOptions& options, ViewFeed* view) : Parts(options) {
     serving.emplace(options, simulation, view);
   }
   void add_robots(const HostOptions& options);
@@ -659,6 +662,8 @@ void Host::Parts::add_robots(const HostOptions& options) {
     server_options.single_step = options.step;
     server_options.trace = !options.trace.empty();
     try {
+      if (const auto trouble = trouble_of_start(world, *start); trouble && !place)
+        throw std::invalid_argument(*trouble);
       simulation.add(parameters, *start, server_options);
     } catch (const std::invalid_argument& error) {
       if (place)
@@ -728,6 +733,10 @@ void Host::change(const std::string& world, const std::string& robot) {
 
 void Host::end() {
   parts_->serving->end();
+}
+
+void check(const HostOptions& options) {
+  const Host::Parts parts(options);
 }
 
 void run(const HostOptions& options, int stop_fd) {

@@ -270,6 +270,22 @@ TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
   EXPECT_NE(trouble().find("narrow.wld:4:1: "), std::string::npos) << trouble();
   options_.more[0].position = Pose{2.0, 2.1, 0.0};
   EXPECT_NE(trouble().find("--position of robot 2: "), std::string::npos) << trouble();
+  options_.more[0].position = Pose{-99.999, 0.007, 0.0};
+  EXPECT_EQ(trouble(),
+            "--position of robot 2: expected a place in the world of (4000, 4000) mm, found "
+            "(-99999, 7)");
+}
+
+// A dry run finds what a run would.
+TEST_F(HostTest, ACheckPlacesTheRobotsAndOpensNothing) {
+  options_.position = Pose{1.5, 6.0, 0.0};
+  EXPECT_THROW(check(options_), std::runtime_error);
+  options_.position.reset();
+  options_.more.push_back({});
+  EXPECT_THROW(check(options_), std::runtime_error) << "no place for the second robot";
+  options_.more.clear();
+  options_.socket = "/nowhere/robot";
+  EXPECT_NO_THROW(check(options_));
 }
 
 TEST_F(HostTest, SingleStepsAndFlushesTheTrace) {

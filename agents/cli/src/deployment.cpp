@@ -128,8 +128,8 @@ class Parser {
 
   std::string robot(const YAML::Node& node) const {
     std::string name = word(node, "the robot's name");
-    if (name.find_first_of("*?[]") != std::string::npos)
-      fail(node.Mark(), "expected one robot's name, found the pattern \"" + name + "\"");
+    if (name.find_first_of("*?[]/ ") != std::string::npos)
+      fail(node.Mark(), "expected one robot's name, found \"" + name + "\"");
     return name;
   }
 

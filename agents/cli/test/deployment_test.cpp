@@ -192,6 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"domain: -1\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 231"},
         Broken{"profile: wifi\nprograms: [{program: sh}]\n", 1, 10, "host, lan or wan"},
         Broken{"robot: \"*\"\nprograms: [{program: sh}]\n", 1, 8, "one robot's name"},
+        Broken{"robot: a/b\nprograms: [{program: sh}]\n", 1, 8, "one robot's name, found \"a/b\""},
         Broken{"settings: [a]\nprograms: [{program: sh}]\n", 1, 11, "expected settings"},
         Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
         Broken{"programs:\n  - program: sh\n    arguments: [a, \"${wrold}\"]\n", 3, 20,

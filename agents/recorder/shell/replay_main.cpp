@@ -90,8 +90,11 @@ int main(int argc, char** argv) {
       argc, argv, "replay", "Plays a recording on the bus, as another robot. Commands are left out",
       [&](CommandLine& app) {
         app.add_option("file", own.file, "FILE.mcap of saphira record").required();
-        app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay");
-        app.add_option("--rate", own.rate, "seconds of the recording in a second").positive();
+        app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay")
+            .check(bus::trouble_of_robot);
+        app.add_option("--rate", own.rate, "seconds of the recording in a second")
+            .positive()
+            .in_range(0.0, 1000.0);
         app.add_flag("--list", own.list, "say what it holds, and end");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

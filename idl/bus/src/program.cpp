@@ -35,7 +35,9 @@ std::string usual_security() {
 
 void add_node_options(CommandLine& app, NodeOptions& options) {
   app.add_option("--name", options.name, "Name of this program on the bus");
-  app.add_option("--robot", options.robot, "The robot to belong to").environment("SAPHIRA_ROBOT");
+  app.add_option("--robot", options.robot, "The robot to belong to")
+      .environment("SAPHIRA_ROBOT")
+      .check(trouble_of_robot);
   app.add_option("--domain", options.domain, "DDS domain")
       .environment("SAPHIRA_DOMAIN")
       .in_range(0, 231);
@@ -75,6 +77,18 @@ Profile profile_of(const std::string& word) {
   static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
   return profiles.at(word);
+}
+
+std::string trouble_of_robot(const std::string& name) {
+  constexpr std::size_t kMost = 64;
+  const bool is_name =
+      !name.empty() && name.size() <= kMost &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
+          std::string::npos;
+  return is_name
+             ? std::string()
+             : "expected the name of one robot (1 to 64 letters, digits, -, _ and .), found \"" +
+                   name + "\"";
 }
 
 NodeOptions options_of_environment() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <stdexcept>
 
 #include "harness.hpp"
@@ -87,6 +88,34 @@ TEST(Program, AnErrorBeginsWithTheNameOfTheProgram) {
     throw std::invalid_argument("expected a place");
   });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "saphira-test: expected a place\n");
+}
+
+// A wildcard would be the partition of every robot.
+TEST(Program, ARobotIsNamedByOneName) {
+  const auto said = [](std::string robot) {
+    std::string name = "saphira-test";
+    std::string option = "--robot";
+    char* argv[] = {name.data(), option.data(), robot.data(), nullptr};
+    testing::internal::CaptureStderr();
+    const int code =
+        run_program(3, argv, "test", "A test", {}, [](const NodeOptions& options, const Stop&) {
+          std::fputs(options.robot.c_str(), stderr);
+          return static_cast<int>(kExitOk);
+        });
+    const std::string text = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(code == kExitOk, text == robot) << text;
+    EXPECT_TRUE(code == kExitOk || code == kExitUsage) << code;
+    return text;
+  };
+  EXPECT_EQ(said("*"),
+            "saphira-test: --robot: expected the name of one robot (1 to 64 letters, digits, -, _ "
+            "and .), found \"*\"\n");
+  for (const std::string& wrong :
+       {std::string("m?st"), std::string("a/b"), std::string("../x"), std::string("a b"),
+        std::string("[ab]"), std::string(), std::string(65, 'a')})
+    EXPECT_NE(said(wrong).find("found \"" + wrong + "\""), std::string::npos) << wrong;
+  for (const std::string& right : {std::string("P3-DX_2.b"), std::string(64, 'a')})
+    EXPECT_EQ(said(right), right);
 }
 
 }  // namespace

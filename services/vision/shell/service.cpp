@@ -73,9 +73,11 @@ runtime::Component component() {
             app.add_option("--stereo-socket", options->stereo_socket,
                            "local socket that the pairs of pictures come from");
             app.add_option("--camera-height", options->camera.height,
-                           "of the color camera above the floor [m]");
+                           "of the color camera above the floor [m]")
+                .positive();
             app.add_option("--camera-forward", options->camera.forward,
-                           "of the color camera before the robot's center [m]");
+                           "of the color camera before the robot's center [m]")
+                .in_range(-10.0, 10.0);
             for (std::size_t i = 0; i < options->camera.heights.size(); ++i)
               app.add_option(std::string("--height-") + static_cast<char>('a' + i),
                              options->camera.heights.at(i),

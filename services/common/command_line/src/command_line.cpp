@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
@@ -104,7 +107,8 @@ std::string about_value(const std::string& complaint) {
     const double low = std::strtod(between(complaint, " not in range ", " to ").c_str(), nullptr);
     const double high = std::strtod(complaint.substr(complaint.rfind(" to ") + 4).c_str(), nullptr);
     constexpr double kNoEnd = 1e300;  // of CLI::PositiveNumber
-    return "expected a number " +
+    const bool whole = complaint.find('.', complaint.rfind(" to ")) == std::string::npos;
+    return (whole ? "expected a whole number " : "expected a number ") +
            (high > kNoEnd ? "above " + plain(low)
                           : "between " + plain(low) + " and " + plain(high)) +
            ", found " + between(complaint, "Value ", " not in range ");
@@ -232,6 +236,28 @@ bool has_default(const T& /*value*/) {
   return true;
 }
 
+/// The error of a whole number that a T cannot hold; what is no whole number is for the parser,
+/// which lets some of these wrap around.
+template <class T>
+std::string trouble_of_limits(const std::string& text) {
+  const std::string digits = text.substr(text.starts_with('-') ? 1 : 0);
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos ||
+      number_in<T>(text))
+    return {};
+  return "expected a whole number between " + std::to_string(std::numeric_limits<T>::min()) +
+         " and " + std::to_string(std::numeric_limits<T>::max()) + ", found " + text;
+}
+
+template <class T>
+void check_limits(CLI::Option& option, const T* /*value*/) {
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
+    option.check(trouble_of_limits<T>);
+}
+template <class T>
+void check_limits(CLI::Option& option, const std::optional<T>* /*value*/) {
+  check_limits(option, static_cast<const T*>(nullptr));
+}
+
 /// Adds an option for each kind of value.
 struct Adder {
   CLI::App& app;
@@ -241,6 +267,7 @@ struct Adder {
   template <class T>
   CLI::Option* operator()(T* value) const {
     CLI::Option* const option = app.add_option(names, *value, help);
+    check_limits(*option, value);
     if (has_default(*value))
       option->capture_default_str();
     return option;
@@ -258,17 +285,29 @@ const Option& Option::required() const {
 }
 
 const Option& Option::in_range(int low, int high) const {
-  option_->check(CLI::Range(low, high));
+  option_->transform(CLI::Range(low, high));  // changes nothing, and comes before the type's limits
   return *this;
 }
 
 const Option& Option::in_range(double low, double high) const {
   option_->check(CLI::Range(low, high));
+  option_->check([low, high](const std::string& text) {  // the range holds NaN
+    return std::isnan(std::strtod(text.c_str(), nullptr))
+               ? "expected a number between " + plain(low) + " and " + plain(high) + ", found " +
+                     text
+               : std::string();
+  });
   return *this;
 }
 
 const Option& Option::positive() const {
-  option_->check(CLI::PositiveNumber);
+  option_->check(CLI::Validator(
+      [](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return std::isfinite(value) && value > 0.0 ? std::string()
+                                                   : "expected a number above 0, found " + text;
+      },
+      "POSITIVE"));
   return *this;
 }
 

@@ -101,6 +101,8 @@ TEST(CommandLine, MistakesAreNamed) {
             "gauge: --kind: expected laser or sonar, found lazer: did you mean laser?\n");
   EXPECT_EQ(words({"--kind"}), "gauge: --kind: expected a value (one), found none\n");
   EXPECT_EQ(words({"--speed", "-1"}), "gauge: --speed: expected a number above 0, found -1\n");
+  EXPECT_EQ(words({"--speed", "nan"}), "gauge: --speed: expected a number above 0, found nan\n");
+  EXPECT_EQ(words({"--speed", "inf"}), "gauge: --speed: expected a number above 0, found inf\n");
   EXPECT_EQ(words({"--key", "/nowhere/key"}),
             "gauge: --key: expected a file, found nothing at /nowhere/key\n");
   EXPECT_EQ(words({"--key", "/dev/nul"}),
@@ -147,12 +149,17 @@ TEST(CommandLine, NoMistakeIsInTheWordsOfTheParser) {
   EXPECT_EQ(words({"f", "--flag=maybe"}),
             "gauge: --flag: expected true, false or no value, found maybe\n");
   EXPECT_EQ(words({"f", "--count", "10"}),
-            "gauge: --count: expected a number between 1 and 9, found 10\n");
+            "gauge: --count: expected a whole number between 1 and 9, found 10\n");
+  EXPECT_EQ(words({"f", "--count", "1.5"}),
+            "gauge: --count: expected a whole number between 1 and 9, found 1.5\n");
+  EXPECT_EQ(words({"f", "--count", "99999999999"}),
+            "gauge: --count: expected a whole number between 1 and 9, found 99999999999\n");
 }
 
 TEST(CommandLine, ANumberIsExpectedInWords) {
   long count = 0;
   unsigned long seed = 0;
+  std::optional<std::uint16_t> port;
   double part = 0.0;
   double length = 0.0;
   const auto words = [&](std::vector<const char*> given) {
@@ -160,6 +167,7 @@ TEST(CommandLine, ANumberIsExpectedInWords) {
     line.add_option("length", length, "[m]");
     line.add_option("--count,-n", count, "how many");
     line.add_option("--seed", seed, "of the noise");
+    line.add_option("--port", port, "to listen on");
     line.add_option("--part", part, "of the whole").in_range(0.0, 0.5);
     const Parsed parsed = parse(line, std::move(given));
     EXPECT_EQ(parsed.code, 2);
@@ -168,6 +176,18 @@ TEST(CommandLine, ANumberIsExpectedInWords) {
   EXPECT_EQ(words({"--count", "x"}), "gauge: --count: expected a whole number, found x\n");
   EXPECT_EQ(words({"--seed", "x"}),
             "gauge: --seed: expected a whole number of 0 or more, found x\n");
+  EXPECT_EQ(words({"--seed", "-3"}),
+            "gauge: --seed: expected a whole number between 0 and 18446744073709551615, found "
+            "-3\n");
+  EXPECT_EQ(words({"--seed", "18446744073709551616"}),
+            "gauge: --seed: expected a whole number between 0 and 18446744073709551615, found "
+            "18446744073709551616\n");
+  EXPECT_EQ(words({"--port", "99999"}),
+            "gauge: --port: expected a whole number between 0 and 65535, found 99999\n");
+  EXPECT_EQ(words({"--port", "x"}),
+            "gauge: --port: expected a whole number of 0 or more, found x\n");
+  EXPECT_EQ(words({"--part", "nan"}),
+            "gauge: --part: expected a number between 0 and 0.5, found nan\n");
   EXPECT_EQ(words({"far"}), "gauge: length: expected a number, found far\n");
   EXPECT_EQ(words({"--part", "2"}),
             "gauge: --part: expected a number between 0 and 0.5, found 2\n");

@@ -103,11 +103,16 @@ class Host {
   /// Loads another world or robot, by its name; where that fails everything stays as it is.
   void change(const std::string& world, const std::string& robot);
 
+  friend void check(const HostOptions& options);
+
   struct Parts;
   HostOptions options_;
   std::unique_ptr<ViewFeed> view_;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Places the robots in their world as a host does, and opens nothing. Throws as a host does.
+void check(const HostOptions& options);
 
 /// Serves until stop_fd is readable.
 void run(const HostOptions& options, int stop_fd);
