@@ -80,9 +80,9 @@ Profile profile_of(const std::string& word) {
 }
 
 std::string trouble_of_robot(const std::string& name) {
-  constexpr std::size_t kMost = 64;
+  constexpr std::size_t kMostLetters = 64;
   const bool is_name =
-      !name.empty() && name.size() <= kMost &&
+      !name.empty() && name.size() <= kMostLetters &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
           std::string::npos;
   return is_name
