@@ -16,7 +16,7 @@ namespace saphira {
 
 namespace {
 
-constexpr std::size_t kLongest = 100;  // letters of a quotation
+constexpr std::size_t kExcerpt = 100;  // letters of a quotation
 
 /// Without control characters: a NUL would end the text there, others would drive the terminal.
 std::string printable(std::string_view text) {
@@ -29,7 +29,7 @@ std::string printable(std::string_view text) {
 
 /// The start of a word.
 std::string quoted(std::string_view word) {
-  return '"' + std::string(word.substr(0, kLongest)) + (word.size() > kLongest ? "...\"" : "\"");
+  return '"' + std::string(word.substr(0, kExcerpt)) + (word.size() > kExcerpt ? "...\"" : "\"");
 }
 
 std::string describe(const std::string& file, int line, int column, const std::string& message,
@@ -42,12 +42,12 @@ std::string describe(const std::string& file, int line, int column, const std::s
       return i < line_text.size() && (static_cast<unsigned char>(line_text[i]) & 0xC0U) == 0x80U;
     };
     std::string shown(line_text);
-    if (line_text.size() > kLongest) {
+    if (line_text.size() > kExcerpt) {
       const auto place = std::min(static_cast<std::size_t>(column), line_text.size());
-      std::size_t begin = place > kLongest / 2 ? place - kLongest / 2 : 0;
+      std::size_t begin = place > kExcerpt / 2 ? place - kExcerpt / 2 : 0;
       for (int i = 0; i < 3 && within(begin); ++i)
         ++begin;
-      std::size_t end = std::min(begin + kLongest, line_text.size());
+      std::size_t end = std::min(begin + kExcerpt, line_text.size());
       for (int i = 0; i < 3 && within(end); ++i)
         --end;
       const std::string before = begin > 0 ? "..." : "";
