@@ -188,14 +188,12 @@ World parse_world(std::string_view text, const std::string& file) {
 World load_world(const std::string& path, const std::string& things) {
   Parser parser;
   const std::string text = read_file(path);
-  if (other_format(text).empty())
-    expect_last_line_break(text, path);
+  expect_last_line_break(text, path);
   parser.read(text, path);
   std::string more;
   if (!things.empty()) {
     more = read_file(things);
-    if (other_format(more).empty())
-      expect_last_line_break(more, things);
+    expect_last_line_break(more, things);
     parser.read(more, things);
   }
   return parser.finish();

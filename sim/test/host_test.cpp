@@ -276,7 +276,7 @@ TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
             "(-99999, 7)");
 }
 
-// A dry run finds what a run would.
+// A dry run reports the mistakes that a run reports.
 TEST_F(HostTest, ACheckPlacesTheRobotsAndOpensNothing) {
   options_.position = Pose{1.5, 6.0, 0.0};
   EXPECT_THROW(check(options_), std::runtime_error);

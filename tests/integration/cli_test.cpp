@@ -18,13 +18,13 @@
 #include <sstream>
 #include <thread>
 
+#include "cli_fixture.hpp"
 #include "node_options.hpp"
 #include "pages.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
-#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira {
@@ -132,15 +132,8 @@ class Scripted {
   std::thread thread_;
 };
 
-/// `saphira` on the bus of this test.
-class CliTest : public testing::Test {
+class CliTest : public test::CliFixture {
  protected:
-  std::vector<std::string> command(const std::vector<std::string>& words) const {
-    std::vector<std::string> argv{"saphira", "--robot", robot_, "--domain", test::domain()};
-    argv.insert(argv.end(), words.begin(), words.end());
-    return argv;
-  }
-  Outcome run(const std::vector<std::string>& words) const { return test::run(command(words)); }
   /// `saphira drive` in a terminal of its own: its process, and below 0 where there is none.
   /// terminal, name: what forkpty tells of it.
   pid_t drive(int& terminal, char* name = nullptr) const {
@@ -154,86 +147,7 @@ class CliTest : public testing::Test {
     }
     return pid;
   }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_.path(name)) << text;
-    return folder_.path(name);
-  }
-
-  const std::string robot_ = test::unique_robot();
-  const test::TempDir folder_;
 };
-
-/// The answers that need no bus.
-class Answers : public CliTest {};
-
-TEST_F(Answers, WithoutArgumentsItHelps) {
-  const Outcome outcome = run({});
-  EXPECT_EQ(outcome.code, 0);
-  for (const char* name :
-       {"demo", "up", "status", "list", "echo", "log", "goal", "drive", "estop", "bench"})
-    EXPECT_TRUE(has(outcome.text, name)) << name;
-}
-
-// The script shows this file where nothing is built yet.
-TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
-  const Outcome outcome = run({"help"});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.text, read_file(test::source("agents/cli/help.txt")))
-      << "write it anew: saphira help > agents/cli/help.txt";
-  EXPECT_TRUE(has(run({"help", "goal"}).text, "Send a goal and follow it to its end"));
-  EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
-}
-
-/// The names in the help's list of commands, a line each.
-std::string commands_of(const std::string& help) {
-  std::istringstream lines(help.substr(help.find("Subcommands:\n")));
-  std::string names;
-  std::string line;
-  for (std::getline(lines, line); std::getline(lines, line) && line.starts_with("  ");)
-    names += line.substr(2, line.find(' ', 2) - 2) + "\n";
-  return names;
-}
-
-TEST_F(Answers, CompletionListsWhatMayComeNext) {
-  std::string all_topics;
-  std::string of_robot;
-  for (const bus::TopicEntry& topic : bus::known_topics()) {
-    all_topics += topic.name + "\n";
-    if (topic.name.starts_with("robot/"))
-      of_robot += topic.name + "\n";
-  }
-  const std::string commands = commands_of(run({"help"}).text);
-  ASSERT_TRUE(has(commands, "demo\n") && has(commands, "help\n")) << commands;
-  ASSERT_TRUE(has(of_robot, "robot/state\n")) << of_robot;
-  const std::string deployments =
-      "demo\nlaptop\noffice\npioneer\nrobot\nseeing\nseeing-office\ntwo-robots\n";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> begun{
-      {{""}, commands},
-      {{"go"}, "goal\n"},
-      {{"st"}, "stop\nstatus\n"},
-      {{"--robot", "drive", "go"}, "goal\n"},
-      {{"help", "dem"}, "demo\n"},
-      {{"up", ""}, deployments},
-      {{"stop", "seeing"}, "seeing\nseeing-office\n"},
-      {{"echo", ""}, all_topics},
-      {{"write", "robot/"}, of_robot},
-      {{"goal", "--priority", "2", ""}, "go\ndrive\nturn\nstop\nlist\ncancel\nactivities\n"},
-      {{"goal", "go", ""}, ""},
-      {{"beliefs", ""}, "set\nunset\n"},
-      {{"estop", ""}, "reset\n"},
-      {{"ask", "--js"}, "--json\n"},
-      {{"--prof"}, "--profile\n"},
-      {{"ask", "--he"}, "--help\n"},
-      {{"fly", "to", "mo"}, "move\n"}};
-  for (const auto& [words, expected] : begun) {
-    std::vector<std::string> line{"complete"};
-    line.insert(line.end(), words.begin(), words.end());
-    const Outcome outcome = run(line);
-    EXPECT_EQ(outcome.code, 0) << testing::PrintToString(words);
-    EXPECT_EQ(outcome.text, expected) << testing::PrintToString(words);
-  }
-  EXPECT_TRUE(has(run({"complete", "--"}).text, "--domain\n"));
-}
 
 TEST_F(CliTest, CompletionKnowsTheGoalsAndRequestsThatProgramsDeclare) {
   bus::Node node(test::node_options("declarer", robot_));
@@ -694,160 +608,6 @@ TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
   up.signal(SIGTERM);
   EXPECT_EQ(up.wait(), 0);
   EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
-}
-
-TEST_F(Answers, UpGivesARobotEachOfItsProgramsOnce) {
-  const std::string programs =
-      "programs:\n"
-      "  - {name: behaviors, program: sh, arguments: [-c, exec sleep 600]}\n";
-  const std::string first = write("first.yaml", programs);
-  const std::string second = write("second.yaml", programs);
-  test::Process up(command({"up", first}), folder_.path("up"));
-  ASSERT_TRUE(test::wait_until([&] { return has(up.output(), "1 program of"); })) << up.output();
-  const Outcome other = run({"up", second});
-  EXPECT_NE(other.code, 0);
-  EXPECT_TRUE(has(other.text, "behaviors of robot " + robot_)) << other.text;
-  EXPECT_TRUE(has(other.text, "started by " + first)) << other.text;
-  up.signal(SIGTERM);
-  EXPECT_EQ(up.wait(), 0);
-}
-
-TEST_F(Answers, UpInTheBackgroundIsRefusedASecondTime) {
-  const std::string file =
-      write("twice.yaml",
-            "programs:\n"
-            "  - {name: a, program: sh, bus: false, arguments: [-c, exec sleep 600]}\n");
-  const Outcome first = run({"up", file, "-d"});
-  EXPECT_EQ(first.code, 0) << first.text;
-  const Outcome again = run({"up", file, "-d"});
-  EXPECT_EQ(again.code, 3) << again.text;
-  EXPECT_TRUE(has(again.text, "saphira: this deployment is running already: ")) << again.text;
-  const std::string other = "other-" + robot_;
-  const Outcome spared = test::run({"saphira", "--robot", other, "stop"});
-  EXPECT_EQ(spared.code, 1) << spared.text;
-  EXPECT_TRUE(has(spared.text, "saphira: no deployment of robot " + other)) << spared.text;
-  EXPECT_TRUE(has(spared.text, " runs; there are: ")) << spared.text;
-  EXPECT_TRUE(has(spared.text, "twice-" + robot_)) << spared.text;
-  const Outcome stopped = run({"stop"});
-  EXPECT_EQ(stopped.code, 0) << stopped.text;
-}
-
-TEST_F(Answers, AnAuthorityThatIsNamedWinsOverTheOneOfTheEnvironment) {
-  const std::map<std::string, std::string> environment{{"SAPHIRA_AUTHORITY", "/elsewhere"}};
-  const auto said = [&](const std::vector<std::string>& words) {
-    return test::run(command(words), environment).text;
-  };
-  const std::string named = said({"security", "revoke", "eve", "--authority", "/nothere"});
-  EXPECT_TRUE(has(named, "/nothere holds no authority")) << named;
-  const std::string other = said({"security", "revoke", "eve"});
-  EXPECT_TRUE(has(other, "/elsewhere holds no authority")) << other;
-}
-
-TEST_F(Answers, RecordSparesAFileWithOtherContent) {
-  const std::string file = write("notes.mcap", "notes");
-  const Outcome outcome = run({"record", file, "--for", "0.1"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.text, "saphira: " + file +
-                              ": a file with other content is there; give a new name, such as "
-                              "NAME.mcap\n");
-  EXPECT_EQ(read_file(file), "notes");
-}
-
-TEST_F(Answers, LogMapSparesTheLogAndWritesNoMapWithoutWalls) {
-  const std::string scans =
-      "FLASER 3 81 81 81 0 0 0 0 0 0 1 h 1\nFLASER 3 81 81 81 1 0 0 1 0 0 2 h 2\n";
-  const std::string log = write("far.log", scans);
-  const Outcome same = run({"log", "map", log, folder_.path("./far.log")});
-  EXPECT_EQ(same.code, 2);
-  EXPECT_TRUE(has(same.text, "far.log: this is the log itself; expected another file"))
-      << same.text;
-  EXPECT_EQ(read_file(log), scans);
-  const std::string map = write("old.map", "POS (1) 0, 0, 0 \"home\"\n");
-  const Outcome none = run({"log", "map", log, map});
-  EXPECT_EQ(none.code, 1);
-  EXPECT_TRUE(has(none.text, "far.log: no wall was found; nothing is written")) << none.text;
-  EXPECT_EQ(read_file(map), "POS (1) 0, 0, 0 \"home\"\n");
-}
-
-TEST_F(Answers, UpNamesTheMistakeInADeployment) {
-  const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
-  const Outcome outcome = run({"up", file});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "bad.yaml:3:5: unknown key \"argments\"")) << outcome.text;
-}
-
-TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
-  const std::string file =
-      write("misused.yaml",
-            "programs:\n"
-            "  - {name: other, program: sh, bus: false, arguments: [-c, exec sleep 600]}\n"
-            "  - {program: saphira-bridge, arguments: [--no-such-option]}\n");
-  const Outcome outcome = run({"up", file});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "saphira: bridge does not take what")) << outcome.text;
-  EXPECT_FALSE(has(outcome.text, "started")) << outcome.text;
-}
-
-// The programs read the files that a deployment gives them, and nothing is started.
-TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
-  const Outcome good = run({"check", "office"});
-  EXPECT_EQ(good.code, 0) << good.text;
-  EXPECT_TRUE(has(good.text, "office.yaml would start")) << good.text;
-
-  const std::string map = write("wrong.map", "CORRIDOR (1) 0, 0, 0\n");
-  const std::string grammar = write("wrong.grammar", "keyword: robot\ngo(\n");
-  const Outcome bad =
-      run({"check", "office", "--set", "map=" + map, "--set", "grammar=" + grammar});
-  EXPECT_EQ(bad.code, 2);
-  EXPECT_TRUE(has(bad.text, "wrong.map:1:")) << bad.text;
-  EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
-  EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
-  EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
-  const std::string robot = write("wrong.p", "Class Pioneer\nRobotRadus 250\n");
-  const Outcome wrong = run({"check", "pioneer", "--set", "base=" + robot});
-  EXPECT_EQ(wrong.code, 2);
-  EXPECT_TRUE(has(wrong.text, "did you mean RobotRadius?")) << wrong.text;
-
-  const Outcome speech = run({"check", "office", "--set", "speech=on", "--set",
-                              "microphone=no-microphone", "--set", "loudspeaker=no-loudspeaker"});
-  EXPECT_EQ(speech.code, 0) << speech.text;
-  if (std::filesystem::exists(test::program("saphira-speech"))) {
-    EXPECT_TRUE(has(speech.text, "the sound device \"no-microphone\" cannot be opened: "))
-        << speech.text;
-    EXPECT_TRUE(has(speech.text, "the sound device \"no-loudspeaker\" cannot be opened: "))
-        << speech.text;
-  } else {
-    EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
-  }
-  EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
-  const Outcome line = run({"check", "pioneer", "--set", "device=/dev/ttyNone"});
-  EXPECT_EQ(line.code, 0) << line.text;
-  EXPECT_TRUE(has(line.text, "/dev/ttyNone: cannot be opened: No such file")) << line.text;
-
-  // A mistake that a running program would only report.
-  std::filesystem::create_directory(folder_.path("my"));
-  write("my/wrong.beh", "BeginBehavior\n");
-  const Outcome behaviors = run({"check", "demo", "--set", "behaviors=" + folder_.path("my")});
-  EXPECT_EQ(behaviors.code, 2) << behaviors.text;
-  EXPECT_TRUE(has(behaviors.text, "wrong.beh:")) << behaviors.text;
-
-  // Of a program that lacks something the supervisor tries again; the others run on.
-  std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),
-                               std::filesystem::perms::owner_all);
-  const Outcome lacking =
-      run({"check", write("lacking.yaml", "programs: [{program: ./saphira-lacking}]\n")});
-  EXPECT_EQ(lacking.code, 2);
-  EXPECT_TRUE(has(lacking.text, "no model")) << lacking.text;
-  EXPECT_TRUE(has(lacking.text, "would start, but 1 of its programs would not run"))
-      << lacking.text;
-  EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
-}
-
-TEST_F(Answers, TheDemoSaysWhatIsWrongWithAWorld) {
-  const std::string file = write("bad.wld", "wdith 3\n");
-  const Outcome outcome = run({"demo", "--headless", "--world", file});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "bad.wld:1:1: expected")) << outcome.text;
 }
 
 TEST_F(CliTest, AClosedTerminalEndsTheDemoInGoodOrder) {

@@ -144,9 +144,9 @@ const std::vector<Mistake>& mistakes() {
       {{"write", "device/servo", R"({"arguments": [{"number": true}]})"},
        {"arguments[0].number: expected a number, found true"}},
       {{"write", "drive/direct", R"({"velocity": 1e999})"},
-       {"drive/direct: velocity: expected a finite number, found 1e999\n"}},
+       {"drive/direct: expected a finite number, found 1e999\n"}},
       {{"write", "device/servo", R"({"arguments": [{"name": "a"}, {"number": -1e999}]})"},
-       {"device/servo: arguments.number: expected a finite number, found -1e999\n"}},
+       {"device/servo: expected a finite number, found -1e999\n"}},
       // processes, beliefs, devices
       {{"processes", "interrupt"}, {"expected processes, or processes interrupt"}},
       {{"processes", "stop", "a", "b"}, {"expected processes, or processes interrupt"}},

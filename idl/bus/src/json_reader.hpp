@@ -127,27 +127,6 @@ class JsonReader {
   }
 };
 
-/// The place of a number that is too large to read: its members' names.
-inline std::string place_of_overflow(const std::string& text) {
-  std::vector<std::string> names;
-  const auto follow = [&names](int depth, nlohmann::json::parse_event_t event,
-                               const nlohmann::json& json) {
-    if (event == nlohmann::json::parse_event_t::key) {
-      names.resize(static_cast<std::size_t>(depth));
-      names.back() = json.get<std::string>();
-    } else if (event == nlohmann::json::parse_event_t::object_end) {
-      names.resize(static_cast<std::size_t>(depth));
-    }
-    return true;
-  };
-  try {
-    [[maybe_unused]] const auto none = nlohmann::json::parse(text, follow);
-  } catch (const nlohmann::json::out_of_range&) {
-    std::erase(names, "");  // lists
-  }
-  return joined(names, ".");
-}
-
 template <class T>
 void from_json(const std::string& text, T& sample) {
   nlohmann::json json;
@@ -160,9 +139,7 @@ void from_json(const std::string& text, T& sample) {
     // Its message has the number in quotation marks.
     const std::string said = error.what();
     const std::size_t begin = std::min(said.find('\''), said.size() - 1) + 1;
-    const std::string place = place_of_overflow(text);
-    throw std::invalid_argument((place.empty() ? "" : place + ": ") +
-                                "expected a finite number, found " +
+    throw std::invalid_argument("expected a finite number, found " +
                                 said.substr(begin, said.find('\'', begin) - begin).substr(0, 60));
   }
   JsonReader().structure(json, sample, "");

@@ -49,7 +49,7 @@ bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
   bool named = true;
   const auto name = [&](Meaning& meaning) {
     for (auto& [slot, value] : meaning.slots)
-      if (value == "me") {
+      if (value == "me" && (slot == "person" || slot == "owner")) {
         value = lowered(speaker);
         named = named && !speaker.empty();
       }

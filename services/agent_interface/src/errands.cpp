@@ -1,7 +1,5 @@
 // The part of the dialogue for errands between people, and for ways back.
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "saphira/base/numbers.hpp"
 #include "words.hpp"
@@ -25,15 +23,6 @@ std::string end_as_said(const std::string& words, const std::string& text) {
     return end;
   }
   return words;
-}
-
-/// No thing to carry: "take the upper corridor to the library".
-bool is_way(const std::string& object) {
-  constexpr std::array kWays{"corridor", "hallway", "hall",     "door", "doorway", "route",
-                             "path",     "stairs",  "elevator", "lift", "turn"};
-  return std::any_of(kWays.begin(), kWays.end(), [&](const std::string_view way) {
-    return object == way || object.ends_with(" " + std::string(way));
-  });
 }
 
 }  // namespace
@@ -76,7 +65,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     return found;
   };
   const auto back = [&] { return text("back", bring_to(utterance, situation)); };
-  if (functor == "deliver_here" && is_way(slot(meaning, "object"))) {
+  if (functor == "take_way") {
     refuse(utterance, "I find the way myself: say \"go to\" and the place", out);
   } else if (functor == "deliver_here") {
     const bool office = !slot(meaning, "owner").empty();

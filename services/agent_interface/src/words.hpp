@@ -9,6 +9,8 @@
 
 namespace saphira::agent_interface {
 
+/// Of a word: a letter, a digit, a hyphen, or a byte of a letter in UTF-8.
+bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.
 std::string slot(const Meaning& meaning, const std::string& name);
 double number_of(const Meaning& meaning, const std::string& name);

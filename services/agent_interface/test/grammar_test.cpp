@@ -9,6 +9,7 @@ namespace {
 
 constexpr const char* kFile = R"(
 keyword: flakey
+greetings: hey hello ok okay
 no-names: the is to
 list side: left = left | right | to starboard = right
 stop() "I stop"

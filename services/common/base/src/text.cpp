@@ -159,7 +159,7 @@ void LineReader::fail_at(int column, const std::string& message) const {
 
 void expect_last_line_break(std::string_view text, const std::string& file) {
   const std::vector<Line> lines = split_lines(text);
-  if (lines.empty())
+  if (lines.empty() || !other_format(text).empty())  // the reader names the other format
     return;
   const Word& last = lines.back().words.back();
   const char* const end = last.text.data() + last.text.size();

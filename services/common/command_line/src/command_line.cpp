@@ -236,8 +236,8 @@ bool has_default(const T& /*value*/) {
   return true;
 }
 
-/// The error of a whole number that a T cannot hold; what is no whole number is for the parser,
-/// which lets some of these wrap around.
+/// The error of a whole number outside of T's range, which the parser may let wrap around. Another
+/// text has no error here: the parser reports it.
 template <class T>
 std::string trouble_of_limits(const std::string& text) {
   const std::string digits = text.substr(text.starts_with('-') ? 1 : 0);

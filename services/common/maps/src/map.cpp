@@ -294,7 +294,7 @@ Map parse_map(std::string_view text, const std::string& file) {
 
 Map load_map(const std::string& path) {
   const std::string text = read_file(path);
-  if (!text.ends_with('"') && other_format(text).empty())  // a name is whole
+  if (!text.ends_with('"'))  // a name is whole
     expect_last_line_break(text, path);
   return parse_map(text, path);
 }

@@ -128,6 +128,7 @@ class Grammar {
 
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
+  std::vector<std::string> greetings_;            ///< words that may stand before the keyword
   std::vector<std::string> no_names_;             ///< words that no name contains
   std::vector<std::string> steps_;                ///< functors that a sequence may have
   std::vector<std::vector<std::string>> polite_;  ///< words before an order, as "can you"
