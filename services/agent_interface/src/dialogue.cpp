@@ -278,9 +278,8 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     }
     // Somebody is called to hand it over.
     if (saphira::joined(words_of(utterance.text), " ") == called &&
-        (is_question(utterance.text) ||
-         std::find(kHandovers.begin(), kHandovers.end(), situation.asked_about) !=
-             kHandovers.end()))
+        (is_question(utterance.text) || std::find(kHandovers.begin(), kHandovers.end(),
+                                                  situation.asked_about) != kHandovers.end()))
       return true;
   }
   if (yes || meaning.functor == "handed") {
@@ -296,7 +295,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     const std::string name = slot(meaning, "person");
     const bool person = place(name, situation).empty();
     value = place_or_person(name, situation);
-    if (open && person && !knowledge_.findable(name)) {
+    if (open && person && !findable(name, situation)) {
       refuse(utterance, "nobody has told me where " + name + " is", out);
       return true;
     }
@@ -393,11 +392,12 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
   const bool drops = tasks_.asks(utterance);
-  const bool offered = offer_ && may_answer(utterance, offer_->raised_by);
   const bool asked = !situation.asked_about.empty();
+  const bool offer = offer_ && may_answer(utterance, offer_->raised_by);
+  const bool offered = offer && !(offer_->done && asked);
   const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
-  Grammar::Understood understood = grammar_.understand(
-      utterance.text, asked || doubted || drops || (offered && !offer_->done));
+  Grammar::Understood understood =
+      grammar_.understand(utterance.text, asked || doubted || drops || (offered && !offer_->done));
   if (offered && offer_->done && understood.addressed && understood.meanings.empty()) {
     understood = grammar_.understand(utterance.text, true);
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
@@ -405,14 +405,18 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   if (offered && sure && answered(understood, utterance, situation, out))
     return out;
-  std::erase_if(understood.meanings, [&](const Meaning& one) {
-    return one.functor == kInstead || (!asked && !understood.addressed && !is_yes_or_no(one));
-  });
-  if (asked && understood.meanings.empty() && understood.bare.size() == 1)
-    if (const std::string name = slot(understood.bare.front(), "person");
-        name == lowered(situation.asked_for) || findable(name, situation) ||
-        !place(name, situation).empty())
-      understood.meanings = understood.bare;
+  // A name alone at most answers an activity.
+  std::vector<Meaning>& meanings = understood.meanings;
+  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
+  if (instead)
+    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
+  else if (asked && meanings.empty())
+    meanings = understood.bare;
+  if ((instead || !understood.bare.empty()) &&
+      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
+    meanings.clear();
+  if (!asked && !understood.addressed)
+    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
   // Another sentence of that speaker ends the robot's question.
   if (utterance.confidence >= kSure &&
       (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front()))) {
@@ -420,7 +424,7 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       doubt_.reset();
     if (drops)
       tasks_.withdraw_question();
-    if (offered)
+    if (offer)
       offer_.reset();
   }
   if (utterance.text.size() > kLongestText) {
@@ -468,17 +472,17 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
   }
 }
 
-/// The place or person that a reply names; empty: none.
 std::string Dialogue::named(const Grammar::Understood& understood, const Utterance& utterance,
                             const Situation& situation) const {
   const bool bare = understood.meanings.empty();
   const Meaning& said = bare ? understood.bare.front() : understood.meanings.front();
-  if (said.functor == kInstead)
-    return slot(said, "name");
-  const std::string name = slot(said, "person");
+  const bool instead = said.functor == kInstead;
+  const std::string name = slot(said, instead ? "name" : "person");
+  if (instead && understood.addressed)
+    return name;
+  // Without the keyword it may be a word to somebody else.
   const bool alone = bare || saphira::joined(words_of(utterance.text), " ") == name;
-  return said.functor == "somebody" && alone &&
-                 (findable(name, situation) || !place(name, situation).empty())
+  return (instead || (said.functor == "somebody" && alone)) && is_known(name, situation)
              ? name
              : std::string();
 }
@@ -510,7 +514,7 @@ bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& 
     name = lowered(offer.meant);
   } else {
     name = named(understood, utterance, situation);
-    if (name.empty() || offer.name.empty())
+    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
       return false;
   }
   for (std::vector<Meaning>* const steps : {&offer.understood.meanings, &offer.understood.then})

@@ -15,7 +15,8 @@ std::string part_as_said(const std::string& words, std::string text) {
   const std::vector<std::string> wanted = words_of(words);
   for (; !text.empty(); text.resize(std::min(text.rfind(' '), text.size()))) {
     for (std::size_t at = text.size(); at-- > 0;)
-      if (text[at] != ' ' && (at == 0 || text[at - 1] == ' ') && words_of(text.substr(at)) == wanted)
+      if (text[at] != ' ' && (at == 0 || text[at - 1] == ' ') &&
+          words_of(text.substr(at)) == wanted)
         return text.substr(at, text.find_last_not_of(" .,!?") + 1 - at);
     if (text.find(' ') == std::string::npos)
       break;
@@ -85,7 +86,9 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
   } else if (functor == "patrol") {
     want(meaning, utterance, "patrol", {});
   } else if (functor == "guide") {
-    const std::string to = where("place");
+    const std::string person = slot(meaning, "place");
+    const bool known = place(person, situation).empty() && !knowledge_.place_of(person).empty();
+    const std::string to = known ? knowledge_.place_of(person) : where("place");
     if (!to.empty())
       want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)});
   } else if (functor == "pause") {

@@ -260,14 +260,14 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.addressed = !look(words, true, false, Among::urgent).empty();
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
-  const auto whole = [&] {
-    result.meanings = look(words, result.addressed, replies, Among::usual);
+  const auto whole = [&](const std::vector<std::string>& sentence) {
+    result.meanings = look(sentence, result.addressed, replies, Among::usual);
     if (!result.addressed)
       return;
     // Of several ways to divide it, the one with the fewest steps.
-    const bool counted = words.size() > 1 && words.front() == "first";
+    const bool counted = sentence.size() > 1 && sentence.front() == "first";
     std::vector<std::vector<Meaning>> ways =
-        divided({words.begin() + (counted ? 1 : 0), words.end()}, true);
+        divided({sentence.begin() + (counted ? 1 : 0), sentence.end()}, true);
     std::stable_sort(ways.begin(), ways.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (result.meanings.empty()) {
@@ -282,9 +282,10 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       result.apart = ways.front();
   };
   if (words.size() <= kLongestUtterance) {
-    whole();
-    if (result.meanings.empty() && result.addressed && make_plain_order(words)) {
-      whole();
+    whole(words);
+    std::vector<std::string> order = words;
+    if (result.meanings.empty() && result.addressed && make_plain_order(order)) {
+      whole(order);
       result.polite = true;
     }
   }

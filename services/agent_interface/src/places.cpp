@@ -49,13 +49,18 @@ std::string letters_of(std::string_view name) {
   return letters;
 }
 
-/// The only name of which `part` is a part, as "231" of "EJ-231"; empty: none or several.
-std::string only_with(const std::string& part, const std::vector<std::string>& names) {
+/// The only one of the names that shares a word with what was said, as "EJ-231" with "number 231";
+/// empty: none or several.
+std::string only_with_word_of(const std::string& said, const std::vector<std::string>& names) {
+  const auto parts = [](std::string name) {
+    std::replace(name.begin(), name.end(), '-', ' ');
+    return words_of(name);
+  };
+  const std::vector<std::string> wanted = parts(said);
   std::string found;
   for (const std::string& name : names) {
-    std::string words = " " + lowered(name) + " ";
-    std::replace(words.begin(), words.end(), '-', ' ');
-    if (words.find(" " + part + " ") == std::string::npos)
+    const std::vector<std::string> words = parts(name);
+    if (std::find_first_of(words.begin(), words.end(), wanted.begin(), wanted.end()) == words.end())
       continue;
     if (!found.empty())
       return {};
@@ -156,6 +161,11 @@ bool Dialogue::findable(const std::string& person, const Situation& situation) c
              situation.findable.end();
 }
 
+bool Dialogue::is_known(const std::string& name, const Situation& situation) const {
+  return findable(name, situation) || !place(name, situation).empty() ||
+         (!name.empty() && name == lowered(situation.asked_for));
+}
+
 std::string Dialogue::unknown(const std::string& name, bool people, const Situation& situation,
                               Outputs& out) const {
   constexpr std::size_t kShown = 4;
@@ -182,15 +192,17 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
   out.unknown = name;
   out.meant = guess(name, names);
   if (out.meant.empty())
-    out.meant = only_with(name, names);
-  std::string text = std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
+    out.meant = only_with_word_of(name, names);
+  std::string text =
+      std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
   if (!out.meant.empty())
     return text + "; do you mean " + out.meant + "?";
   if (places == 0)
     return text;
   names.resize(places);
-  text += ", but " + saphira::joined(std::vector(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(
-                                                                      std::min(places, kShown))));
+  text += ", but " + saphira::joined(std::vector(
+                         names.begin(),
+                         names.begin() + static_cast<std::ptrdiff_t>(std::min(places, kShown))));
   if (places > kShown)
     text += " and " + std::to_string(places - kShown) + " more";
   return text + ". Which one?";
@@ -221,7 +233,7 @@ std::string Dialogue::kept_out(const std::string& place, const Situation& situat
   const Vec2 robot = situation.pose_in_map->position();
   const maps::RouteResult allowed = maps::find_route(floor, robot, place, settings);
   return allowed.route || !maps::find_route(floor, robot, place).route ? std::string()
-                                                                      : allowed.reason;
+                                                                       : allowed.reason;
 }
 
 std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situation,

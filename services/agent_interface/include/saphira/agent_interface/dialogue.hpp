@@ -80,8 +80,8 @@ class Dialogue {
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
     bool changed = false;                ///< save() has other contents
     std::string note;                    ///< for the log; empty: none
-    std::string unknown{};  ///< a name in the sentence that nothing has; empty: none
-    std::string meant{};    ///< the one that the robot asks back for instead; empty: none
+    std::string unknown{};               ///< a name in the sentence that nothing has; empty: none
+    std::string meant{};  ///< the one that the robot asks back for instead; empty: none
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
@@ -138,6 +138,7 @@ class Dialogue {
   /// Whether the sentence was the answer to the robot's offer.
   bool answered(const Grammar::Understood& understood, const Utterance& utterance,
                 const Situation& situation, Outputs& out);
+  /// The place or person that a reply names; empty: none.
   std::string named(const Grammar::Understood& understood, const Utterance& utterance,
                     const Situation& situation) const;
   void act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -203,6 +204,8 @@ class Dialogue {
   std::string place(const std::string& name, const Situation& situation) const;
   /// True where somebody or something says where that person is, or who knows it.
   bool findable(const std::string& person, const Situation& situation) const;
+  /// True for a place of the map, and a person who is findable or whom the robot asks for.
+  bool is_known(const std::string& name, const Situation& situation) const;
   /// That no place, or neither place nor person, has this name; with the nearest name, or some of
   /// the places.
   std::string unknown(const std::string& name, bool people, const Situation& situation,
