@@ -470,7 +470,7 @@ std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
   const Rule* best = nullptr;
   int most = 0;
   for (const Rule& rule : rules_) {
-    if (rule.meaning.functor != meaning.functor)
+    if (rule.meaning.functor != meaning.functor || rule.paraphrases.empty())
       continue;
     int common = 0;
     for (const auto& [name, value] : rule.meaning.slots)
