@@ -132,7 +132,7 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
   return true;
 }
 
-/// Whose office a place is; or whether it is that of a person.
+/// The owner of an office; with a person in the question, yes or no before it.
 void Dialogue::owner_of(const Meaning& meaning, const Utterance& utterance,
                         const Situation& situation, Outputs& out) const {
   const std::string person = slot(meaning, "person");

@@ -971,7 +971,7 @@ TEST_F(DialogueTest, APlaceBehindAKeepOutIsRefusedAtOnce) {
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
 }
 
-TEST_F(DialogueTest, WhoseOfficeIsAnsweredByWhatWasTold) {
+TEST_F(DialogueTest, TheOwnerOfAnOfficeIsAnswered) {
   EXPECT_EQ(said("Flakey, whose office is this?"), "nobody has told me whose office EJ-231 is");
   hear("Flakey, this is Karen's office");
   const std::string told = "Alice said that EJ-231 is karen's office";

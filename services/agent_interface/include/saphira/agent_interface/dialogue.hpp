@@ -135,7 +135,7 @@ class Dialogue {
   /// Does what a sentence means, or asks back.
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
-  /// Whether the sentence was the answer to the robot's offer.
+  /// True where the sentence answers the robot's offer; then that is done.
   bool answered(const Grammar::Understood& understood, const Utterance& utterance,
                 const Situation& situation, Outputs& out);
   /// The place or person that a reply names; empty: none.
