@@ -31,6 +31,7 @@ constexpr const char* kName = "dialogue";
 constexpr const char* kQuestion = "asking-about";
 constexpr const char* kPerson = "asking-for";
 constexpr const char* kPlaceOf = "place-of-";
+constexpr const char* kKnowers = "knows-where-";
 constexpr const char* kFinder = "find-person";
 
 /// A text in the activity language: "karen's office".
@@ -278,6 +279,7 @@ void DialogueShell::take_beliefs() {
     return;
   situation_.asked_about.clear();
   situation_.asked_for.clear();
+  situation_.findable.clear();
   const std::string_view place_of(kPlaceOf);
   std::vector<Find> finds;
   for (const v1::Belief& belief : beliefs->beliefs()) {
@@ -287,7 +289,10 @@ void DialogueShell::take_beliefs() {
       situation_.asked_about = value;
     else if (name == kPerson)
       situation_.asked_for = value;
-    else if (belief.said_by() == kFinder && name.starts_with(place_of) && !value.empty())
+    for (const std::string_view about : {place_of, std::string_view(kKnowers)})
+      if (name.starts_with(about) && !value.empty())
+        situation_.findable.push_back(lowered(name.substr(about.size())));
+    if (belief.said_by() == kFinder && name.starts_with(place_of) && !value.empty())
       finds.push_back({name.substr(place_of.size()), value, belief.since()});
   }
   perform(dialogue_.found(finds, situation_.now));

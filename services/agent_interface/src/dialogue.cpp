@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -23,25 +25,20 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
+/// Questions of activities whether something was handed over.
+constexpr std::array kHandovers{"given", "taken"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
+/// Another name for that of the sentence before.
+constexpr std::string_view kInstead = "instead";
 constexpr const char* kSaidLine = "said\t";
 constexpr const char* kGoneLine = "gone\t";
-
-bool is_yes_or_no(const Meaning& meaning) {
-  return meaning.functor == "yes" || meaning.functor == "no";
-}
 
 /// A sentence that changes the knowledge of the robot.
 bool is_fact(const Meaning& meaning) {
   constexpr std::array kFacts{"office_of", "person_at",     "knows_where", "hazard", "no_hazard",
                               "not_at",    "not_office_of", "not_knows",   "forget", "name_of"};
   return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
-}
-
-bool is_question(std::string_view text) {
-  const std::size_t last = text.find_last_not_of(" \t\"'.!");
-  return last != std::string_view::npos && text[last] == '?';
 }
 
 /// Puts the speaker where a slot has "me". False: the speaker has no name.
@@ -54,9 +51,34 @@ bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
         named = named && !speaker.empty();
       }
   };
-  name(understood.meanings.front());
-  std::for_each(understood.then.begin(), understood.then.end(), name);
+  for (std::vector<Meaning>* const steps :
+       {&understood.meanings, &understood.then, &understood.apart})
+    std::for_each(steps->begin(), steps->end(), name);
   return named;
+}
+
+/// The end of a free text that may be an order of its own: "and then go home".
+std::string order_in_text(const Grammar::Understood& understood) {
+  const std::size_t last = understood.then.size();
+  const Meaning& whole = last == 0 ? understood.meanings.front() : understood.then.back();
+  for (const auto& [name, value] : understood.apart[last].slots)
+    if (const std::string all = slot(whole, name); all != value && all.starts_with(value))
+      return all.substr(std::min(value.size() + 1, all.size()));
+  return "the rest";
+}
+
+/// The place or person of a meaning; empty: none, or several.
+std::string only_name(const Meaning& meaning) {
+  std::string only;
+  for (const char* const name : {"place", "from", "to", "person", "owner"}) {
+    const std::string value = slot(meaning, name);
+    if (value.empty() || value == "this")
+      continue;
+    if (!only.empty())
+      return {};
+    only = value;
+  }
+  return only;
 }
 
 }  // namespace
@@ -165,10 +187,14 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     shown.slots["owner"] = "";
     if (!where.empty())
       want(shown, utterance, "go-to-place", {text("place", where)});
-    else if (!name.empty() && !knowledge_.place_of(name).empty())
-      want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
-    else
+    else if (name.empty() || out.unknown != name)
       refuse(utterance, wrong, out);
+    else if (!findable(name, situation))
+      refuse(utterance, unknown(name, true, situation, out), out);
+    else {
+      out.unknown.clear();
+      want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
+    }
   } else if (functor == "deliver") {
     want(meaning, utterance, "deliver",
          {text("object", "the " + slot(meaning, "object")), text("from", whom("from")),
@@ -244,17 +270,32 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
   told.said = utterance.text;
   told.time = utterance.time;
   const bool open = !situation.asked_about.empty();
+  const std::string called = slot(meaning, "person");
+  if (open && meaning.functor == "somebody") {
+    if (called == asked_for) {
+      refuse(utterance, "yes, I ask where " + called + " is", out);
+      return true;
+    }
+    // Somebody is called to hand it over.
+    if (saphira::joined(words_of(utterance.text), " ") == called &&
+        (is_question(utterance.text) || std::find(kHandovers.begin(), kHandovers.end(),
+                                                  situation.asked_about) != kHandovers.end()))
+      return true;
+  }
   if (yes || meaning.functor == "handed") {
     value = "yes";
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
     value = "no";
     told.about.clear();
+  } else if (open && is_question(utterance.text)) {
+    refuse(utterance, "is that a question? Without the question mark I take it as an answer", out);
+    return true;
   } else if (meaning.functor == "somebody") {
     const std::string name = slot(meaning, "person");
     const bool person = place(name, situation).empty();
     value = place_or_person(name, situation);
-    if (open && person && !knowledge_.findable(name)) {
+    if (open && person && !findable(name, situation)) {
       refuse(utterance, "nobody has told me where " + name + " is", out);
       return true;
     }
@@ -320,6 +361,11 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
     if (wanted_.size() == before)
       return;
   }
+  for (const Task& task : wanted_)
+    if (const std::string why = hindrance(task.goal, situation, out); !why.empty()) {
+      refuse(utterance, why, out);
+      return;
+    }
   add(tasks_.want(std::move(wanted_), utterance), out);
   wanted_.clear();
   note_begin(situation, out);
@@ -347,9 +393,30 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
   const bool drops = tasks_.asks(utterance);
   const bool asked = !situation.asked_about.empty();
-  Grammar::Understood understood = grammar_.understand(utterance.text, asked || doubted || drops);
-  if ((doubted || drops) && !asked && !understood.addressed)
-    std::erase_if(understood.meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+  const bool offer = offer_ && may_answer(utterance, offer_->raised_by);
+  const bool offered = offer && !(offer_->done && asked);
+  const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
+  Grammar::Understood understood =
+      grammar_.understand(utterance.text, asked || doubted || drops || (offered && !offer_->done));
+  if (offered && offer_->done && understood.addressed && understood.meanings.empty()) {
+    understood = grammar_.understand(utterance.text, true);
+    std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
+    understood.bare.clear();
+  }
+  if (offered && sure && answered(understood, utterance, situation, out))
+    return out;
+  // A name alone at most answers an activity.
+  std::vector<Meaning>& meanings = understood.meanings;
+  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
+  if (instead)
+    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
+  else if (asked && meanings.empty())
+    meanings = understood.bare;
+  if ((instead || !understood.bare.empty()) &&
+      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
+    meanings.clear();
+  if (!asked && !understood.addressed)
+    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
   // Another sentence of that speaker ends the robot's question.
   if (utterance.confidence >= kSure &&
       (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front()))) {
@@ -357,6 +424,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       doubt_.reset();
     if (drops)
       tasks_.withdraw_question();
+    if (offer)
+      offer_.reset();
   }
   if (utterance.text.size() > kLongestText) {
     const bool meant = understood.addressed && !understood.meanings.empty();
@@ -368,19 +437,97 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
-  if (understood.meanings.empty() || utterance.confidence < kSure) {
+  if (understood.meanings.empty() || utterance.confidence < kSure)
     refuse(utterance, "what?", out);
-  } else if (understood.meanings.size() > 1) {
+  else
+    carry_out(std::move(understood), utterance, situation, out);
+  return out;
+}
+
+void Dialogue::carry_out(Grammar::Understood understood, const Utterance& utterance,
+                         const Situation& situation, Outputs& out) {
+  if (understood.meanings.size() > 1) {
     choices(understood.meanings, utterance, out);
   } else if (is_fact(understood.meanings.front()) && is_question(utterance.text) &&
              !understood.polite) {
     refuse(utterance, "is that a question? Without the question mark I take it as a fact", out);
   } else if (!name_speaker(understood, utterance.speaker)) {
     refuse(utterance, "I do not know who you are", out);
+  } else if (!understood.apart.empty()) {
+    refuse(utterance,
+           "\"" + order_in_text(understood) +
+               "\": shall I do that myself (yes), or is it what I am to say (no)?",
+           out);
+    offer_ = Offer{std::move(understood)};
+    offer_->yes = std::exchange(offer_->understood.apart, {});
+    offer_->raised_by = utterance;
   } else {
     act_on_all(understood, utterance, situation, out);
+    const bool done = !out.goals.empty();
+    const std::string name = !done                     ? out.unknown
+                             : understood.then.empty() ? only_name(understood.meanings.front())
+                                                       : std::string();
+    if (!name.empty())
+      offer_ = Offer{std::move(understood), name, done ? "" : out.meant, {}, utterance, done};
   }
-  return out;
+}
+
+std::string Dialogue::named(const Grammar::Understood& understood, const Utterance& utterance,
+                            const Situation& situation) const {
+  const bool bare = understood.meanings.empty();
+  const Meaning& said = bare ? understood.bare.front() : understood.meanings.front();
+  const bool instead = said.functor == kInstead;
+  const std::string name = slot(said, instead ? "name" : "person");
+  if (instead && understood.addressed)
+    return name;
+  // Without the keyword it may be a word to somebody else.
+  const bool alone = bare || saphira::joined(words_of(utterance.text), " ") == name;
+  return (instead || (said.functor == "somebody" && alone)) && is_known(name, situation)
+             ? name
+             : std::string();
+}
+
+bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& utterance,
+                        const Situation& situation, Outputs& out) {
+  if (understood.meanings.size() + (understood.meanings.empty() ? understood.bare.size() : 0) != 1)
+    return false;
+  Offer offer = *offer_;
+  std::string name;
+  if (!understood.meanings.empty() && is_yes_or_no(understood.meanings.front())) {
+    const bool yes = understood.meanings.front().functor == "yes";
+    const bool which = yes && offer.yes.empty() && offer.meant.empty();
+    if (offer.done || (which && !situation.asked_about.empty()))
+      return false;
+    if (which) {
+      refuse(utterance, "which one?", out);
+      return true;
+    }
+    if (!yes && offer.yes.empty()) {
+      offer_.reset();
+      say(utterance, "then I leave it", true, out);
+      return true;
+    }
+    if (!offer.yes.empty() && yes) {
+      offer.understood.meanings = {offer.yes.front()};
+      offer.understood.then.assign(offer.yes.begin() + 1, offer.yes.end());
+    }
+    name = lowered(offer.meant);
+  } else {
+    name = named(understood, utterance, situation);
+    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
+      return false;
+  }
+  for (std::vector<Meaning>* const steps : {&offer.understood.meanings, &offer.understood.then})
+    for (Meaning& step : *steps)
+      for (auto& [slot, value] : step.slots)
+        if (!name.empty() && value == offer.name)
+          value = name;
+  offer_.reset();
+  Utterance again = offer.raised_by;
+  again.id = utterance.id;
+  again.time = utterance.time;
+  carry_out(std::move(offer.understood), again, situation, out);
+  return true;
 }
 
 Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {

@@ -10,17 +10,16 @@ namespace {
 constexpr double kLongestWait = 3600.0;  // [s]
 constexpr double kWaitThere = 600.0;     // [s] until the robot is free for others
 
-/// The end of an utterance that has these words, as its speaker wrote it.
-std::string end_as_said(const std::string& words, const std::string& text) {
+/// The last part of an utterance that has these words, as its speaker wrote it.
+std::string part_as_said(const std::string& words, std::string text) {
   const std::vector<std::string> wanted = words_of(words);
-  for (std::size_t at = text.size(); at-- > 0;) {
-    if (text[at] == ' ' || (at > 0 && text[at - 1] != ' ') || words_of(text.substr(at)) != wanted)
-      continue;
-    std::string end = text.substr(at);
-    while (!end.empty() &&
-           (end.back() == ' ' || end.back() == '.' || end.back() == '!' || end.back() == '?'))
-      end.pop_back();
-    return end;
+  for (; !text.empty(); text.resize(std::min(text.rfind(' '), text.size()))) {
+    for (std::size_t at = text.size(); at-- > 0;)
+      if (text[at] != ' ' && (at == 0 || text[at - 1] == ' ') &&
+          words_of(text.substr(at)) == wanted)
+        return text.substr(at, text.find_last_not_of(" .,!?") + 1 - at);
+    if (text.find(' ') == std::string::npos)
+      break;
   }
   return words;
 }
@@ -75,19 +74,21 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
            {text("object", "the " + slot(meaning, "object")), text("to", to),
             text("sender", named_person(utterance.speaker))});
   } else if (functor == "tell") {
-    const std::string message = end_as_said(slot(meaning, "message"), utterance.text);
+    const std::string message = part_as_said(slot(meaning, "message"), utterance.text);
     want(with(meaning, "message", message), utterance, "tell",
          {text("person", slot(meaning, "person")), text("message", message),
           text("sender", named_person(utterance.speaker)), back()});
   } else if (functor == "ask_person") {
-    const std::string question = end_as_said(slot(meaning, "question"), utterance.text);
+    const std::string question = part_as_said(slot(meaning, "question"), utterance.text);
     want(meaning, utterance, "inquire",
          {text("person", slot(meaning, "person")), text("question", question),
           text("sender", named_person(utterance.speaker)), back()});
   } else if (functor == "patrol") {
     want(meaning, utterance, "patrol", {});
   } else if (functor == "guide") {
-    const std::string to = where("place");
+    const std::string person = slot(meaning, "place");
+    const bool known = place(person, situation).empty() && !knowledge_.place_of(person).empty();
+    const std::string to = known ? knowledge_.place_of(person) : where("place");
     if (!to.empty())
       want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)});
   } else if (functor == "pause") {

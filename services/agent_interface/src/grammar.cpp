@@ -124,6 +124,17 @@ bool has_rest(const Grammar::Node& node) {
          std::any_of(node.parts.begin(), node.parts.end(), has_rest);
 }
 
+/// The number of words there that join two sentences: "and", "then", "and after that"; 0: none.
+std::size_t joint(const std::vector<std::string>& words, std::size_t at) {
+  const auto is = [&](std::size_t i, const char* word) {
+    return i < words.size() && words[i] == word;
+  };
+  const std::size_t next = is(at, "and") ? at + 1 : at;
+  const bool one = is(next, "then") || is(next, "afterwards");
+  const bool two = is(next, "after") && is(next + 1, "that");
+  return next - at + (one ? 1U : two ? 2U : 0U);
+}
+
 }  // namespace
 
 std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<std::string>& words,
@@ -249,23 +260,32 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.addressed = !look(words, true, false, Among::urgent).empty();
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
-  const auto whole = [&] {
-    result.meanings = look(words, result.addressed, replies, Among::usual);
-    if (!result.meanings.empty() || !result.addressed)
+  const auto whole = [&](const std::vector<std::string>& sentence) {
+    result.meanings = look(sentence, result.addressed, replies, Among::usual);
+    if (!result.addressed)
       return;
     // Of several ways to divide it, the one with the fewest steps.
-    std::vector<std::vector<Meaning>> ways = divided(words, true);
+    const bool counted = sentence.size() > 1 && sentence.front() == "first";
+    std::vector<std::vector<Meaning>> ways =
+        divided({sentence.begin() + (counted ? 1 : 0), sentence.end()}, true);
     std::stable_sort(ways.begin(), ways.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    if (!ways.empty() && (ways.size() == 1 || ways[0].size() < ways[1].size())) {
+    if (result.meanings.empty()) {
+      if (ways.empty() || (ways.size() > 1 && ways[0].size() == ways[1].size()))
+        return;
       result.meanings = {ways[0].front()};
       result.then.assign(ways[0].begin() + 1, ways[0].end());
+      ways.erase(ways.begin());
     }
+    const Meaning& last = result.then.empty() ? result.meanings.back() : result.then.back();
+    if (!ways.empty() && takes_text(last.functor))
+      result.apart = ways.front();
   };
   if (words.size() <= kLongestUtterance) {
-    whole();
-    if (result.meanings.empty() && result.addressed && make_plain_order(words)) {
-      whole();
+    whole(words);
+    std::vector<std::string> order = words;
+    if (result.meanings.empty() && result.addressed && make_plain_order(order)) {
+      whole(order);
       result.polite = true;
     }
   }
@@ -273,6 +293,8 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.meanings = look(words, result.addressed, replies, Among::reply);
   if (result.meanings.empty())
     result.meanings = look(words, result.addressed, replies, Among::urgent);
+  if (result.meanings.empty() && result.addressed)
+    result.bare = look(words, false, replies, Among::reply);
   return result;
 }
 
@@ -340,20 +362,28 @@ std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string
   if (const auto whole = step(words); whole && !first)
     ways.push_back({*whole});
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
-    if (words[i] != "and" && words[i] != "then")
+    const std::size_t between = joint(words, i);
+    if (between == 0 || i + between >= words.size() || joint(words, i - 1) > 1)
       continue;
     const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
     const auto head = step({words.begin(), at});
     if (!head)
       continue;
-    const bool both = words[i] == "and" && words[i + 1] == "then";
-    for (std::vector<Meaning>& rest : divided({at + (both ? 2 : 1), words.end()}, false)) {
+    const auto next = at + static_cast<std::ptrdiff_t>(between);
+    for (std::vector<Meaning>& rest : divided({next, words.end()}, false)) {
       rest.insert(rest.begin(), *head);
       if (rest.size() <= kMostSteps)
         ways.push_back(std::move(rest));
     }
   }
   return ways;
+}
+
+bool Grammar::takes_text(const std::string& functor) const {
+  return std::any_of(rules_.begin(), rules_.end(), [&](const Rule& rule) {
+    return rule.meaning.functor == functor &&
+           std::any_of(rule.patterns.begin(), rule.patterns.end(), has_rest);
+  });
 }
 
 /// Each part of a pattern leads from one state to another.
@@ -440,7 +470,7 @@ std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
   const Rule* best = nullptr;
   int most = 0;
   for (const Rule& rule : rules_) {
-    if (rule.meaning.functor != meaning.functor)
+    if (rule.meaning.functor != meaning.functor || rule.paraphrases.empty())
       continue;
     int common = 0;
     for (const auto& [name, value] : rule.meaning.slots)

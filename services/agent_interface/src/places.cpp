@@ -1,12 +1,16 @@
 // The part of the dialogue for places: what names, "this office", "here" and a pointing arm stand
 // for.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "saphira/agent_interface/pointing.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/maps/artifact_traits.hpp"
+#include "saphira/maps/route.hpp"
+#include "saphira/maps/zones.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -29,6 +33,40 @@ std::string direction_of(const Vec2& from_robot) {
          : off < 112.5 ? "on my " + side
          : off < 157.5 ? "behind me on the " + side
                        : "behind me";
+}
+
+/// A name of a room, a way or a position. Nobody goes to zones, walls and things.
+bool is_place(const maps::Feature& feature) {
+  const maps::ArtifactTraits& traits = maps::traits(feature.type);
+  return !feature.name.empty() &&
+         (traits.region || traits.gate || feature.type == lps::PointType::position);
+}
+
+/// A name as it is heard: "EJ-231", "EJ 231" and "ej231" are one.
+std::string letters_of(std::string_view name) {
+  std::string letters = lowered(name);
+  std::erase_if(letters, [](char c) { return c == '-' || c == '_' || blank(c); });
+  return letters;
+}
+
+/// The only one of the names that shares a word with what was said, as "EJ-231" with "number 231";
+/// empty: none or several.
+std::string only_with_word_of(const std::string& said, const std::vector<std::string>& names) {
+  const auto parts = [](std::string name) {
+    std::replace(name.begin(), name.end(), '-', ' ');
+    return words_of(name);
+  };
+  const std::vector<std::string> wanted = parts(said);
+  std::string found;
+  for (const std::string& name : names) {
+    const std::vector<std::string> words = parts(name);
+    if (std::find_first_of(words.begin(), words.end(), wanted.begin(), wanted.end()) == words.end())
+      continue;
+    if (!found.empty())
+      return {};
+    found = name;
+  }
+  return found;
 }
 
 /// A name in the letters of the text that it is from.
@@ -107,9 +145,114 @@ std::string way_to(const std::string& place, const Situation& situation) {
 }
 
 std::string Dialogue::place(const std::string& name, const Situation& situation) const {
+  const auto same = [&](const auto& form) -> std::string {
+    for (const maps::Feature& feature : situation.map.features)
+      if (is_place(feature) && form(feature.name) == form(name))
+        return feature.name;
+    return {};
+  };
+  const std::string exact = same(lowered);
+  return exact.empty() ? same(letters_of) : exact;
+}
+
+bool Dialogue::findable(const std::string& person, const Situation& situation) const {
+  return knowledge_.findable(person) ||
+         std::find(situation.findable.begin(), situation.findable.end(), person) !=
+             situation.findable.end();
+}
+
+bool Dialogue::is_known(const std::string& name, const Situation& situation) const {
+  return findable(name, situation) || !place(name, situation).empty() ||
+         (!name.empty() && name == lowered(situation.asked_for));
+}
+
+std::string Dialogue::unknown(const std::string& name, bool people, const Situation& situation,
+                              Outputs& out) const {
+  constexpr std::size_t kShown = 4;
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& one) {
+    if (std::find(names.begin(), names.end(), one) == names.end())
+      names.push_back(one);
+  };
   for (const maps::Feature& feature : situation.map.features)
-    if (!feature.name.empty() && lowered(feature.name) == name)
-      return feature.name;
+    if (is_place(feature))
+      add(feature.name);
+  // Numbers of offices say less than names.
+  std::stable_partition(names.begin(), names.end(), [](const std::string& one) {
+    return one.find_first_of("0123456789") == std::string::npos;
+  });
+  const std::size_t places = names.size();
+  if (people) {
+    for (const Advice& one : knowledge_.all())
+      if (one.kind != Advice::Kind::hazard && knowledge_.findable(one.about))
+        add(one.about);
+    for (const std::string& one : situation.findable)
+      add(one);
+  }
+  out.unknown = name;
+  out.meant = guess(name, names);
+  if (out.meant.empty())
+    out.meant = only_with_word_of(name, names);
+  std::string text =
+      std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
+  if (!out.meant.empty())
+    return text + "; do you mean " + out.meant + "?";
+  if (places == 0)
+    return text;
+  names.resize(places);
+  text += ", but " + saphira::joined(std::vector(
+                         names.begin(),
+                         names.begin() + static_cast<std::ptrdiff_t>(std::min(places, kShown))));
+  if (places > kShown)
+    text += " and " + std::to_string(places - kShown) + " more";
+  return text + ". Which one?";
+}
+
+std::string Dialogue::kept_out(const std::string& place, const Situation& situation) const {
+  const maps::Topology floor(situation.map);
+  for (const Advice& one : knowledge_.all()) {
+    if (one.kind != Advice::Kind::hazard || one.value != place)
+      continue;
+    const std::vector<maps::Zone> zones =
+        maps::all_zones(maps::Map{}, floor, one.about + " at " + one.value);
+    if (zones.empty() || zones.front().rule != maps::ZoneRule::keep_out)
+      continue;
+    const bool rule = maps::zone_rule(one.about).has_value();
+    return describe(one) + ": " + source_of(one) + ". When I may go there, say \"" +
+           (rule ? "you may go to " + place : "the " + one.about + " at " + place + " is gone") +
+           "\"";
+  }
+  maps::RouteSettings settings;
+  for (const Claimed& one : claims())
+    if (one.name == maps::kHazards)
+      settings.zones = maps::all_zones(situation.map, floor, one.value, one.source);
+  if (settings.zones.empty())
+    settings.zones = maps::all_zones(situation.map, floor);
+  if (!situation.pose_in_map || settings.zones.empty())
+    return {};
+  const Vec2 robot = situation.pose_in_map->position();
+  const maps::RouteResult allowed = maps::find_route(floor, robot, place, settings);
+  return allowed.route || !maps::find_route(floor, robot, place).route ? std::string()
+                                                                       : allowed.reason;
+}
+
+std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situation,
+                                Outputs& out) const {
+  constexpr std::array kPlacesAndPeople{"place", "from", "to", "person", "name"};
+  if (std::none_of(situation.map.features.begin(), situation.map.features.end(), is_place))
+    return {};  // no map has come
+  for (const Argument& one : goal.arguments) {
+    if (std::find(kPlacesAndPeople.begin(), kPlacesAndPeople.end(), one.name) ==
+        kPlacesAndPeople.end())
+      continue;
+    std::string at = place(lowered(one.text), situation);
+    if (at.empty() && !findable(one.text, situation))
+      return unknown(one.text, true, situation, out);
+    if (at.empty() && knowledge_.find(Advice::Kind::knows_where, one.text) == nullptr)
+      at = place(lowered(knowledge_.place_of(one.text)), situation);
+    if (const std::string why = at.empty() ? at : kept_out(at, situation); !why.empty())
+      return why;
+  }
   return {};
 }
 
@@ -164,15 +307,8 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
   }
   if (side.empty() && name != "this" && !name.empty()) {
     const std::string known = place(name, situation);
-    if (known.empty()) {
-      std::vector<std::string> names;
-      for (const maps::Feature& feature : situation.map.features)
-        if (!feature.name.empty())
-          names.push_back(lowered(feature.name));
-      const std::string meant = guess(name, names);
-      wrong = "I know no place called " + name +
-              (meant.empty() ? "" : "; do you mean " + place(meant, situation) + "?");
-    }
+    if (known.empty())
+      wrong = unknown(name, false, situation, out);
     return known;
   }
   if (!situation.pose_in_map) {

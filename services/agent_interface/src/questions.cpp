@@ -4,6 +4,7 @@
 #include <limits>
 #include <tuple>
 
+#include "saphira/base/text.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -131,6 +132,45 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
   return true;
 }
 
+/// The owner of an office; with a person in the question, yes or no before it.
+void Dialogue::owner_of(const Meaning& meaning, const Utterance& utterance,
+                        const Situation& situation, Outputs& out) const {
+  const std::string person = slot(meaning, "person");
+  Meaning place = meaning;
+  place.functor = "office_of";
+  Outputs unnamed;  // a nameless doorway stays so
+  std::uint32_t artifact = 0;
+  std::string wrong;
+  std::string at = referred(place, situation, unnamed, artifact, wrong);
+  if (at.empty()) {
+    out.unknown = unnamed.unknown;
+    out.meant = unnamed.meant;
+    refuse(utterance, wrong, out);
+    return;
+  }
+  const bool nameless = !unnamed.namings.empty();
+  std::string owners;
+  bool same = false;
+  for (const Advice& one : knowledge_.all())
+    if (one.kind == Advice::Kind::office_of && one.value == at && !nameless) {
+      owners += (owners.empty() ? "" : "; ") + as_told(one);
+      same = same || one.about == person;
+    }
+  const Advice* const own = knowledge_.find(Advice::Kind::office_of, person);
+  if (person.empty() || (owners.empty() && own == nullptr))
+    say(utterance,
+        !owners.empty() ? owners
+        : nameless      ? "this office has no name on my map, and nobody has told me whose it is"
+                        : "nobody has told me whose office " + at + " is",
+        true, out);
+  else
+    say(utterance,
+        same             ? "yes: " + as_told(*own)
+        : own != nullptr ? "no: " + as_told(*own)
+                         : "not that I know: " + owners,
+        true, out);
+}
+
 bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utterance,
                                     const Situation& situation, Outputs& out) const {
   const std::string& functor = meaning.functor;
@@ -144,6 +184,9 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
     std::string text = told_of(person);
     if (text.empty())
       text = way_to(place(person, situation), situation);
+    for (const maps::Feature& thing : situation.map.features)
+      if (text.empty() && lowered(thing.name) == person)
+        text = way_to(thing.name, situation);
     say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
   } else if (functor == "where_office") {
     const std::string person = slot(meaning, "person");
@@ -152,6 +195,8 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
         office == nullptr ? "nobody has told me where " + person + "'s office is"
                           : as_told(*office),
         true, out);
+  } else if (functor == "whose_office" || functor == "is_office_of") {
+    owner_of(meaning, utterance, situation, out);
   } else if (functor == "nearest") {
     const maps::Feature* const nearest =
         situation.pose_in_map

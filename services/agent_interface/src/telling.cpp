@@ -1,7 +1,6 @@
 // The part of the dialogue for what people tell the robot and take back, and the claims that
 // follow.
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 #include "saphira/maps/zones.hpp"
@@ -11,16 +10,6 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr std::size_t kMostGone = 256;
-
-/// "at 10:02 ", in local time; empty for an unknown time.
-std::string time_text(double unix_time) {
-  const auto seconds = static_cast<std::time_t>(unix_time);
-  std::tm local{};
-  char text[16] = "";
-  if (seconds > 0 && localtime_r(&seconds, &local) != nullptr)
-    std::strftime(text, sizeof text, "at %H:%M ", &local);
-  return text;
-}
 
 }  // namespace
 
@@ -150,6 +139,8 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
     std::string no_place;
     const std::string place = referred(where, situation, unnamed, artifact, no_place);
     if (!no_place.empty()) {
+      out.unknown = unnamed.unknown;
+      out.meant = unnamed.meant;
       refuse(utterance, no_place, out);
       return true;
     }
@@ -246,16 +237,10 @@ void Dialogue::claim_changes(const std::vector<Claimed>& before, const std::stri
 
 std::vector<Claimed> Dialogue::claims() const {
   std::vector<Claimed> result;
-  const auto source = [](const Advice& advice) {
-    return advice.speaker == kRobot
-               ? kRobot + (" found " + advice.about) + " " + time_text(advice.time) + "there"
-               : named_person(advice.speaker) + " said " + time_text(advice.time) + "\"" +
-                     advice.said + "\"";
-  };
   const auto join = [&](Claimed& all, const Advice& advice, const std::string& value,
                         const char* between) {
     all.value += (all.value.empty() ? "" : between) + value;
-    all.source += (all.source.empty() ? "" : "; ") + source(advice);
+    all.source += (all.source.empty() ? "" : "; ") + source_of(advice);
   };
   Claimed hazards{maps::kHazards, "", ""};
   for (const Advice& one : knowledge_.all()) {
@@ -271,7 +256,7 @@ std::vector<Claimed> Dialogue::claims() const {
       all.list.push_back(one.value);
     } else if (one.kind == Advice::Kind::person_at ||
                knowledge_.find(Advice::Kind::person_at, one.about) == nullptr) {
-      result.push_back({name, one.value, source(one)});
+      result.push_back({name, one.value, source_of(one)});
     }
   }
   for (const Gone& one : gone_)

@@ -2,10 +2,24 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
+namespace {
+
+/// "at 10:02 ", in local time; empty for an unknown time.
+std::string time_text(double unix_time) {
+  const auto seconds = static_cast<std::time_t>(unix_time);
+  std::tm local{};
+  char text[16] = "";
+  if (seconds > 0 && localtime_r(&seconds, &local) != nullptr)
+    std::strftime(text, sizeof text, "at %H:%M ", &local);
+  return text;
+}
+
+}  // namespace
 
 std::string slot(const Meaning& meaning, const std::string& name) {
   const auto found = meaning.slots.find(name);
@@ -14,6 +28,15 @@ std::string slot(const Meaning& meaning, const std::string& name) {
 
 double number_of(const Meaning& meaning, const std::string& name) {
   return std::strtod(slot(meaning, name).c_str(), nullptr);
+}
+
+bool is_yes_or_no(const Meaning& meaning) {
+  return meaning.functor == "yes" || meaning.functor == "no";
+}
+
+bool is_question(std::string_view text) {
+  const std::size_t last = text.find_last_not_of(" \t\"'.!");
+  return last != std::string_view::npos && text[last] == '?';
 }
 
 Meaning with(Meaning meaning, const std::string& name, const std::string& value) {
@@ -45,6 +68,13 @@ bool may_answer(const Utterance& utterance, const Utterance& raised_by) {
 std::string as_told(const Advice& advice) {
   return advice.speaker == kRobot ? "I found " + advice.about + " at " + advice.value
                                   : named_person(advice.speaker) + " said that " + describe(advice);
+}
+
+std::string source_of(const Advice& advice) {
+  return advice.speaker == kRobot
+             ? kRobot + (" found " + advice.about) + " " + time_text(advice.time) + "there"
+             : named_person(advice.speaker) + " said " + time_text(advice.time) + "\"" +
+                   advice.said + "\"";
 }
 
 std::string claim_source(const Utterance& utterance) {

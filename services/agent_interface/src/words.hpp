@@ -14,6 +14,9 @@ bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.
 std::string slot(const Meaning& meaning, const std::string& name);
 double number_of(const Meaning& meaning, const std::string& name);
+bool is_yes_or_no(const Meaning& meaning);
+/// True where a sentence ends with a question mark.
+bool is_question(std::string_view text);
 /// The meaning with another value of a slot.
 Meaning with(Meaning meaning, const std::string& name, const std::string& value);
 
@@ -28,6 +31,8 @@ bool may_answer(const Utterance& utterance, const Utterance& raised_by);
 
 /// "Alice said that karen is at EJ-231".
 std::string as_told(const Advice& advice);
+/// "Alice said at 10:02 "Flakey, Karen is in EJ-231"", in local time.
+std::string source_of(const Advice& advice);
 /// The origin of a claim that follows from an utterance.
 std::string claim_source(const Utterance& utterance);
 

@@ -319,6 +319,32 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   EXPECT_EQ(say("Flakey, where is Karen?"), "nobody has told me where karen is");
 }
 
+TEST_F(DialogueOnTheBus, APersonWhosePlaceAnotherProgramBelievesIsLookedFor) {
+  auto maps = person.writer(bus::topics::kMap);
+  v1::MapArtifact door;
+  door.id(1);
+  door.type(v1::ARTIFACT_DOOR);
+  door.name("north");
+  door.width(0.9);
+  v1::FloorMap map;
+  map.artifacts({door});
+  maps.write(map);
+  v1::BeliefSet believed;
+  believed.beliefs().resize(3);
+  believed.beliefs()[0].name("place-of-karen");
+  believed.beliefs()[0].value("\"north\"");
+  believed.beliefs()[1].name("knows-where-john");
+  believed.beliefs()[1].value("(\"karen\")");
+  believed.beliefs()[2].name("place-of-bob");
+  believed.beliefs()[2].value("nil");
+  beliefs.write(believed);
+  EXPECT_EQ(say("Flakey, go to Bob"),
+            "I know no place or person called bob, but north. Which one?");
+  EXPECT_TRUE(goals.take().empty());
+  EXPECT_EQ(say("Flakey, go to Karen"), "I go to karen");
+  EXPECT_EQ(say("Flakey, find John"), "I drop the way to karen / I look for john");
+}
+
 TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   say("Flakey, John usually knows where Karen is");
   bus::Node hub(test::memory_options("facilitator"), memory);

@@ -17,11 +17,14 @@ OFFICE (233) 7000, 4000, 0, 4000, 4000 "EJ-233"
 DOOR (1233) 7000, 2000, -90, 900 "EJ-233"
 DOOR (1235) 3000, 0, 90, 900
 )";
+constexpr const char* kNoAttic =
+    "I know no place called attic, but upper corridor, EJ-231, EJ-233. Which one?";
 
 struct DialogueTest : testing::Test {
   DialogueTest() {
     situation.map = maps::parse_map(kMap, "test.map");
     situation.pose_in_map = Pose{3.5, 1.2, 0.0};
+    situation.findable = {"alice", "john", "karen"};
   }
   Grammar grammar() const {
     const std::string file = test::source("config/grammars/flakey.grammar");
@@ -72,7 +75,8 @@ TEST_F(DialogueTest, WhatIsNotUnderstoodIsAskedBackAndNotActedOn) {
   const Dialogue::Outputs out = dialogue.hear(mumbled, situation);
   EXPECT_EQ(out.said.at(0).text, "what?");
   EXPECT_TRUE(out.goals.empty());
-  EXPECT_EQ(said("Flakey, go to EJ-232"), "I know no place called ej-232; do you mean EJ-231?");
+  EXPECT_EQ(said("Flakey, go to EJ-232"),
+            "I know no place or person called ej-232; do you mean EJ-231?");
   EXPECT_EQ(said("Flakey, go forward 200 meters"), "I go up to 20 m at a time");
   EXPECT_TRUE(last.goals.empty());
 }
@@ -263,7 +267,9 @@ TEST_F(DialogueTest, WhereAPersonIsComesBeforeWhoKnowsAndAnOfficeIsAnOffice) {
   EXPECT_EQ(said("Flakey, go to Karens office"), "I go to EJ-231");
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
   EXPECT_EQ(said("Flakey, go to Johns office"), "nobody has told me where john's office is");
-  EXPECT_EQ(said("Flakey, go to Bobs office"), "I know no place called bobs office");
+  EXPECT_EQ(said("Flakey, go to Bobs office"),
+            "I know no place or person called bobs office, but upper corridor, EJ-231, EJ-233. "
+            "Which one?");
 }
 
 TEST_F(DialogueTest, FactsAboutPeopleAreTakenBackInWords) {
@@ -301,7 +307,7 @@ TEST_F(DialogueTest, FactsAboutPeopleAreTakenBackInWords) {
   ASSERT_EQ(dialogue.claims().size(), 1u);
   EXPECT_FALSE(dialogue.claims()[0].nil);
   EXPECT_EQ(said("Flakey, Karen is on holiday"), "I no longer believe that karen is at EJ-233");
-  EXPECT_EQ(said("Flakey, Karen is not in the attic"), "I know no place called attic");
+  EXPECT_EQ(said("Flakey, Karen is not in the attic"), kNoAttic);
   hear("Flakey, this is Karen's office");
   hear("Flakey, John knows where Karen is");
   EXPECT_EQ(said("Flakey, this is not Karen's office"),
@@ -465,7 +471,7 @@ TEST_F(DialogueTest, PlacesToKeepOutOfAreHazardsUntilTheRobotMayGoThere) {
             "nobody told me to keep out of upper corridor");
   EXPECT_EQ(said("Flakey, you may go to EJ-233 again"), "good: I may go to EJ-233 again");
   EXPECT_EQ(last.claims.at(0).value, "");
-  EXPECT_EQ(said("Flakey, keep out of the attic"), "I know no place called attic");
+  EXPECT_EQ(said("Flakey, keep out of the attic"), kNoAttic);
   hear("Flakey, EJ-231 is Karen's office");
   EXPECT_EQ(said("Flakey, stay out of Karen's office"),
             "I know now that I am to keep out of EJ-231");
@@ -731,6 +737,11 @@ TEST_F(DialogueTest, WhatIsGivenToTheRobotHereIsBrought) {
   EXPECT_EQ(goals(), "deliver object=\"the mail\" to=\"EJ-231\" sender=\"Alice\"");
 }
 
+TEST_F(DialogueTest, EachSentenceOfAMeaningIsAnnounced) {
+  EXPECT_EQ(said("Flakey, go forward a bit"), "I go forward 0.3 m");
+  EXPECT_EQ(said("Flakey, take this to Karen"), "I drop the move / I take the parcel to karen");
+}
+
 TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
   EXPECT_EQ(said("Flakey, tell Karen that John's meeting isn't at five."),
             "I tell karen: John's meeting isn't at five");
@@ -755,7 +766,9 @@ TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
 }
 
 TEST_F(DialogueTest, StepsAreDoneOneAfterAnotherOrNotAtAll) {
-  EXPECT_EQ(said("Flakey, go to EJ-231 and then go to the attic"), "I know no place called attic");
+  EXPECT_EQ(
+      said("Flakey, go to EJ-231 and then go to the attic"),
+      "I know no place or person called attic, but upper corridor, EJ-231, EJ-233. Which one?");
   EXPECT_TRUE(last.goals.empty());
   EXPECT_EQ(said("Flakey, go to EJ-233 and wait there"), "I go to EJ-233, and then I wait there");
   const Dialogue::Outputs there = dialogue.ended({last.goals.at(0).tag, true, "arrived"});
@@ -791,7 +804,7 @@ TEST_F(DialogueTest, ItShowsTheWayWaitsAndPatrols) {
   EXPECT_EQ(goals(), "pause seconds=300");
   EXPECT_EQ(last.goals.at(0).priority, 1);
   EXPECT_EQ(said("Flakey, wait 500 minutes", "Bob"), "I wait for up to an hour");
-  EXPECT_EQ(said("Flakey, take me to the attic"), "I know no place called attic");
+  EXPECT_EQ(said("Flakey, take me to the attic"), kNoAttic);
   EXPECT_EQ(said("Flakey, patrol"),
             "I drop the way to EJ-231 / I drop the wait for Bob: Alice said \"Flakey, patrol\" / I "
             "patrol this corridor");
@@ -807,7 +820,7 @@ TEST_F(DialogueTest, ItSaysWhatItKnows) {
   EXPECT_EQ(said("Flakey, what do you know?"), "nobody has told me anything");
   EXPECT_EQ(said("Flakey, is there a leak?"), "nobody has told me of a leak");
   EXPECT_EQ(said("Flakey, who is in EJ-233?"), "nobody has told me who is in EJ-233");
-  EXPECT_EQ(said("Flakey, who is in the attic?"), "I know no place called attic");
+  EXPECT_EQ(said("Flakey, who is in the attic?"), kNoAttic);
   hear("Flakey, EJ-231 is Karen's office");
   hear("Flakey, John is in EJ-233", "Bob");
   hear("Flakey, there is a water leak in this corridor");
@@ -828,6 +841,175 @@ TEST_F(DialogueTest, ItSaysWhatItKnows) {
             "saphira map place X Y HEADING, or saphira map find");
   situation.pose_in_map.reset();
   EXPECT_EQ(said("Flakey, are you lost?"), "yes: I do not know where I am on the map");
+}
+
+// Names, and the robot's questions back.
+
+TEST_F(DialogueTest, ANameThatNothingHasIsAnsweredAtOnceWithTheNearest) {
+  EXPECT_EQ(said("Flakey, go to Xyz"),
+            "I know no place or person called xyz, but upper corridor, EJ-231, EJ-233. Which one?");
+  EXPECT_TRUE(last.goals.empty() && last.said.at(0).refused);
+  EXPECT_EQ(said("Flakey, take the report to Karn"),
+            "I know no place or person called karn; do you mean karen?");
+  EXPECT_EQ(said("Flakey, find Jhon"), "I know no place or person called jhon; do you mean john?");
+  EXPECT_EQ(said("Flakey, go to office 231"),
+            "I know no place or person called office 231; do you mean EJ-231?");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("Flakey, go to EJ 233"), "I go to EJ-233");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  EXPECT_EQ(said("Flakey, go to John"), "I drop the way to EJ-233 / I go to john");
+  EXPECT_EQ(goals(), "find-person name=\"john\"");
+  // Nobody goes to a zone.
+  situation.map = maps::parse_map(
+      std::string(kMap) + "ZONE (900) 9000, 1000, 0, 500, 500 keep-out \"lab\"\n", "map");
+  EXPECT_EQ(said("Flakey, go to the lab"),
+            "I know no place or person called lab, but upper corridor, EJ-231, EJ-233. Which one?");
+  // Without a map the places are not known yet.
+  situation.map = {};
+  hear("Flakey, take the report to Xyz");
+  EXPECT_EQ(goals(), "deliver object=\"the report\" to=\"xyz\" sender=\"Alice\"");
+}
+
+TEST_F(DialogueTest, AQuestionBackIsAnsweredByItsSpeakerWithYesNoOrAName) {
+  const std::string asks = "I know no place or person called ej-232; do you mean EJ-231?";
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  EXPECT_EQ(said("yes please", "Bob"), "");
+  EXPECT_EQ(said("yes please"), "I go to EJ-231");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+  EXPECT_EQ(last.said.at(0).answers, (UtteranceId{7, 3}));
+  EXPECT_EQ(said("yes"), "") << "nothing is asked any more";
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  EXPECT_EQ(said("no"), "then I leave it");
+  EXPECT_EQ(said("yes"), "");
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  EXPECT_EQ(said("EJ-233"), "I drop the way to EJ-231 / I go to EJ-233");
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  EXPECT_EQ(said("no, I meant EJ-231"), "I drop the way to EJ-233 / I go to EJ-231");
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  EXPECT_EQ(said("lunch"), "") << "a word to somebody else";
+  EXPECT_EQ(said("yes"), "");
+  EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
+  now += 21.0;
+  EXPECT_EQ(said("yes"), "");
+  hear("Flakey, go to Xyz");
+  EXPECT_EQ(said("yes"), "which one?");
+  EXPECT_EQ(said("Flakey, EJ-233"), "I drop the way to EJ-231 / I go to EJ-233");
+  hear("Flakey, Karen is in EJ-235");
+  EXPECT_EQ(said("yes"), "I know now that karen is at EJ-231");
+}
+
+TEST_F(DialogueTest, ATaskIsCorrectedByAnotherNameAfterTheKeyword) {
+  hear("Flakey, go to EJ-231");
+  EXPECT_EQ(said("no, I meant EJ-233"), "") << "a word to somebody else";
+  hear("Flakey, go to EJ-231");
+  EXPECT_EQ(said("Flakey, no, I meant EJ-233"), "I drop the way to EJ-231 / I go to EJ-233");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  EXPECT_EQ(said("Flakey, turn left"),
+            "I turn 90 degrees to the left, and then I go on with the way to EJ-233");
+  EXPECT_EQ(said("Flakey, no, I meant EJ-231"), "what?");
+}
+
+TEST_F(DialogueTest, AnOrderAtTheEndOfAMessageIsAskedBack) {
+  situation.map = maps::parse_map(std::string(kMap) + "POS (90) 1000, 1000, 0 \"start\"\n", "map");
+  const std::string both = "Flakey, ask John where Karen is, and then go home";
+  EXPECT_EQ(said(both),
+            "\"and then go home\": shall I do that myself (yes), or is it what I am to say (no)?");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("yes"), "I ask john where karen is, and then I go home, to start");
+  EXPECT_EQ(goals(),
+            "inquire person=\"john\" question=\"where Karen is\" sender=\"Alice\" "
+            "back=\"upper corridor\"");
+  hear(both);
+  EXPECT_EQ(said("no"),
+            "I drop the question to john, and what was to follow / I ask john where karen is and "
+            "then go home");
+  EXPECT_EQ(goals(),
+            "inquire person=\"john\" question=\"where Karen is, and then go home\" "
+            "sender=\"Alice\" back=\"upper corridor\"");
+  hear("Flakey, ask John for the report and then go home");
+  EXPECT_EQ(last.said.back().text,
+            "I get the report from john and bring it here, and then I go home, to start");
+  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"john\" to=\"upper corridor\"");
+}
+
+TEST_F(DialogueTest, APlaceToKeepOutOfIsRefusedAtOnceWithTheReason) {
+  // The machine's clock gives the time.
+  setenv("TZ", "UTC", 1);
+  tzset();
+  hear("Flakey, keep out of EJ-233", "Bob");
+  const std::string kept_out =
+      "I am to keep out of EJ-233: Bob said at 01:46 \"Flakey, keep out of EJ-233\". When I may go "
+      "there, say \"you may go to EJ-233\"";
+  for (const char* const sentence :
+       {"Flakey, go to EJ-233", "Flakey, take the report to EJ-233", "Flakey, show me EJ-233",
+        "Flakey, get the report from EJ-233", "Flakey, go to EJ-231 and go to EJ-233"}) {
+    EXPECT_EQ(said(sentence), kept_out);
+    EXPECT_TRUE(last.goals.empty() && last.said.at(0).refused) << sentence;
+  }
+  hear("Flakey, Karen is in EJ-233");
+  EXPECT_EQ(said("Flakey, find Karen"), kept_out);
+  hear("Flakey, John knows where Karen is");
+  EXPECT_EQ(said("Flakey, find Karen"), "I look for karen") << "John may know another place";
+  hear("Flakey, you may go to EJ-233");
+  EXPECT_EQ(said("Flakey, go to EJ-233"), "I drop the search for karen / I go to EJ-233");
+  hear("Flakey, there is a spill in EJ-233");
+  EXPECT_EQ(said("Flakey, go to EJ-233"),
+            "there is a spill at EJ-233: Alice said at 01:46 \"Flakey, there is a spill in "
+            "EJ-233\". When I may go there, say \"the spill at EJ-233 is gone\"");
+  hear("Flakey, the floor is wet in EJ-231");
+  hear("Flakey, go to EJ-231");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"") << "it may go there, slowly";
+}
+
+TEST_F(DialogueTest, APlaceBehindAKeepOutIsRefusedAtOnce) {
+  situation.map = maps::parse_map(
+      std::string(kMap) + "ZONE (900) 5200, 1000, 0, 800, 2000 keep-out \"works\"\n", "map");
+  EXPECT_NE(said("Flakey, go to EJ-233").find("keep-out zone \"works\""), std::string::npos)
+      << last.said.at(0).text;
+  EXPECT_TRUE(last.goals.empty());
+  hear("Flakey, go to EJ-231");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+}
+
+TEST_F(DialogueTest, TheOwnerOfAnOfficeIsAnswered) {
+  EXPECT_EQ(said("Flakey, whose office is this?"), "nobody has told me whose office EJ-231 is");
+  hear("Flakey, this is Karen's office");
+  const std::string told = "Alice said that EJ-231 is karen's office";
+  EXPECT_EQ(said("Flakey, whose office is this?"), told);
+  EXPECT_EQ(said("Flakey, who works here?"), told);
+  EXPECT_EQ(said("Flakey, whose office is EJ-233?"), "nobody has told me whose office EJ-233 is");
+  EXPECT_EQ(said("Flakey, is this Karen's office?"), "yes: " + told);
+  EXPECT_EQ(said("Flakey, is this my office?", "Karen"), "yes: " + told);
+  EXPECT_EQ(said("Flakey, is this John's office?"), "not that I know: " + told);
+  EXPECT_EQ(said("Flakey, is Karen's office EJ-233?"), "no: " + told);
+  EXPECT_EQ(said("Flakey, is Karen in EJ-233?"), told);
+  EXPECT_EQ(said("Flakey, whose office is the attic?"), kNoAttic);
+  situation.pose_in_map = Pose{3.0, 0.5, 0.0};
+  EXPECT_EQ(said("Flakey, whose office is this?"),
+            "this office has no name on my map, and nobody has told me whose it is");
+  EXPECT_TRUE(last.namings.empty());
+  EXPECT_EQ(dialogue.knowledge().all().size(), 1u);
+}
+
+TEST_F(DialogueTest, ANameAloneMayCallAPersonWhileTheRobotWaits) {
+  situation.asked_about = "answer";
+  situation.asked_for = "john";
+  for (const char* const sentence : {"John?", "John", "Flakey, John"}) {
+    EXPECT_EQ(said(sentence, "Bob"), "yes, I ask where john is") << sentence;
+    EXPECT_TRUE(last.claims.empty() && last.goals.empty());
+  }
+  EXPECT_EQ(said("in EJ-233?", "Bob"),
+            "is that a question? Without the question mark I take it as an answer");
+  EXPECT_TRUE(last.claims.empty());
+  EXPECT_EQ(said("Karen?", "Bob"), "");
+  EXPECT_EQ(said("Flakey, the EJ-233", "Bob"), "thank you");
+  EXPECT_EQ(last.claims.at(0).value, "EJ-233");
+  situation.asked_about = "given";
+  situation.asked_for.clear();
+  for (const char* const sentence : {"John?", "John", "lunch"}) {
+    EXPECT_EQ(said(sentence, "Bob"), "") << sentence;
+    EXPECT_TRUE(last.claims.empty());
+  }
 }
 
 }  // namespace

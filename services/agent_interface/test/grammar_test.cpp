@@ -185,6 +185,45 @@ TEST(Grammar, SentencesOfStepsMayBeJoined) {
   EXPECT_EQ(steps(many + " and turn left"), "what?");
 }
 
+TEST(Grammar, WordsThatJoinSentences) {
+  const auto last = [](const std::string& text) {
+    const Grammar::Understood understood = grammar().understand(text);
+    return understood.then.size() == 1 ? describe(understood.then[0]) : "none";
+  };
+  for (const char* const joint : {" and ", ", then ", " and then ", ", after that ",
+                                  " and after that ", ", afterwards ", " and afterwards "})
+    EXPECT_EQ(last(std::string("flakey turn left") + joint + "go to the lab"), "go_to(place=lab)")
+        << joint;
+  EXPECT_EQ(last("flakey, first turn left, then go to the lab"), "go_to(place=lab)");
+  EXPECT_EQ(last("flakey turn left after go to the lab"), "none");
+}
+
+TEST(Grammar, AFreeTextThatMayEndWithAnOrderIsToldApart) {
+  const auto apart = [](const std::string& text) {
+    std::string all;
+    for (const Meaning& step : grammar().understand(text).apart)
+      all += (all.empty() ? "" : "; ") + describe(step);
+    return all;
+  };
+  EXPECT_EQ(meaning("flakey tell karen to wait and then turn left"),
+            "tell(message=wait and then turn left, person=karen)");
+  EXPECT_EQ(apart("flakey tell karen to wait and then turn left"),
+            "tell(message=wait, person=karen); turn(degrees=90, direction=left)");
+  EXPECT_EQ(apart("flakey go to the lab and tell karen to wait and turn left"),
+            "go_to(place=lab); tell(message=wait, person=karen); turn(degrees=90, direction=left)");
+  EXPECT_EQ(apart("flakey tell karen to wait and dance"), "");
+  EXPECT_EQ(apart("flakey turn left and go to the lab"), "");
+}
+
+TEST(Grammar, AMereNameAfterTheKeywordIsAtMostAReply) {
+  const Grammar one("keyword: f\nstop()\n  stop\nreply somebody(person)\n  {person}\n", "test");
+  EXPECT_TRUE(one.understand("f john", true).meanings.empty());
+  ASSERT_EQ(one.understand("f john", true).bare.size(), 1u);
+  EXPECT_EQ(describe(one.understand("f john", true).bare[0]), "somebody(person=john)");
+  EXPECT_TRUE(one.understand("f john").bare.empty());
+  EXPECT_TRUE(one.understand("f stop", true).bare.empty());
+}
+
 TEST(Grammar, ParaphrasesFillTheSlots) {
   EXPECT_EQ(grammar().paraphrase({"turn", {{"degrees", "30"}, {"direction", "left"}}}),
             "I turn 30 degrees to the left");

@@ -58,6 +58,9 @@ struct Situation {
   std::vector<KnownGoal> goals;  ///< the newest change last
   /// A person who points: their place, with the heading of the arm (pointing.hpp).
   std::optional<Pose> pointing_in_map{};
+  /// Persons of whom an activity or another program believes a place, or who knows it; in small
+  /// letters.
+  std::vector<std::string> findable{};
   double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
   bool turns_cameras = false;  ///< the robot has a head
 };
@@ -77,6 +80,8 @@ class Dialogue {
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
     bool changed = false;                ///< save() has other contents
     std::string note;                    ///< for the log; empty: none
+    std::string unknown{};               ///< a name in the sentence that nothing has; empty: none
+    std::string meant{};  ///< the one that the robot asks back for instead; empty: none
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
@@ -108,6 +113,15 @@ class Dialogue {
     Advice advice;
     Utterance raised_by;
   };
+  /// What the speaker of a sentence may answer with yes, no or a name.
+  struct Offer {
+    Grammar::Understood understood;  ///< of the sentence; after a yes, with the other name
+    std::string name{};              ///< in the sentence, for which another one may be said
+    std::string meant{};             ///< the one that the robot named; empty: none or several
+    std::vector<Meaning> yes{};      ///< the steps after a yes; otherwise a no means `understood`
+    Utterance raised_by{};
+    bool done = false;  ///< the robot asked nothing, and does it: only another name is an answer
+  };
   struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
     std::string source;
@@ -118,6 +132,15 @@ class Dialogue {
     std::string reason;
   };
 
+  /// Does what a sentence means, or asks back.
+  void carry_out(Grammar::Understood understood, const Utterance& utterance,
+                 const Situation& situation, Outputs& out);
+  /// True where the sentence answers the robot's offer; then that is done.
+  bool answered(const Grammar::Understood& understood, const Utterance& utterance,
+                const Situation& situation, Outputs& out);
+  /// The place or person that a reply names; empty: none.
+  std::string named(const Grammar::Understood& understood, const Utterance& utterance,
+                    const Situation& situation) const;
   void act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
            Outputs& out);
   void act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
@@ -139,6 +162,8 @@ class Dialogue {
   /// People, places and hazards.
   bool question_about_world(const Meaning& meaning, const Utterance& utterance,
                             const Situation& situation, Outputs& out) const;
+  void owner_of(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+                Outputs& out) const;
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
   bool correction(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -175,8 +200,20 @@ class Dialogue {
   std::string doing(const Situation& situation) const;
   /// The destination "here" of things to bring; empty: none.
   std::string bring_to(const Utterance& utterance, const Situation& situation) const;
-  /// The place of the map with that name; empty: none.
+  /// The place of the map with that name, whatever its hyphens and blanks; empty: none.
   std::string place(const std::string& name, const Situation& situation) const;
+  /// True where somebody or something says where that person is, or who knows it.
+  bool findable(const std::string& person, const Situation& situation) const;
+  /// True for a place of the map, and a person who is findable or whom the robot asks for.
+  bool is_known(const std::string& name, const Situation& situation) const;
+  /// That no place, or neither place nor person, has this name; with the nearest name, or some of
+  /// the places.
+  std::string unknown(const std::string& name, bool people, const Situation& situation,
+                      Outputs& out) const;
+  /// The reason why a task would fail by what is known already; empty: none.
+  std::string hindrance(const WantedGoal& goal, const Situation& situation, Outputs& out) const;
+  /// The reason why the robot is not to go to that place of the map; empty: none.
+  std::string kept_out(const std::string& place, const Situation& situation) const;
   /// The same, or the name of a person.
   std::string place_or_person(const std::string& name, const Situation& situation) const;
   /// The place that slots stand for: "this", a side, a name, or a person's office. Reports errors.
@@ -186,6 +223,7 @@ class Dialogue {
   Grammar grammar_;
   Knowledge knowledge_;
   std::optional<Doubt> doubt_;
+  std::optional<Offer> offer_;
   struct Spot {
     std::string place;
     Pose pose_in_map;

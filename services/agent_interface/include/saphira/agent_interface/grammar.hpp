@@ -55,6 +55,10 @@ class Grammar {
     bool polite = false;            ///< an order in the form of a question: "can you ..."
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
     std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
+    /// All steps, where the end of a free text may as well be an order of its own: "tell Karen that
+    /// I am late and go home". Empty: it may not.
+    std::vector<Meaning> apart{};
+    std::vector<Meaning> bare{};  ///< replies that are a mere name, after the keyword
   };
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
   /// asked a question. With the keyword a reply counts only where no other rule matches.
@@ -125,6 +129,7 @@ class Grammar {
   /// The ways to divide words into sentences with one meaning each, all of them steps.
   std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
                                             bool first) const;
+  bool takes_text(const std::string& functor) const;
 
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
