@@ -9,8 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "saphira/base/durable.hpp"
-
 namespace saphira::bridge {
 namespace {
 
@@ -18,17 +16,22 @@ constexpr std::size_t kSize = 256;
 
 }  // namespace
 
-PositionFile::PositionFile(std::string path) : path_(std::move(path)) {
+PositionFile::PositionFile(std::string path, Files files) : path_(std::move(path)) {
   if (path_.empty())
     return;
-  trouble_ = read_or_set_aside(path_, [this](const std::string& content) {
-    const std::string_view padded = std::string_view(content).substr(0, content.find('\n'));
-    const auto line = unsealed_line(padded.substr(0, padded.find_last_not_of(' ') + 1));
-    if (line)
-      found_ = reflector::from_text(std::string(*line) + "\n");
-    if (!found_)
-      throw std::runtime_error("it holds no position of the robot");
-  });
+  trouble_ = read_or_set_aside(
+      path_,
+      [this](const std::string& content) {
+        const std::string_view padded = std::string_view(content).substr(0, content.find('\n'));
+        const auto line = unsealed_line(padded.substr(0, padded.find_last_not_of(' ') + 1));
+        if (line)
+          found_ = reflector::from_text(std::string(*line) + "\n");
+        if (!found_)
+          throw std::runtime_error("it holds no position of the robot");
+      },
+      files);
+  if (files == Files::kStay)
+    return;
   fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd_ < 0)
     throw std::invalid_argument("--state " + path_ + ": " + std::strerror(errno));

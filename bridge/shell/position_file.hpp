@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/reflector/odometry.hpp"
 
 namespace saphira::bridge {
@@ -10,8 +11,9 @@ namespace saphira::bridge {
 /// The file that keeps the odom frame over a restart of the bridge (--state).
 class PositionFile {
  public:
-  /// An empty path: nothing is saved. std::invalid_argument where it cannot be opened.
-  explicit PositionFile(std::string path);
+  /// An empty path: nothing is saved. std::invalid_argument where it cannot be opened, or is
+  /// another file.
+  explicit PositionFile(std::string path, Files files = Files::kChange);
   ~PositionFile();
   PositionFile(const PositionFile&) = delete;
   PositionFile& operator=(const PositionFile&) = delete;

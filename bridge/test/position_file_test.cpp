@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <stdexcept>
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
@@ -49,13 +52,25 @@ TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
       const PositionFile file(path);
       EXPECT_FALSE(file.found()) << i << " " << bit;
       EXPECT_NE(file.trouble().find("state.damaged"), std::string::npos) << file.trouble();
-      EXPECT_EQ(read_file(path + ".damaged"), damaged);
+      EXPECT_EQ(read_bytes(path + ".damaged"), damaged);
     }
     std::ofstream(path) << whole.substr(0, i);
     EXPECT_FALSE(PositionFile(path).found()) << i;
   }
   std::ofstream(path) << whole;
   EXPECT_TRUE(PositionFile(path).found());
+}
+
+TEST(PositionFile, AnotherFileIsRefusedAndStays) {
+  const test::TempDir folder;
+  const std::string path = folder.path("notes.txt");
+  std::ofstream(path) << "my notes\n";
+  for (const Files files : {Files::kChange, Files::kStay})
+    EXPECT_THROW(PositionFile(path, files), std::invalid_argument);
+  EXPECT_EQ(read_file(path), "my notes\n");
+  // A dry run makes no file either.
+  EXPECT_FALSE(PositionFile(folder.path("state"), Files::kStay).found());
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(PositionFile, WithoutAPathNothingIsKept) {

@@ -503,7 +503,7 @@ TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
     const std::string picture = next_picture(viewer);
     EXPECT_TRUE(picture.starts_with("P5\n# saphira stereo cycle=" + std::to_string(cycle) + " "))
         << picture.substr(0, 80);
-    EXPECT_EQ(picture, read_file(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
+    EXPECT_EQ(picture, read_bytes(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
     EXPECT_NE(picture, last);
     last = picture;
   }
@@ -511,7 +511,7 @@ TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
   const int late = look();
   for (int cycle = 1; cycle <= 3; ++cycle)
     EXPECT_EQ(next_picture(late),
-              read_file(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
+              read_bytes(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
   ::close(late);
   ::close(viewer);
   client.send(encode(protocol::Step{}));

@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
     return 2;
   std::vector<std::string> seeds{""};
   for (int i = 2; i < argc; ++i)
-    seeds.push_back(saphira::read_file(argv[i]));
+    seeds.push_back(saphira::read_bytes(argv[i]));
   for (const std::string& seed : seeds)
     test(seed);
   const long count = std::strtol(argv[1], nullptr, 10);

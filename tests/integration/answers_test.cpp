@@ -36,6 +36,18 @@ TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
   EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
 }
 
+TEST_F(Answers, OutputThatCannotBeWrittenIsAFailure) {
+  for (const char* const words :
+       {"", "help", "--help", "--version", "goal --help", "complete go", "check demo"}) {
+    const Outcome outcome =
+        test::run({"/bin/sh", "-c", "exec \"$0\" " + std::string(words) + " >/dev/full",
+                   test::program("saphira")});
+    EXPECT_EQ(outcome.code, 3) << words << ": " << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "saphira: could not write the output: No space left on device"))
+        << words << ": " << outcome.text;
+  }
+}
+
 /// The names in the help's list of commands, a line each.
 std::string commands_of(const std::string& help) {
   std::istringstream lines(help.substr(help.find("Subcommands:\n")));

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -119,6 +120,8 @@ int main(int argc, char** argv) {
         if (chosen.run) {
           const int code = chosen.run(cli::with_running_bus(*root, options), stop);
           cli::flush_output();
+          if (const std::string lost = cli::out().trouble(); code == bus::kExitOk && !lost.empty())
+            throw std::runtime_error(lost);
           return code;
         }
         root->clear();  // otherwise its help is that of the last command

@@ -116,7 +116,7 @@ int list(const Words& words) {
                   day_of(member.until).c_str(), state.c_str());
   }
   if (words.json)
-    std::cout << members.dump() << '\n';
+    std::cout << members.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   else if (members.empty())
     std::cout << authority.site() << " has no members yet: saphira security add NAME --role ROLE\n";
   return bus::kExitOk;

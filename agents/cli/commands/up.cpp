@@ -241,13 +241,13 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   int status = 0;
   while (!stop.requested() && seconds_since(began) < kStarted) {
     if (waitpid(child, &status, WNOHANG) == child) {
-      std::cerr << read_file(log) << "saphira: it has ended; all that it said is in " << log
+      std::cerr << read_bytes(log) << "saphira: it has ended; all that it said is in " << log
                 << '\n';
       return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
     }
     for (const Running& one : running_deployments())
       if (one.name == running && one.pid == child &&
-          read_file(log).find(kAreStarted) != std::string::npos) {
+          read_bytes(log).find(kAreStarted) != std::string::npos) {
         std::cout << running << " runs (process " << child << "); its output: " << log
                   << "; saphira stop ends it\n";
         return bus::kExitOk;

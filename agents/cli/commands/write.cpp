@@ -135,7 +135,7 @@ std::string completed(const std::string& topic, const std::string& text, const b
   const char* const requester = goal ? "requester" : "source";
   if (!json.contains(requester))
     json[requester] = person("saphira write");
-  return json.dump();
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// Holds samples of QoS goal or latched until Ctrl-C or for the given time; writes others once.

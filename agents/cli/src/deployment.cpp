@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "saphira/base/places.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/supervisor.hpp"
 
@@ -128,8 +129,8 @@ class Parser {
 
   std::string robot(const YAML::Node& node) const {
     std::string name = word(node, "the robot's name");
-    if (name.find_first_of("*?[]/ ") != std::string::npos)
-      fail(node.Mark(), "expected one robot's name, found \"" + name + "\"");
+    if (const std::string trouble = trouble_of_robot(name); !trouble.empty())
+      fail(node.Mark(), trouble);
     return name;
   }
 

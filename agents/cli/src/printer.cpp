@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "saphira/base/output.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -23,8 +24,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kLastMoment{1000};  // for the last output of a program
 
-/// False where there is no reader any more.
-bool write_all(int fd, std::string_view text) {
+/// 0: all is written; otherwise an errno.
+int write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());
     if (n > 0) {
@@ -34,10 +35,10 @@ bool write_all(int fd, std::string_view text) {
       pollfd ready{fd, POLLOUT, 0};
       ::poll(&ready, 1, -1);
     } else if (n < 0 && errno != EINTR) {
-      return false;
+      return errno;
     }
   }
-  return true;
+  return 0;
 }
 
 std::string formatted(const char* format, std::va_list arguments) {
@@ -63,6 +64,7 @@ struct Printer::Shared {
   std::size_t left_out = 0;  ///< texts
   bool printing = false;
   bool closed = false;
+  std::string trouble;
   bool end = false;
 };
 
@@ -99,10 +101,13 @@ void Printer::run(const std::shared_ptr<Shared>& shared) {
     text += std::exchange(shared->picture, {});
     shared->printing = true;
     lock.unlock();
-    const bool read = write_all(shared->fd, text);
+    const int why = write_all(shared->fd, text);
     lock.lock();
     shared->printing = false;
-    shared->closed = shared->closed || !read;
+    if (why != 0) {
+      shared->closed = true;
+      shared->trouble = output_trouble(shared->fd, why);
+    }
     shared->changed.notify_all();
   }
 }
@@ -137,6 +142,11 @@ bool Printer::flush(milliseconds limit) {
 bool Printer::closed() const {
   const std::lock_guard lock(shared_->mutex);
   return shared_->closed;
+}
+
+std::string Printer::trouble() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->trouble;
 }
 
 // Never destroyed: the threads of both live as long as the process.

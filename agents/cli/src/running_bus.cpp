@@ -15,7 +15,7 @@ std::string to_text(const RunningBus& bus) {
                         {"interface", bus.interface},
                         {"deployment", bus.deployment},
                         {"security", bus.security}}
-             .dump() +
+             .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";
 }
 

@@ -104,6 +104,21 @@ TEST(Printer, NoticesThatNobodyWillEverRead) {
   printer.print("into nothing\n");
   EXPECT_TRUE(printer.flush(seconds(30)));
   EXPECT_TRUE(printer.closed());
+  EXPECT_EQ(printer.trouble(), "");
+}
+
+TEST(Printer, NamesTheReasonWhereNothingCanBeWritten) {
+  const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  ASSERT_GE(full, 0);
+  {
+    Printer printer(full);
+    EXPECT_EQ(printer.trouble(), "");
+    printer.print("nowhere to go\n");
+    EXPECT_TRUE(printer.flush(seconds(30)));
+    EXPECT_TRUE(printer.closed());
+    EXPECT_EQ(printer.trouble(), "could not write the output: No space left on device");
+  }
+  ::close(full);
 }
 
 }  // namespace

@@ -86,8 +86,9 @@ void Door::hear() {
       if (waiting.what == Waiting::For::event && !waiting.result &&
           (waiting.name.empty() || waiting.name == sample.data.functor())) {
         const Json arguments = values_of(sample.data.arguments());
-        waiting.result = Result{sample.data.functor() + " " + arguments.dump() + ", reported by " +
-                                    sample.data.source(),
+        waiting.result = Result{sample.data.functor() + " " +
+                                    arguments.dump(-1, ' ', false, Json::error_handler_t::replace) +
+                                    ", reported by " + sample.data.source(),
                                 {{"happened", true},
                                  {"event", sample.data.functor()},
                                  {"source", sample.data.source()},
@@ -180,7 +181,9 @@ void Door::begin(const Call& call) {
           call.number, {"nothing is known of this goal; the tool goals lists them", nullptr, true});
     waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
   } else if (call.tool == "goals") {
-    session_.answer(call.number, {goals().dump(), {{"goals", goals()}}, false});
+    session_.answer(call.number, {goals().dump(-1, ' ', false, Json::error_handler_t::replace),
+                                  {{"goals", goals()}},
+                                  false});
   } else if (call.tool == "robot_status") {
     Result result = robot_.status();
     result.value["goals"] = goals();

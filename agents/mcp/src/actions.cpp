@@ -123,7 +123,9 @@ Json json_of(const Action& action) {
 std::string words_of(const Action& action) {
   const v1::GoalStatus& status = action.status;
   return bus::describe(status.state()) + (status.reason().empty() ? "" : ": " + status.reason()) +
-         (action.results.empty() ? "" : "; results " + action.results.dump());
+         (action.results.empty()
+              ? ""
+              : "; results " + action.results.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace saphira::mcp

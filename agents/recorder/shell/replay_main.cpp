@@ -6,6 +6,7 @@
 #include <string>
 
 #include "recorder.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
       [&](CommandLine& app) {
         app.add_option("file", own.file, "FILE.mcap of saphira record").required();
         app.add_option("--as", own.as, "the robot's name on the bus; else ROBOT-replay")
-            .check(bus::trouble_of_robot);
+            .check(trouble_of_robot);
         app.add_option("--rate", own.rate, "seconds of the recording in a second")
             .positive()
             .in_range(0.0, 1000.0);

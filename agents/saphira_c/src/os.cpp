@@ -95,7 +95,10 @@ void Os::run() {
           robot_ = robot_at(address, [this](const std::string& t, bool e) { say(t, e); });
           end_at_exit();
         } catch (const std::exception& error) {
-          say((address == port ? "SAPHIRA_PORT: " : "") + std::string(error.what()), true);
+          const char* const variable = address.starts_with(kOnBus) ? "SAPHIRA_ROBOT: "
+                                       : address == port           ? "SAPHIRA_PORT: "
+                                                                   : "";
+          say(variable + std::string(error.what()), true);
           wants_robot_ = false;
         }
       }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "robot.hpp"
+#include "saphira/base/robot_name.hpp"
 
 namespace saphira::c {
 namespace fs = std::filesystem;
@@ -56,6 +57,8 @@ std::unique_ptr<Robot> robot_at(const std::string& address, Say say) {
 
 // The bus is a separate part: a program with a robot of its own needs no DDS.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say) {
+  if (const std::string trouble = trouble_of_robot(name); !trouble.empty())
+    throw std::invalid_argument(trouble);
   const std::string path = (above_library() / "libsfx-bus.so").string();
   void* const part = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (part == nullptr)

@@ -112,8 +112,8 @@ using Say = std::function<void(const std::string&, bool error)>;
 std::unique_ptr<Robot> direct_robot(const std::string& address, Say say);
 
 /// The robot of that name on the bus, by the library's module for the bus, which is loaded for it;
-/// the other bus options come from the environment (SAPHIRA_DOMAIN and so on). std::runtime_error
-/// without that module.
+/// the other bus options come from the environment (SAPHIRA_DOMAIN and so on).
+/// std::invalid_argument where that is no robot's name, std::runtime_error without that module.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say);
 /// The function that this module exports under the name kBusRobot.
 using MakeBusRobot = Robot* (*)(const std::string& name, Say say);

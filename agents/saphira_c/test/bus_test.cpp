@@ -237,6 +237,16 @@ TEST_F(OnBus, APortOfTheBusIsAsGoodAsTheEnvironment) {
   EXPECT_TRUE(system_.wait_moving(kPatience)) << program.output();
 }
 
+TEST(OnBusAlone, AWildcardIsNoRobot) {
+  const test::TempDir dir;
+  Process program({test::compiled(test::source("agents/saphira_c/examples/async.c"), dir, false)},
+                  dir.path("out"), {{"SAPHIRA_ROBOT", "*"}});
+  EXPECT_TRUE(wait_until(
+      [&] { return has(program.output(), "SAPHIRA_ROBOT: expected the name of one robot"); },
+      kPatience))
+      << program.output();
+}
+
 TEST(OnBusAlone, WithoutABridgeItSaysSo) {
   const test::TempDir dir;
   Process program({test::compiled(test::source("agents/saphira_c/examples/async.c"), dir, false)},

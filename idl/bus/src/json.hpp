@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "saphira/base/text.hpp"
 #include "saphira_visit.hpp"
 
 namespace saphira::bus::internal {
@@ -80,8 +82,13 @@ class JsonWriter {
   }
   void quote(std::string_view item) {
     text_ += '"';
-    for (const char c : item) {
-      if (c == '"' || c == '\\') {
+    while (!item.empty()) {
+      const char c = item.front();
+      const std::size_t size = letter_size(item);
+      if (size != 1) {
+        // Another program may write any bytes.
+        text_ += size == 0 ? std::string_view("\uFFFD") : item.substr(0, size);
+      } else if (c == '"' || c == '\\') {
         text_ += '\\';
         text_ += c;
       } else if (static_cast<unsigned char>(c) < 0x20) {
@@ -91,6 +98,7 @@ class JsonWriter {
       } else {
         text_ += c;
       }
+      item.remove_prefix(std::max<std::size_t>(1, size));
     }
     text_ += '"';
   }

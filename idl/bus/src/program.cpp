@@ -4,12 +4,14 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "internal.hpp"
 #include "log.hpp"
-#include "saphira/base/durable.hpp"
+#include "saphira/base/output.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
 
@@ -79,18 +81,6 @@ Profile profile_of(const std::string& word) {
   return profiles.at(word);
 }
 
-std::string trouble_of_robot(const std::string& name) {
-  constexpr std::size_t kMostLetters = 64;
-  const bool is_name =
-      !name.empty() && name.size() <= kMostLetters &&
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
-          std::string::npos;
-  return is_name
-             ? std::string()
-             : "expected the name of one robot (1 to 64 letters, digits, -, _ and .), found \"" +
-                   name + "\"";
-}
-
 NodeOptions options_of_environment() {
   NodeOptions options;
   CommandLine line("", "environment");
@@ -120,7 +110,6 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     return *code;
   internal::has_worked() = false;
   internal::has_erred() = false;
-  files_stay() = options.dry_run;
   std::string what;
   std::string usage;  // the first such error, for the person who gave the input
   try {
@@ -131,11 +120,16 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
       stop.request();
     }
     const int code = body(options, stop);
+    if (const std::string lost = flush_standard_output(); code == kExitOk && !lost.empty())
+      throw std::runtime_error(lost);
     // A mistake that a running program only reports also fails a dry run.
     return options.dry_run && code == kExitOk && internal::has_erred() ? kExitFailed : code;
   } catch (const FileError& error) {
     usage = what = error.what();
   } catch (const std::invalid_argument& error) {
+    what = error.what();
+    usage = app.program() + ": " + what;
+  } catch (const UnreadableFile& error) {
     what = error.what();
     usage = app.program() + ": " + what;
   } catch (const std::exception& error) {

@@ -339,6 +339,24 @@ TEST_P(Bus, EchoSpeaksJson) {
   EXPECT_EQ(lines[0].substr(0, 25), R"({"_disposed":true,"id":{")");
 }
 
+// Another program may write any bytes; JSON is UTF-8.
+TEST_P(Bus, EchoSpeaksJsonOfAnyText) {
+  auto a = node("a");
+  auto writer = a->writer(topics::kGoalStatus);
+  v1::GoalStatus status;
+  status.reason() =
+      "K\xFC"
+      "che, K\u00fcche, \U0001f600 \xE2\x82";
+  writer.write(status);
+  auto b = node("b");
+  Echo echo(*b, "goals/status");
+  std::vector<std::string> lines;
+  ASSERT_TRUE(eventually(*b, [&] { return !(lines = echo.take_json()).empty(); }));
+  EXPECT_NE(lines[0].find("\"reason\":\"K\uFFFDche, K\u00fcche, \U0001f600 \uFFFD\uFFFD\""),
+            std::string::npos)
+      << lines[0];
+}
+
 TEST_P(Bus, EchoNamesTheTopicsThatThereAre) {
   auto a = node("a");
   try {

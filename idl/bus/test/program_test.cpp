@@ -42,6 +42,10 @@ TEST(Program, AMistakeInWhatAPersonGaveIsAUsageError) {
               throw std::invalid_argument("--start: expected a place");
             }),
             kExitUsage);
+  EXPECT_EQ(run([](const NodeOptions&, const Stop&) -> int {
+              return static_cast<int>(read_file("/nowhere/a.map").size());
+            }),
+            kExitUsage);
   EXPECT_EQ(run([](const NodeOptions&, const Stop&) -> int { throw std::runtime_error("no bus"); }),
             kExitBroken);
 }

@@ -94,8 +94,8 @@ Authority::Authority(const std::string& folder) : folder_(folder) {
   if (!fs::exists(folder_ + "/" + kAuthorityKey))
     throw std::invalid_argument(folder_ +
                                 " holds no authority: `saphira security init SITE` makes one");
-  key_ = read_file(folder_ + "/" + kAuthorityKey);
-  certificate_ = read_file(folder_ + "/" + kAuthority);
+  key_ = read_bytes(folder_ + "/" + kAuthorityKey);
+  certificate_ = read_bytes(folder_ + "/" + kAuthority);
   const std::string roles_file = folder_ + "/" + kRolesFile;
   roles_ = parse_roles(read_file(roles_file), roles_file, topics_of_contract());
   load_members();
@@ -224,7 +224,7 @@ std::string Authority::revoke(const std::string& name) {
   ++revoked_.number;
   write(revoked_list(), sign(to_text(revoked_), key_pair(key_, certificate_)));
   save_members();
-  const std::string list = read_file(revoked_list());
+  const std::string list = read_bytes(revoked_list());
   for (const auto& [other, its] : members_)
     if (fs::is_directory(folder_of(other)))
       write(folder_of(other) + "/" + kRevoked, list);
@@ -236,7 +236,7 @@ void Authority::write_shared(const std::string& folder) const {
   write(folder + "/" + kAuthority, certificate_);
   write(folder + "/" + kRoles, sign(roles_.text, pair));
   write(folder + "/" + kGovernance, sign(governance(), pair));
-  write(folder + "/" + kRevoked, read_file(revoked_list()));
+  write(folder + "/" + kRevoked, read_bytes(revoked_list()));
 }
 
 void Authority::issue(const std::string& name, const Member& member, std::int64_t now) const {

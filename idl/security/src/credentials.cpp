@@ -26,7 +26,7 @@ constexpr std::array<const char*, 4> kOfPeople{"operator", "agent", "observer", 
 
 std::string read(const std::string& file) {
   try {
-    return read_file(file);
+    return read_bytes(file);
   } catch (const std::exception& error) {
     throw std::invalid_argument(
         std::string(error.what()) +
@@ -167,7 +167,7 @@ std::string to_text(const Revoked& revoked) {
 
 Revoked load_revoked(const std::string& folder, const std::string& authority_certificate) {
   const std::string file = folder + "/" + kRevoked;
-  const std::string text = verified(read_file(file), authority_certificate);
+  const std::string text = verified(read_bytes(file), authority_certificate);
   Revoked revoked;
   bool first = true;
   for (const Line& line : split_lines(text)) {

@@ -15,7 +15,6 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/agent_interface/pointing.hpp"
 #include "saphira/base/boot_clock.hpp"
-#include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/artifact_traits.hpp"
@@ -101,14 +100,15 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       knows_(node.writer(bus::topics::kKnows)) {
   folder_.look();
   if (!options_.memory.empty()) {
-    std::size_t bad = 0;
     const std::string trouble = read_or_set_aside(
-        options_.memory, [&](const std::string& text) { bad = dialogue_.restore(text); });
+        options_.memory,
+        [&](const std::string& text) {
+          if (const std::size_t bad = dialogue_.restore(text); bad > 0)
+            throw std::runtime_error(counted(bad, "line") + " cannot be read, the others count");
+        },
+        files());
     if (!trouble.empty())
       node_.warn(trouble);
-    if (bad > 0)
-      node_.warn(options_.memory + ": " + std::to_string(bad) +
-                 " lines cannot be read, and are lost");
   }
   for (const Claimed& one : dialogue_.claims())
     claim(one);
@@ -242,8 +242,13 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
   }
 }
 
+Files DialogueShell::files() const {
+  return node_.options().dry_run ? Files::kStay : Files::kChange;
+}
+
 void DialogueShell::remember() {
-  if (!options_.memory.empty() && !replace_file(options_.memory, dialogue_.save()))
+  if (files() == Files::kChange && !options_.memory.empty() &&
+      !replace_file(options_.memory, dialogue_.save()))
     node_.warn("what the robot was told cannot be kept: " + cannot_be(options_.memory, "written"));
 }
 

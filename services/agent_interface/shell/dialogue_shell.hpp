@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/watched_folder.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -41,6 +42,7 @@ class DialogueShell {
   void want(const WantedGoal& goal);
   void claim(const Claimed& claim);
   void rename(const maps::Feature& feature);
+  Files files() const;
   void remember();
   void publish();
 

@@ -39,11 +39,17 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memo
       robot_(node) {
   if (memory_.empty())
     return;
-  const std::string trouble = read_or_set_aside(memory_, [this](const std::string& text) {
-    facilitator_.restore(std::string(unsealed(text, memory_)));
-  });
+  const Files files = node_.options().dry_run ? Files::kStay : Files::kChange;
+  const std::string trouble = read_or_set_aside(
+      memory_,
+      [this](const std::string& text) {
+        facilitator_.restore(std::string(unsealed(text, memory_)));
+      },
+      files);
   if (!trouble.empty())
     node_.warn(trouble);
+  if (files == Files::kStay)
+    memory_.clear();
 }
 
 void FacilitatorShell::take_agents() {

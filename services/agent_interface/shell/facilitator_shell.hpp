@@ -36,7 +36,7 @@ class FacilitatorShell {
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
   const double begun_;  ///< [s] of the clock of step()
-  const std::string memory_;
+  std::string memory_;
   Facilitator facilitator_;
   RobotAgent robot_;
   bool awaits_ = false;  ///< the last step has sent a request to an agent

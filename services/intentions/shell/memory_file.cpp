@@ -23,19 +23,21 @@ std::size_t lines_of(const std::string& content) {
 
 }  // namespace
 
-MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(path)), most_(most) {
+MemoryFile::MemoryFile(std::string path, std::size_t most, Files files)
+    : path_(std::move(path)), most_(most), files_(files) {
   if (path_.empty())
     return;
-  const auto note = [this](std::string trouble) {
+  const auto read = [this](const std::string& file, const auto& understand) {
+    std::string trouble = read_or_set_aside(file, understand, files_);
     if (!trouble.empty())
       troubles_.push_back(std::move(trouble));
   };
   std::size_t expected = 0;
-  note(read_or_set_aside(path_ + kLines, [&](const std::string& content) {
+  read(path_ + kLines, [&](const std::string& content) {
     expected = std::stoul(std::string(unsealed(content, path_ + kLines)));
-  }));
+  });
   bool found = false;
-  note(read_or_set_aside(path_, [&](const std::string& content) {
+  read(path_, [&](const std::string& content) {
     found = true;
     std::vector<FileError> damaged;
     memory_ = read_journal(path_, content, damaged);
@@ -46,12 +48,13 @@ MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(pat
     if (lines_of(content) < expected)
       throw std::runtime_error("it has " + std::to_string(lines_of(content)) + " of its " +
                                std::to_string(expected) + " lines: its end is missing");
-  }));
+  });
   if (!found && expected > 0)
-    note(path_ + " is gone, or empty: it had " + std::to_string(expected) + " lines");
-  note(read_or_set_aside(path_ + kWork, [this](const std::string& content) {
+    troubles_.push_back(path_ + " is gone, or empty: it had " + std::to_string(expected) +
+                        " lines");
+  read(path_ + kWork, [this](const std::string& content) {
     memory_.work = read_work(path_ + kWork, unsealed(content, path_ + kWork));
-  }));
+  });
   memory_.condition = !troubles_.empty()                        ? Memory::Condition::kDamaged
                       : found || std::filesystem::exists(path_) ? Memory::Condition::kWhole
                                                                 : Memory::Condition::kNone;
@@ -63,8 +66,8 @@ bool MemoryFile::begin(Memory& memory) {
   std::vector<Ending>& endings = memory.endings;
   if (endings.size() > most_)
     endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most_));
-  if (files_stay())
-    return can_replace_file(path_);
+  if (files_ == Files::kStay)
+    return can_replace_file(path_, files_);
   // Written to a new file and renamed: a crash in between leaves the old file whole.
   const std::string fresh = path_ + ".new";
   std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "we"));
@@ -97,7 +100,7 @@ void MemoryFile::begin_anew() {
   begin_anew_at_ = lines_ + 2 * most_;
   try {
     std::vector<FileError> damaged;
-    Memory memory = read_journal(path_, read_file(path_), damaged);
+    Memory memory = read_journal(path_, read_bytes(path_), damaged);
     begin(memory);
   } catch (const std::exception&) {
     return;
@@ -105,7 +108,8 @@ void MemoryFile::begin_anew() {
 }
 
 bool MemoryFile::keep(const Work& work) const {
-  return path_.empty() || replace_file(path_ + kWork, sealed(write_work(work)));
+  return path_.empty() || files_ == Files::kStay ||
+         replace_file(path_ + kWork, sealed(write_work(work)));
 }
 
 bool MemoryFile::append(const std::string& lines) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/intentions/journal.hpp"
 
 namespace saphira::intentions {
@@ -16,8 +17,10 @@ class MemoryFile {
  public:
   /// Reads the file and begins it anew, without superseded lines and with the newest `most`
   /// endings. A damaged file is set aside; its readable lines count. An empty path saves nothing.
-  /// std::runtime_error where it cannot be written.
-  explicit MemoryFile(std::string path, std::size_t most = kMostEndings);
+  /// std::runtime_error where it cannot be written, std::invalid_argument where it is another
+  /// file.
+  explicit MemoryFile(std::string path, std::size_t most = kMostEndings,
+                      Files files = Files::kChange);
 
   const Memory& memory() const { return memory_; }
   /// The damage, in words.
@@ -42,6 +45,7 @@ class MemoryFile {
 
   std::string path_;
   std::size_t most_;
+  Files files_;
   std::size_t lines_ = 0;
   std::size_t begin_anew_at_ = 0;  ///< lines
   Memory memory_;

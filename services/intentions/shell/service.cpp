@@ -72,7 +72,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       servo_(ports.asker(bus::topics::kServo)),
       agents_(ports.asker(bus::topics::kSolve)),
       answers_(ports.events(bus::topics::kSolved)),
-      memory_(options.memory_file),
+      memory_(options.memory_file, kMostEndings, ports.files()),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
       core_(settings(ports, memory_, functions_)) {

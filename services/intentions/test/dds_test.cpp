@@ -6,6 +6,7 @@
 
 #include "node_options.hpp"
 #include "process.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "scripted_bus.hpp"
 
@@ -110,8 +111,9 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
 }
 
 TEST_F(IntentionsProgram, StartsWithADamagedMemoryAndSaysSo) {
-  std::ofstream(dir.path("memory")) << "ended 1f 2 succeeded none fine\nplaced \x81\n";
-  std::ofstream(dir.path("memory.work")) << "nonsense\n";
+  std::ofstream(dir.path("memory"))
+      << sealed_line("ended 1f 2 succeeded none fine") << "\nplaced \x81\n";
+  std::ofstream(dir.path("memory.work")) << sealed("nonsense\n");
   test::Process service(command(), dir.path("log"));
   Robot10Hz world(robot);
   const v1::GoalId id = goals.ask(go_to(0.3, 0.0));

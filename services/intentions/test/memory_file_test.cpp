@@ -149,12 +149,25 @@ TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
 
 TEST(MemoryFile, ADryRunChangesNoFile) {
   const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  const std::string content = write_line(kEnding) + "something else\n";
+  std::ofstream(path) << content;
+  MemoryFile memory(path, kMostEndings, Files::kStay);
+  EXPECT_EQ(memory.troubles().size(), 1U);
+  EXPECT_TRUE(memory.append(write_line(kEnding)));
+  EXPECT_TRUE(memory.keep({}));
+  EXPECT_EQ(read_file(path), content);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
+  EXPECT_THROW(MemoryFile(dir.path("no/such/folder"), kMostEndings, Files::kStay),
+               std::runtime_error);
+}
+
+TEST(MemoryFile, AnotherFileIsRefusedAndStays) {
+  const test::TempDir dir;
   const std::string path = dir.path("goals.txt");
   std::ofstream(path) << "my goals\n";
-  files_stay() = true;
-  const MemoryFile memory(path);
-  files_stay() = false;
-  EXPECT_EQ(memory.troubles().size(), 1U);
+  for (const Files files : {Files::kChange, Files::kStay})
+    EXPECT_THROW(MemoryFile(path, kMostEndings, files), std::invalid_argument);
   EXPECT_EQ(read_file(path), "my goals\n");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }

@@ -40,7 +40,7 @@ Service::Service(runtime::Ports& ports, Options options)
       perception_(ports.cycle(bus::topics::kPerception)),
       registrations_(ports.each_cycle(bus::topics::kRegistration)),
       maps_(ports.changes(bus::topics::kMap)),
-      saver_(options_.memory_file) {
+      saver_(ports.files() == Files::kStay ? "" : options_.memory_file) {
   ports.requests(bus::topics::kRegistrationRequest, Core::functors(),
                  [this](const Request& request) { return core_->act(request); });
   const Core::Settings settings = settings_of(options_);
@@ -51,12 +51,14 @@ Service::Service(runtime::Ports& ports, Options options)
   }
   std::optional<Remembered> remembered;
   if (!options_.memory_file.empty()) {
-    const std::string trouble =
-        read_or_set_aside(options_.memory_file, [&](const std::string& content) {
+    const std::string trouble = read_or_set_aside(
+        options_.memory_file,
+        [&](const std::string& content) {
           Remembered found = parse_remembered(content, options_.memory_file);
           Core(settings, found);  // throws where it is unusable
           remembered = std::move(found);
-        });
+        },
+        ports.files());
     if (!trouble.empty())
       ports_.say({{Note::Level::warning, trouble}});
   }

@@ -305,7 +305,7 @@ TEST_F(RegistrationShell, ABadMemoryIsNone) {
                                   option + "odom 1\nplaced 1\npose_in_map nan 0 0\nmap\n",
                                   option + "odom 1\nplaced 1\npose_in_map 1e11 0 0\nmap\n",
                                   option + "odom 1\nmap\nOFFICE (1) 0, 0, 0, 2000000, 2000000\n"}) {
-    std::ofstream(folder.path("memory")) << text;
+    std::ofstream(folder.path("memory")) << (text.empty() ? text : sealed(text));
     start({map_path("office"), "start", folder.path("memory")});
     const auto map = maps.take_newest();
     ASSERT_TRUE(map) << text;

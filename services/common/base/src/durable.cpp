@@ -3,10 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
+#include <stdexcept>
 
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/places.hpp"
@@ -18,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLineSum = 8;  // digits
+constexpr std::string_view kMark = "; memory of saphira\n";
 constexpr std::string_view kSum = "; sum ";
 
 std::string sum_of(std::string_view text) {
@@ -61,11 +66,6 @@ class File {
 
 }  // namespace
 
-std::atomic<bool>& files_stay() {
-  static std::atomic<bool> stay{false};
-  return stay;
-}
-
 std::string sealed_line(std::string_view line) {
   return short_sum_of(line) + " " + std::string(line);
 }
@@ -79,35 +79,81 @@ std::optional<std::string_view> unsealed_line(std::string_view line) {
   return rest;
 }
 
-std::string sealed(std::string text) {
-  const std::string sum = sum_of(text);
-  return text.append(kSum).append(sum).append("\n");
+std::string sealed(const std::string& text) {
+  std::string whole = std::string(kMark) + text;
+  const std::string sum = sum_of(whole);
+  return whole.append(kSum).append(sum).append("\n");
 }
 
 std::string_view unsealed(std::string_view text, const std::string& file) {
   const std::size_t last = text.rfind(kSum);
-  const std::string_view whole = text.substr(0, last);
+  std::string_view whole = text.substr(0, last);
   if (last == std::string_view::npos ||
       text.substr(last) != std::string(kSum) + sum_of(whole) + "\n")
     throw FileError(file, 1, 1, "it is not as it was written: its sum is missing or wrong");
+  if (whole.starts_with(kMark))  // an earlier version wrote none
+    whole.remove_prefix(kMark.size());
   return whole;
 }
 
+namespace {
+
+/// A line that begins with a sum and a blank, of which one bit may be wrong. A sum has digits and
+/// letters, unlike a word or a date.
+bool begins_with_sum(std::string_view line) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto letter = [](char c) { return c >= 'a' && c <= 'f'; };
+  const std::string_view sum = line.substr(0, kLineSum);
+  const auto digits = std::count_if(sum.begin(), sum.end(), digit);
+  const auto letters = std::count_if(sum.begin(), sum.end(), letter);
+  const auto wrong = std::ssize(sum) - digits - letters;
+  if (line.size() <= kLineSum)  // cut off
+    return wrong == 0;
+  const auto bits = std::popcount(static_cast<unsigned char>(line[kLineSum] ^ ' '));
+  return digits > 0 && letters > 0 && wrong + bits <= 1;
+}
+
+}  // namespace
+
+bool was_sealed(std::string_view content) {
+  const std::string_view mark = kMark.substr(0, content.size());
+  if (content.starts_with(mark) || content.find_first_not_of('\0') == std::string_view::npos)
+    return true;
+  while (!content.empty()) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    const std::string_view line = content.substr(0, end);
+    // A shorter line was cut off; then it is the last one.
+    if (line.starts_with(kSum) ||
+        ((line.size() > kLineSum || end == content.size()) && begins_with_sum(line)))
+      return true;
+    content.remove_prefix(std::min(end + 1, content.size()));
+  }
+  return false;
+}
+
 std::string read_or_set_aside(const std::string& path,
-                              const std::function<void(const std::string& content)>& understand) {
+                              const std::function<void(const std::string& content)>& understand,
+                              Files files) {
   std::error_code error;
   // An empty file was created and never written.
   if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0)
     return {};
+  std::string content;
   std::string why;
   try {
-    understand(read_file(path));
+    content = read_bytes(path);
+    understand(content);
     return {};
   } catch (const std::exception& trouble) {
     why = trouble.what();
   }
+  if (!was_sealed(content))
+    throw std::invalid_argument(path +
+                                ": expected a file that this program has written, or a new name; "
+                                "found another file, which stays as it is: " +
+                                why);
   const std::string aside = path + ".damaged";
-  if (files_stay())
+  if (files == Files::kStay)
     return path + " cannot be used; a start would set it aside as " + aside +
            ", and begin it anew: " + why;
   fs::rename(path, aside, error);
@@ -131,10 +177,10 @@ bool is_file_or_new(const std::string& path) {
 
 }  // namespace
 
-bool can_replace_file(const std::string& path) {
+bool can_replace_file(const std::string& path, Files files) {
   if (!is_file_or_new(path))
     return false;
-  if (files_stay())
+  if (files == Files::kStay)
     return ::access(folder_of(path).c_str(), W_OK) == 0;
   const std::string fresh = path + ".new";
   if (!File(fresh, O_WRONLY | O_CREAT | O_TRUNC).opened())
@@ -144,8 +190,6 @@ bool can_replace_file(const std::string& path) {
 }
 
 bool replace_file(const std::string& path, std::string_view text, bool sync) {
-  if (files_stay())
-    return can_replace_file(path);
   if (!is_file_or_new(path))
     return false;
   const std::string fresh = path + ".new";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -25,6 +26,32 @@ std::string printable(std::string_view text) {
     if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n')
       c = '?';
   return out;
+}
+
+/// FileError at the first byte that begins no letter of UTF-8.
+void expect_utf8(std::string_view text, const std::string& file) {
+  int line = 1;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = letter_size(text.substr(i));
+    if (size == 0) {
+      std::string shown(text.substr(begin, text.find('\n', i) - begin));
+      for (char& c : shown)
+        if (static_cast<unsigned char>(c) >= 0x80)
+          c = '?';  // one for each byte, so that the caret stands under the place
+      char byte[8];
+      std::snprintf(byte, sizeof byte, "0x%02X", static_cast<unsigned char>(text[i]));
+      throw FileError(file, line, static_cast<int>(i - begin) + 1,
+                      std::string("expected a text in UTF-8, found the byte ") + byte +
+                          " (Latin-1?): save it as UTF-8",
+                      shown);
+    }
+    if (text[i] == '\n') {
+      ++line;
+      begin = i + 1;
+    }
+    i += size;
+  }
 }
 
 /// The start of a word.
@@ -171,17 +198,47 @@ void expect_last_line_break(std::string_view text, const std::string& file) {
                   lines.back().text);
 }
 
-std::string read_file(const std::string& path) {
+std::size_t letter_size(std::string_view text) {
+  if (text.empty())
+    return 0;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80)
+    return 1;
+  const std::size_t size = first < 0xC2   ? 0
+                           : first < 0xE0 ? 2
+                           : first < 0xF0 ? 3
+                           : first < 0xF5 ? 4
+                                          : 0;
+  if (size == 0 || text.size() < size)
+    return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(i) & 0xC0U) != 0x80U)
+      return 0;
+  // Not in more bytes than it needs, no half of a UTF-16 letter, none beyond U+10FFFF.
+  const unsigned char second = byte(1);
+  const bool letter = (first != 0xE0 || second >= 0xA0) && (first != 0xED || second < 0xA0) &&
+                      (first != 0xF0 || second >= 0x90) && (first != 0xF4 || second < 0x90);
+  return letter ? size : 0;
+}
+
+std::string read_bytes(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)
-    throw std::runtime_error(cannot_be(path, "read"));
+    throw UnreadableFile(cannot_be(path, "read"));
   in.peek();
   if (in.bad())
-    throw std::runtime_error(path + ": cannot be read (is it a file?)");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+    throw UnreadableFile(path + ": cannot be read (is it a file?)");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string read_file(const std::string& path) {
+  std::string text = read_bytes(path);
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as some editors write it
   if (text.starts_with(kByteOrderMark))
     text.erase(0, kByteOrderMark.size());
+  if (text.find('\0') == std::string::npos)
+    expect_utf8(text, path);
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "process.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira {
@@ -48,44 +49,96 @@ TEST(Durable, ASealedTextIsWhatItWas) {
   EXPECT_THROW(unsealed(whole + "more\n", "file"), FileError);
 }
 
+TEST(Durable, ATextOfAnEarlierVersionHasNoMark) {
+  Fnv1a hash;
+  hash.add("one\n");
+  EXPECT_EQ(unsealed("one\n; sum " + hash.text() + "\n", "file"), "one\n");
+}
+
+TEST(Durable, WhatWasSealedIsKnownByItsMarks) {
+  const std::string text = sealed("one\ntwo\n");
+  const std::string line = sealed_line("placed 1f 2 3") + "\n";
+  for (const std::string& whole : {text, line, line + line}) {
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_TRUE(was_sealed(whole.substr(0, i))) << i;
+      for (int bit = 0; bit < 8; ++bit) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+        EXPECT_TRUE(was_sealed(damaged)) << i << " " << bit << " " << damaged;
+      }
+    }
+    EXPECT_TRUE(was_sealed(whole));
+    EXPECT_TRUE(was_sealed("something else\n" + whole));
+  }
+  EXPECT_TRUE(was_sealed(std::string(256, '\0'))) << "after a power cut";
+  for (const char* const other :
+       {"my notes\n", "POS (1) 0, 0, 0\n", "; a map\n", "feedback of today\n", "12345678\n", "\n",
+        "{\"a\": 1}", "12345678, 9\n", "20240101 cleaned it\n", "; memory of mine\n",
+        "\x7f"
+        "ELF"})
+    EXPECT_FALSE(was_sealed(other)) << other;
+}
+
+TEST(Durable, AnotherFileStaysAsItIs) {
+  const test::TempDir folder;
+  const std::string path = folder.path("notes.txt");
+  write(path, "mine\n");
+  for (const Files files : {Files::kChange, Files::kStay}) {
+    try {
+      read_or_set_aside(
+          path, [](const std::string&) { throw std::runtime_error("it has no sum"); }, files);
+      FAIL() << "no error";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()),
+                path +
+                    ": expected a file that this program has written, or a new name; found another "
+                    "file, which stays as it is: it has no sum");
+    }
+    EXPECT_EQ(read_file(path), "mine\n");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  }
+}
+
 TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
   const test::TempDir folder;
   const std::string path = folder.path("state");
-  const auto understand = [](const std::string& text) {
-    if (text != "good")
+  const std::string good = sealed("good\n");
+  const std::string bad = sealed("bad\n");
+  const std::string worse = sealed("worse\n");
+  const auto understand = [&](const std::string& text) {
+    if (text != good)
       throw std::runtime_error("it is bad");
   };
   EXPECT_EQ(read_or_set_aside(path, understand), "") << "there is none";
-  write(path, "good");
+  write(path, good);
   EXPECT_EQ(read_or_set_aside(path, understand), "");
   EXPECT_TRUE(std::filesystem::exists(path));
-  write(path, "bad");
+  write(path, bad);
   const std::string said = read_or_set_aside(path, understand);
   EXPECT_NE(said.find(path + ".damaged"), std::string::npos) << said;
   EXPECT_NE(said.find("it is bad"), std::string::npos) << said;
   EXPECT_FALSE(std::filesystem::exists(path));
-  EXPECT_EQ(read_file(path + ".damaged"), "bad");
+  EXPECT_EQ(read_file(path + ".damaged"), bad);
   // The next damaged file replaces it.
-  write(path, "worse");
+  write(path, worse);
   EXPECT_NE(read_or_set_aside(path, understand), "");
-  EXPECT_EQ(read_file(path + ".damaged"), "worse");
+  EXPECT_EQ(read_file(path + ".damaged"), worse);
 }
 
 TEST(Durable, ADryRunChangesNoFile) {
   const test::TempDir folder;
-  const std::string path = folder.path("notes.txt");
-  write(path, "mine");
-  files_stay() = true;
-  EXPECT_EQ(read_or_set_aside(
-                path, [](const std::string&) { throw std::runtime_error("it is not ours"); }),
-            path + " cannot be used; a start would set it aside as " + path +
-                ".damaged, and begin it anew: it is not ours");
-  EXPECT_TRUE(replace_file(path, "other"));
-  EXPECT_TRUE(can_replace_file(path));
-  EXPECT_FALSE(replace_file(folder.path("nowhere/state"), "other"));
+  const std::string path = folder.path("state");
+  const std::string old = sealed("old\n");
+  write(path, old);
+  EXPECT_EQ(
+      read_or_set_aside(
+          path, [](const std::string&) { throw std::runtime_error("it is old"); }, Files::kStay),
+      path + " cannot be used; a start would set it aside as " + path +
+          ".damaged, and begin it anew: it is old");
+  EXPECT_TRUE(can_replace_file(path, Files::kStay));
+  EXPECT_FALSE(can_replace_file(folder.path("nowhere/state"), Files::kStay));
   EXPECT_EQ(errno, ENOENT);
-  files_stay() = false;
-  EXPECT_EQ(read_file(path), "mine");
+  EXPECT_EQ(read_file(path), old);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 

@@ -108,6 +108,43 @@ TEST(Text, AByteOrderMarkIsNoPartOfTheText) {
   EXPECT_EQ(read_file(path), "WALL\n");
 }
 
+TEST(Text, ALetterHasItsBytes) {
+  EXPECT_EQ(letter_size(""), 0U);
+  EXPECT_EQ(letter_size("ab"), 1U);
+  EXPECT_EQ(letter_size(std::string_view("\0", 1)), 1U);
+  EXPECT_EQ(letter_size("\u00fcb"), 2U);
+  EXPECT_EQ(letter_size("\u20ac"), 3U);
+  EXPECT_EQ(letter_size("\U0010ffff"), 4U);
+  for (const char* const none :
+       {"\xFCr", "\x80", "\xC3", "\xC3(", "\xE2\x82", "\xE2(\xAC", "\xC0\xAF", "\xC1\x81",
+        "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80",
+        "\xFF"})
+    EXPECT_EQ(letter_size(none), 0U) << none;
+}
+
+TEST(Text, AFileInLatin1IsRefusedAtItsPlace) {
+  const test::TempDir folder;
+  const std::string path = folder.path("office.map");
+  std::ofstream(path) << "; caf\u00e9\nPOS (1) 0, 0, 0 \"K\xFC"
+                      << "che\"\n";
+  try {
+    read_file(path);
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              path +
+                  ":2:19: expected a text in UTF-8, found the byte 0xFC (Latin-1?): save it as "
+                  "UTF-8\n    POS (1) 0, 0, 0 \"K?che\"\n                      ^");
+  }
+  EXPECT_NE(read_bytes(path).find('\xFC'), std::string::npos);
+  const std::string good = "\u00fc \u20ac \U0001f600\n";
+  std::ofstream(path) << good;
+  EXPECT_EQ(read_file(path), good);
+  // The reader of a map names a picture.
+  std::ofstream(path) << "\x89PNG" << '\0';
+  EXPECT_EQ(other_format(read_file(path)), "a picture (PNG)");
+}
+
 TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_NE(other_format("2D-Map\nLineMinPos: 0 0\n").find("ARIA"), std::string_view::npos);
   EXPECT_NE(other_format("P5\n10 10\n255\n").find("PGM"), std::string_view::npos);

@@ -13,12 +13,14 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/output.hpp"
 
 namespace saphira {
 
 namespace {
 
 constexpr int kUsage = 2;
+constexpr int kBroken = 3;
 
 /// The command that was chosen, and the ones that it belongs to, from the program on.
 std::vector<const CLI::App*> chosen(const CLI::App& app) {
@@ -202,6 +204,22 @@ std::string in_words(const CLI::App& app, const CLI::ParseError& error) {
     return name + ": expected true, false or no value, found another";
   }
   return kind == "ValidationError" && !rest.empty() ? name + ": " + about_value(rest) : what;
+}
+
+/// The words about an option name the variable of the environment where that gave the value.
+std::string by_variable(const CLI::App& app, const std::string& words,
+                        const std::vector<std::string>& typed) {
+  const CLI::Option* const option = option_of(app, words.substr(0, words.find(": ")));
+  if (option == nullptr || option->get_envname().empty() ||
+      std::getenv(option->get_envname().c_str()) == nullptr)
+    return words;
+  const auto gives = [&](const std::string& word) {
+    const std::string name = word.substr(0, word.find('='));
+    return name.starts_with("--") && option->check_lname(name.substr(2));
+  };
+  return std::any_of(typed.begin(), typed.end(), gives)
+             ? words
+             : option->get_envname() + words.substr(option->get_name().size());
 }
 
 /// Reports an unknown word, with the most similar option or command.
@@ -441,9 +459,16 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   } catch (const CLI::ExtrasError&) {
     return not_understood(*app_);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0)  // --help, --version
-      return app_->exit(error);
-    std::fprintf(stderr, "%s: %s\n", program().c_str(), in_words(*app_, error).c_str());
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app_->exit(error);
+      const std::string lost = flush_standard_output();
+      if (lost.empty())
+        return 0;
+      std::fprintf(stderr, "%s: %s\n", program().c_str(), lost.c_str());
+      return kBroken;
+    }
+    const std::string words = by_variable(*app_, in_words(*app_, error), {argv + 1, argv + argc});
+    std::fprintf(stderr, "%s: %s\n", program().c_str(), words.c_str());
     return kUsage;
   }
   return std::nullopt;

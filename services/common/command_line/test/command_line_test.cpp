@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace saphira {
 namespace {
 
@@ -154,6 +156,35 @@ TEST(CommandLine, NoMistakeIsInTheWordsOfTheParser) {
             "gauge: --count: expected a whole number between 1 and 9, found 1.5\n");
   EXPECT_EQ(words({"f", "--count", "99999999999"}),
             "gauge: --count: expected a whole number between 1 and 9, found 99999999999\n");
+}
+
+TEST(CommandLine, AMistakeInAVariableNamesTheVariable) {
+  ::setenv("GAUGE_DOMAIN", "abc", 1);
+  ::setenv("GAUGE_KIND", "radar", 1);
+  std::uint16_t domain = 0;
+  std::string kind;
+  const auto words = [&](std::vector<const char*> given) {
+    CommandLine line("measures", "gauge");
+    line.add_option("--domain", domain, "").in_range(0, 231).environment("GAUGE_DOMAIN");
+    line.add_action(
+            "--kind,--sort", [&](const std::string& word) { kind = word; }, "")
+        .environment("GAUGE_KIND")
+        .one_of({"laser", "sonar"});
+    const Parsed parsed = parse(line, std::move(given));
+    EXPECT_EQ(parsed.code, 2);
+    return parsed.err;
+  };
+  EXPECT_EQ(words({"--sort", "sonar"}),
+            "gauge: GAUGE_DOMAIN: expected a whole number between 0 and 231, found abc\n");
+  EXPECT_EQ(words({"--domain", "def"}),
+            "gauge: --domain: expected a whole number between 0 and 231, found def\n");
+  EXPECT_EQ(words({"--domain=232"}),
+            "gauge: --domain: expected a whole number between 0 and 231, found 232\n");
+  EXPECT_EQ(words({"--domain", "1"}), "gauge: GAUGE_KIND: expected laser or sonar, found radar\n");
+  EXPECT_EQ(words({"--domain", "1", "--sort", "radar"}),
+            "gauge: --kind: expected laser or sonar, found radar\n");
+  ::unsetenv("GAUGE_DOMAIN");
+  ::unsetenv("GAUGE_KIND");
 }
 
 TEST(CommandLine, ANumberIsExpectedInWords) {

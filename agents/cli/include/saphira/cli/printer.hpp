@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace saphira::cli {
@@ -25,8 +26,11 @@ class Printer {
   void show(std::string_view picture);
   /// Waits until everything is printed; false at the time limit.
   bool flush(std::chrono::milliseconds limit);
-  /// True where there is no reader any more: the pipe or the terminal is closed.
+  /// True where nothing can be printed any more: the pipe or the terminal is closed, or the disk
+  /// is full.
   bool closed() const;
+  /// The reason in words, if it is another than a reader that has left; otherwise empty.
+  std::string trouble() const;
 
  private:
   struct Shared;

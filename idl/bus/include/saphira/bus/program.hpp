@@ -34,10 +34,6 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
 /// The profile of a word: host, lan or wan. std::out_of_range: it is no such word.
 Profile profile_of(const std::string& word);
 
-/// The error of a robot's name, in words; empty: none. A name goes to the bus as it is, where a
-/// wildcard would mean every robot.
-std::string trouble_of_robot(const std::string& name);
-
 /// The options of a program without a command line, from the environment variables.
 /// std::invalid_argument: one of them cannot be.
 NodeOptions options_of_environment();

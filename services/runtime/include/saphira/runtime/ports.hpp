@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "requests/shell/desk.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/bus/cycle.hpp"
 
@@ -145,6 +146,8 @@ class Ports {
   /// The service's name on the bus.
   const std::string& name() const { return node_.options().name; }
   bool lockstep() const { return node_.options().lockstep; }
+  /// What becomes of the service's files.
+  Files files() const { return node_.options().dry_run ? Files::kStay : Files::kChange; }
   /// Random, one a process start.
   std::uint64_t instance() const { return node_.instance(); }
   /// Of the newest step.

@@ -31,6 +31,13 @@ class FileError : public std::runtime_error {
   int column_;
 };
 
+/// A file that a person named cannot be read: there is none, or it is a folder. what() names it and
+/// the reason.
+class UnreadableFile : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// With small letters in place of A to Z.
 std::string lowered(std::string_view text);
 
@@ -84,8 +91,14 @@ class LineReader {
 /// one, half a line as all of it; so the last line of a file that must be whole has a line break.
 void expect_last_line_break(std::string_view text, const std::string& file);
 
-/// The whole content of a file, without a byte order mark; std::runtime_error with its name where
-/// it cannot be read.
+/// The number of bytes of the letter (UTF-8) at the beginning of the text; 0: it begins with none.
+std::size_t letter_size(std::string_view text);
+
+/// The whole content of a file, whatever it is. UnreadableFile where it cannot be read.
+std::string read_bytes(const std::string& path);
+
+/// The text in a file, without a byte order mark. FileError where it is not UTF-8, as the bus and
+/// JSON need it. A file with zero bytes is no text: its reader names its kind.
 std::string read_file(const std::string& path);
 
 /// "PATH: cannot be written: No space left on device": the reason is that of errno.

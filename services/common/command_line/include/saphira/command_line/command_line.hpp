@@ -82,7 +82,7 @@ class CommandLine {
   Option option(const std::string& name) const;
 
   /// Parses the words. Returns the exit code where the program has to end at once: 0 after --help
-  /// and --version, 2 after an error, which is on stderr then.
+  /// and --version (3 where they could not be written), 2 after an error, which is on stderr then.
   std::optional<int> parse(int argc, const char* const* argv);
 
   /// Its name in messages.
