@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
@@ -123,8 +124,8 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
   for (const auto& [key, status] : known_)
     all.push_back(status);
   std::stable_sort(all.begin(), all.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
-    return std::pair(a.stamp().epoch(), a.stamp().cycle()) <
-           std::pair(b.stamp().epoch(), b.stamp().cycle());
+    return std::tuple(a.stamp().epoch(), a.stamp().cycle(), a.functor(), a.id().number()) <
+           std::tuple(b.stamp().epoch(), b.stamp().cycle(), b.functor(), b.id().number());
   });
   return all;
 }

@@ -46,7 +46,8 @@ class GoalClient {
   void poll();
   /// All that is known of a goal, by anybody; nothing before its first status.
   std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
-  /// Every goal that is known, by the time of its newest status.
+  /// Every goal that is known, by the time of its newest status; at the same time by functor and
+  /// number, which do not differ between runs.
   std::vector<v1::GoalStatus> statuses() const;
 
   /// Waits until everything that was asked, changed and canceled has reached a reader of goals.
