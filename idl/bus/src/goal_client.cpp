@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/idl/goal_words.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -150,23 +151,7 @@ bool ended(v1::GoalState state) {
 }
 
 std::string describe(v1::GoalState state) {
-  switch (state) {
-    case v1::GOAL_WAITING:
-      return "waiting";
-    case v1::GOAL_REFUSED:
-      return "refused";
-    case v1::GOAL_UNDERWAY:
-      return "underway";
-    case v1::GOAL_SUSPENDED:
-      return "suspended";
-    case v1::GOAL_SUCCEEDED:
-      return "succeeded";
-    case v1::GOAL_FAILED:
-      return "failed";
-    case v1::GOAL_CANCELED:
-      return "canceled";
-  }
-  return "unknown";
+  return name_of(state);
 }
 
 std::string describe(const v1::GoalId& id) {
