@@ -267,8 +267,8 @@ int main(int argc, char** argv) {
         if (stereo->given())
           programs.robot.stereo_socket = stereo->text();
         programs.link.robot_port = "unix:" + socket;
-        programs.robot.log = [](const std::string& text) {
-          const std::string line = log_line(unix_time(), "info", "sim", text);
+        programs.robot.log = [](std::string_view level, const std::string& text) {
+          const std::string line = log_line(unix_time(), level, "sim", text);
           std::fprintf(stderr, "%s\n", line.c_str());
         };
         Talk& talk = programs.talk;
