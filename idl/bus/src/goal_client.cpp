@@ -33,7 +33,7 @@ v1::GoalId GoalClient::ask(v1::Goal goal) {
   v1::GoalId id;
   id.writer(node_.instance());
   id.number(next_request_number());
-  own_[key_of(id)];
+  own_[key_of(id)];  // before the writing, which may fail
   change(id, std::move(goal));
   return id;
 }
@@ -44,14 +44,21 @@ void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
     goal.requester(requester_);
   if (!writer_.write(goal))
     throw std::runtime_error("the bus did not take goal " + describe(id));
+  if (const auto own = own_.find(key_of(id)); own != own_.end())
+    own->second.goal = std::move(goal);
 }
 
-void GoalClient::cancel(const v1::GoalId& id) {
-  v1::Goal goal;
+void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
+  // A dispose carries only the key: a goal with a reason is disposed when it is forgotten.
+  auto own = own_.find(key_of(id));
+  if (own == own_.end() && !why.empty())
+    own = own_.try_emplace(key_of(id)).first;
+  v1::Goal goal = own == own_.end() ? v1::Goal() : own->second.goal;
   goal.id(id);
-  if (!writer_.dispose(goal))
+  goal.withdrawn(why);
+  if (why.empty() ? !writer_.dispose(goal) : !writer_.write(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
-  if (const auto own = own_.find(key_of(id)); own != own_.end() && !own->second.over)
+  if (own != own_.end() && !own->second.over)
     own->second.over = Clock::now();
 }
 

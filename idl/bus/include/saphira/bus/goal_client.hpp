@@ -38,8 +38,8 @@ class GoalClient {
   v1::GoalId ask(v1::Goal goal);
   /// Replaces the goal under the id of one that this client asked for.
   void change(const v1::GoalId& id, v1::Goal goal);
-  /// Withdraws a goal: also one of another client, by its id.
-  void cancel(const v1::GoalId& id);
+  /// Withdraws a goal: also one of another client, by its id. why: for its status, in words.
+  void cancel(const v1::GoalId& id, const std::string& why = {});
 
   /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.
@@ -58,8 +58,9 @@ class GoalClient {
   using Key = std::pair<std::uint64_t, std::uint64_t>;
   using Clock = std::chrono::steady_clock;
 
-  /// A goal that this client asked for.
+  /// A goal that this client has on the bus: it asked for it, or withdrew it with a reason.
   struct Own {
+    v1::Goal goal;
     std::optional<Clock::time_point> over;       ///< time of its end
     std::optional<Clock::time_point> withdrawn;  ///< withdrawal of its status, without an end
   };
