@@ -117,6 +117,7 @@ class Talkers {
       return;
     listener_.emplace(named(options, "dialogue"), memory);
     dialogue_.emplace(*listener_, agent_interface::DialogueOptions{talk.grammar, ""});
+    robots_.emplace(listener_->reader(bus::topics::kRobotState));
     if (talk.people.empty())
       return;
     speaker_.emplace(named(options, "people"), memory);
@@ -129,8 +130,11 @@ class Talkers {
 
   /// True when the story has come to its end.
   bool step() {
-    if (dialogue_)
-      dialogue_->step();
+    if (dialogue_) {
+      if (const auto robot = robots_->take_newest())
+        seconds_ = 0.1 * static_cast<double>(robot->stamp().cycle());
+      dialogue_->step(seconds_);
+    }
     return story_ && story_->step();
   }
 
@@ -147,6 +151,8 @@ class Talkers {
  private:
   std::optional<bus::Node> listener_;
   std::optional<agent_interface::DialogueShell> dialogue_;
+  std::optional<bus::Reader<v1::RobotState>> robots_;
+  double seconds_ = 0.0;  ///< of the robot's cycles
   std::optional<bus::Node> speaker_;
   std::optional<story::Story> story_;
 };
@@ -261,8 +267,8 @@ int main(int argc, char** argv) {
         if (stereo->given())
           programs.robot.stereo_socket = stereo->text();
         programs.link.robot_port = "unix:" + socket;
-        programs.robot.log = [](const std::string& text) {
-          const std::string line = log_line(unix_time(), "info", "sim", text);
+        programs.robot.log = [](std::string_view level, const std::string& text) {
+          const std::string line = log_line(unix_time(), level, "sim", text);
           std::fprintf(stderr, "%s\n", line.c_str());
         };
         Talk& talk = programs.talk;

@@ -34,7 +34,11 @@ constexpr EnumPairs<Health, v1::ServiceState, 3> kHealths{
     {},
     {v1::SERVICE_STARTING, v1::SERVICE_STOPPING}};
 
-constexpr std::size_t kMostSonars = 64;  // the bound of the sequences
+// The bounds of the sequences.
+constexpr std::size_t kMostSonars = 64;
+constexpr std::size_t kMostRefusals = 16;
+constexpr std::size_t kMostRequests = 64;
+constexpr std::size_t kMostCounts = 64;
 
 template <class T>
 T short_of(unsigned value) {
@@ -47,7 +51,7 @@ std::vector<T> first(std::vector<T> values, std::size_t count) {
   return values;
 }
 
-v1::SonarReading to_bus(const protocol::Sonar& sonar) {
+v1::SonarReading reading_of(const protocol::Sonar& sonar) {
   v1::SonarReading out;
   out.sonar(sonar.number);
   out.range(static_cast<float>(sonar.range));
@@ -93,8 +97,7 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
   out.analog(in.analog);
   out.digital_input(in.digital_input);
   out.digital_output(in.digital_output);
-  for (const protocol::Sonar& sonar : first(in.sonars, kMostSonars))
-    out.sonars().push_back(to_bus(sonar));
+  out.sonars(converted(in.sonars, reading_of, kMostSonars));
   out.motor_packets_per_s(short_of<std::uint16_t>(state.motor_packets_per_s));
   out.sonar_readings_per_s(short_of<std::uint16_t>(state.sonar_readings_per_s));
   out.vision_packets_per_s(0);  // Shell counts them
@@ -107,32 +110,33 @@ v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint
   v1::SonarBuckets out;
   out.stamp(stamp);
   out.odom(odom);
-  for (const reflector::Bucket& bucket : first(buckets, kMostSonars)) {
-    v1::SonarBucket each;
-    each.reading(to_bus(bucket.reading));
-    each.cycle(bucket.cycle);
-    each.pose_in_odom(saphira::to_bus(bucket.pose_in_odom));
-    each.x(bucket.point.x());
-    each.y(bucket.point.y());
-    out.buckets().push_back(each);
-  }
+  const auto each = [](const reflector::Bucket& bucket) {
+    v1::SonarBucket result;
+    result.reading(reading_of(bucket.reading));
+    result.cycle(bucket.cycle);
+    result.pose_in_odom(saphira::to_bus(bucket.pose_in_odom));
+    result.x(bucket.point.x());
+    result.y(bucket.point.y());
+    return result;
+  };
+  out.buckets(converted(buckets, each, kMostSonars));
   return out;
 }
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
   v1::VisionChannels out;
-  for (const protocol::VisionChannel& channel : packet.channels) {
-    v1::VisionChannel each;
-    each.mode(kVisionModes.theirs(channel.mode));
-    each.x(channel.x);
-    each.y(channel.y);
-    each.area(channel.area);
-    each.width(channel.width);
-    each.height(channel.height);
-    each.first(channel.first);
-    each.count(channel.count);
-    out.channels().push_back(each);
-  }
+  out.channels(converted(packet.channels, [](const protocol::VisionChannel& channel) {
+    v1::VisionChannel result;
+    result.mode(kVisionModes.theirs(channel.mode));
+    result.x(channel.x);
+    result.y(channel.y);
+    result.area(channel.area);
+    result.width(channel.width);
+    result.height(channel.height);
+    result.first(channel.first);
+    result.count(channel.count);
+    return result;
+  }));
   return out;
 }
 
@@ -158,14 +162,13 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
   out.front_max_range(p.front_max_range);
   out.head_reach(p.head_reach);
   out.lockstep(lockstep);
-  for (const protocol::SonarUnit& unit : p.sonars) {
-    if (out.sonars().size() == 64)
-      break;
-    v1::SonarPose sonar;
-    sonar.sonar(unit.number);
-    sonar.pose_in_robot(saphira::to_bus(unit.pose_in_robot));
-    out.sonars().push_back(sonar);
-  }
+  const auto sonar = [](const protocol::SonarUnit& unit) {
+    v1::SonarPose result;
+    result.sonar(unit.number);
+    result.pose_in_robot(saphira::to_bus(unit.pose_in_robot));
+    return result;
+  };
+  out.sonars(converted(p.sonars, sonar, kMostSonars));
   return out;
 }
 
@@ -191,15 +194,14 @@ v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authorit
   out.estopped(grant.estopped);
   out.estop_source(grant.estop_source);
   out.waits_for_hand_back(grant.waits_for_hand_back);
-  for (const authority::Refusal& refusal : refused) {
-    if (out.refused().size() == 16)
-      break;
-    v1::Refusal r;
-    r.role(kRoles.theirs(refusal.role));
-    r.source(refusal.source);
-    r.reason(refusal.reason);
-    out.refused().push_back(r);
-  }
+  const auto refusal = [](const authority::Refusal& one) {
+    v1::Refusal result;
+    result.role(kRoles.theirs(one.role));
+    result.source(one.source);
+    result.reason(one.reason);
+    return result;
+  };
+  out.refused(converted(refused, refusal, kMostRefusals));
   return out;
 }
 
@@ -225,25 +227,18 @@ reflector::Motion to_motion(const v1::MotorCommand& command) {
   return out;
 }
 
-authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
-                              const authority::WriterId& writer, double received) {
-  authority::Command out;
-  out.role = role;
-  out.writer = writer;
-  out.source = source_of(command);
-  out.epoch = command.stamp().epoch();
-  out.cycle = command.stamp().cycle();
-  out.number = command.number();
-  out.active = command.active();
-  out.hand_back = command.hand_back();
-  out.received = received;
-  return out;
-}
-
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer) {
-  return {to_command(command, role, writer, 0.0), to_motion(command), command.contact_speed(),
-          trouble(command)};
+  DriveCommand out{{}, to_motion(command), command.contact_speed(), trouble(command)};
+  out.command.role = role;
+  out.command.writer = writer;
+  out.command.source = source_of(command);
+  out.command.epoch = command.stamp().epoch();
+  out.command.cycle = command.stamp().cycle();
+  out.command.number = command.number();
+  out.command.active = command.active();
+  out.command.hand_back = command.hand_back();
+  return out;
 }
 
 v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
@@ -251,20 +246,19 @@ v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const protocol::Information& information, const v1::Stamp& stamp) {
   v1::Devices out;
   out.stamp(stamp);
-  for (const reflector::DeviceRequest& request : requests) {
-    if (out.requests().size() == 64)
-      break;
-    v1::DeviceRequest r;
-    r.source(request.source);
-    r.asked(request.asked);
-    r.answer(saphira::to_bus(request.answer));
-    r.answer().asker(request.asker);
-    r.answer().number(request.number);
-    r.answer().service("bridge");
-    r.answer().stamp(stamp);
-    r.sent(request.sent);
-    out.requests().push_back(r);
-  }
+  const auto asked = [&](const reflector::DeviceRequest& request) {
+    v1::DeviceRequest result;
+    result.source(request.source);
+    result.asked(request.asked);
+    result.answer(saphira::to_bus(request.answer));
+    result.answer().asker(request.asker);
+    result.answer().number(request.number);
+    result.answer().service("bridge");
+    result.answer().stamp(stamp);
+    result.sent(request.sent);
+    return result;
+  };
+  out.requests(converted(requests, asked, kMostRequests));
   out.front_bumpers(information.front_bumpers);
   out.rear_bumpers(information.rear_bumpers);
   out.has_flags(information.motors_on.has_value());
@@ -303,14 +297,13 @@ v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
     out.gripper_state(gripper->state);
     out.grasp_time(gripper->grasp_time);
   }
-  for (const auto& [type, count] : reports.unread) {
-    if (out.unread_packets().size() == 64)
-      break;
-    v1::PacketCount packets;
-    packets.type(type);
-    packets.count(count);
-    out.unread_packets().push_back(packets);
-  }
+  const auto packets = [](const auto& unread) {
+    v1::PacketCount result;
+    result.type(unread.first);
+    result.count(unread.second);
+    return result;
+  };
+  out.unread_packets(converted(reports.unread, packets, kMostCounts));
   return out;
 }
 

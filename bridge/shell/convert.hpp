@@ -41,8 +41,6 @@ v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authorit
 std::string trouble(const v1::MotorCommand& command);
 /// Only for a command without trouble.
 reflector::Motion to_motion(const v1::MotorCommand& command);
-authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
-                              const authority::WriterId& writer, double received);
 /// A whole command, with its errors.
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer);

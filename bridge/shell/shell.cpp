@@ -38,39 +38,6 @@ std::uint64_t milliseconds_since_1970() {
                                         .count());
 }
 
-/// The parameter files of a robot, in words.
-std::string looked_for(const protocol::RobotIdentity& robot) {
-  const std::string names =
-      joined(protocol::parameter_file_names(robot.robot_class, robot.subclass));
-  return names.empty() ? "nothing (the robot names no class)" : names;
-}
-
-protocol::RobotParameters parameters_of(const protocol::RobotIdentity& robot,
-                                        const BridgeOptions& options) {
-  const std::string& folder = options.robots_folder;
-  std::string other;
-  if (!options.parameter_file.empty()) {
-    protocol::RobotParameters given = protocol::load_parameters(options.parameter_file);
-    if (given.is_of(robot.robot_class, robot.subclass))
-      return given;
-    other = options.parameter_file + " is for a robot (" + given.robot_class + ", " +
-            given.subclass + ") and not for this one";
-  }
-  const std::optional<std::string> path =
-      protocol::find_parameter_file(folder, robot.robot_class, robot.subclass);
-  if (!path)
-    throw std::runtime_error("no parameter file for " + name_of(robot) + ": looked for " +
-                             looked_for(robot) + " in " + folder +
-                             (other.empty() ? "" : "; " + other) +
-                             ". Copy the file of the most similar robot there, under its subclass");
-  protocol::RobotParameters found = protocol::load_parameters(*path);
-  if (!other.empty())
-    found.warnings.push_back(other + ": takes " + *path);
-  else if (!found.is_of(robot.robot_class, robot.subclass))
-    found.warnings.push_back(name_of(robot) + " has no parameter file of its own: takes " + *path);
-  return found;
-}
-
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
   return wanted ? std::make_unique<transport::Keeper>() : nullptr;
 }
@@ -301,7 +268,8 @@ void Shell::perform(const Send& send, double now) {
 void Shell::perform(const Identified& identified, double now) {
   protocol::RobotParameters parameters;
   try {
-    parameters = parameters_of(identified.robot, options_);
+    parameters =
+        protocol::parameters_of(identified.robot, options_.robots_folder, options_.parameter_file);
   } catch (const std::exception& error) {
     return core_.refuse_robot(error.what(), now);
   }

@@ -95,18 +95,17 @@ TEST(Convert, MotorCommands) {
   EXPECT_EQ(motion.rotation, reflector::Rotation::heading);
   EXPECT_EQ(motion.rotation_velocity, 0.3);
   EXPECT_EQ(motion.heading, 1.5);
-  const authority::Command command = to_command(in, authority::Role::direct, {7}, 8.0);
+  const authority::Command command = to_drive(in, authority::Role::direct, {7}).command;
   EXPECT_EQ(command.epoch, 3U);
   EXPECT_EQ(command.cycle, 4U);
   EXPECT_EQ(command.number, 5U);
   EXPECT_EQ(command.source, "me");
   EXPECT_EQ(command.role, authority::Role::direct);
   EXPECT_EQ(command.writer[0], 7);
-  EXPECT_EQ(command.received, 8.0);
   EXPECT_TRUE(command.active);
 
   in.source(std::string(100000, 'x'));
-  EXPECT_LE(to_command(in, authority::Role::direct, {7}, 8.0).source.size(), 255U);
+  EXPECT_LE(to_drive(in, authority::Role::direct, {7}).command.source.size(), 255U);
   in.heading(std::numeric_limits<double>::infinity());
   EXPECT_NE(trouble(in), "");
   in.heading(0.0);

@@ -159,8 +159,8 @@ int main(int argc, char** argv) {
       saphira::sim::check(options);
       return 0;
     }
-    options.log = [](const std::string& text) {
-      const std::string line = saphira::log_line(saphira::unix_time(), "info", "sim", text);
+    options.log = [](std::string_view level, const std::string& text) {
+      const std::string line = saphira::log_line(saphira::unix_time(), level, "sim", text);
       std::fprintf(stderr, "%s\n", line.c_str());
     };
     saphira::sim::run(options, saphira::stop_on_signals());

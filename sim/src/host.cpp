@@ -282,7 +282,7 @@ class Station {
  private:
   void log(const std::string& text) const {
     if (log_)
-      log_(prefix_ + text);
+      log_("info", prefix_ + text);
   }
   Server& server() const { return simulation_.server(number_); }
   /// The client's descriptor; below zero without one.
@@ -336,7 +336,7 @@ class Station {
     log(why);
   }
 
-  std::function<void(const std::string&)> log_;
+  decltype(HostOptions::log) log_;
   std::string prefix_;
   bool patient_;
   bool real_time_;
@@ -641,18 +641,19 @@ struct Host::Parts {
 };
 
 void Host::Parts::add_robots(const HostOptions& options) {
-  if (options.log)
-    for (const std::string& warning : world.warnings)
-      options.log(warning);
+  const auto warn = [&](const std::vector<std::string>& warnings) {
+    if (options.log)
+      for (const std::string& warning : warnings)
+        options.log("warning", warning);
+  };
+  warn(world.warnings);
   if (!((options.rate > 0.0 && options.rate <= 1000.0) || options.rate == kMaxRate))
     throw std::runtime_error(
         "rate: expected more than 0 and at most 1000 times real time, or \"max\"");
   const auto add = [&](const std::string& file, const std::optional<Pose>& start,
                        const std::optional<Place>& place, std::size_t number) {
     const protocol::RobotParameters parameters = protocol::load_parameters(file);
-    if (options.log)
-      for (const std::string& warning : parameters.warnings)
-        options.log(warning);
+    warn(parameters.warnings);
     if (!start)
       throw std::runtime_error(options.world + ": expected a directive " +
                                (number == 0 ? "position" : "robot for each further robot") +

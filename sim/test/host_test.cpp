@@ -133,9 +133,9 @@ class HostTest : public ::testing::Test {
     options_.robot = source("config/robots/pioneer.p");
     options_.socket = directory_ + "/robot";
     options_.trace = directory_ + "/trace.csv";
-    options_.log = [this](const std::string& line) {
+    options_.log = [this](std::string_view level, const std::string& line) {
       const std::scoped_lock lock(mutex_);
-      log_ += line + "\n";
+      log_ += std::string(level) + " " + line + "\n";
     };
   }
   ~HostTest() override {
@@ -359,6 +359,19 @@ TEST_F(HostTest, TakesOverTheSocketOfOneThatDied) {
   start();
   Client client(*options_.socket);
   client.open();
+}
+
+TEST_F(HostTest, WarningsOfFilesAreLoggedAsWarnings) {
+  options_.world = directory_ + "/odd.wld";
+  std::ofstream(options_.world) << "width 10000 height 10000\nposition 5000 5000 0\n"
+                                   "3000 3000 3000 3000\n";
+  std::ifstream robot(options_.robot);
+  options_.robot = directory_ + "/odd.p";
+  std::ofstream(options_.robot) << robot.rdbuf() << "\nSonarUnit 7 100 -100 -90\n";
+  const Host host(options_);
+  EXPECT_TRUE(log().find("warning " + options_.world + ":3: ") != std::string::npos) << log();
+  EXPECT_TRUE(log().find("warning " + options_.robot + ":") != std::string::npos) << log();
+  EXPECT_TRUE(log().find("info listening on ") != std::string::npos) << log();
 }
 
 TEST_F(HostTest, RefusesWhatItCannotServe) {

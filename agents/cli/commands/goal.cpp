@@ -25,6 +25,7 @@ struct GoalOptions {
   double deadline = 0.0;
   double level = 0.0;
   bool keep = false;
+  std::string why;
 };
 
 /// Reports once the latch that keeps a goal from driving the robot, and its end.
@@ -192,7 +193,7 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
     goals.poll();
     const auto status = goals.status(*id);
     if (status && !asked) {
-      goals.cancel(*id);
+      goals.cancel(*id, options.why);
       asked = goals.delivered(2000);
     }
     if (status && follower.show(*status))
@@ -311,6 +312,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
+  command->add_option("--why", options->why, "of cancel: the reason, which its status then says");
   command->footer(
       "Values: 0.3 (SI units), 90deg, 30cm, 0.3m/s, x,y or x,y,th with @odom, @robot or @map, "
       "text.\n"

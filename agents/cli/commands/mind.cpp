@@ -62,7 +62,7 @@ void Mind::poll() {
   behaviors_.take(behavior_reader_);
   intentions_.take(intention_reader_);
   for (const auto& sample : goal_reader_.take())
-    if (!sample.info.disposed)
+    if (!sample.info.disposed && sample.data.withdrawn().empty())
       goals_[{sample.data.id().writer(), sample.data.id().number()}] = sample.data;
   keep_newest(status_reader_, statuses_, [](const v1::GoalStatus& status) {
     return Key{status.id().writer(), status.id().number()};

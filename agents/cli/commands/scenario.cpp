@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/places.hpp"
@@ -156,7 +157,7 @@ Ending play_live(const ScenarioOptions& options, const Run& run,
   story::Story played(node, run.people(), how);
   const auto began = Clock::now();
   std::string trouble;
-  while (!stop.requested() && trouble.empty() && !played.step()) {
+  while (!stop.requested() && trouble.empty() && !played.step(unix_time())) {
     supervisor.step(milliseconds(200), {stop.fd(), node.wake_fd()});
     node.clear_wake();
     if (supervisor.misused())

@@ -99,7 +99,7 @@ class Gateway {
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const Control::Sample& sample);
   void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
-  void cancel_goal(Connection connection, const CancelGoal& cancel);
+  void cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel);
   void hear(const Page& page, const Say& words);
   void hand_back(Connection connection);
   void say(Connection connection, std::string text);

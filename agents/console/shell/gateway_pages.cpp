@@ -212,7 +212,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   else if (const auto* goal = std::get_if<AskGoal>(&message))
     ask_goal(connection, page, *goal);
   else if (const auto* cancel = std::get_if<CancelGoal>(&message))
-    cancel_goal(connection, *cancel);
+    cancel_goal(connection, page, *cancel);
   else if (const auto* words = std::get_if<Say>(&message))
     hear(page, *words);
   else if (const auto* process = std::get_if<AskProcess>(&message))
@@ -268,13 +268,13 @@ void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& a
   }
 }
 
-void Gateway::cancel_goal(Connection connection, const CancelGoal& cancel) {
+void Gateway::cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel) {
   const auto id = goal_id(cancel.id);
   if (!id) {
     answer(connection, cancel.reference, false, "expected the id of a goal");
     return;
   }
-  goals_.cancel(*id);
+  goals_.cancel(*id, "by " + operator_of(page.name));
   answer(connection, cancel.reference, true, "withdrawn", cancel.id);
 }
 

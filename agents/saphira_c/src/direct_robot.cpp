@@ -176,13 +176,7 @@ class DirectRobot final : public ServedRobot {
   void perform(const bridge::Identified& identified) {
     const double now = BootClock::seconds();
     try {
-      const std::string robots = configuration() + "/robots";
-      const auto file = protocol::find_parameter_file(robots, identified.robot.robot_class,
-                                                      identified.robot.subclass);
-      if (!file)
-        throw std::runtime_error("no parameter file for " + bridge::name_of(identified.robot) +
-                                 " in " + robots);
-      core_.open(protocol::load_parameters(*file), 1, now);
+      core_.open(protocol::parameters_of(identified.robot, configuration() + "/robots"), 1, now);
     } catch (const std::exception& error) {
       core_.refuse_robot(error.what(), now);
     }

@@ -107,11 +107,7 @@ class Line {
   bool describe(std::string& why) {
     const protocol::RobotIdentity& robot = connection_.identity();
     try {
-      const auto file = protocol::find_parameter_file(c::configuration() + "/robots",
-                                                      robot.robot_class, robot.subclass);
-      if (!file)
-        throw std::runtime_error("no parameter file for a robot of class " + robot.robot_class);
-      parameters_ = protocol::load_parameters(*file);
+      parameters_ = protocol::parameters_of(robot, c::configuration() + "/robots");
     } catch (const std::exception& error) {
       why = error.what();
       return false;

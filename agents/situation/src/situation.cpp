@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "saphira/idl/goal_words.hpp"
 #include "saphira/situation/words.hpp"
 #include "why_words.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/idl/goal_words.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::situation {
@@ -477,7 +478,7 @@ std::string Reason::goals_reason(bool brief) const {
     return requester(newest->id()) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason();
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
-         ": " + situation::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);
+         ": " + v1::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);
 }
 
 }  // namespace saphira::situation

@@ -83,26 +83,6 @@ const char* name_of(v1::GuardAction action) {
   return "?";
 }
 
-const char* name_of(v1::GoalState state) {
-  switch (state) {
-    case v1::GOAL_WAITING:
-      return "waiting";
-    case v1::GOAL_REFUSED:
-      return "refused";
-    case v1::GOAL_UNDERWAY:
-      return "underway";
-    case v1::GOAL_SUSPENDED:
-      return "suspended";
-    case v1::GOAL_SUCCEEDED:
-      return "succeeded";
-    case v1::GOAL_FAILED:
-      return "failed";
-    case v1::GOAL_CANCELED:
-      return "canceled";
-  }
-  return "?";
-}
-
 std::string latched(const v1::Grant& grant) {
   if (grant.estopped())
     return "EMERGENCY STOP, pressed by " +

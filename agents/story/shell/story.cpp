@@ -6,7 +6,6 @@
 
 #include "maps/shell/convert.hpp"
 #include "saphira/agent_interface/dialogue.hpp"
-#include "saphira/base/boot_clock.hpp"
 
 namespace saphira::story {
 namespace {
@@ -46,7 +45,8 @@ Story::Story(bus::Node& node, Cast cast, StoryOptions options)
 
 void Story::take() {
   if (const auto robot = robots_.take_newest()) {
-    time_ = 0.1 * static_cast<double>(robot->stamp().cycle());
+    stamp_ = robot->stamp();
+    time_ = 0.1 * static_cast<double>(stamp_.cycle());
     if (std::abs(robot->velocity()) > kStanding)
       stands_since_ = time_;
   }
@@ -65,7 +65,8 @@ void Story::take() {
       listen(sample.data);
 }
 
-bool Story::step() {
+bool Story::step(double now) {
+  now_ = now;
   take();
   if (answer_ && time_ >= answer_time_) {
     say(*answer_);
@@ -117,13 +118,14 @@ bool Story::stands_at(const Cast::Spot& spot) const {
 
 std::uint64_t Story::say(const Cast::Line& line) {
   v1::Utterance utterance;
+  utterance.stamp(stamp_);
   utterance.id().writer(node_.instance());
   utterance.id().number(++number_);
   utterance.speaker(line.speaker);
   utterance.text(line.text);
   utterance.means(v1::UTTERANCE_ACTED);
   utterance.confidence(1.0);
-  utterance.time(unix_time());
+  utterance.time(now_);
   show(line.speaker + ": " + line.text);
   heard_.write(utterance);
   return number_;

@@ -35,8 +35,9 @@ class Story {
  public:
   Story(bus::Node& node, Cast cast, StoryOptions options);
 
-  /// Takes the input, and says due lines. True when the story has come to its end.
-  bool step();
+  /// Takes the input, and says due lines. now: [s] since 1970; 0: unknown, in lockstep. True when
+  /// the story has come to its end.
+  bool step(double now = 0.0);
 
   /// True where the robot has its place on the map, and the services run.
   bool ready() const { return waiting_for_.empty() && !place_.empty(); }
@@ -70,7 +71,9 @@ class Story {
   maps::Map map_;
   std::string place_;  ///< of the robot
   std::string outcome_;
+  v1::Stamp stamp_;  ///< of the robot
   double time_ = 0.0;
+  double now_ = 0.0;
   bool waits_ = false;  ///< for the last answer to the newest line
   bool ended_ = false;
   std::optional<Cast::Line> answer_;

@@ -31,10 +31,6 @@ protocol::Bytes stop_packets(const protocol::RobotParameters& robot) {
 
 }  // namespace
 
-std::string name_of(const protocol::RobotIdentity& robot) {
-  return "robot \"" + robot.name + "\" (" + robot.robot_class + ", " + robot.subclass + ")";
-}
-
 Core::Core(const CoreSettings& settings)
     : settings_(settings), arbiter_({settings.lease, settings.quiet}) {
   for (authority::GuardSettings& each : guards_) {

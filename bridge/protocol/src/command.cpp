@@ -351,6 +351,10 @@ Command decode_command(ByteView body, double vel2_unit) {
              : Command{unknown};
 }
 
+std::string name_of(const RobotIdentity& robot) {
+  return "robot \"" + robot.name + "\" (" + robot.robot_class + ", " + robot.subclass + ")";
+}
+
 Bytes encode_sync(int number) {
   const Bytes body{static_cast<std::uint8_t>(number)};
   return frame(body);

@@ -10,6 +10,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/protocol/command.hpp"
 
 namespace saphira::protocol {
 
@@ -488,6 +489,32 @@ std::optional<std::string> find_parameter_file(const std::string& folder,
     if (const auto path = std::filesystem::path(folder) / name; std::filesystem::exists(path))
       return path.string();
   return std::nullopt;
+}
+
+RobotParameters parameters_of(const RobotIdentity& robot, const std::string& folder,
+                              const std::string& file) {
+  std::string other;
+  if (!file.empty()) {
+    RobotParameters given = load_parameters(file);
+    if (given.is_of(robot.robot_class, robot.subclass))
+      return given;
+    other = file + " is for a robot (" + given.robot_class + ", " + given.subclass +
+            ") and not for this one";
+  }
+  const auto path = find_parameter_file(folder, robot.robot_class, robot.subclass);
+  if (!path) {
+    const std::string names = joined(parameter_file_names(robot.robot_class, robot.subclass));
+    throw std::runtime_error("no parameter file for " + name_of(robot) + ": looked for " +
+                             (names.empty() ? "nothing (the robot names no class)" : names) +
+                             " in " + folder + (other.empty() ? "" : "; " + other) +
+                             ". Copy the file of the most similar robot there, under its subclass");
+  }
+  RobotParameters found = load_parameters(*path);
+  if (!other.empty())
+    found.warnings.push_back(other + ": takes " + *path);
+  else if (!found.is_of(robot.robot_class, robot.subclass))
+    found.warnings.push_back(name_of(robot) + " has no parameter file of its own: takes " + *path);
+  return found;
 }
 
 }  // namespace saphira::protocol

@@ -10,6 +10,7 @@
 #include "broken_text.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/protocol/command.hpp"
 
 namespace saphira::protocol {
 namespace {
@@ -349,6 +350,52 @@ TEST(Parameters, AMissingFileIsNamed) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/nowhere/x.p"), std::string::npos);
   }
+}
+
+TEST(ParametersOf, TheFileOfTheRobotOtherwiseTheNextThatFitsWithAWarning) {
+  const std::string robots = source("config/robots");
+  const RobotIdentity robot{"erratic", "Pioneer", "p3dx"};
+  const RobotParameters own = parameters_of(robot, robots);
+  EXPECT_EQ(own.file, robots + "/p3dx.p");
+  EXPECT_TRUE(own.warnings.empty());
+  const RobotIdentity variant{"erratic", "Pioneer", "p3dx-sh-lms1xx"};
+  const RobotParameters similar = parameters_of(variant, robots);
+  EXPECT_EQ(similar.file, robots + "/p3dx-sh.p");
+  EXPECT_EQ(
+      similar.warnings,
+      (std::vector<std::string>{"robot \"erratic\" (Pioneer, p3dx-sh-lms1xx) has no parameter "
+                                "file of its own: takes " +
+                                robots + "/p3dx-sh.p"}));
+}
+
+TEST(ParametersOf, AGivenFileIsTakenWhereItIsForTheRobot) {
+  const std::string robots = source("config/robots");
+  const RobotIdentity robot{"erratic", "Pioneer", "p3dx"};
+  EXPECT_EQ(parameters_of(robot, "/nowhere", robots + "/p3dx.p").file, robots + "/p3dx.p");
+  const std::string other = robots + "/amigo.p";
+  const RobotParameters found = parameters_of(robot, robots, other);
+  EXPECT_EQ(found.file, robots + "/p3dx.p");
+  EXPECT_EQ(found.warnings,
+            (std::vector<std::string>{
+                other + " is for a robot (Pioneer, amigo) and not for this one: takes " + robots +
+                "/p3dx.p"}));
+}
+
+TEST(ParametersOf, WhereNoFileFitsTheErrorSaysWhatWasLookedFor) {
+  const auto trouble = [](const RobotIdentity& robot) -> std::string {
+    try {
+      return "found " + parameters_of(robot, source("config/robots")).file;
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(
+      trouble({"mine", "Pioneer", "wheelchair"}),
+      "no parameter file for robot \"mine\" (Pioneer, wheelchair): looked for wheelchair.p in " +
+          source("config/robots") +
+          ". Copy the file of the most similar robot there, under its subclass");
+  EXPECT_NE(trouble({"mine", "", ""}).find("nothing (the robot names no class)"),
+            std::string::npos);
 }
 
 // Manual 5.4.2.

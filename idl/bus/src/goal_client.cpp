@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/idl/goal_words.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -31,7 +33,7 @@ v1::GoalId GoalClient::ask(v1::Goal goal) {
   v1::GoalId id;
   id.writer(node_.instance());
   id.number(next_request_number());
-  own_[key_of(id)];
+  own_[key_of(id)];  // before the writing, which may fail
   change(id, std::move(goal));
   return id;
 }
@@ -42,14 +44,21 @@ void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
     goal.requester(requester_);
   if (!writer_.write(goal))
     throw std::runtime_error("the bus did not take goal " + describe(id));
+  if (const auto own = own_.find(key_of(id)); own != own_.end())
+    own->second.goal = std::move(goal);
 }
 
-void GoalClient::cancel(const v1::GoalId& id) {
-  v1::Goal goal;
+void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
+  // A dispose carries only the key: a goal with a reason is disposed when it is forgotten.
+  auto own = own_.find(key_of(id));
+  if (own == own_.end() && !why.empty())
+    own = own_.try_emplace(key_of(id)).first;
+  v1::Goal goal = own == own_.end() ? v1::Goal() : own->second.goal;
   goal.id(id);
-  if (!writer_.dispose(goal))
+  goal.withdrawn(why);
+  if (why.empty() ? !writer_.dispose(goal) : !writer_.write(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
-  if (const auto own = own_.find(key_of(id)); own != own_.end() && !own->second.over)
+  if (own != own_.end() && !own->second.over)
     own->second.over = Clock::now();
 }
 
@@ -123,8 +132,8 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
   for (const auto& [key, status] : known_)
     all.push_back(status);
   std::stable_sort(all.begin(), all.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
-    return std::pair(a.stamp().epoch(), a.stamp().cycle()) <
-           std::pair(b.stamp().epoch(), b.stamp().cycle());
+    return std::tuple(a.stamp().epoch(), a.stamp().cycle(), a.functor(), a.id().number()) <
+           std::tuple(b.stamp().epoch(), b.stamp().cycle(), b.functor(), b.id().number());
   });
   return all;
 }
@@ -149,23 +158,7 @@ bool ended(v1::GoalState state) {
 }
 
 std::string describe(v1::GoalState state) {
-  switch (state) {
-    case v1::GOAL_WAITING:
-      return "waiting";
-    case v1::GOAL_REFUSED:
-      return "refused";
-    case v1::GOAL_UNDERWAY:
-      return "underway";
-    case v1::GOAL_SUSPENDED:
-      return "suspended";
-    case v1::GOAL_SUCCEEDED:
-      return "succeeded";
-    case v1::GOAL_FAILED:
-      return "failed";
-    case v1::GOAL_CANCELED:
-      return "canceled";
-  }
-  return "unknown";
+  return name_of(state);
 }
 
 std::string describe(const v1::GoalId& id) {

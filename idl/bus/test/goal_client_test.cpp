@@ -46,6 +46,30 @@ TEST_F(GoalClients, AsksChangesAndCancels) {
   EXPECT_EQ(heard[0].data.id(), id);
 }
 
+TEST_F(GoalClients, ACancelMayHaveAReasonAndTheGoalIsDisposedLater) {
+  GoalClient client(agent_, "an agent", std::chrono::milliseconds(0));
+  v1::Goal goal;
+  goal.functor("stop");
+  v1::GoalId foreign;
+  foreign.writer(7);
+  foreign.number(8);
+  for (const v1::GoalId& id : {client.ask(goal), foreign}) {
+    goals_.take();
+    client.cancel(id, "it is late");
+    auto heard = goals_.take();
+    ASSERT_EQ(heard.size(), 1U);
+    EXPECT_FALSE(heard[0].info.disposed);
+    EXPECT_EQ(heard[0].data.id(), id);
+    EXPECT_EQ(heard[0].data.functor(), id == foreign ? "" : "stop");
+    EXPECT_EQ(heard[0].data.withdrawn(), "it is late");
+    client.poll();
+    heard = goals_.take();
+    ASSERT_EQ(heard.size(), 1U);
+    EXPECT_TRUE(heard[0].info.disposed);
+    EXPECT_EQ(heard[0].data.id(), id);
+  }
+}
+
 TEST(GoalClient, IsNotDeliveredWhereNobodyReads) {
   Node agent(memory_options("agent"), make_memory_bus());
   GoalClient client(agent, "an agent");

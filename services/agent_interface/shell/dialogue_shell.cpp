@@ -4,11 +4,9 @@
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "agent_interface/shell/convert.hpp"
-#include "agent_interface/shell/unclaimed.hpp"
 #include "geometry/shell/convert.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
@@ -25,40 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-// Beliefs of config/activities/people.act: the claim that the robot waits for, and the person whose
-// place it asks; the place where it has found somebody.
-constexpr const char* kQuestion = "asking-about";
-constexpr const char* kPerson = "asking-for";
-constexpr const char* kPlaceOf = "place-of-";
-constexpr const char* kKnowers = "knows-where-";
-constexpr const char* kFinder = "find-person";
-
-/// A text in the activity language: "karen's office".
-std::string literal(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text)
-    result += c == '"' || c == '\\' ? ' ' : c;
-  return result + "\"";
-}
-
-std::string literal(const Claimed& claim) {
-  if (claim.nil)
-    return "nil";
-  if (claim.list.empty())
-    return literal(claim.value);
-  std::string result = "(";
-  for (const std::string& one : claim.list)
-    result += (result.size() == 1 ? "" : " ") + literal(one);
-  return result + ")";
-}
-
-/// The text of a belief; empty: nil.
-std::string text_of(const v1::Belief& belief) {
-  const std::string& value = belief.value();
-  return value == "nil"                             ? std::string()
-         : value.size() > 1 && value.front() == '"' ? value.substr(1, value.size() - 2)
-                                                    : value;
-}
 
 KnownGoal::State state_of(v1::GoalState state) {
   switch (state) {
@@ -116,7 +80,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
     v1::GoalId id;
     id.writer(goal.first);
     id.number(goal.second);
-    asked_[tag] = {id, std::chrono::steady_clock::now()};
+    asked_[tag] = id;
   }
   publish();
   announce();
@@ -165,12 +129,11 @@ void DialogueShell::want(const WantedGoal& wanted) {
   goal.arguments(to_bus(wanted.arguments));
   goal.deadline(wanted.deadline);
   goal.priority(wanted.priority);
-  if (!wanted.speaker.empty())
-    goal.requester(wanted.speaker + " (by words)");
+  goal.requester(wanted.requester());
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
   const v1::GoalId id = goals_.ask(goal);
-  asked_[wanted.tag] = {id, std::chrono::steady_clock::now()};
+  asked_[wanted.tag] = id;
   if (lasting)
     dialogue_.asked(wanted.tag, {id.writer(), id.number()});
 }
@@ -225,7 +188,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
   }
   for (const std::uint64_t tag : out.canceled)
     if (const auto goal = asked_.find(tag); goal != asked_.end()) {
-      goals_.cancel(goal->second.goal);
+      goals_.cancel(goal->second);
       asked_.erase(goal);
     }
   for (const WantedGoal& goal : out.goals)
@@ -259,48 +222,32 @@ void DialogueShell::publish() {
   knows_.write(sample);
 }
 
-void DialogueShell::take_goals() {
+void DialogueShell::take_goals(double seconds) {
   goals_.poll();
-  for (auto goal = asked_.begin(); goal != asked_.end();) {
-    const auto status = goals_.status(goal->second.goal);
-    const bool taken = status || std::chrono::steady_clock::now() - goal->second.when < kTakenUp;
-    if (taken && !(status && bus::ended(status->state()))) {
-      ++goal;
-      continue;
-    }
-    Outcome outcome{goal->first, false, kNotTakenUp};
-    if (status)
-      outcome = {goal->first, status->state() == v1::GOAL_SUCCEEDED, status->reason()};
-    else
-      goals_.cancel(goal->second.goal);
-    goal = asked_.erase(goal);
+  std::vector<Outcome> ended;
+  std::vector<std::uint64_t> without_status;
+  for (const auto& [tag, id] : asked_) {
+    const auto status = goals_.status(id);
+    if (!status)
+      without_status.push_back(tag);
+    else if (bus::ended(status->state()))
+      ended.push_back({tag, status->state() == v1::GOAL_SUCCEEDED, status->reason()});
+  }
+  for (const Outcome& outcome : ended) {
+    asked_.erase(outcome.tag);
     perform(dialogue_.ended(outcome));
   }
+  perform(dialogue_.without_status(without_status, seconds));
 }
 
 void DialogueShell::take_beliefs() {
-  const auto beliefs = beliefs_.take_newest();
-  if (!beliefs)
+  const auto set = beliefs_.take_newest();
+  if (!set)
     return;
-  situation_.asked_about.clear();
-  situation_.asked_for.clear();
-  situation_.findable.clear();
-  const std::string_view place_of(kPlaceOf);
-  std::vector<Find> finds;
-  for (const v1::Belief& belief : beliefs->beliefs()) {
-    const std::string& name = belief.name();
-    const std::string value = text_of(belief);
-    if (name == kQuestion)
-      situation_.asked_about = value;
-    else if (name == kPerson)
-      situation_.asked_for = value;
-    for (const std::string_view about : {place_of, std::string_view(kKnowers)})
-      if (name.starts_with(about) && !value.empty())
-        situation_.findable.push_back(lowered(name.substr(about.size())));
-    if (belief.said_by() == kFinder && name.starts_with(place_of) && !value.empty())
-      finds.push_back({name.substr(place_of.size()), value, belief.since()});
-  }
-  perform(dialogue_.found(finds, situation_.now));
+  std::vector<Belief> beliefs;
+  for (const v1::Belief& one : set->beliefs())
+    beliefs.push_back({one.name(), one.value(), one.said_by(), one.since()});
+  perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
 }
 
 /// Of the robot, and of a person who points.
@@ -329,18 +276,12 @@ void DialogueShell::take_places() {
 }
 
 std::vector<KnownGoal> DialogueShell::known_goals() const {
-  std::vector<v1::GoalStatus> statuses = goals_.statuses();
-  std::stable_sort(
-      statuses.begin(), statuses.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
-        return std::tuple(a.stamp().epoch(), a.stamp().cycle(), a.functor(), a.id().number()) <
-               std::tuple(b.stamp().epoch(), b.stamp().cycle(), b.functor(), b.id().number());
-      });
   std::vector<KnownGoal> goals;
-  for (const v1::GoalStatus& status : statuses) {
+  for (const v1::GoalStatus& status : goals_.statuses()) {
     KnownGoal& goal = goals.emplace_back();
     goal.functor = status.functor();
     const auto mine = std::find_if(asked_.begin(), asked_.end(),
-                                   [&](const auto& one) { return one.second.goal == status.id(); });
+                                   [&](const auto& one) { return one.second == status.id(); });
     if (mine != asked_.end())
       goal.tag = mine->first;
     else if (status.id().writer() != node_.instance())
@@ -368,7 +309,7 @@ void DialogueShell::take_utterances() {
   }
 }
 
-void DialogueShell::step(double now) {
+void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
   if (const auto map = maps_.take_newest()) {
     situation_.map = maps::from_bus(*map);
@@ -382,7 +323,7 @@ void DialogueShell::step(double now) {
     if (!sample.info.disposed)
       perform(dialogue_.says(sample.data.text(),
                              {sample.data.stamp().epoch(), sample.data.stamp().cycle()}));
-  take_goals();
+  take_goals(seconds);
   take_utterances();
   agent_.poll();
 }
@@ -390,15 +331,18 @@ void DialogueShell::step(double now) {
 void DialogueShell::run(const bus::Stop& stop) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kLook{450};
+  const auto seconds = [] {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  };
   node_.status().state(v1::SERVICE_WAITING);
   node_.status().reason("no map has come: places have no names yet");
-  auto looked = Clock::now();
+  double looked = seconds();
   while (!stop.requested()) {
     node_.wait(kLook, &stop);
-    step(unix_time());
-    if (Clock::now() - looked > std::chrono::seconds(1)) {
+    step(seconds(), unix_time());
+    if (seconds() - looked > 1.0) {
       reload();
-      looked = Clock::now();
+      looked = seconds();
     }
     node_.publish_status();
   }

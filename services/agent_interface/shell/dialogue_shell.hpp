@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,15 +24,16 @@ class DialogueShell {
   /// FileError where the grammar has a mistake.
   DialogueShell(bus::Node& node, const DialogueOptions& options);
 
-  /// Takes the inputs and carries out the results. now: [s] since 1970; 0: unknown, in lockstep.
-  void step(double now = 0.0);
+  /// Takes the inputs and carries out the results. seconds: of a clock that does not go back, in
+  /// lockstep that of the cycles. now: [s] since 1970; 0: unknown, in lockstep.
+  void step(double seconds = 0.0, double now = 0.0);
   /// Reads the grammar again where its file has changed; a file with an error is not accepted.
   void reload();
   void run(const bus::Stop& stop);
 
  private:
   void announce();
-  void take_goals();
+  void take_goals(double seconds);
   void take_beliefs();
   void take_places();
   void take_utterances();
@@ -64,12 +64,8 @@ class DialogueShell {
   bus::Writer<v1::BeliefClaim> claims_;
   bus::Writer<v1::Knowledge> knows_;
   Situation situation_;
-  v1::Vision seen_;  ///< the newest
-  struct Asked {
-    v1::GoalId goal;
-    std::chrono::steady_clock::time_point when;
-  };
-  std::map<std::uint64_t, Asked> asked_;            ///< by the dialogue's tag
+  v1::Vision seen_;                                 ///< the newest
+  std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;
 };

@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "agent_interface/shell/unclaimed.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/agent_interface/tasks.hpp"
 #include "saphira/bus/agent.hpp"
 
 namespace saphira::agent_interface {
@@ -87,7 +87,7 @@ std::vector<RobotAgent::Report> RobotAgent::step(double now) {
       answer.code = status->state() == v1::GOAL_SUCCEEDED ? AnswerCode::done
                     : status->state() == v1::GOAL_REFUSED ? AnswerCode::refused
                                                           : AnswerCode::given_up;
-    } else if (!status && now >= one.when + std::chrono::duration<double>(kTakenUp).count()) {
+    } else if (!status && now >= one.when + kTakenUp) {
       goals_.cancel(one.goal);
       answer = {AnswerCode::refused, kNotTakenUp};
     } else if (now < one.reported + kReport) {

@@ -530,13 +530,33 @@ bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& 
   return true;
 }
 
-Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
-  Outputs out;
+void Dialogue::end(const Outcome& outcome, Outputs& out) {
   const Task* const task = tasks_.find(outcome.tag);
   if (task != nullptr && (outcome.tag != stop_ || !ended_ || ended_->success))
     ended_ = Ended{named_task(*task, ""), outcome.success, outcome.reason};
-  out.changed = task != nullptr;
+  out.changed = out.changed || task != nullptr;
   add(tasks_.ended(outcome), out);
+}
+
+Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
+  Outputs out;
+  end(outcome, out);
+  return out;
+}
+
+Dialogue::Outputs Dialogue::without_status(const std::vector<std::uint64_t>& tags, double seconds) {
+  Outputs out;
+  const std::map<std::uint64_t, double> before = std::exchange(without_status_, {});
+  for (const std::uint64_t tag : tags) {
+    const auto known = before.find(tag);
+    const double since = known == before.end() ? seconds : known->second;
+    if (seconds - since < kTakenUp) {
+      without_status_[tag] = since;
+      continue;
+    }
+    out.canceled.push_back(tag);
+    end({tag, false, kNotTakenUp}, out);
+  }
   return out;
 }
 

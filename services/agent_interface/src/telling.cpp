@@ -10,8 +10,61 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr std::size_t kMostGone = 256;
+// Beliefs of config/activities/people.act: the claim that the robot waits for, and the person whose
+// place it asks; the place where it has found somebody.
+constexpr const char* kQuestion = "asking-about";
+constexpr const char* kPerson = "asking-for";
+constexpr std::string_view kPlaceOf = "place-of-";
+constexpr std::string_view kKnowers = "knows-where-";
+constexpr const char* kFinder = "find-person";
+
+/// A text in the language of activities: "karen's office".
+std::string literal(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text)
+    result += c == '"' || c == '\\' ? ' ' : c;
+  return result + "\"";
+}
+
+/// The text of a belief; empty: nil.
+std::string text_of(const std::string& value) {
+  return value == "nil"                             ? std::string()
+         : value.size() > 1 && value.front() == '"' ? value.substr(1, value.size() - 2)
+                                                    : value;
+}
 
 }  // namespace
+
+std::string literal(const Claimed& claim) {
+  if (claim.nil)
+    return "nil";
+  if (claim.list.empty())
+    return literal(claim.value);
+  std::string result = "(";
+  for (const std::string& one : claim.list)
+    result += (result.size() == 1 ? "" : " ") + literal(one);
+  return result + ")";
+}
+
+std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation) {
+  situation.asked_about.clear();
+  situation.asked_for.clear();
+  situation.findable.clear();
+  std::vector<Find> finds;
+  for (const Belief& belief : beliefs) {
+    const std::string value = text_of(belief.value);
+    if (belief.name == kQuestion)
+      situation.asked_about = value;
+    else if (belief.name == kPerson)
+      situation.asked_for = value;
+    for (const std::string_view about : {kPlaceOf, kKnowers})
+      if (belief.name.starts_with(about) && !value.empty())
+        situation.findable.push_back(lowered(belief.name.substr(about.size())));
+    if (belief.said_by == kFinder && belief.name.starts_with(kPlaceOf) && !value.empty())
+      finds.push_back({belief.name.substr(kPlaceOf.size()), value, belief.since});
+  }
+  return finds;
+}
 
 /// First where a person is, then who knows it.
 std::string Dialogue::told_of(const std::string& about) const {

@@ -816,6 +816,62 @@ TEST_F(DialogueTest, ItShowsTheWayWaitsAndPatrols) {
             "the nearest door with a name is that of EJ-231: say go to EJ-231");
 }
 
+TEST_F(DialogueTest, AGoalThatNoProgramTakesUpIsWithdrawnAndEndsItsSequence) {
+  hear("Flakey, turn left and go forward");
+  const std::uint64_t tag = last.goals.at(0).tag;
+  EXPECT_TRUE(dialogue.without_status({tag}, 100.0).canceled.empty());
+  EXPECT_TRUE(dialogue.without_status({tag}, 104.9).said.empty());
+  const Dialogue::Outputs out = dialogue.without_status({tag}, 105.0);
+  EXPECT_EQ(out.canceled, std::vector<std::uint64_t>{tag});
+  ASSERT_EQ(out.said.size(), 1u);
+  EXPECT_EQ(out.said[0].text,
+            std::string("I could not: ") + kNotTakenUp + "; so the rest is not done");
+  EXPECT_TRUE(out.goals.empty());
+  EXPECT_TRUE(out.changed);
+  EXPECT_TRUE(dialogue.without_status({}, 106.0).said.empty());
+}
+
+TEST_F(DialogueTest, AGoalWithAStatusIsTakenUpHoweverLongItLasts) {
+  hear("Flakey, turn left");
+  const std::uint64_t tag = last.goals.at(0).tag;
+  EXPECT_TRUE(dialogue.without_status({tag}, 100.0).canceled.empty());
+  EXPECT_TRUE(dialogue.without_status({}, 103.0).canceled.empty());  // it has a status
+  // The time counts from the first look that finds it without one.
+  EXPECT_TRUE(dialogue.without_status({tag}, 106.0).canceled.empty());
+  EXPECT_EQ(dialogue.without_status({tag}, 111.0).canceled, std::vector<std::uint64_t>{tag});
+}
+
+TEST(Beliefs, TheOpenQuestionAndTheFindsAreHeeded) {
+  Situation situation;
+  situation.asked_about = "of before";
+  const std::vector<Find> finds = heed({{"asking-about", "\"given\"", "deliver", 3},
+                                        {"asking-for", "nil", "deliver", 3},
+                                        {"place-of-karen", "\"EJ-231\"", "find-person", 70},
+                                        {"place-of-john", "nil", "find-person", 71},
+                                        {"place-of-bob", "\"EJ-233\"", "dialogue", 72},
+                                        {"corridor-of-ann", "\"EJ-1\"", "find-person", 73}},
+                                       situation);
+  EXPECT_EQ(situation.asked_about, "given");
+  EXPECT_EQ(situation.asked_for, "");
+  EXPECT_EQ(finds, (std::vector<Find>{{"karen", "EJ-231", 70}}));
+  heed({}, situation);
+  EXPECT_EQ(situation.asked_about, "");
+}
+
+TEST(Claims, AValueIsWrittenInTheLanguageOfActivities) {
+  EXPECT_EQ(literal(Claimed{"place-of-karen", "karen's \"office\"", ""}), "\"karen's  office \"");
+  EXPECT_EQ(literal(Claimed{"knows-where-karen", "john, bob", "", {"john", "bob"}}),
+            "(\"john\" \"bob\")");
+  EXPECT_EQ(literal(Claimed{"place-of-karen", "nil", "", {}, true}), "nil");
+}
+
+TEST(Goals, ThePersonBehindTheWordsIsNamed) {
+  WantedGoal goal;
+  EXPECT_EQ(goal.requester(), "");
+  goal.speaker = "Alice";
+  EXPECT_EQ(goal.requester(), "Alice (by words)");
+}
+
 TEST_F(DialogueTest, ItSaysWhatItKnows) {
   EXPECT_EQ(said("Flakey, what do you know?"), "nobody has told me anything");
   EXPECT_EQ(said("Flakey, is there a leak?"), "nobody has told me of a leak");

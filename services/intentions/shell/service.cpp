@@ -214,7 +214,9 @@ void Service::take_goals(Core::Heard& heard) {
   for (const auto& sample : goals_.take()) {
     Core::Heard::Goal goal;
     goal.event.goal = from_bus(sample.data);
-    goal.event.kind = sample.info.disposed ? GoalEvent::Kind::kDisposed : GoalEvent::Kind::kWritten;
+    goal.event.why = sample.data.withdrawn();
+    goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
+                                                                      : GoalEvent::Kind::kWritten;
     goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
     goal.writer = sample.info.writer;
     // Later the clocks of other machines would decide about the age.

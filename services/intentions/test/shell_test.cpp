@@ -105,6 +105,25 @@ TEST_F(ShellTest, CancelsByDispose) {
   EXPECT_TRUE(robot.intended->behaviors().empty());
 }
 
+TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
+  start();
+  const v1::GoalId own = goals.ask(go_to(5.0, 0.0));
+  const v1::GoalId other = goals.ask(go_to(6.0, 0.0));
+  cycle();
+  goals.cancel(own, "the meeting is off");
+  cycle();
+  EXPECT_EQ(state(own), v1::GOAL_CANCELED);
+  EXPECT_EQ(goals.status(own)->reason(),
+            "withdrawn by the program that asked for it: the meeting is off");
+  bus::Node somebody(test::memory_options("somebody", true), bus);
+  bus::GoalClient others(somebody, "somebody");
+  others.cancel(other, "the floor is wet");
+  cycle();
+  EXPECT_EQ(state(other), v1::GOAL_CANCELED);
+  EXPECT_EQ(goals.status(other)->code(), v1::CODE_DISPOSED);
+  EXPECT_EQ(goals.status(other)->reason(), "withdrawn by another program: the floor is wet");
+}
+
 TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
   start();
   v1::GoalId canceled;

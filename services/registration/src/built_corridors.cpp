@@ -47,17 +47,8 @@ std::vector<Corridor> Finder::pairs() const {
       Corridor corridor;
       const Pose near = one.pose();
       // The stretches of both in the first one's frame, which is also that of its left side.
-      const auto of = [&](const GraphLine& line) {
-        Stretches out;
-        for (const SeenLine& seen : line.seen) {
-          const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
-          const double at = to_frame(near, wall.position()).x();
-          out.emplace_back(at - seen.length / 2, at + seen.length / 2);
-        }
-        return joined(std::move(out), 0.1);
-      };
-      const Stretches left = of(other);
-      const Stretches right = of(one);
+      const Stretches left = seen_along(near, graph_, other);
+      const Stretches right = seen_along(near, graph_, one);
       corridor.both = common(left, right);
       if (total(corridor.both) < settings_.min_both)
         continue;

@@ -157,14 +157,7 @@ double MapBuilder::stray_heading() const {
 }
 
 Stretches MapBuilder::stretches(const GraphLine& line) const {
-  Stretches out;
-  const Vec2 u = line.along();
-  for (const SeenLine& seen : line.seen) {
-    const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
-    const double at = u.dot(wall.position() - line.anchor);
-    out.emplace_back(at - seen.length / 2, at + seen.length / 2);
-  }
-  return joined(std::move(out), 0.1);
+  return seen_along({line.anchor.x(), line.anchor.y(), line.heading}, graph_, line);
 }
 
 std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
@@ -453,16 +446,10 @@ void MapBuilder::merge_lines() {
 
 /// The stretches of wall along one side of a corridor, in its frame.
 Stretches MapBuilder::side_of(const Feature& hall, double side) const {
-  Stretches out;
-  for (const GraphLine& line : graph_.lines)
-    for (const SeenLine& seen : line.seen) {
-      const Pose in =
-          relative(hall.pose_in_map, compose(graph_.nodes[seen.node].in_map, seen.in_node));
-      if (std::abs(side * in.y - hall.width / 2) < 2 * settings_.same_wall &&
-          std::abs(norm3_angle(in.th)) < 2 * settings_.same_heading)
-        out.emplace_back(in.x - seen.length / 2, in.x + seen.length / 2);
-    }
-  return joined(std::move(out), 0.1);
+  return seen_along(hall.pose_in_map, graph_, graph_.lines, [&](const Pose& in) {
+    return std::abs(side * in.y - hall.width / 2) < 2 * settings_.same_wall &&
+           std::abs(norm3_angle(in.th)) < 2 * settings_.same_heading;
+  });
 }
 
 /// A gap in a corridor's wall that the robot drove through at `x`. Beside the corridor's end it has

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "saphira/registration/feature_graph.hpp"
 
 namespace saphira::registration {
 
@@ -20,6 +23,26 @@ inline Stretches joined(Stretches stretches, double gap) {
       out.push_back(s);
   }
   return out;
+}
+
+/// The seen stretches of lines along the x axis of a frame in the map: those that fit, by their
+/// middle in that frame.
+template <typename Fits>
+Stretches seen_along(const Pose& frame, const FeatureGraph& graph, std::span<const GraphLine> lines,
+                     const Fits& fits) {
+  Stretches out;
+  for (const GraphLine& line : lines)
+    for (const SeenLine& seen : line.seen) {
+      const Pose in = relative(frame, compose(graph.nodes[seen.node].in_map, seen.in_node));
+      if (fits(in))
+        out.emplace_back(in.x - seen.length / 2, in.x + seen.length / 2);
+    }
+  return joined(std::move(out), 0.1);
+}
+
+/// All those of one line.
+inline Stretches seen_along(const Pose& frame, const FeatureGraph& graph, const GraphLine& line) {
+  return seen_along(frame, graph, {&line, 1}, [](const Pose& /*in*/) { return true; });
 }
 
 /// The part that both have.

@@ -204,7 +204,8 @@ void Executor::take_in(const GoalEvent& event) {
   Entry& entry = found->second;
   if (event.kind == GoalEvent::Kind::kDisposed) {
     end(entry, GoalState::kCanceled, GoalCode::kDisposed,
-        "withdrawn by " + (event.by.empty() ? "its requester" : event.by));
+        "withdrawn by " + (event.by.empty() ? "its requester" : event.by) +
+            (event.why.empty() ? "" : ": " + event.why));
   } else if (entry.goal.writer_lost == WriterLost::kCancel) {
     end(entry, GoalState::kCanceled, GoalCode::kWriterLost,
         "the program that asked for it is gone");

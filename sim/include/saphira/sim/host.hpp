@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -65,8 +66,9 @@ struct HostOptions {
   /// The file of such a world or robot.
   std::function<std::string(const std::string& name)> world_file;
   std::function<std::string(const std::string& name)> robot_file;
-  /// Takes lines for the log; may be empty. Called in the thread of run().
-  std::function<void(const std::string&)> log;
+  /// Takes lines for the log, with their level (log_line.hpp); may be empty. Called in the thread
+  /// of run().
+  std::function<void(std::string_view level, const std::string& text)> log;
 };
 
 /// The view may load the files that are shipped in `config`, and those beside the given world and

@@ -30,9 +30,6 @@ struct DriveCommand {
 /// The error in the numbers of a motor command; empty: none. Any program may write such a command.
 std::string trouble(const reflector::Motion& motion, double contact_speed);
 
-/// A robot in words, from its own identity strings.
-std::string name_of(const protocol::RobotIdentity& robot);
-
 /// The surroundings that the shell sees.
 struct Surroundings {
   bool link_open = false;

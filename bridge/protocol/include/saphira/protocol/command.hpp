@@ -378,6 +378,8 @@ struct RobotIdentity {
   std::string subclass;
   bool operator==(const RobotIdentity&) const = default;
 };
+/// In words, from the robot's own strings.
+std::string name_of(const RobotIdentity& robot);
 
 /// SYNC0, SYNC1, SYNC2 as the client sends them and as the server echoes the first two. (The same
 /// bytes as PULSE, OPEN and CLOSE: the state of the server decides.)

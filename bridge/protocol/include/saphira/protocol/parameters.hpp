@@ -10,6 +10,8 @@
 
 namespace saphira::protocol {
 
+struct RobotIdentity;
+
 // A servo's pulses, with some tolerance beyond the usual 1000 to 2000.
 inline constexpr int kShortestPulse = 400;  ///< [us]
 inline constexpr int kLongestPulse = 2600;  ///< [us]
@@ -145,5 +147,11 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
 std::optional<std::string> find_parameter_file(const std::string& folder,
                                                std::string_view robot_class,
                                                std::string_view subclass);
+
+/// The parameters of a robot: of `file`, where that is for it (empty: there is none), otherwise of
+/// the first file in `folder` that fits. A warning says where it is not the robot's own.
+/// std::runtime_error where no file fits or the file has a mistake.
+RobotParameters parameters_of(const RobotIdentity& robot, const std::string& folder,
+                              const std::string& file = {});
 
 }  // namespace saphira::protocol

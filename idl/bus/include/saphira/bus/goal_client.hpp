@@ -38,15 +38,16 @@ class GoalClient {
   v1::GoalId ask(v1::Goal goal);
   /// Replaces the goal under the id of one that this client asked for.
   void change(const v1::GoalId& id, v1::Goal goal);
-  /// Withdraws a goal: also one of another client, by its id.
-  void cancel(const v1::GoalId& id);
+  /// Withdraws a goal: also one of another client, by its id. why: for its status, in words.
+  void cancel(const v1::GoalId& id, const std::string& why = {});
 
   /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.
   void poll();
   /// All that is known of a goal, by anybody; nothing before its first status.
   std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
-  /// Every goal that is known, by the time of its newest status.
+  /// Every goal that is known, by the time of its newest status; at the same time by functor and
+  /// number, which do not differ between runs.
   std::vector<v1::GoalStatus> statuses() const;
 
   /// Waits until everything that was asked, changed and canceled has reached a reader of goals.
@@ -57,8 +58,9 @@ class GoalClient {
   using Key = std::pair<std::uint64_t, std::uint64_t>;
   using Clock = std::chrono::steady_clock;
 
-  /// A goal that this client asked for.
+  /// A goal that this client has on the bus: it asked for it, or withdrew it with a reason.
   struct Own {
+    v1::Goal goal;
     std::optional<Clock::time_point> over;       ///< time of its end
     std::optional<Clock::time_point> withdrawn;  ///< withdrawal of its status, without an end
   };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "saphira/base/withdraw.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus {
@@ -54,8 +55,7 @@ class RequestClient {
   std::optional<Reader<v1::Answer>> direct_;
 };
 
-/// The functor that withdraws the request of the same asker and number, on agents/solve.
-inline constexpr const char* kWithdraw = "withdraw";
+using saphira::kWithdraw;
 
 v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments = {},
                     const std::string& service = {});

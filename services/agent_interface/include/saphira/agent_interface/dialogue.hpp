@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +27,17 @@ struct Claimed {
   bool nil = false;                 ///< the value is nil; it goes before the beliefs of activities
 
   friend bool operator==(const Claimed&, const Claimed&) = default;
+};
+
+/// The value of a claim in the language of activities.
+std::string literal(const Claimed& claim);
+
+/// A belief of activities.
+struct Belief {
+  std::string name;
+  std::string value;        ///< in the language of activities
+  std::string said_by;      ///< an activity, or the writer of a claim
+  std::uint64_t since = 0;  ///< cycle of the newest change
 };
 
 /// A place where an activity believes to have found a person.
@@ -65,6 +77,9 @@ struct Situation {
   bool turns_cameras = false;  ///< the robot has a head
 };
 
+/// Puts the question that activities ask people into the situation. Returns their finds.
+std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation);
+
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
 /// States its interpretation before it acts. A value: no clock, bus or file.
 class Dialogue {
@@ -85,6 +100,9 @@ class Dialogue {
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
+  /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
+  /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.
+  Outputs without_status(const std::vector<std::uint64_t>& tags, double seconds);
   /// A lasting goal was asked for, under that name. save() includes it.
   void asked(std::uint64_t tag, const GoalRef& goal) { tasks_.asked(tag, goal); }
   /// The lasting goals that have not ended, by tag.
@@ -146,6 +164,7 @@ class Dialogue {
   void act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
                   const Situation& situation, Outputs& out);
   static void add(Tasks::Outputs more, Outputs& out);
+  void end(const Outcome& outcome, Outputs& out);
   bool move(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
             Outputs& out);
   bool task(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -233,7 +252,8 @@ class Dialogue {
   std::optional<Ended> ended_;
   std::uint64_t stop_ = 0;  ///< the tag of the newest stop
   Tasks tasks_;
-  std::optional<Spot> began_;       ///< the newest task, there
+  std::map<std::uint64_t, double> without_status_;  ///< goals, since when [s]
+  std::optional<Spot> began_;                       ///< the newest task, there
   std::vector<Task> wanted_;        ///< the tasks of the sentence that is being heard
   CycleRef said_{};                 ///< of an activity's newest message
   CycleRef before_{};               ///< the same, before a restart

@@ -33,6 +33,11 @@ struct Said {
 /// A goal on the bus: its asker, and its number there.
 using GoalRef = std::pair<std::uint64_t, std::uint64_t>;
 
+/// A goal that no program has taken up by then is withdrawn.
+inline constexpr double kTakenUp = 5.0;  // [s]
+inline constexpr const char* kNotTakenUp =
+    "no program has taken up the goal: saphira status shows whether intentions runs";
+
 /// A goal that the dialogue wants; `tag` is its name within the dialogue.
 struct WantedGoal {
   std::uint64_t tag = 0;
@@ -42,6 +47,9 @@ struct WantedGoal {
   bool lasting = false;   ///< a task, which continues while the dialogue restarts
   std::string speaker{};  ///< the person who asked for it; empty: unknown
   int priority = 0;       ///< larger: suspends the others
+
+  /// The asker's name on the bus; empty: unknown.
+  std::string requester() const { return speaker.empty() ? speaker : speaker + " (by words)"; }
 };
 
 /// The state of a goal that the dialogue asked for.

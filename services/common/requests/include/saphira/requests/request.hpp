@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "saphira/base/stamp.hpp"
+#include "saphira/base/withdraw.hpp"
 #include "saphira/requests/functor.hpp"
 
 namespace saphira {
-
-/// The functor that withdraws the request of the same asker and number.
-inline constexpr const char* kWithdraw = "withdraw";
 
 /// A request, for one action.
 struct Request {

@@ -22,8 +22,9 @@ namespace saphira::intentions {
 struct GoalEvent {
   enum class Kind { kWritten, kDisposed, kWriterLost };
   Kind kind = Kind::kWritten;
-  Goal goal;         ///< kWritten: whole; otherwise only its id counts
-  std::string by{};  ///< actor [empty: its requester]
+  Goal goal;          ///< kWritten: whole; otherwise only its id counts
+  std::string by{};   ///< actor [empty: its requester]
+  std::string why{};  ///< kDisposed: the actor's reason [empty: none]
   /// The reason why an unknown goal is not carried out, since it may have been done already [empty:
   /// carry it out].
   std::string forgotten{};

@@ -1,0 +1,58 @@
+#include "story/shell/story.hpp"
+
+#include <gtest/gtest.h>
+
+#include "node_options.hpp"
+
+namespace saphira::story {
+namespace {
+
+/// A robot in the hall at cycle 50, and Alice, who says one sentence to it.
+struct AStory : testing::Test {
+  AStory() {
+    v1::MapArtifact hall;
+    hall.id(1);
+    hall.type(v1::ARTIFACT_CORRIDOR);
+    hall.name("hall");
+    hall.length(10.0);
+    hall.width(2.0);
+    v1::FloorMap map;
+    map.artifacts({hall});
+    maps.write(map);
+    v1::RobotState state;
+    state.stamp().epoch(7);
+    state.stamp().cycle(50);
+    robots.write(state);
+    registrations.write(v1::Registration());
+  }
+
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Node robot{test::memory_options("robot"), memory};
+  bus::Writer<v1::FloorMap> maps = robot.writer(bus::topics::kMap);
+  bus::Writer<v1::RobotState> robots = robot.writer(bus::topics::kRobotState);
+  bus::Writer<v1::Registration> registrations = robot.writer(bus::topics::kRegistration);
+  bus::Reader<v1::Utterance> heard = robot.reader(bus::topics::kHeard);
+  bus::Node people{test::memory_options("people"), memory};
+  Story story{people, Cast("PERSON alice hall\nSAYS alice Flakey, stop\n", "test.people"), {}};
+};
+
+TEST_F(AStory, InLockstepTheTimeOfAnUtteranceIsTheCycle) {
+  story.step();
+  const auto said = heard.take();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].data.text(), "Flakey, stop");
+  EXPECT_EQ(said[0].data.stamp().epoch(), 7U);
+  EXPECT_EQ(said[0].data.stamp().cycle(), 50U);
+  EXPECT_EQ(said[0].data.time(), 0.0);
+}
+
+TEST_F(AStory, LiveItIsAlsoTheGivenTime) {
+  story.step(1e9);
+  const auto said = heard.take();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].data.stamp().cycle(), 50U);
+  EXPECT_EQ(said[0].data.time(), 1e9);
+}
+
+}  // namespace
+}  // namespace saphira::story

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "intention.h"
+
+/// Words for values of the contract. In its namespace, so that a call needs none.
+namespace saphira::v1 {
+
+inline const char* name_of(GoalState state) {
+  switch (state) {
+    case GOAL_WAITING:
+      return "waiting";
+    case GOAL_REFUSED:
+      return "refused";
+    case GOAL_UNDERWAY:
+      return "underway";
+    case GOAL_SUSPENDED:
+      return "suspended";
+    case GOAL_SUCCEEDED:
+      return "succeeded";
+    case GOAL_FAILED:
+      return "failed";
+    case GOAL_CANCELED:
+      return "canceled";
+  }
+  return "?";
+}
+
+}  // namespace saphira::v1
