@@ -25,6 +25,8 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
+/// Slots for places and people.
+constexpr std::array kNamed{"place", "from", "to", "person", "owner"};
 /// Questions of activities whether something was handed over.
 constexpr std::array kHandovers{"given", "taken"};
 constexpr const char* kHeardLine = "heard\t";
@@ -70,7 +72,7 @@ std::string order_in_text(const Grammar::Understood& understood) {
 /// The place or person of a meaning; empty: none, or several.
 std::string only_name(const Meaning& meaning) {
   std::string only;
-  for (const char* const name : {"place", "from", "to", "person", "owner"}) {
+  for (const char* const name : kNamed) {
     const std::string value = slot(meaning, name);
     if (value.empty() || value == "this")
       continue;
@@ -447,6 +449,12 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
 void Dialogue::carry_out(Grammar::Understood understood, const Utterance& utterance,
                          const Situation& situation, Outputs& out) {
   if (understood.meanings.size() > 1) {
+    std::vector<Meaning> known = understood.meanings;
+    std::erase_if(known, [&](const Meaning& one) { return names_unknown(one, situation); });
+    if (known.size() == 1)
+      understood.meanings = std::move(known);
+  }
+  if (understood.meanings.size() > 1) {
     choices(understood.meanings, utterance, out);
   } else if (is_fact(understood.meanings.front()) && is_question(utterance.text) &&
              !understood.polite) {
@@ -470,6 +478,13 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
     if (!name.empty())
       offer_ = Offer{std::move(understood), name, done ? "" : out.meant, {}, utterance, done};
   }
+}
+
+bool Dialogue::names_unknown(const Meaning& meaning, const Situation& situation) const {
+  return std::any_of(kNamed.begin(), kNamed.end(), [&](const char* name) {
+    const std::string value = slot(meaning, name);
+    return !value.empty() && value != "this" && value != "me" && !is_known(value, situation);
+  });
 }
 
 std::string Dialogue::named(const Grammar::Understood& understood, const Utterance& utterance,

@@ -1038,6 +1038,8 @@ TEST_F(DialogueTest, TheOwnerOfAnOfficeIsAnswered) {
   EXPECT_EQ(said("Flakey, is this my office?", "Karen"), "yes: " + told);
   EXPECT_EQ(said("Flakey, is this John's office?"), "not that I know: " + told);
   EXPECT_EQ(said("Flakey, is Karen's office EJ-233?"), "no: " + told);
+  EXPECT_EQ(said("Flakey, is the upper corridor Karen's office?"), "no: " + told)
+      << "nobody is called corridor karen";
   EXPECT_EQ(said("Flakey, is Karen in EJ-233?"), told);
   EXPECT_EQ(said("Flakey, whose office is the attic?"), kNoAttic);
   situation.pose_in_map = Pose{3.0, 0.5, 0.0};

@@ -156,6 +156,7 @@ class Dialogue {
   /// True where the sentence answers the robot's offer; then that is done.
   bool answered(const Grammar::Understood& understood, const Utterance& utterance,
                 const Situation& situation, Outputs& out);
+  bool names_unknown(const Meaning& meaning, const Situation& situation) const;
   /// The place or person that a reply names; empty: none.
   std::string named(const Grammar::Understood& understood, const Utterance& utterance,
                     const Situation& situation) const;
