@@ -872,7 +872,7 @@ TEST(Naming, ANamedDoorwayIsPutOnTheMapAsItIs) {
   door.learned = true;
   const Request request = put_on_map(door);
   EXPECT_EQ(describe(request),
-            "put id=12 type=\"door\" position=(1, 2, 0.5) length=0 width=0.9 name=\"bob's office\" "
+            "put id=12 type=\"DOOR\" position=(1, 2, 0.5) length=0 width=0.9 name=\"bob's office\" "
             "learned=yes");
   EXPECT_EQ(request.arguments.at(2).frame, Frame::map);
 }
