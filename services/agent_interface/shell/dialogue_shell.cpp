@@ -15,7 +15,6 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -91,10 +90,7 @@ void DialogueShell::announce() {
                  "place_of", "where a person may be, by what people said",
                  {bus::text_slot("person", "a name", true), bus::text_slot("place", "of the map")}),
              [this](const v1::Request& request) {
-               const std::string person = bus::text_of(request.arguments(), "person");
-               const std::string place = dialogue_.knowledge().place_of(person);
-               return place.empty() ? bus::refused("nobody has told me where " + person + " is")
-                                    : bus::done({bus::text("place", place)});
+               return to_bus(dialogue_.place_of(bus::text_of(request.arguments(), "person")));
              });
   agent_.can(bus::action("forget", "takes back what the robot was told",
                          {bus::number_slot("number", "of the advice (saphira knows)", true)}),
@@ -102,11 +98,8 @@ void DialogueShell::announce() {
                const auto number =
                    static_cast<std::uint64_t>(bus::number_of(request.arguments(), "number"));
                const Dialogue::Outputs out = dialogue_.forget(number);
-               if (!out.changed)
-                 return bus::refused("nothing is known under " + std::to_string(number) +
-                                     ": saphira knows lists what is");
                perform(out);
-               return bus::done({}, "forgotten");
+               return to_bus(out.answer);
              });
 }
 
@@ -159,19 +152,6 @@ void DialogueShell::claim(const Claimed& claim) {
   claims_.write(sample);
 }
 
-void DialogueShell::rename(const maps::Feature& feature) {
-  Request request;
-  request.functor = "put";
-  request.arguments = {number("id", feature.id),
-                       text("type", std::string(maps::traits(feature.type).word)),
-                       point("position", feature.pose_in_map, Frame::map),
-                       number("length", feature.length),
-                       number("width", feature.width),
-                       text("name", feature.name),
-                       truth("learned", feature.learned)};
-  registration_.send(to_bus(request));
-}
-
 void DialogueShell::perform(const Dialogue::Outputs& out) {
   for (const Said& said : out.said) {
     v1::Utterance sample;
@@ -196,7 +176,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
   for (const Claimed& one : out.claims)
     claim(one);
   for (const maps::Feature& feature : out.namings)
-    rename(feature);
+    registration_.send(to_bus(put_on_map(feature)));
   if (!out.note.empty())
     node_.info(out.note);
   if (out.changed) {

@@ -41,7 +41,6 @@ class DialogueShell {
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
   void claim(const Claimed& claim);
-  void rename(const maps::Feature& feature);
   Files files() const;
   void remember();
   void publish();

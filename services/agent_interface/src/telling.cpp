@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/zones.hpp"
 #include "words.hpp"
 
@@ -44,6 +45,14 @@ std::string literal(const Claimed& claim) {
   for (const std::string& one : claim.list)
     result += (result.size() == 1 ? "" : " ") + literal(one);
   return result + ")";
+}
+
+Request put_on_map(const maps::Feature& feature) {
+  return {"put",
+          {number("id", feature.id), text("type", std::string(maps::traits(feature.type).word)),
+           point("position", feature.pose_in_map, Frame::map), number("length", feature.length),
+           number("width", feature.width), text("name", feature.name),
+           truth("learned", feature.learned)}};
 }
 
 std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation) {
@@ -258,7 +267,18 @@ Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
 Dialogue::Outputs Dialogue::forget(std::uint64_t number) {
   Outputs out;
   withdraw(number, out);
+  out.answer =
+      out.changed ? Answer{AnswerCode::done, "forgotten"}
+                  : Answer{AnswerCode::refused, "nothing is known under " + std::to_string(number) +
+                                                    ": saphira knows lists what is"};
   return out;
+}
+
+Answer Dialogue::place_of(const std::string& person) const {
+  const std::string place = knowledge_.place_of(person);
+  if (place.empty())
+    return {AnswerCode::refused, "nobody has told me where " + person + " is"};
+  return {AnswerCode::done, "", {text("place", place)}};
 }
 
 void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* because) {

@@ -229,9 +229,12 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   EXPECT_EQ(said("Flakey, where is Karen?"),
             "Alice said that EJ-231 is karen's office; Bob said that john knows where karen is");
   const Dialogue::Outputs out = dialogue.forget(2);
+  EXPECT_EQ(out.answer, (Answer{AnswerCode::done, "forgotten"}));
   EXPECT_EQ(out.claims.at(0).name, "knows-where-karen");
   EXPECT_EQ(out.claims.at(0).value, "");
   EXPECT_FALSE(dialogue.forget(2).changed);
+  EXPECT_EQ(dialogue.forget(2).answer,
+            (Answer{AnswerCode::refused, "nothing is known under 2: saphira knows lists what is"}));
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
 }
 
@@ -863,6 +866,28 @@ TEST(Claims, AValueIsWrittenInTheLanguageOfActivities) {
   EXPECT_EQ(literal(Claimed{"knows-where-karen", "john, bob", "", {"john", "bob"}}),
             "(\"john\" \"bob\")");
   EXPECT_EQ(literal(Claimed{"place-of-karen", "nil", "", {}, true}), "nil");
+}
+
+TEST_F(DialogueTest, AProgramThatLooksForAPersonGetsTheirPlace) {
+  EXPECT_EQ(dialogue.place_of("karen"),
+            (Answer{AnswerCode::refused, "nobody has told me where karen is"}));
+  hear("Flakey, EJ-231 is Karen's office");
+  EXPECT_EQ(dialogue.place_of("karen"), (Answer{AnswerCode::done, "", {text("place", "EJ-231")}}));
+}
+
+TEST(Naming, ANamedDoorwayIsPutOnTheMapAsItIs) {
+  maps::Feature door;
+  door.id = 12;
+  door.type = lps::PointType::door;
+  door.pose_in_map = {1.0, 2.0, 0.5};
+  door.width = 0.9;
+  door.name = "bob's office";
+  door.learned = true;
+  const Request request = put_on_map(door);
+  EXPECT_EQ(describe(request),
+            "put id=12 type=\"DOOR\" position=(1, 2, 0.5) length=0 width=0.9 name=\"bob's office\" "
+            "learned=yes");
+  EXPECT_EQ(request.arguments.at(2).frame, Frame::map);
 }
 
 TEST(Goals, ThePersonBehindTheWordsIsNamed) {

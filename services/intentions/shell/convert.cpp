@@ -169,6 +169,18 @@ Robot from_bus(const v1::RobotState& robot) {
   return result;
 }
 
+Core::Heard::Grant from_bus(const v1::Grant& grant) {
+  Core::Heard::Grant result{grant.estopped(), grant.estop_source()};
+  if (grant.role() != v1::ROLE_BEHAVIORS)
+    for (const v1::Refusal& refusal : grant.refused())
+      if (refusal.role() == v1::ROLE_BEHAVIORS && result.refusal.empty())
+        result.refusal = refusal.reason();
+  if (grant.role() == v1::ROLE_TELEOP)
+    result.person = grant.source().empty() ? "a person" : grant.source();
+  result.waits_for_hand_back = grant.waits_for_hand_back();
+  return result;
+}
+
 std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors) {
   return converted(behaviors.behaviors(), [](const v1::BehaviorState& behavior) {
     return BehaviorLevel{behavior.name(), behavior.goal(), behavior.progress()};
@@ -188,20 +200,18 @@ std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors)
 }
 
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
-  std::vector<BehaviorSignature> result;
-  result.reserve(schemas.schemas().size());
-  for (const v1::BehaviorSchema& schema : schemas.schemas()) {
-    result.push_back({schema.name(), {}});
-    for (const v1::BehaviorParameter& parameter : schema.parameters()) {
-      Parameter& out = result.back().parameters.emplace_back();
-      out.name = parameter.name();
-      out.kind = saphira::from_bus(parameter.kind());
-      out.low = parameter.low();
-      out.high = parameter.high();
-      out.required = parameter.required();
-    }
-  }
-  return result;
+  const auto parameter = [](const v1::BehaviorParameter& given) {
+    Parameter result;
+    result.name = given.name();
+    result.kind = saphira::from_bus(given.kind());
+    result.low = given.low();
+    result.high = given.high();
+    result.required = given.required();
+    return result;
+  };
+  return converted(schemas.schemas(), [&](const v1::BehaviorSchema& schema) {
+    return BehaviorSignature{schema.name(), converted(schema.parameters(), parameter)};
+  });
 }
 
 v1::ActivitySchema to_bus(const Schema& schema) {

@@ -23,23 +23,12 @@ constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
 constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
 constexpr std::size_t kMostGoals = 1024;     // of GoalStatusSet.goals
 constexpr std::size_t kMostBeliefs = 1024;   // of Beliefs.beliefs
-constexpr double kStarting = 10.0;           // [s] in which goals of before the start come
 
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> paths{activities_folder()};
   if (!options.folder.empty())
     paths.push_back(options.folder);
   return paths;
-}
-
-/// The reason why the behaviors, which ask to drive, do not.
-std::string refusal_of(const v1::Grant& grant) {
-  if (grant.role() == v1::ROLE_BEHAVIORS)
-    return {};
-  for (const v1::Refusal& refusal : grant.refused())
-    if (refusal.role() == v1::ROLE_BEHAVIORS)
-      return refusal.reason();
-  return {};
 }
 
 Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
@@ -183,8 +172,8 @@ std::optional<Core::Vision> Service::vision() {
                       sample->odom(),
                       sample->sees_people() || sample->sees_colors(),
                       {}};
-  for (const v1::SeenThing& thing : sample->things())
-    vision.things.push_back(lps::from_bus(thing));
+  vision.things =
+      converted(sample->things(), [](const auto& thing) { return lps::from_bus(thing); });
   return vision;
 }
 
@@ -209,7 +198,7 @@ void Service::take_behavior_schemas() {
 
 void Service::take_goals(Core::Heard& heard) {
   heard.lost_requesters = goals_.take_lost();
-  const double running =
+  heard.running =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   for (const auto& sample : goals_.take()) {
     Core::Heard::Goal goal;
@@ -219,9 +208,7 @@ void Service::take_goals(Core::Heard& heard) {
                                                                       : GoalEvent::Kind::kWritten;
     goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
     goal.writer = sample.info.writer;
-    // Later the clocks of other machines would decide about the age.
-    if (running < kStarting)
-      goal.before_start = sample.info.age - running;
+    goal.age = sample.info.age;
     if (const auto& sender = sample.info.sender)
       goal.sender = {sender->name, sender->role == kCommands};
     heard.goals.push_back(std::move(goal));
@@ -260,42 +247,21 @@ void Service::take_answers(Core::Heard& heard) {
 }
 
 void Service::take_grants(Core::Heard& heard) {
-  for (const auto& sample : grants_.take()) {
-    if (sample.info.disposed)
-      continue;
-    const v1::Grant& grant = sample.data;
-    const std::string driver = grant.source().empty() ? "a person" : grant.source();
-    heard.grants.push_back({grant.estopped(), grant.estop_source(), refusal_of(grant),
-                            grant.role() == v1::ROLE_TELEOP ? driver : "",
-                            grant.waits_for_hand_back()});
-  }
+  for (const auto& sample : grants_.take())
+    if (!sample.info.disposed)
+      heard.grants.push_back(from_bus(sample.data));
 }
 
 void Service::look() {
-  const bool first = !std::exchange(looked_, true);
   if (knows_behaviors_ || !ports_.lockstep())
     take_behavior_schemas();
   const ActivityFolders::News news = folders_.look();
-  Notes notes;
-  for (const std::string& error : news.errors)
-    notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
-  // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
-  if (!first)
-    for (const std::string& warning : news.warnings)
-      notes.warn(warning);
-  for (const std::string& name : news.removed)
-    core_.executor().remove(name);
-  for (const Schema& schema : news.taken) {
-    core_.executor().add(schema);
-    if (!first)
-      notes.info("took " + schema.name + " of " + schema.source);
-  }
-  ports_.say(notes.lines());
+  ports_.say(core_.know_activities(news).lines());
   if (!news.changed)
     return;
   v1::ActivitySchemas sample;
-  for (const Schema* const schema : core_.executor().registry().all())
-    sample.schemas().push_back(to_bus(*schema));
+  sample.schemas(converted(core_.executor().registry().all(),
+                           [](const Schema* schema) { return to_bus(*schema); }));
   sample.trouble(folders_.trouble());
   schemas_.write(std::move(sample));
 }
@@ -332,9 +298,8 @@ void Service::publish(const News& news) {
   }
   if (!news.changed.empty() || !news.withdrawn.empty()) {
     v1::GoalStatusSet all;
-    for (const auto& [id, status] : told_)
-      if (all.goals().size() < kMostGoals)
-        all.goals().push_back(status);
+    all.goals(converted(
+        told_, [](const auto& told) { return told.second; }, kMostGoals));
     goal_recall_.write(std::move(all));
   }
   ports_.say(notes.lines());
@@ -351,11 +316,9 @@ void Service::publish(const intentions::Outputs& outputs, const SpeedLimit& limi
   sample.behavior_control(outputs.behavior_control);
   sample.speed_limit(std::max(0.0, limit.speed));
   sample.limit_reason(limit.reason);
-  for (const IntendedBehavior& behavior : outputs.behaviors)
-    sample.behaviors().push_back(to_bus(behavior));
-  for (const IntentionNode& node : outputs.nodes)
-    if (sample.nodes().size() < kMostNodes)
-      sample.nodes().push_back(to_bus(node));
+  const auto carried = [](const auto& each) { return to_bus(each); };
+  sample.behaviors(converted(outputs.behaviors, carried));
+  sample.nodes(converted(outputs.nodes, carried, kMostNodes));
   intentions_.write(sample);
   recall_.write(std::move(sample));
   for (const Said& one : outputs.said) {
@@ -376,11 +339,12 @@ void Service::draw_way(const std::vector<Vec2>& way) {
   drawing.source(ports_.name());
   drawing.frame(v1::FRAME_MAP);
   drawing.shape(v1::DRAWING_LINE);
-  for (const Vec2& at : way) {
-    drawing.points().emplace_back();
-    drawing.points().back().x(at.x());
-    drawing.points().back().y(at.y());
-  }
+  drawing.points(converted(way, [](const Vec2& at) {
+    v1::DrawnPoint drawn;
+    drawn.x(at.x());
+    drawn.y(at.y());
+    return drawn;
+  }));
   drawing.red(70);
   drawing.green(130);
   drawing.blue(180);
@@ -389,9 +353,8 @@ void Service::draw_way(const std::vector<Vec2>& way) {
 
 void Service::publish(const std::vector<Belief>& beliefs) {
   v1::BeliefSet sample;
-  for (const Belief& belief : beliefs)
-    if (sample.beliefs().size() < kMostBeliefs)
-      sample.beliefs().push_back(to_bus(belief));
+  sample.beliefs(converted(
+      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs));
   beliefs_.write(std::move(sample));
 }
 

@@ -93,7 +93,6 @@ class Service final : public runtime::Service {
   ActivityFolders folders_;
   Core core_;
   bool knows_behaviors_ = false;
-  bool looked_ = false;
   lps::LpsSettings robot_;  ///< of this epoch
 };
 

@@ -12,10 +12,13 @@
 namespace saphira::intentions {
 namespace {
 
-/// [s] Without a cycle for this long there is no robot, live.
 constexpr std::size_t kMostAnswers = 256;  // of agents, stored
 constexpr std::uint64_t kGone = 10;        // [cycles] without a sample
+/// [s] Without a cycle for this long there is no robot, live.
 constexpr double kSilence = 1.0;
+/// [s] in which goals of before the start come. Later the clocks of other machines would decide
+/// about their age.
+constexpr double kStarting = 10.0;
 /// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
 /// start together.
 constexpr double kStartsTogether = 3.0;
@@ -226,6 +229,25 @@ Notes Core::know_behaviors(const std::vector<BehaviorSignature>& behaviors) {
   return notes;
 }
 
+Notes Core::know_activities(const ActivityFolders::News& news) {
+  const bool first = !std::exchange(knows_activities_, true);
+  Notes notes;
+  for (const std::string& error : news.errors)
+    notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
+  // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
+  if (!first)
+    for (const std::string& warning : news.warnings)
+      notes.warn(warning);
+  for (const std::string& name : news.removed)
+    executor_.remove(name);
+  for (const Schema& schema : news.taken) {
+    executor_.add(schema);
+    if (!first)
+      notes.info("took " + schema.name + " of " + schema.source);
+  }
+  return notes;
+}
+
 std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,
                                      std::uint32_t cycles) {
   auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
@@ -266,9 +288,10 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
     // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
-    if (!remembers_ && !lockstep_ && goal.before_start > kStartsTogether)
+    const double before_start = heard.running < kStarting ? goal.age - heard.running : 0.0;
+    if (!remembers_ && !lockstep_ && before_start > kStartsTogether)
       event.forgotten =
-          "was asked for " + plain(goal.before_start) + " s before intentions started, " +
+          "was asked for " + plain(before_start) + " s before intentions started, " +
           (memory_damaged_ ? "whose memory is damaged" : "which has no memory of the time before") +
           ": it may have been done already. Ask again to have it done";
     events.push_back(std::move(event));

@@ -110,6 +110,32 @@ TEST(Convert, WhatDoesNotKeepToTheContractIsRefusedLater) {
   EXPECT_EQ(from_bus(goal).writer_lost, WriterLost::kCancel);
 }
 
+TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
+  v1::Grant grant;
+  grant.refused().resize(2);
+  grant.refused()[0].role(v1::ROLE_DIRECT);
+  grant.refused()[0].reason("of another");
+  grant.refused()[1].role(v1::ROLE_BEHAVIORS);
+  grant.refused()[1].reason("a person drives");
+  grant.role(v1::ROLE_TELEOP);
+  grant.waits_for_hand_back(true);
+  Core::Heard::Grant heard = from_bus(grant);
+  EXPECT_FALSE(heard.pressed);
+  EXPECT_EQ(heard.refusal, "a person drives");
+  EXPECT_EQ(heard.person, "a person");
+  EXPECT_TRUE(heard.waits_for_hand_back);
+  grant.source("Ann");
+  EXPECT_EQ(from_bus(grant).person, "Ann");
+  grant.role(v1::ROLE_BEHAVIORS);
+  grant.estopped(true);
+  grant.estop_source("a button");
+  heard = from_bus(grant);
+  EXPECT_TRUE(heard.pressed);
+  EXPECT_EQ(heard.source, "a button");
+  EXPECT_EQ(heard.refusal, "");
+  EXPECT_EQ(heard.person, "");
+}
+
 TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   v1::RobotState state;
   state.odom(4);

@@ -281,7 +281,8 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     Core core(remembering(memory));
     for (const std::uint64_t number : {1U, 2U, 3U}) {
       inputs_.heard.goals.push_back(written(number, kKaren));
-      inputs_.heard.goals.back().before_start = number == 2 ? 2.0 : 60.0;
+      inputs_.heard.running = 1.0;
+      inputs_.heard.goals.back().age = number == 2 ? 3.0 : 61.0;
     }
     statuses_.clear();
     inputs_.stamp.cycle = 0;
@@ -305,6 +306,40 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     step(core);
     EXPECT_EQ(state(4), GoalState::kWaiting);
   }
+}
+
+TEST_F(CoreTest, TheAgeOfAGoalCountsOnlyInTheFirstSecondsAfterTheStart) {
+  for (const auto& [number, running] : {std::pair(1U, 9.9), {2U, 10.0}}) {
+    inputs_.heard.running = running;
+    inputs_.heard.goals = {written(number, kKaren)};
+    inputs_.heard.goals[0].age = 60.0;
+    step();
+  }
+  EXPECT_EQ(state(1), GoalState::kRefused);
+  EXPECT_EQ(state(2), GoalState::kUnderway);
+}
+
+TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
+  ActivityFolders::News news;
+  Schema wave = *built_in().find("stop");
+  wave.name = "wave";
+  wave.source = "wave.act";
+  news.taken = {wave};
+  news.errors = {"other.act:1:2: expected a name"};
+  news.warnings = {"wave.act:3: it is odd"};
+  using Lines = std::vector<Note>;
+  EXPECT_EQ(core_.know_activities(news).lines(),
+            (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
+  EXPECT_NE(core_.executor().registry().find("wave"), nullptr);
+  EXPECT_EQ(core_.know_activities(news).lines(),
+            (Lines{{Note::Level::error,
+                    "other.act:1:2: expected a name\nWhat this file gave before stays in use."},
+                   {Note::Level::warning, "wave.act:3: it is odd"},
+                   {Note::Level::info, "took wave of wave.act"}}));
+  news = {};
+  news.removed = {"wave"};
+  EXPECT_TRUE(core_.know_activities(news).empty());
+  EXPECT_EQ(core_.executor().registry().find("wave"), nullptr);
 }
 
 TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {

@@ -234,9 +234,7 @@ void Executor::take_written(const GoalEvent& event) {
   entry.status.functor = goal.functor;
 
   if (const auto done = remembered_.find(goal.id); done != remembered_.end()) {
-    entry.status.state = done->second.state;
-    entry.status.code = done->second.code;
-    entry.status.reason = done->second.reason;
+    become(entry, done->second.state, done->second.code, done->second.reason);
     entry.status.progress = done->second.state == GoalState::kSucceeded ? 1.0 : 0.0;
     entry.ended = now_;
     ended_order_.push_back(goal.id);
@@ -348,39 +346,37 @@ std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& com
 
 // --- states
 
+void Executor::become(Entry& entry, GoalState state, GoalCode code, std::string reason) {
+  entry.status.state = state;
+  entry.status.code = code;
+  entry.status.reason = std::move(reason);
+  entry.status.waits_for = {};
+}
+
 void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string reason) {
   if (entry.node != 0)
     forest_.remove(entry.node);
   entry.node = 0;
   entry.ended = now_;
   ended_order_.push_back(entry.goal.id);
-  entry.status.state = state;
-  entry.status.code = code;
-  entry.status.reason = reason.empty() ? name_of(state) : std::move(reason);
-  entry.status.waits_for = {};
+  become(entry, state, code, reason.empty() ? name_of(state) : std::move(reason));
   entry.status.step.clear();
   if (state == GoalState::kSucceeded)
     entry.status.progress = 1.0;
-  const Ending ending{entry.goal.id, state, entry.status.code, shortened(entry.status.reason)};
+  const Ending ending{entry.goal.id, state, code, shortened(entry.status.reason)};
   remembered_places_.erase(ending.id);
   remember(ending);
   endings_.push_back(ending);
 }
 
 void Executor::wait(Entry& entry, GoalCode code, std::string reason) {
-  entry.status.state = GoalState::kWaiting;
-  entry.status.code = code;
-  entry.status.reason = std::move(reason);
-  entry.status.waits_for = {};
+  become(entry, GoalState::kWaiting, code, std::move(reason));
 }
 
 void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
   if (entry.status.state == GoalState::kUnderway && entry.node != 0)
     forest_.interrupt(entry.node);
-  entry.status.state = GoalState::kSuspended;
-  entry.status.code = code;
-  entry.status.reason = std::move(reason);
-  entry.status.waits_for = {};
+  become(entry, GoalState::kSuspended, code, std::move(reason));
   entry.status.step.clear();
 }
 
@@ -412,6 +408,19 @@ void Executor::meet_odom(std::uint64_t odom) {
   odom_ = odom;
 }
 
+/// Of the arguments in odom, from the robot's place.
+Placement Executor::placement_of(const Entry& entry, const Robot& robot) const {
+  Placement placement{entry.goal.id, epoch_, cycle_, robot.odom, {}};
+  for (const Argument& argument : entry.arguments) {
+    if (to_be_placed(argument))
+      placement.points.push_back({argument.name, argument.point,
+                                  argument.frame == Frame::robot
+                                      ? compose(robot.pose_in_odom, argument.point)
+                                      : argument.point});
+  }
+  return placement;
+}
+
 /// Fixes the arguments in odom, from the robot's place; after a restart of the service, as they
 /// were fixed before it.
 void Executor::place(Entry& entry, const Robot& robot) {
@@ -426,14 +435,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
       entry.accepted = now_ - static_cast<Ticks>(cycle_ - placement.cycle);
     entry.status.elapsed = seconds(now_ - entry.accepted);
   } else {
-    placement = {entry.goal.id, epoch_, cycle_, robot.odom, {}};
-    for (const Argument& argument : entry.arguments) {
-      if (to_be_placed(argument))
-        placement.points.push_back({argument.name, argument.point,
-                                    argument.frame == Frame::robot
-                                        ? compose(robot.pose_in_odom, argument.point)
-                                        : argument.point});
-    }
+    placement = placement_of(entry, robot);
   }
   auto point = placement.points.begin();
   for (Argument& argument : entry.arguments) {
@@ -501,7 +503,7 @@ void Executor::replace() {
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
-      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier) {
+      if (open(other.status) && drives(other) && earlier) {
         end(other, GoalState::kCanceled, GoalCode::kPreempted,
             "stopped by " + name_of_goal(stop.goal));
         other.status.waits_for = id;
@@ -516,7 +518,7 @@ void Executor::obey_estop(const std::string& source) {
   if (source.empty())
     return;
   for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && !entry.schema->concurrent && !entry.schema->replaces)
+    if (open(entry.status) && drives(entry))
       end(entry, GoalState::kCanceled, GoalCode::kPreempted,
           "emergency stop, pressed by " + quoted(source) + ": ask anew once it is released");
   }
@@ -534,9 +536,14 @@ std::string Executor::step_of(const IntentionNode& node) const {
   return node.step.empty() || node.step.front() == '(' ? schema->name : node.step;
 }
 
+/// Neither a stop nor a goal beside the driving one.
+bool Executor::drives(const Entry& entry) {
+  return !entry.schema->concurrent && !entry.schema->replaces;
+}
+
 /// A goal that drives, while a person has the robot. A stop and concurrent goals go on.
 bool Executor::waits_for_person(const Entry& entry) const {
-  return !person_.empty() && !entry.schema->concurrent && !entry.schema->replaces;
+  return !person_.empty() && drives(entry);
 }
 
 Executor::Entry* Executor::best() {
@@ -566,36 +573,36 @@ Executor::Entry* Executor::arbitrate(const World& world) {
   if (chosen == nullptr)
     return nullptr;
   for (auto& [id, entry] : entries_) {
-    if (!open(entry.status) || &entry == chosen || entry.schema->concurrent ||
-        waits_for_person(entry))
-      continue;
-    const bool more = chosen->goal.priority > entry.goal.priority;
-    const std::string who =
-        name_of_goal(chosen->goal) +
-        (more ? ", which is more important (priority " + std::to_string(chosen->goal.priority) +
-                    " over " + std::to_string(entry.goal.priority) + ")"
-              : ", which came first");
-    if (entry.status.state == GoalState::kWaiting)
-      wait(entry, GoalCode::kNone,
-           "waits for " + who +
-               (more ? ""
-                     : "; with a priority of " +
-                           std::to_string(std::int64_t{chosen->goal.priority} + 1) +
-                           " it would go first"));
-    else
-      suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
-    entry.status.waits_for = chosen->goal.id;
+    if (open(entry.status) && &entry != chosen && !entry.schema->concurrent &&
+        !waits_for_person(entry))
+      queue(entry, chosen->goal);
   }
   begin(*chosen, world);
   return chosen;
 }
 
+/// The goal waits, or is interrupted, because of the one in front of it.
+void Executor::queue(Entry& entry, const Goal& front) {
+  const bool more = front.priority > entry.goal.priority;
+  const std::string who =
+      name_of_goal(front) +
+      (more ? ", which is more important (priority " + std::to_string(front.priority) + " over " +
+                  std::to_string(entry.goal.priority) + ")"
+            : ", which came first");
+  if (entry.status.state == GoalState::kWaiting)
+    wait(entry, GoalCode::kNone,
+         "waits for " + who +
+             (more ? ""
+                   : "; with a priority of " + std::to_string(std::int64_t{front.priority} + 1) +
+                         " it would go first"));
+  else
+    suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
+  entry.status.waits_for = front.id;
+}
+
 void Executor::begin(Entry& entry, const World& world) {
   if (entry.status.state != GoalState::kUnderway) {
-    entry.status.state = GoalState::kUnderway;
-    entry.status.code = GoalCode::kNone;
-    entry.status.reason.clear();
-    entry.status.waits_for = {};
+    become(entry, GoalState::kUnderway, GoalCode::kNone, {});
     if (entry.node != 0)
       forest_.resume(entry.node);
   }
@@ -759,18 +766,23 @@ bool Executor::collect() {
   return any;
 }
 
+/// The status with the refusal of the newest change; nothing: it was not refused.
+std::optional<GoalStatus> Executor::refused_change(const Entry& entry) {
+  if (entry.refusal.empty())
+    return std::nullopt;
+  GoalStatus status = entry.status;
+  status.reason += (status.reason.empty() ? "goes on unchanged, " : "; ");
+  status.reason += "the change was refused: " + entry.refusal;
+  // Only where the state has no reason of its own: what it waits for has its member.
+  if (status.code == GoalCode::kNone || status.waits_for != GoalId{})
+    status.code = entry.refusal_code;
+  return status;
+}
+
 News Executor::take_news() {
   News news;
   for (auto& [id, entry] : entries_) {
-    std::optional<GoalStatus> refused;
-    if (!entry.refusal.empty()) {
-      refused = entry.status;
-      refused->reason += (refused->reason.empty() ? "goes on unchanged, " : "; ");
-      refused->reason += "the change was refused: " + entry.refusal;
-      // Only where the state has no reason of its own: what it waits for has its member.
-      if (refused->code == GoalCode::kNone || refused->waits_for != GoalId{})
-        refused->code = entry.refusal_code;
-    }
+    const std::optional<GoalStatus> refused = refused_change(entry);
     const GoalStatus& status = refused ? *refused : entry.status;
     const bool due = open(status) && now_ - entry.published_at >= kStatusPeriod;
     if (entry.published && !due && !differs(*entry.published, status))

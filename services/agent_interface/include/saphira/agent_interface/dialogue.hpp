@@ -11,7 +11,7 @@
 #include "saphira/agent_interface/knowledge.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/maps/map.hpp"
-#include "saphira/requests/argument.hpp"
+#include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
 
@@ -77,6 +77,9 @@ struct Situation {
   bool turns_cameras = false;  ///< the robot has a head
 };
 
+/// The request that puts an artifact with its name on the map.
+Request put_on_map(const maps::Feature& feature);
+
 /// Puts the question that activities ask people into the situation. Returns their finds.
 std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation);
 
@@ -97,6 +100,7 @@ class Dialogue {
     std::string note;                    ///< for the log; empty: none
     std::string unknown{};               ///< a name in the sentence that nothing has; empty: none
     std::string meant{};  ///< the one that the robot asks back for instead; empty: none
+    Answer answer{};      ///< of forget()
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
@@ -110,11 +114,14 @@ class Dialogue {
   /// An activity's message to people. Messages from before a restart, and those of activities while
   /// this dialogue has no goal, are not said.
   Outputs says(const std::string& text, const CycleRef& when);
-  /// Withdraws advice by its number. Says so where that number is unknown.
+  /// Withdraws advice by its number.
   Outputs forget(std::uint64_t number);
   /// All present finds of activities; those that are new are learned. The first ones may be from
   /// before this dialogue began: what it knows of those people already counts instead.
   Outputs found(const std::vector<Find>& finds, double now);
+
+  /// The answer to a program that looks for a person.
+  Answer place_of(const std::string& person) const;
 
   const Knowledge& knowledge() const { return knowledge_; }
   /// The claims for activities that follow from all advice, after a start.

@@ -12,6 +12,7 @@
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/base/stamp.hpp"
+#include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/executor.hpp"
 #include "saphira/intentions/gaze.hpp"
 #include "saphira/intentions/navigation.hpp"
@@ -49,7 +50,7 @@ class Core {
       GoalEvent event;
       Writer writer{};
       std::optional<Sender> sender{};  ///< none on an open bus
-      double before_start = 0.0;       ///< [s] written this long before this start of the service
+      double age = 0.0;                ///< [s] since it was written
     };
     struct Claim {
       ClaimEvent event;
@@ -65,6 +66,7 @@ class Core {
       std::string person{};              ///< that drives by teleop [empty: nobody does]
       bool waits_for_hand_back = false;  ///< a person drove last
     };
+    double running = 0.0;  ///< [s] since this start of the service
     std::vector<Writer> lost_requesters;
     std::vector<Goal> goals;
     std::vector<Writer> lost_claimants;
@@ -136,6 +138,9 @@ class Core {
   /// The schemas that the behaviors service can evaluate.
   Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);
 
+  /// The activities of files that have changed.
+  Notes know_activities(const ActivityFolders::News& news);
+
   Executor& executor() { return executor_; }
   ProcessTable& processes() { return processes_; }
   /// Carries out the action on an intention by its instance, its number, or I and its number
@@ -158,6 +163,7 @@ class Core {
   bool lockstep_;
   bool remembers_ = false;  ///< the memory of goals from before this start is whole
   bool memory_damaged_ = false;
+  bool knows_activities_ = false;
   Executor executor_;
   ProcessTable processes_;
   /// While suspended, nothing is intended: the goals are suspended, and the robot is released.

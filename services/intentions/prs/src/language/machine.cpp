@@ -626,33 +626,32 @@ class Machine : public Activity {
       }
     }
     const bool holds = value(step.expression, self).truthy();
-    if (restoring != nullptr) {
-      if (!restoring->over)
-        return false;
-      if (restoring->has_failed || !holds) {
-        const GoalCode code = restoring->has_failed ? restoring->code : GoalCode::kActivity;
-        const std::string why = restoring->has_failed ? ": " + restoring->failed : "";
-        failure(thread, code, step.text + " could not be restored" + why, self);
-        return true;
-      }
-      // The intentions that restored the condition are not needed any more.
-      for (Thread& each : threads_) {
-        if (each.owner == thread.id && each.restores)
-          end(each, self);
-      }
-      hold(thread, false, self);
+    if (restoring != nullptr)
+      return restoring->over && end_restoring(thread, *restoring, holds, self);
+    if (finished_body || holds)
+      return poll_fork(thread, self);
+    if (held)
+      return false;
+    hold(thread, true, self);
+    branch(thread, step.branches[1], self).restores = true;
+    return true;
+  }
+
+  /// Releases the body of a MAINTAIN, or lets the MAINTAIN fail.
+  bool end_restoring(Thread& thread, const Thread& restoring, bool holds, Self& self) {
+    if (restoring.has_failed || !holds) {
+      const GoalCode code = restoring.has_failed ? restoring.code : GoalCode::kActivity;
+      const std::string why = restoring.has_failed ? ": " + restoring.failed : "";
+      failure(thread, code, program_->steps[thread.at].text + " could not be restored" + why, self);
       return true;
     }
-    if (finished_body)
-      return poll_fork(thread, self);
-    if (holds)
-      return poll_fork(thread, self);
-    if (!held) {
-      hold(thread, true, self);
-      branch(thread, step.branches[1], self).restores = true;
-      return true;
+    // The intentions that restored the condition are not needed any more.
+    for (Thread& each : threads_) {
+      if (each.owner == thread.id && each.restores)
+        end(each, self);
     }
-    return false;
+    hold(thread, false, self);
+    return true;
   }
 
   /// The thread has reached the end of the schema.

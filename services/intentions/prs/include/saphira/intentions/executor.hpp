@@ -147,6 +147,7 @@ class Executor {
   static bool depends_on_odom(const Entry& entry, bool placed);
   void change(Entry& entry, const Goal& goal, const std::string& by);
   std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
+  static void become(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void remember(const Ending& ending);
   void forget_ended();
@@ -154,15 +155,18 @@ class Executor {
   void suspend(Entry& entry, GoalCode code, std::string reason);
   void lose_robot(const std::string& hold = {});
   void meet_odom(std::uint64_t odom);
+  Placement placement_of(const Entry& entry, const Robot& robot) const;
   void place(Entry& entry, const Robot& robot);
   void pass_changes();
   void check_deadlines(const Robot& robot);
   void replace();
   void obey_estop(const std::string& source);
   std::string step_of(const IntentionNode& node) const;
+  static bool drives(const Entry& entry);
   bool waits_for_person(const Entry& entry) const;
   Entry* best();
   Entry* arbitrate(const World& world);
+  void queue(Entry& entry, const Goal& front);
   void begin(Entry& entry, const World& world);
   void take_up(Entry& entry, const World& world);
   void begin_concurrent(const World& world);
@@ -170,6 +174,7 @@ class Executor {
   std::optional<Work> take_work();
   void measure(Entry& entry);
   bool collect();
+  static std::optional<GoalStatus> refused_change(const Entry& entry);
   News take_news();
 
   ExecutorOptions options_;
