@@ -13,7 +13,8 @@
 namespace {
 
 /// Reads the files that a robot's answer would need.
-int check(const saphira::bridge::BridgeOptions& options) {
+int check(const saphira::bridge::BridgeOptions& given) {
+  const saphira::bridge::BridgeOptions options = saphira::bridge::checked(given);
   const std::string trouble =
       saphira::transport::line_trouble(saphira::transport::parse_address(options.robot_port));
   if (!trouble.empty())
@@ -22,8 +23,7 @@ int check(const saphira::bridge::BridgeOptions& options) {
     if (file.path().extension() == ".p")
       saphira::protocol::load_parameters(file.path());
   if (!options.parameter_file.empty())
-    saphira::protocol::load_parameters(
-        saphira::find_file(options.robots_folder, options.parameter_file, ".p"));
+    saphira::protocol::load_parameters(options.parameter_file);
   return saphira::bus::kExitOk;
 }
 
