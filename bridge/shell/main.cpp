@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "position_file.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -22,6 +23,9 @@ int check(const saphira::bridge::BridgeOptions& given) {
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
     if (file.path().extension() == ".p")
       saphira::protocol::load_parameters(file.path());
+  const saphira::bridge::PositionFile position(options.state_file, saphira::Files::kStay);
+  if (!position.trouble().empty())
+    std::fprintf(stderr, "%s\n", position.trouble().c_str());
   if (!options.parameter_file.empty())
     saphira::protocol::load_parameters(options.parameter_file);
   return saphira::bus::kExitOk;
