@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "position_file.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -13,7 +14,8 @@
 namespace {
 
 /// Reads the files that a robot's answer would need.
-int check(const saphira::bridge::BridgeOptions& options) {
+int check(const saphira::bridge::BridgeOptions& given) {
+  const saphira::bridge::BridgeOptions options = saphira::bridge::checked(given);
   const std::string trouble =
       saphira::transport::line_trouble(saphira::transport::parse_address(options.robot_port));
   if (!trouble.empty())
@@ -21,9 +23,11 @@ int check(const saphira::bridge::BridgeOptions& options) {
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
     if (file.path().extension() == ".p")
       saphira::protocol::load_parameters(file.path());
+  const saphira::bridge::PositionFile position(options.state_file, saphira::Files::kStay);
+  if (!position.trouble().empty())
+    std::fprintf(stderr, "%s\n", position.trouble().c_str());
   if (!options.parameter_file.empty())
-    saphira::protocol::load_parameters(
-        saphira::find_file(options.robots_folder, options.parameter_file, ".p"));
+    saphira::protocol::load_parameters(options.parameter_file);
   return saphira::bus::kExitOk;
 }
 

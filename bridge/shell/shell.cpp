@@ -42,7 +42,8 @@ std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
   return wanted ? std::make_unique<transport::Keeper>() : nullptr;
 }
 
-/// Checks a person's input before it is used.
+}  // namespace
+
 BridgeOptions checked(BridgeOptions options) {
   transport::parse_address(options.robot_port);
   if (!std::filesystem::is_directory(options.robots_folder))
@@ -56,6 +57,8 @@ BridgeOptions checked(BridgeOptions options) {
     throw std::invalid_argument("--lease-ms: expected more than 0; --quiet-ms: 0 or more");
   return options;
 }
+
+namespace {
 
 CoreSettings settings_of(const BridgeOptions& options, bool lockstep) {
   return {lockstep,

@@ -42,6 +42,10 @@ struct BridgeOptions {
   bool keeper = true;
 };
 
+/// The options with the path of the parameter file. std::invalid_argument for a wrong one, or a
+/// file that is not there.
+BridgeOptions checked(BridgeOptions options);
+
 /// The bridge as a service: one robot server on one side, the bus on the other. It carries bytes,
 /// samples, files and the time to the core (saphira/bridge/core.hpp), and executes the core's
 /// outputs.

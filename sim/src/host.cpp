@@ -738,6 +738,12 @@ void Host::end() {
 
 void check(const HostOptions& options) {
   const Host::Parts parts(options);
+  if (!options.terminal && !options.tcp)
+    for (std::size_t number = 1; number <= 1 + options.more.size(); ++number)
+      expect_socket(numbered(options.socket.value_or(default_socket()), number));
+  for (const auto& socket : {options.view_socket, options.stereo_socket})
+    if (socket)
+      expect_socket(*socket);
 }
 
 void run(const HostOptions& options, int stop_fd) {

@@ -16,6 +16,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::sim {
 
 namespace {
@@ -24,8 +26,8 @@ sockaddr_un local_address(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path)
-    throw std::runtime_error("socket " + path + ": expected a path of 1 to " +
-                             std::to_string(sizeof address.sun_path - 1) + " characters");
+    throw UnusableFile("socket " + path + ": expected a path of 1 to " +
+                       std::to_string(sizeof address.sun_path - 1) + " characters");
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   return address;
 }
@@ -34,6 +36,18 @@ sockaddr_un local_address(const std::string& path) {
 
 void fail(const std::string& what) {
   throw std::runtime_error(what + ": " + std::strerror(errno));
+}
+
+void expect_socket(const std::string& path) {
+  local_address(path);
+  struct stat there {};
+  if (::lstat(path.c_str(), &there) == 0 && !S_ISSOCK(there.st_mode))
+    throw UnusableFile("socket " + path + ": expected a new name, or a socket; found " +
+                       (S_ISDIR(there.st_mode)   ? "a folder"
+                        : S_ISLNK(there.st_mode) ? "a link"
+                        : S_ISREG(there.st_mode) ? "a file"
+                                                 : "a device or a pipe") +
+                       ", which stays as it is");
 }
 
 void Fd::reset(int fd) {
@@ -55,13 +69,14 @@ Fd Listener::accept() const {
 
 Listener Listener::local(const std::string& path) {
   Listener out;
+  expect_socket(path);
   const sockaddr_un address = local_address(path);
   out.name_ = path;
   // A killed simulator leaves its socket behind; a living one answers.
   const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto* where = reinterpret_cast<const sockaddr*>(&address);
   struct stat there {};
-  if (::lstat(path.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) {
+  if (::lstat(path.c_str(), &there) == 0) {
     if (::connect(probe.get(), where, sizeof address) == 0)
       throw std::runtime_error("socket " + path + ": another simulator listens on it");
     if (errno == ECONNREFUSED)
@@ -117,8 +132,8 @@ Terminal::Terminal(std::string link) : link_(std::move(link)) {
   struct stat there {};
   if (::lstat(link_.c_str(), &there) == 0) {
     if (!S_ISLNK(there.st_mode))
-      throw std::runtime_error("terminal " + link_ +
-                               ": there is a file already that is no symbolic link");
+      throw UnusableFile("terminal " + link_ +
+                         ": there is a file already that is no symbolic link");
     ::unlink(link_.c_str());
   }
   if (::symlink(device_.c_str(), link_.c_str()) != 0)

@@ -32,6 +32,9 @@ class Fd {
   int fd_;
 };
 
+/// UnusableFile where another file has the path of a local socket, or no socket can have it.
+void expect_socket(const std::string& path);
+
 /// A listening socket; a local one is removed at the end. std::runtime_error where it cannot be
 /// opened.
 class Listener {

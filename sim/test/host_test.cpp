@@ -400,6 +400,20 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
             std::string::npos);
   EXPECT_NE(with([](Options& o) { o.socket = "/nowhere/robot"; }).find("/nowhere/robot"),
             std::string::npos);
+  const std::string notes = directory_ + "/notes.txt";
+  std::ofstream(notes) << "mine";
+  const std::string found =
+      "socket " + notes + ": expected a new name, or a socket; found a file, which stays as it is";
+  for (const auto change :
+       {+[](Options& o) { return &o.socket; }, +[](Options& o) { return &o.view_socket; },
+        +[](Options& o) { return &o.stereo_socket; }}) {
+    EXPECT_EQ(with([&](Options& o) { *change(o) = notes; }), found);
+    HostOptions options = options_;
+    *change(options) = notes;
+    EXPECT_THROW(check(options), UnusableFile) << "a dry run finds it, too";
+  }
+  EXPECT_EQ(read_file(notes), "mine");
+  EXPECT_NE(with([](Options& o) { o.socket = "/tmp"; }).find("found a folder"), std::string::npos);
   EXPECT_NE(with([](Options& o) { o.trace = "/nowhere/t.csv"; }).find("/nowhere/t.csv"),
             std::string::npos);
   EXPECT_NE(with([](Options& o) {

@@ -1,6 +1,7 @@
 // The answer to a newcomer's mistake at the command line gives the error and advice.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -193,6 +194,94 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   // The answer names the mistake, and does not list all valid forms.
   EXPECT_LT(said.size(), 2000U) << typed;
   EXPECT_EQ(said.find("terminate"), std::string::npos) << typed << ": " << said;
+}
+
+/// A file that a program is given and cannot use.
+struct WrongFile {
+  std::vector<std::string> words;  ///< FOLDER is the test's folder
+  std::string said;
+  bool tried_dry = true;
+};
+
+// In a dry run and live alike, the code is that of a mistake of use.
+TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
+  const test::TempDir folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder.path(name)) << text;
+  };
+  const std::string latin = "; caf\xE9\n";
+  write("empty", "");
+  write("notes", "mine\n");
+  for (const char* const ending : {"map", "wld", "p", "grammar", "people", "yaml"})
+    write(std::string("latin.") + ending, latin);
+  const std::string no_text = ":1:6: expected a text in UTF-8, found the byte 0xE9";
+  const std::string other = "found another file, which stays as it is";
+  const std::vector<WrongFile> all{
+      {{"saphira-bridge", "--robots", "/nowhere"}, "--robots /nowhere: expected a folder"},
+      {{"saphira-bridge", "--robot-file", "/nowhere/x.p"}, "/nowhere/x.p: there is no such file"},
+      {{"saphira-bridge", "--robot-file", "FOLDER/latin.p", "--dry-run"}, no_text, false},
+      {{"saphira-bridge", "--state", "FOLDER/notes"}, other},
+      {{"saphira-bridge", "--robot-port", "unix:FOLDER/notes"}, "expected a local socket, found a"},
+      {{"saphira-behaviors", "--plugin", "/nowhere/x.so"}, "expected a plug-in of behaviors"},
+      {{"saphira-behaviors", "--plugin", "FOLDER/notes"}, "expected a plug-in of behaviors"},
+      {{"saphira-registration", "--map", "/nowhere/x.map"}, "there is no such file"},
+      {{"saphira-registration", "--map", "FOLDER/latin.map"}, no_text},
+      {{"saphira-registration", "--map-memory", "FOLDER/notes"}, other},
+      {{"saphira-intentions", "--memory", "FOLDER/notes"}, other},
+      {{"saphira-facilitator", "--memory", "FOLDER/notes"}, other},
+      {{"saphira-dialogue", "--memory", "FOLDER/notes"}, other},
+      {{"saphira-dialogue", "--grammar", "FOLDER/latin.grammar"}, no_text},
+      {{"saphira-sim", "--world", "/nowhere/x.wld"}, "/nowhere/x.wld: there is no such file"},
+      {{"saphira-sim", "--world", "FOLDER/latin.wld"}, no_text},
+      {{"saphira-sim", "--robot", "FOLDER/latin.p"}, no_text},
+      {{"saphira-sim", "--socket", "FOLDER/notes"},
+       "expected a new name, or a socket; found a file"},
+      {{"saphira-console", "--certificate", "FOLDER/empty", "--certificate-key", "FOLDER/empty"},
+       "/empty: expected a certificate in PEM"},
+      {{"saphira-relay", "--dial-port", "1", "--robots", "FOLDER/notes", "--certificate",
+        "FOLDER/empty", "--certificate-key", "FOLDER/empty"},
+       "/empty: expected a certificate in PEM",
+       false},
+      {{"saphira", "check", "FOLDER/latin.yaml"}, no_text, false},
+      {{"saphira", "map", "load", "FOLDER/latin.map"}, no_text, false},
+      {{"saphira", "scenario", "--cast", "FOLDER/latin.people"}, no_text, false},
+      {{"saphira", "wiring", "--drawing", "/nowhere/x.svg"},
+       "/nowhere/x.svg: cannot be written",
+       false},
+  };
+  for (const WrongFile& wrong : all)
+    for (const bool dry : {false, true}) {
+      if (dry && !wrong.tried_dry)
+        continue;
+      std::vector<std::string> words;
+      for (std::string word : wrong.words) {
+        if (const std::size_t at = word.find("FOLDER"); at != std::string::npos)
+          word.replace(at, 6, folder.path());
+        words.push_back(word);
+      }
+      if (dry)
+        words.emplace_back("--dry-run");
+      const test::Outcome outcome = test::run(words, {{"SAPHIRA_ROBOT", test::unique_robot()}});
+      const std::string typed = testing::PrintToString(words);
+      EXPECT_EQ(outcome.code, 2) << typed << ": " << outcome.text;
+      EXPECT_TRUE(test::has(outcome.text, wrong.said)) << typed << ": " << outcome.text;
+    }
+  std::string mine;
+  std::getline(std::ifstream(folder.path("notes")), mine);
+  EXPECT_EQ(mine, "mine");
+}
+
+TEST(EachCommand, NamesAMistakeInAVariable) {
+  const auto said = [](const std::string& variable, const std::string& value) {
+    const test::Outcome outcome = test::run({"saphira", "status"}, {{variable, value}});
+    EXPECT_EQ(outcome.code, 2) << variable << ": " << outcome.text;
+    return outcome.text;
+  };
+  EXPECT_EQ(said("SAPHIRA_DOMAIN", "abc"),
+            "saphira: SAPHIRA_DOMAIN: expected a whole number between 0 and 231, found abc\n");
+  EXPECT_TRUE(said("SAPHIRA_ROBOT", "*").starts_with("saphira: SAPHIRA_ROBOT: expected the name"));
+  EXPECT_TRUE(said("SAPHIRA_PROFILE", "hots").starts_with("saphira: SAPHIRA_PROFILE: expected"));
+  EXPECT_TRUE(said("SAPHIRA_INTERFACE", "lo").starts_with("saphira: SAPHIRA_INTERFACE: expected"));
 }
 
 TEST(EachCommand, NamesAnUnknownOptionInOurWords) {

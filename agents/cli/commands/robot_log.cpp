@@ -53,7 +53,7 @@ logs::LogMap map_log(const logs::DataSet& log, const bus::Stop& stop) {
 
 void write(const std::string& path, const std::string& text) {
   if (!replace_file(path, text, true))
-    throw std::runtime_error(cannot_be(path, "written"));
+    throw UnusableFile(cannot_be(path, "written"));
   std::printf("written to %s\n", path.c_str());
 }
 
@@ -72,10 +72,10 @@ int map(const RobotLogOptions& options, const bus::Stop& stop) {
     expect_ending(options.drawing, ".svg");
   for (const std::string& path : {options.map, options.drawing}) {
     if (!path.empty() && !can_replace_file(path))
-      throw std::runtime_error(cannot_be(path, "written"));
+      throw UnusableFile(cannot_be(path, "written"));
     std::error_code none;
     if (std::filesystem::equivalent(options.log, path, none))
-      throw std::runtime_error(path + ": this is the log itself; expected another file to write");
+      throw UnusableFile(path + ": this is the log itself; expected another file to write");
   }
   const logs::DataSet log = read(options);
   const logs::LogMap mapped = map_log(log, stop);
@@ -162,13 +162,8 @@ CLI::App* add(CLI::App& log, Chosen& chosen, const char* name, const char* what,
   command->add_option("log", options->log, "the log in CARMEN's format, packed (.gz) or not")
       ->required()
       ->check(CLI::ExistingFile);
-  chosen.when(command, [options, run](const bus::NodeOptions&, const bus::Stop& stop) -> int {
-    try {
-      return run(*options, stop);
-    } catch (const std::runtime_error& error) {
-      std::cerr << "saphira: " << error.what() << '\n';
-      return bus::kExitUsage;
-    }
+  chosen.when(command, [options, run](const bus::NodeOptions&, const bus::Stop& stop) {
+    return run(*options, stop);
   });
   return command;
 }

@@ -49,10 +49,8 @@ int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
   if (!seen.empty())
     find_trouble(units, seen);
   if (!options.drawing.empty()) {
-    if (!replace_file(options.drawing, runtime::wiring_drawing(units))) {
-      std::fprintf(stderr, "saphira: %s\n", cannot_be(options.drawing, "written").c_str());
-      return bus::kExitFailed;
-    }
+    if (!replace_file(options.drawing, runtime::wiring_drawing(units)))
+      throw UnusableFile(cannot_be(options.drawing, "written"));
     std::printf("drew %s\n", options.drawing.c_str());
     return bus::kExitOk;
   }

@@ -44,7 +44,7 @@ Kept keep(const std::string& file) {
     return {new_key(), 0};
   const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0)
-    throw std::runtime_error(cannot_be(file, "opened") + "; it is for the console's key");
+    throw UnusableFile(cannot_be(file, "opened") + "; it is for the console's key");
   struct stat state {};
   std::array<char, 100> text{};
   const ssize_t size = read(fd, text.data(), text.size());
@@ -61,10 +61,9 @@ Kept keep(const std::string& file) {
   }
   close(fd);
   if (open_to_others)
-    throw std::runtime_error(file +
-                             ": others may read the console's key; chmod 600 it, or remove it");
+    throw UnusableFile(file + ": others may read the console's key; chmod 600 it, or remove it");
   if (!trouble.empty())
-    throw std::runtime_error(trouble + "; it is for the console's key");
+    throw UnusableFile(trouble + "; it is for the console's key");
   return kept;
 }
 
@@ -73,9 +72,9 @@ std::string read_secret(const std::string& file) {
   struct stat state {};
   std::string secret;
   if (!(in >> secret) || stat(file.c_str(), &state) != 0)
-    throw std::runtime_error(file + ": expected a token");
+    throw UnusableFile(file + ": expected a token");
   if ((state.st_mode & 077U) != 0)
-    throw std::runtime_error(file + ": others may read the token; chmod 600 it");
+    throw UnusableFile(file + ": others may read the token; chmod 600 it");
   return secret;
 }
 
@@ -87,7 +86,7 @@ void keep_port(const std::string& file, const Kept& kept, int port) {
   const std::string trouble = written ? "" : cannot_be(file, "written");
   close(fd);
   if (!written)
-    throw std::runtime_error(trouble + "; it is for the console's port");
+    throw UnusableFile(trouble + "; it is for the console's port");
 }
 
 }  // namespace saphira::console

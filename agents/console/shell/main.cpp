@@ -1,10 +1,13 @@
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <thread>
 
 #include "gateway.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/security/pair.hpp"
 #include "screenshot.hpp"
 
 namespace {
@@ -87,6 +90,13 @@ int main(int argc, char** argv) {
         if (!dial.empty()) {
           options.dial = relay::parse_address(dial);
           options.dial_token = console::read_secret(token_file);
+        }
+        if (!options.server.certificate.empty()) {
+          const std::string trouble =
+              security::check_pair(options.server.certificate, options.server.certificate_key,
+                                   static_cast<std::int64_t>(unix_time()));
+          if (!trouble.empty())
+            std::fprintf(stderr, "saphira-console: %s\n", trouble.c_str());
         }
         if (node.dry_run)  // its files were checked
           return static_cast<int>(bus::kExitOk);

@@ -45,7 +45,7 @@ void make_screenshot(const std::string& address, const ScreenshotOptions& option
   std::ofstream out(options.file, std::ios::binary);
   out << decode_base64(picture.at("data").get<std::string>());
   if (!out.flush())
-    throw std::runtime_error(cannot_be(options.file, "written"));
+    throw UnusableFile(cannot_be(options.file, "written"));
 }
 
 }  // namespace saphira::console

@@ -482,7 +482,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
   }
   if (log.scans.empty()) {
     if (!log.damaged.empty())
-      throw std::runtime_error(log.damaged.front());
+      throw UnusableFile(log.damaged.front());
     throw FileError(file, 1, 1,
                     scans.empty() ? "expected a line FLASER, ROBOTLASER1 or RAWLASER1"
                                   : "expected lines ODOM: scans without a pose need them");
@@ -512,7 +512,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
 std::string read_log(const std::string& path, std::string* trouble) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file)
-    throw std::runtime_error(cannot_be(path, "opened"));
+    throw UnusableFile(cannot_be(path, "opened"));
   std::string out;
   std::array<char, 1 << 16> part{};
   for (;;) {
@@ -527,7 +527,7 @@ std::string read_log(const std::string& path, std::string* trouble) {
     if (error == Z_OK || error == Z_STREAM_END)
       return out;
     if (out.empty())
-      throw std::runtime_error(path + ": cannot be unpacked");
+      throw UnusableFile(path + ": cannot be unpacked");
     if (trouble != nullptr)
       *trouble = path + ": damaged or cut off after " + std::to_string(out.size()) + " bytes";
     // Whole lines only.

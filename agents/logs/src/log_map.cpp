@@ -2,13 +2,14 @@
 
 #include <stdexcept>
 
+#include "saphira/base/text.hpp"
 #include "saphira/logs/laser_map.hpp"
 
 namespace saphira::logs {
 
 LogMap map_log(const DataSet& log, const std::function<bool()>& goes_on) {
   if (log.scans.empty())
-    throw std::runtime_error(log.name + ": it has no laser scan");
+    throw UnusableFile(log.name + ": it has no laser scan");
   ScanMapper mapper;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     mapper.add(log.poses_in_odom[i], log.scans[i]);

@@ -1,15 +1,18 @@
 // saphira-relay: access to a robot without a reachable address. README.md.
 #include <sys/stat.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "relay.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/stop_signals.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/security/pair.hpp"
 
 namespace {
 
@@ -52,6 +55,12 @@ int main(int argc, char** argv) {
   if (const auto code = app.parse(argc, argv))
     return *code;
   try {
+    if (certificate.given()) {
+      const std::string trouble = security::check_pair(options.certificate, options.certificate_key,
+                                                       static_cast<std::int64_t>(unix_time()));
+      if (!trouble.empty())
+        std::fprintf(stderr, "saphira-relay: %s\n", trouble.c_str());
+    }
     const int stop = stop_on_signals();
     relay::Relay server(options, read_robots(robots));
     relay::say("listens for robots on port " + std::to_string(options.dial_port));

@@ -18,7 +18,7 @@ void write_sound(const std::filesystem::path& path, const speech::Sound& sound) 
   std::ofstream out(path, std::ios::binary);
   out << speech::wav(sound) << std::flush;
   if (!out)
-    throw std::runtime_error(cannot_be(path, "written"));
+    throw UnusableFile(cannot_be(path, "written"));
 }
 
 /// A file for each line, and one for all.
@@ -28,7 +28,7 @@ void read_aloud(const std::string& dialogue, const std::filesystem::path& folder
   try {
     passages = speech::read_aloud(read_file(dialogue));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(dialogue + ": " + error.what());
+    throw UnusableFile(dialogue + ": " + error.what());
   }
   std::size_t number = 0;
   for (const speech::Passage& passage : passages) {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira::speech {
 namespace {
@@ -42,7 +43,7 @@ Sound resampled(const Sound& sound, int rate) {
 
 Sound read_wav(const std::string& bytes, const std::string& file) {
   const auto fail = [&](const std::string& what) {
-    throw std::runtime_error(file + ": " + what + " (expected a WAV file with 16 bits a sample)");
+    throw UnusableFile(file + ": " + what + " (expected a WAV file with 16 bits a sample)");
   };
   if (bytes.size() < 12 || bytes.compare(0, 4, "RIFF") != 0 || bytes.compare(8, 4, "WAVE") != 0)
     fail("it does not begin as a WAV file");

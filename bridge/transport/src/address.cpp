@@ -82,6 +82,10 @@ void parse_tcp(const std::string& text, Address& address) {
     throw std::invalid_argument("\"" + text + "\": expected a port in 1..65535");
 }
 
+const char* kind_of_file(const struct stat& about) {
+  return S_ISDIR(about.st_mode) ? "a folder" : S_ISREG(about.st_mode) ? "a file" : "a device";
+}
+
 /// A path, or nothing that is an address.
 void parse_plain(const std::string& text, Address& address) {
   struct stat about {};
@@ -97,9 +101,8 @@ void parse_plain(const std::string& text, Address& address) {
                                 (is_host ? " (did you mean tcp:" + text + "?)" : ""));
   }
   if (is_there && !S_ISCHR(about.st_mode) && !S_ISSOCK(about.st_mode))
-    throw std::invalid_argument("\"" + text +
-                                "\": expected a serial line or a local socket, found " +
-                                (S_ISDIR(about.st_mode) ? "a folder" : "a file"));
+    throw std::invalid_argument(
+        "\"" + text + "\": expected a serial line or a local socket, found " + kind_of_file(about));
   address.plain_path = true;
   if (!is_there && text.find('@') != std::string::npos) {
     address.plain_path = false;
@@ -141,10 +144,15 @@ Address parse_address(const std::string& text) {
     parse_serial(text, address);
     return address;
   }
-  if (text.starts_with("unix:"))
+  if (text.starts_with("unix:")) {
     address.name = text.substr(5);
-  else
+    struct stat about {};
+    if (::stat(address.name.c_str(), &about) == 0 && !S_ISSOCK(about.st_mode))
+      throw std::invalid_argument("\"" + text + "\": expected a local socket, found " +
+                                  kind_of_file(about));
+  } else {
     parse_plain(text, address);
+  }
   if (address.name.empty())
     throw std::invalid_argument("\"" + text + "\": expected unix:/path");
   if (address.kind == Address::Kind::local && address.name.size() >= sizeof(sockaddr_un::sun_path))

@@ -10,8 +10,10 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "process.hpp"
 
@@ -65,6 +67,24 @@ TEST(Address, HostAndPortWithoutPrefixIsAMistakeThatIsKnown) {
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("tcp:localhost:8101"), std::string::npos);
+  }
+}
+
+TEST(Address, AnotherFileIsNoSocket) {
+  const test::TempDir folder;
+  const std::string notes = folder.path("notes.txt");
+  std::ofstream(notes) << "mine";
+  for (const auto& [text, found] :
+       {std::pair("unix:" + notes, "expected a local socket, found a file"),
+        {notes, "expected a serial line or a local socket, found a file"},
+        {"unix:" + folder.path(), "expected a local socket, found a folder"},
+        {"unix:/dev/null", "expected a local socket, found a device"}}) {
+    try {
+      parse_address(text);
+      ADD_FAILURE() << text;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()), "\"" + text + "\": " + found);
+    }
   }
 }
 

@@ -129,7 +129,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   } catch (const std::invalid_argument& error) {
     what = error.what();
     usage = app.program() + ": " + what;
-  } catch (const UnreadableFile& error) {
+  } catch (const UnusableFile& error) {
     what = error.what();
     usage = app.program() + ": " + what;
   } catch (const std::exception& error) {

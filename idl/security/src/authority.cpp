@@ -12,6 +12,7 @@
 #include "files.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/documents.hpp"
 
@@ -47,14 +48,14 @@ class Private {
 
 void write(const std::string& file, const std::string& text) {
   if (!replace_file(file, text, true))
-    throw std::system_error(errno, std::generic_category(), file);
+    throw UnusableFile(cannot_be(file, "written"));
 }
 
 void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    throw std::system_error(error, folder);
+    throw UnusableFile(folder + ": cannot be made: " + error.message());
 }
 
 KeyPair key_pair(const std::string& key, const std::string& certificate) {
@@ -65,6 +66,19 @@ void check_days(int days) {
   if (days < 1 || days > kMostDays)
     throw std::invalid_argument("--days " + std::to_string(days) + ": expected 1 to " +
                                 std::to_string(kMostDays));
+}
+
+/// Calls f(), and adds the name of the file to its error.
+template <class F>
+void checked(const std::string& file, F&& f) {
+  try {
+    f();
+  } catch (const UnusableFile&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(file + ": " + error.what() +
+                                "; take the file from the copy of this folder");
+  }
 }
 
 }  // namespace
@@ -94,12 +108,17 @@ Authority::Authority(const std::string& folder) : folder_(folder) {
   if (!fs::exists(folder_ + "/" + kAuthorityKey))
     throw std::invalid_argument(folder_ +
                                 " holds no authority: `saphira security init SITE` makes one");
-  key_ = read_bytes(folder_ + "/" + kAuthorityKey);
-  certificate_ = read_bytes(folder_ + "/" + kAuthority);
+  const std::string key_file = folder_ + "/" + kAuthorityKey;
+  const std::string certificate_file = folder_ + "/" + kAuthority;
+  key_ = read_bytes(key_file);
+  certificate_ = read_bytes(certificate_file);
+  checked(certificate_file, [&] { read_certificate(certificate_); });
+  checked(key_file, [&] { check_key(key_, certificate_); });
   const std::string roles_file = folder_ + "/" + kRolesFile;
   roles_ = parse_roles(read_file(roles_file), roles_file, topics_of_contract());
   load_members();
-  revoked_.members = load_revoked(folder_, certificate_).members;
+  checked(folder_ + "/" + kRevoked,
+          [&] { revoked_.members = load_revoked(folder_, certificate_).members; });
 }
 
 void Authority::load_members() {
@@ -173,8 +192,9 @@ std::string Authority::add(const std::string& name, const std::vector<std::strin
     throw std::invalid_argument("\"" + name +
                                 "\" is no name of a member: expected up to 32 lower-case letters, "
                                 "digits and hyphens, a letter first");
-  if (robot.find_first_of("*?[]<>& \t") != std::string::npos)
-    throw std::invalid_argument("--robot \"" + robot + "\": expected the name of one robot");
+  if (!robot.empty())
+    if (const std::string trouble = trouble_of_robot(robot); !trouble.empty())
+      throw std::invalid_argument("--robot: " + trouble);
   std::vector<std::string> known_roles;
   for (const Role& role : roles_.roles)
     known_roles.push_back(role.name);

@@ -2,8 +2,7 @@
 
 #include <dlfcn.h>
 
-#include <stdexcept>
-
+#include "saphira/base/text.hpp"
 #include "saphira/behaviors/plugin.hpp"
 
 namespace saphira::behaviors {
@@ -12,7 +11,7 @@ namespace {
 void* symbol(void* library, const char* name, const std::string& path) {
   void* const found = dlsym(library, name);
   if (found == nullptr)
-    throw std::runtime_error(path + ": expected a plug-in of behaviors; it has no " + name);
+    throw UnusableFile(path + ": expected a plug-in of behaviors; it has no " + name);
   return found;
 }
 
@@ -24,14 +23,13 @@ std::vector<std::string> load_plugin(const std::string& path, Registry& registry
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     const char* const why = dlerror();
-    throw std::runtime_error(path + ": expected a plug-in of behaviors: " +
-                             (why == nullptr ? "it cannot be loaded" : why));
+    throw UnusableFile(path + ": expected a plug-in of behaviors: " +
+                       (why == nullptr ? "it cannot be loaded" : why));
   }
   const int version = *static_cast<const int*>(symbol(library, "saphira_behaviors_plugin", path));
   if (version != kPluginVersion)
-    throw std::runtime_error(path + ": expected a plug-in of version " +
-                             std::to_string(kPluginVersion) + ", found version " +
-                             std::to_string(version));
+    throw UnusableFile(path + ": expected a plug-in of version " + std::to_string(kPluginVersion) +
+                       ", found version " + std::to_string(version));
   const auto enter =
       reinterpret_cast<void (*)(Registry&)>(symbol(library, "saphira_register_behaviors", path));
   Registry added;
@@ -43,7 +41,7 @@ std::vector<std::string> load_plugin(const std::string& path, Registry& registry
     if (!schema.make) {
       std::string what = path;
       what.append(": the behavior \"").append(name).append("\" has no way to be made");
-      throw std::runtime_error(what);
+      throw UnusableFile(what);
     }
     registry.add(std::move(schema));
   }

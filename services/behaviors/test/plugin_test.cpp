@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pioneer.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -36,7 +37,7 @@ TEST(Plugin, WhatIsNoPluginIsSaidToBeNone) {
   const auto message = [&](const std::string& path) -> std::string {
     try {
       load_plugin(path, registry);
-    } catch (const std::runtime_error& error) {
+    } catch (const UnusableFile& error) {
       return error.what();
     }
     return "";

@@ -225,10 +225,10 @@ std::size_t letter_size(std::string_view text) {
 std::string read_bytes(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)
-    throw UnreadableFile(cannot_be(path, "read"));
+    throw UnusableFile(cannot_be(path, "read"));
   in.peek();
   if (in.bad())
-    throw UnreadableFile(path + ": cannot be read (is it a file?)");
+    throw UnusableFile(path + ": cannot be read (is it a file?)");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -183,7 +183,7 @@ TEST(Text, EveryItemOfAListIsSeparated) {
             "1 and 2");
 }
 
-TEST(Text, UnreadableFileIsNamed) {
+TEST(Text, UnusableFileIsNamed) {
   try {
     read_file("/nonexistent/file.wld");
     FAIL();

@@ -31,9 +31,9 @@ class FileError : public std::runtime_error {
   int column_;
 };
 
-/// A file that a person named cannot be read: there is none, or it is a folder. what() names it and
-/// the reason.
-class UnreadableFile : public std::runtime_error {
+/// A file that a person named cannot be used: it cannot be read or written, or is of another kind.
+/// what() names it and the reason. A mistake of use, as FileError and std::invalid_argument.
+class UnusableFile : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -94,7 +94,7 @@ void expect_last_line_break(std::string_view text, const std::string& file);
 /// The number of bytes of the letter (UTF-8) at the beginning of the text; 0: it begins with none.
 std::size_t letter_size(std::string_view text);
 
-/// The whole content of a file, whatever it is. UnreadableFile where it cannot be read.
+/// The whole content of a file, whatever it is. UnusableFile where it cannot be read.
 std::string read_bytes(const std::string& path);
 
 /// The text in a file, without a byte order mark. FileError where it is not UTF-8, as the bus and
