@@ -116,8 +116,9 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
   };
   if (meaning.functor == "stop") {
     want(meaning, utterance, "stop", {});
-  } else if (meaning.functor == "move") {
-    const double distance = number_of(meaning, "distance");
+  } else if (meaning.functor == "move" || meaning.functor == "move_centimeters") {
+    const double unit = meaning.functor == "move" ? 1.0 : 0.01;  // [m]
+    const double distance = number_of(meaning, "distance") * unit;
     if (distance <= 0.0) {
       refuse(utterance, "that is no way to go", out);
       return true;

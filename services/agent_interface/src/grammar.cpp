@@ -16,8 +16,8 @@ constexpr std::size_t kLongestName = 3;        // words
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
 /// Units behind a number without a blank, and their words in the grammars.
-constexpr std::array<std::pair<const char*, const char*>, 3> kUnits{
-    {{"m", "meters"}, {"deg", "degrees"}, {"s", "seconds"}}};
+constexpr std::array<std::pair<const char*, const char*>, 4> kUnits{
+    {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}}};
 
 bool is_number(const std::string& word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&

@@ -84,6 +84,8 @@ TEST_F(DialogueTest, WhatIsNotUnderstoodIsAskedBackAndNotActedOn) {
 TEST_F(DialogueTest, ANumberMayHaveItsUnit) {
   EXPECT_EQ(said("Flakey, go forward 2m"), "I go forward 2 m");
   EXPECT_EQ(goals(), "go_to position=(2, 0, 0)");
+  EXPECT_EQ(said("Flakey, go forward 50cm"), "I go forward 50 cm");
+  EXPECT_EQ(goals(), "go_to position=(0.5, 0, 0)");
   EXPECT_NE(said("Flakey, turn left 45deg").find("I turn 45 degrees to the left"),
             std::string::npos);
 }
@@ -814,6 +816,7 @@ TEST_F(DialogueTest, ItShowsTheWayWaitsAndPatrols) {
   EXPECT_EQ(goals(), "patrol ");
   EXPECT_EQ(said("Flakey, turn left 0 degrees"), "that is no turn");
   EXPECT_EQ(said("Flakey, go forward 0 meters"), "that is no way to go");
+  EXPECT_EQ(said("Flakey, go forward 0 cm"), "that is no way to go");
   EXPECT_TRUE(last.goals.empty());
   EXPECT_EQ(said("Flakey, go to the nearest door"),
             "the nearest door with a name is that of EJ-231: say go to EJ-231");
