@@ -150,7 +150,8 @@ static int go(double x, double y, double take_back) {
                           .requester = "c_agent",
                           .functor = "go_to",
                           .arguments = {._maximum = 1, ._length = 1, ._buffer = &position},
-                          .writer_lost = saphira_v1_WRITER_LOST_CANCEL};
+                          .writer_lost = saphira_v1_WRITER_LOST_CANCEL,
+                          .withdrawn = ""};
   check(dds_write(goals, &goal), "goal");
   saphira_v1_GoalState last = (saphira_v1_GoalState)-1;
   bool taken_back = false;
