@@ -141,7 +141,7 @@ void add_ask(CLI::App& app, Chosen& chosen) {
   command
       ->add_option("--deadline", options->deadline,
                    "[s] for the answer (usual: 10 s, and while the agent says that it is at work)")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(between(0.1, 3600.0))
       ->transform(number_in_unit("s"));
   command->add_flag("--json", options->json,
                     "one JSON object for each answer: agent, code, text, values");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "saphira/base/units.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 /// The subcommands of `saphira`. Each adds itself to the command line, and when chosen gives the
 /// function to run.
@@ -32,21 +34,34 @@ struct Chosen {
   }
 };
 
-/// A validator of numbers; expected: the words for its error message.
-inline CLI::Validator number_that(const std::string& expected, bool (*good)(double)) {
+/// A validator of finite numbers; expected: the words for its error message.
+inline CLI::Validator number_that(const std::string& expected,
+                                  const std::function<bool(double)>& good,
+                                  const std::string& in_help = "NUMBER") {
   return {[=](std::string& text) {
             double value = 0.0;
-            return CLI::detail::lexical_cast(text, value) && good(value)
+            return CLI::detail::lexical_cast(text, value) && std::isfinite(value) && good(value)
                        ? std::string()
                        : "expected " + expected + ", found " + text.substr(0, 40);
           },
-          "NUMBER"};
+          in_help};
 }
 inline CLI::Validator at_least_zero() {
   return number_that("0 or more", [](double value) { return value >= 0.0; });
 }
 inline CLI::Validator above_zero() {
   return number_that("more than 0", [](double value) { return value > 0.0; });
+}
+inline CLI::Validator between(double low, double high) {
+  return number_that(
+      "a number between " + plain(low) + " and " + plain(high),
+      [=](double value) { return value >= low && value <= high; },
+      "in [" + plain(low) + " - " + plain(high) + "]");
+}
+/// A whole number of that type.
+template <class T>
+CLI::Validator whole() {
+  return {[](std::string& text) { return trouble_of_limits<T>(text); }, ""};
 }
 
 /// Makes the number of an option out of a number with or without its unit: "30cm" is 0.3 in m.

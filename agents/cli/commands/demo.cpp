@@ -525,13 +525,15 @@ void add_demo(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand("demo", "A simulated robot drives to a goal in an office");
   command->add_flag("--headless", options->headless, "lines in place of the picture");
-  command->add_option("--seed", options->seed, "of the simulator's noise")->capture_default_str();
+  command->add_option("--seed", options->seed, "of the simulator's noise")
+      ->check(whole<std::uint64_t>())
+      ->capture_default_str();
   command->add_flag("--lockstep", options->lockstep,
                     "step by step, as fast as the machine can; every run of a seed is the same");
   command->add_flag("--single-process", options->single_process, "all services in one process");
   command->add_flag("--json", options->json, "the summary as JSON on the last line");
   command->add_option("--time-limit", options->time_limit, "[s] of robot time")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->add_option("--world", options->world,

@@ -310,7 +310,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
       ->check(at_least_zero())
       ->transform(number_in_unit("s"));
   command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
   command->add_option("--why", options->why, "of cancel: the reason, which its status then says");
   command->footer(

@@ -505,7 +505,7 @@ void add_map(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("map", "The map: look at it, draw it, change it");
   command->add_option("words", *words, "what to do, as below");
   command->add_option("--seconds", *seconds, "show: how long the way is followed")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(between(0.0, 1e6))
       ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->footer(kMapWords);

@@ -85,8 +85,8 @@ void add_processes(CLI::App& app, Chosen& chosen) {
   CLI::App* command =
       app.add_subcommand("processes", "The micro-tasks of the services: list, interrupt, resume");
   command->add_option("words", options->words, "interrupt | resume | suspend SERVICE PROCESS");
-  command->add_option("--cycles", options->cycles,
-                      "suspend: for so many cycles, not until resumed");
+  command->add_option("--cycles", options->cycles, "suspend: for so many cycles, not until resumed")
+      ->check(whole<std::uint32_t>());
   command->footer(
       "Of the service intentions also an intention, by its name or number (saphira intentions).\n"
       "An interrupted process cleans up and waits until it is resumed.");

@@ -189,7 +189,8 @@ void add_robot_log(CLI::App& log, Chosen& chosen) {
       ->add_option("--start", options->start,
                    "where the robot is at first: x y th [m, rad] on the map; without it the robot "
                    "finds its place on a map that was given")
-      ->expected(3);
+      ->expected(3)
+      ->check(number_that("a finite number", [](double) { return true; }));
   command->add_option("--sonars", options->sonars, "whose sonars")
       ->check(CLI::IsMember({"pioneer", "b21"}))
       ->capture_default_str();

@@ -334,7 +334,9 @@ void add_scenario(CLI::App& app, Chosen& chosen) {
       "A robot follows its supervisor through an office, is told who is where, and gets a report");
   command->add_option("--cast", options->casts, "the people: names of config/people, or files")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the simulator's noise")->capture_default_str();
+  command->add_option("--seed", options->seed, "of the simulator's noise")
+      ->check(whole<std::uint64_t>())
+      ->capture_default_str();
   command->add_option("--seeds", options->seeds, "how many runs, each with the next seed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -343,10 +345,10 @@ void add_scenario(CLI::App& app, Chosen& chosen) {
       "in one process and as fast as the machine: the same seed is the same story, to "
       "the bit");
   command->add_option("--rate", options->rate, "times real time")
-      ->check(CLI::Range(0.1, 20.0))
+      ->check(between(0.1, 20.0))
       ->capture_default_str();
   command->add_option("--time-limit", options->time_limit, "[s] of robot time")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->transform(number_in_unit("s"))
       ->capture_default_str();
   command->add_flag("--json", options->json, "the result as JSON");

@@ -237,7 +237,8 @@ std::string read_file(const std::string& path) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as some editors write it
   if (text.starts_with(kByteOrderMark))
     text.erase(0, kByteOrderMark.size());
-  if (text.find('\0') == std::string::npos)
+  const bool of_another_program = letter_size(text) == 0 && !other_format(text).empty();
+  if (!of_another_program && text.find('\0') == std::string::npos)
     expect_utf8(text, path);
   return text;
 }

@@ -143,6 +143,9 @@ TEST(Text, AFileInLatin1IsRefusedAtItsPlace) {
   // The reader of a map names a picture.
   std::ofstream(path) << "\x89PNG" << '\0';
   EXPECT_EQ(other_format(read_file(path)), "a picture (PNG)");
+  std::ofstream(path) << "\xFF\xFE"
+                         "DOOR";
+  EXPECT_EQ(other_format(read_file(path)), "a text in UTF-16 (save it as UTF-8)");
 }
 
 TEST(Text, FilesOfOtherProgramsAreKnown) {

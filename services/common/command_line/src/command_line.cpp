@@ -6,13 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
 
 #include "saphira/base/guess.hpp"
-#include "saphira/base/numbers.hpp"
 #include "saphira/base/output.hpp"
 
 namespace saphira {
@@ -252,18 +250,6 @@ bool has_default(const std::optional<T>& value) {
 template <class T>
 bool has_default(const T& /*value*/) {
   return true;
-}
-
-/// The error of a whole number outside of T's range, which the parser may let wrap around. Another
-/// text has no error here: the parser reports it.
-template <class T>
-std::string trouble_of_limits(const std::string& text) {
-  const std::string digits = text.substr(text.starts_with('-') ? 1 : 0);
-  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos ||
-      number_in<T>(text))
-    return {};
-  return "expected a whole number between " + std::to_string(std::numeric_limits<T>::min()) +
-         " and " + std::to_string(std::numeric_limits<T>::max()) + ", found " + text;
 }
 
 template <class T>

@@ -292,11 +292,47 @@ Map parse_map(std::string_view text, const std::string& file) {
   return map;
 }
 
+namespace {
+
+/// FileError where the artifacts of a file that a person wrote are unlikely.
+void check_likely(const Map& map, std::string_view text, const std::string& file) {
+  const std::vector<Line> lines = split_lines(text);  // one for each artifact
+  if (map.features.empty())
+    throw FileError(file, 1, 1, "expected a line for each artifact of the map, found none");
+  constexpr double kRobot = 0.4;  // [m]
+  constexpr std::size_t kFew = 3;
+  const bool small = std::all_of(map.features.begin(), map.features.end(), [](const Feature& one) {
+    return std::abs(one.pose_in_map.x) < kRobot && std::abs(one.pose_in_map.y) < kRobot &&
+           one.length < kRobot && one.width < kRobot;
+  });
+  if (small && map.features.size() >= kFew)
+    throw FileError(file, lines.front().number, 1,
+                    "the whole map is smaller than a robot: is it in metres? The unit of this file "
+                    "is mm",
+                    lines.front().text);
+  std::map<std::string_view, int> lines_of_places;
+  for (std::size_t i = 0; i < std::min(lines.size(), map.features.size()); ++i) {
+    const Feature& one = map.features[i];
+    if (one.type != PointType::position || one.name.empty())
+      continue;
+    const auto [known, is_new] = lines_of_places.emplace(one.name, lines[i].number);
+    if (!is_new)
+      throw FileError(file, lines[i].number, static_cast<int>(lines[i].text.find('"')) + 1,
+                      "expected a name of its own: the POS of line " +
+                          std::to_string(known->second) + " is \"" + one.name + "\", too",
+                      lines[i].text);
+  }
+}
+
+}  // namespace
+
 Map load_map(const std::string& path) {
   const std::string text = read_file(path);
   if (!text.ends_with('"'))  // a name is whole
     expect_last_line_break(text, path);
-  return parse_map(text, path);
+  Map map = parse_map(text, path);
+  check_likely(map, text, path);
+  return map;
 }
 
 std::string to_text(const Map& map) {

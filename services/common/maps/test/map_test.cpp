@@ -221,6 +221,37 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"POS (1) 0, 0, 0 \"a\rb\"\n", 1, 17, "without control characters"},
         Broken{"POS (1) 0, 0, nan\n", 1, 15, "a number (theta"}));
 
+TEST(MapFile, ThatIsUnlikelyIsRefused) {
+  const std::string path =
+      ::testing::TempDir() + "saphira-unlikely-" + std::to_string(::getpid()) + ".map";
+  const auto loading = [&path](const std::string& text) -> std::string {
+    std::ofstream(path) << text;
+    try {
+      load_map(path);
+    } catch (const FileError& error) {
+      const std::string what = error.what();
+      return what.substr(path.size(), what.find('\n') - path.size());
+    }
+    return "";
+  };
+  const std::string nothing = ":1:1: expected a line for each artifact of the map, found none";
+  EXPECT_EQ(loading(""), nothing);
+  EXPECT_EQ(loading("; my floor\n"), nothing);
+  const std::string metres =
+      "; my floor\nWALL 0, 0, 0, 38\nWALL 0, 0, 90, 27.5\nDOOR (1) 12, 20, 90, 1\n";
+  EXPECT_EQ(loading(metres),
+            ":2:1: the whole map is smaller than a robot: is it in metres? The unit of this file "
+            "is mm");
+  EXPECT_EQ(loading(metres + "WALL 0, 0, 0, 400\n"), "");
+  EXPECT_EQ(loading("POS (1) 0, 0, 0 \"home\"\n"), "");
+  EXPECT_EQ(loading("POS (1) 0, 0, 0 \"a b\"\n\n; next\nPOS (2) 900, 0, 0 \"a b\"\n"),
+            ":4:19: expected a name of its own: the POS of line 1 is \"a b\", too");
+  EXPECT_EQ(loading("POS (1) 0, 0, 0\nPOS (2) 900, 0, 0\nOFFICE (3) 0, 0, 0, 900, 900 \"a\"\n"
+                    "POS (4) 900, 0, 0 \"a\"\n"),
+            "");
+  std::remove(path.c_str());
+}
+
 TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
   const std::string path =
       ::testing::TempDir() + "saphira-cut-" + std::to_string(::getpid()) + ".map";

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "saphira/base/numbers.hpp"
 
 namespace CLI {
 class App;
@@ -14,6 +17,18 @@ class Option;
 }  // namespace CLI
 
 namespace saphira {
+
+/// The error of a whole number outside of T's range, which the parser may let wrap around. Another
+/// text has no error here: the parser reports it.
+template <class T>
+std::string trouble_of_limits(const std::string& text) {
+  const std::string digits = text.substr(text.starts_with('-') ? 1 : 0);
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos ||
+      number_in<T>(text))
+    return {};
+  return "expected a whole number between " + std::to_string(std::numeric_limits<T>::min()) +
+         " and " + std::to_string(std::numeric_limits<T>::max()) + ", found " + text;
+}
 
 /// The variable that an option writes. Its own value is the default, which the help shows unless it
 /// is an empty text, an empty list or none.

@@ -55,7 +55,8 @@ struct Map {
 Map parse_map(std::string_view text, const std::string& file);
 
 /// The same from a file. Its last line must have a line break, or end with a name: half a number
-/// would read as a whole one.
+/// would read as a whole one. FileError also for an unlikely map: no artifact, all of them smaller
+/// than a robot (in metres, not mm?), or one name for two places.
 Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.
