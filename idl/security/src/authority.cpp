@@ -68,18 +68,7 @@ void check_days(int days) {
                                 std::to_string(kMostDays));
 }
 
-/// Calls f(), and adds the name of the file to its error.
-template <class F>
-void checked(const std::string& file, F&& f) {
-  try {
-    f();
-  } catch (const UnusableFile&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw std::invalid_argument(file + ": " + error.what() +
-                                "; take the file from the copy of this folder");
-  }
-}
+constexpr const char* kRestore = "take the file from the copy of this folder";
 
 }  // namespace
 
@@ -112,12 +101,12 @@ Authority::Authority(const std::string& folder) : folder_(folder) {
   const std::string certificate_file = folder_ + "/" + kAuthority;
   key_ = read_bytes(key_file);
   certificate_ = read_bytes(certificate_file);
-  checked(certificate_file, [&] { read_certificate(certificate_); });
-  checked(key_file, [&] { check_key(key_, certificate_); });
+  checked(certificate_file, kRestore, [&] { read_certificate(certificate_); });
+  checked(key_file, kRestore, [&] { check_key(key_, certificate_); });
   const std::string roles_file = folder_ + "/" + kRolesFile;
   roles_ = parse_roles(read_file(roles_file), roles_file, topics_of_contract());
   load_members();
-  checked(folder_ + "/" + kRevoked,
+  checked(folder_ + "/" + kRevoked, kRestore,
           [&] { revoked_.members = load_revoked(folder_, certificate_).members; });
 }
 

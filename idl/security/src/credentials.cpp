@@ -20,6 +20,8 @@ namespace {
 // Which of its roles a program has that the site's roles do not name.
 constexpr std::array<const char*, 4> kOfPeople{"operator", "agent", "observer", "recorder"};
 
+constexpr const char* kCopy = "copy the folder anew from the authority";
+
 [[noreturn]] void fail(const std::string& file, const std::string& what, const std::string& todo) {
   throw std::invalid_argument(file + ": " + what + "; " + todo);
 }
@@ -33,22 +35,6 @@ std::string read(const std::string& file) {
         "; a folder of credentials is made by `saphira security add` and copied whole, by and for "
         "the user who runs the program");
   }
-}
-
-/// Calls f(), and adds the name of the file to its error.
-template <class F>
-auto checked(const std::string& file, F&& f) {
-  try {
-    return f();
-  } catch (const std::invalid_argument&) {
-    throw;
-  } catch (const std::exception& error) {
-    fail(file, error.what(), "copy the folder anew from the authority");
-  }
-}
-
-std::string day(std::int64_t seconds) {
-  return utc_text(seconds, "%Y-%m-%d %H:%M UTC");
 }
 
 std::string role_for(const std::string& folder, const std::string& program, const Roles& roles) {
@@ -87,7 +73,7 @@ Credentials load_shared(const std::string& folder) {
   found.authority = read(found.files.authority);
   const std::string roles_file = folder + "/" + kRoles;
   const std::string roles_text = read(roles_file);
-  found.roles = checked(roles_file, [&] {
+  found.roles = checked(roles_file, kCopy, [&] {
     return parse_signed_roles(verified(roles_text, found.authority), roles_file);
   });
   return found;
@@ -124,33 +110,33 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
   found.files.permissions = own + kPermissions;
 
   const std::string certificate = read(found.files.certificate);
-  checked(found.files.certificate, [&] {
+  checked(found.files.certificate, kCopy, [&] {
     check_signed(certificate, found.authority);
     const CertificateText text = read_certificate(certificate);
     const auto subject = parse_subject(text.subject);
     if (!subject)
       throw std::runtime_error("\"" + text.subject + "\" is no member of a site");
     if (now < text.validity.from)
-      fail(found.files.certificate, "it holds from " + day(text.validity.from) + " on",
-           "the clock of this machine says " + day(now) + ": is that right?");
+      fail(found.files.certificate, "it holds from " + day_text(text.validity.from) + " on",
+           "the clock of this machine says " + day_text(now) + ": is that right?");
     if (now >= text.validity.until)
-      fail(found.files.certificate, "it has expired on " + day(text.validity.until),
+      fail(found.files.certificate, "it has expired on " + day_text(text.validity.until),
            "`saphira security renew " + subject->name +
-               "` makes a new one (the clock of this machine says " + day(now) + ")");
+               "` makes a new one (the clock of this machine says " + day_text(now) + ")");
     found.subject = *subject;
     found.until = text.validity.until;
   });
   const std::string key = read(found.files.key);
-  checked(found.files.key, [&] { check_key(key, certificate); });
+  checked(found.files.key, kCopy, [&] { check_key(key, certificate); });
   const auto document = [&](const std::string& file) {
     const std::string text = read(file);
-    return checked(file, [&] { return verified(text, found.authority); });
+    return checked(file, kCopy, [&] { return verified(text, found.authority); });
   };
   document(found.files.governance);
   found.robot = robot_of(document(found.files.permissions));
   const std::string revoked_file = folder + "/" + kRevoked;
   const Revoked revoked =
-      checked(revoked_file, [&] { return load_revoked(folder, found.authority); });
+      checked(revoked_file, kCopy, [&] { return load_revoked(folder, found.authority); });
   if (revoked.members.contains(common_name(found.subject)))
     fail(found.files.certificate, common_name(found.subject) + " was revoked",
          "`saphira security add " + found.subject.name + " --role " + found.subject.role +

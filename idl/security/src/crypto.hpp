@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
+#include <stdexcept>
 #include <string>
 
+#include "saphira/base/text.hpp"
 #include "saphira/security/subject.hpp"
 
 namespace saphira::security {
@@ -34,6 +37,20 @@ KeyPair make_member(const Subject& subject, Validity validity, const KeyPair& au
 std::string sign(const std::string& text, const KeyPair& authority);
 
 // All of these throw std::runtime_error with the reason, without the file.
+
+/// Calls f(). Its error is a std::invalid_argument that names the file and the remedy.
+template <class F>
+auto checked(const std::string& file, const std::string& todo, F&& f) {
+  try {
+    return f();
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const UnusableFile& error) {
+    throw std::invalid_argument(error.what());
+  } catch (const std::exception& error) {
+    throw std::invalid_argument(file + ": " + error.what() + "; " + todo);
+  }
+}
 
 /// The text of a document that this authority has signed.
 std::string verified(const std::string& document, const std::string& authority_certificate);

@@ -39,6 +39,10 @@ std::string utc_text(std::int64_t seconds, const char* format) {
   return text.data();
 }
 
+std::string day_text(std::int64_t seconds) {
+  return utc_text(seconds, "%Y-%m-%d %H:%M UTC");
+}
+
 std::string governance() {
   const std::string rule =
       element("topic_expression", "*") + element("enable_discovery_protection", "true") +
