@@ -227,6 +227,9 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
   write("notes", "mine\n");
   for (const char* const ending : {"map", "wld", "p", "grammar", "people", "yaml"})
     write(std::string("latin.") + ending, latin);
+  write("silent.people", "PERSON alice EJ-247\n");
+  write("lost.people", "PERSON alice moon\nSAYS alice Flakey, stop\n");
+  write("metres.map", "WALL 0, 0, 0, 38\nWALL 0, 0, 90, 27\nWALL 0, 27, 0, 38\n");
   const std::string no_text = ":1:6: expected a text in UTF-8, found the byte 0xE9";
   const std::string other = "found another file, which stays as it is";
   const std::vector<WrongFile> all{
@@ -258,6 +261,12 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
       {{"saphira", "check", "FOLDER/latin.yaml"}, no_text, false},
       {{"saphira", "map", "load", "FOLDER/latin.map"}, no_text, false},
       {{"saphira", "scenario", "--cast", "FOLDER/latin.people"}, no_text, false},
+      {{"saphira", "scenario", "--cast", "FOLDER/silent.people"}, "expected a line SAYS", false},
+      {{"saphira", "scenario", "--cast", "FOLDER/lost.people"},
+       "lost.people:1:14: expected a place of the map, found \"moon\"",
+       false},
+      {{"saphira-registration", "--map", "FOLDER/metres.map"}, "is it in metres?"},
+      {{"saphira-registration", "--map", "FOLDER/empty"}, "expected a line for each artifact"},
       {{"saphira", "wiring", "--drawing", "/nowhere/x.svg"},
        "/nowhere/x.svg: cannot be written",
        false},

@@ -17,6 +17,8 @@
 #include "saphira/cli/printer.hpp"
 #include "saphira/cli/supervisor.hpp"
 #include "saphira/cli/trace.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/maps/topology.hpp"
 #include "story/shell/story.hpp"
 #include "watch.hpp"
 
@@ -294,11 +296,26 @@ class Sum {
   Fnv1a driven_;
 };
 
+/// Reports errors of a file of people before anything runs. A map that the deployment names
+/// otherwise than in its settings is not known here.
+void check_cast(const std::string& file) {
+  const story::Cast people(read_file(file), file);
+  const Deployment deployment =
+      load_deployment(find_deployment(people.deployment(), find_places()));
+  const auto map = deployment.settings.find("map");
+  if (map == deployment.settings.end() || map->second.text.empty() || map->second.text == "none" ||
+      map->second.text.find('$') != std::string::npos)
+    return people.check([](const std::string&) { return true; });
+  const maps::Topology floor(
+      maps::load_map(find_file(config_folder() + "/maps", map->second.text, ".map")));
+  people.check([&](const std::string& place) { return floor.place(place).has_value(); });
+}
+
 int scenario(const ScenarioOptions& options, const bus::NodeOptions& given, const bus::Stop& stop) {
   std::vector<std::string> casts;
   for (const std::string& name : options.casts) {
     casts.push_back(find_file(config_folder() + "/people", name, ".people"));
-    story::Cast(read_file(casts.back()), casts.back());  // reports errors before anything runs
+    check_cast(casts.back());
   }
   if (!options.audio.empty()) {
     std::error_code why;

@@ -35,7 +35,7 @@ std::string without_article(std::string object) {
 
 }  // namespace
 
-Cast::Cast(std::string_view text, const std::string& file) {
+Cast::Cast(std::string_view text, const std::string& file) : file_(file) {
   expect_own_format(text, file, "a file of people");
   std::optional<Spot> near;
   const auto knows_person = [this](const std::string& name) {
@@ -45,6 +45,11 @@ Cast::Cast(std::string_view text, const std::string& file) {
   for (const saphira::Line& line : split_lines(text)) {
     LineReader reader(file, line);
     const std::string_view word = reader.word(kWords);
+    const auto place = [&](std::size_t at) {
+      std::string name(reader.word("a place of the map"));
+      places_.push_back({name, std::string(line.text), line.number, line.words[at].column});
+      return name;
+    };
     if (word == "PERSON") {
       Person person;
       person.name = reader.word("a name");
@@ -52,7 +57,7 @@ Cast::Cast(std::string_view text, const std::string& file) {
         reader.fail("expected a name in small letters, such as " + lowered(person.name));
       if (knows_person(person.name))
         reader.fail("expected another name: there is a PERSON " + person.name + " above");
-      person.place = reader.word("a place of the map");
+      person.place = place(2);
       people_.push_back(std::move(person));
     } else if (word == "SAYS") {
       const std::string speaker(reader.word("a name"));
@@ -70,7 +75,7 @@ Cast::Cast(std::string_view text, const std::string& file) {
     } else if (word == "NEAR") {
       if (lines_.empty())
         reader.fail("expected a SAYS above it, which brings the robot there");
-      near.emplace().place = reader.word("a place of the map");
+      near.emplace().place = place(1);
       near->distance = reader.number("distance in m", 0.1, 100.0);
     } else if (word == "DEPLOYMENT") {
       deployment_ = reader.word("a name of config/deployments");
@@ -83,13 +88,23 @@ Cast::Cast(std::string_view text, const std::string& file) {
         people_.back().has.emplace(reader.word("what the person has"));
       } else {
         const std::string whom(reader.word("a name"));
-        people_.back().knows[whom] = reader.word("a place of the map");
+        people_.back().knows[whom] = place(2);
       }
     } else {
       reader.fail(std::string("expected ") + kWords);
     }
     reader.expect_end();
   }
+}
+
+void Cast::check(const std::function<bool(const std::string& place)>& is_place) const {
+  if (lines_.empty())
+    throw FileError(file_, 1, 1,
+                    "expected a line SAYS PERSON SENTENCE: without one the story does not begin");
+  for (const Named& named : places_)
+    if (!is_place(named.place))
+      throw FileError(file_, named.line, named.column,
+                      "expected a place of the map, found \"" + named.place + '"', named.text);
 }
 
 bool Cast::has(const std::string& person, const std::string& object) const {

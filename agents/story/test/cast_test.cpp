@@ -65,6 +65,30 @@ TEST(Cast, MistakesNameLineAndColumn) {
   EXPECT_EQ(mistake("PERSON alice N1\nSAYS alice go\nNEAR kitchen far\n"), "3:14");
 }
 
+TEST(Cast, AStoryHasABeginningAndPlacesOfTheMap) {
+  const auto mistake = [](const std::string& text) -> std::string {
+    try {
+      Cast(text, "f").check([](const std::string& place) { return place == "N1"; });
+    } catch (const FileError& error) {
+      const std::string what = error.what();
+      return what.substr(0, what.find('\n'));
+    }
+    return "none";
+  };
+  const std::string nobody =
+      "f:1:1: expected a line SAYS PERSON SENTENCE: without one the story does not begin";
+  EXPECT_EQ(mistake(""), nobody);
+  EXPECT_EQ(mistake("PERSON alice N1\n"), nobody);
+  const std::string begun = "PERSON alice N1\nSAYS alice go\n";
+  EXPECT_EQ(mistake(begun), "none");
+  EXPECT_EQ(mistake(begun + "PERSON john N2\n"),
+            "f:3:13: expected a place of the map, found \"N2\"");
+  EXPECT_EQ(mistake(begun + "KNOWS john N3\n"),
+            "f:3:12: expected a place of the map, found \"N3\"");
+  EXPECT_EQ(mistake(begun + "NEAR N4 1\nSAYS alice stop\n"),
+            "f:3:6: expected a place of the map, found \"N4\"");
+}
+
 TEST(Cast, TheEndIsWhatTheRobotSaysLast) {
   EXPECT_TRUE(Cast("", "f").ends_well("done: the report was brought"));
   EXPECT_FALSE(Cast("", "f").ends_well("that failed: nobody is in"));

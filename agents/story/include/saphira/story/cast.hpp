@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,6 +29,9 @@ class Cast {
   /// FileError where the text is wrong.
   Cast(std::string_view text, const std::string& file);
 
+  /// FileError where nobody says anything, or at the first place for which `is_place` is false.
+  void check(const std::function<bool(const std::string& place)>& is_place) const;
+
   /// The sentences that people say to the robot unasked, in order.
   const std::vector<Line>& lines() const { return lines_; }
   /// The required end of the story: the beginning of the robot's last utterance.
@@ -50,6 +54,14 @@ class Cast {
     std::set<std::string> has;
     std::map<std::string, std::string> knows;
   };
+  struct Named {
+    std::string place;
+    std::string text;  ///< of its line
+    int line = 1;
+    int column = 1;
+  };
+  std::string file_;
+  std::vector<Named> places_;
   std::vector<Person> people_;
   std::vector<Line> lines_;
   std::string end_ = "done: ";

@@ -98,7 +98,8 @@ std::size_t letter_size(std::string_view text);
 std::string read_bytes(const std::string& path);
 
 /// The text in a file, without a byte order mark. FileError where it is not UTF-8, as the bus and
-/// JSON need it. A file with zero bytes, or of another program, is no text: its reader names its kind.
+/// JSON need it. A file with zero bytes, or of another program, is no text: its reader names its
+/// kind.
 std::string read_file(const std::string& path);
 
 /// "PATH: cannot be written: No space left on device": the reason is that of errno.
