@@ -199,7 +199,7 @@ export class Link {
       if (!items) this.topics.set(t, items = new Map());
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
-      if (t === 'goals' && d !== null) this.remember(k, d as Goal);
+      if (t === 'goals' && d !== null && !(d as Goal).withdrawn) this.remember(k, d as Goal);
     }
     this.tell();
   }

@@ -88,7 +88,7 @@ export interface MapArtifact {
 }
 export interface SaphiraMap { revision: number; source: string; changed: boolean; artifacts: MapArtifact[] }
 export interface Argument { name: string; kind: string; number: number; text: string; point: Pose; frame: string }
-export interface Goal { requester: string; functor: string; arguments: Argument[]; priority: number }
+export interface Goal { requester: string; functor: string; arguments: Argument[]; priority: number; withdrawn: string }
 export interface GoalId { writer: number; number: number }   // as near as a number can be
 export interface GoalStatus {
   stamp: Stamp;
