@@ -267,7 +267,7 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
        false},
       {{"saphira-registration", "--map", "FOLDER/metres.map"}, "is it in metres?"},
       {{"saphira-registration", "--map", "FOLDER/empty"}, "expected a line for each artifact"},
-      {{"saphira", "wiring", "--drawing", "/nowhere/x.svg"},
+      {{"saphira", "wiring", "--draw", "/nowhere/x.svg"},
        "/nowhere/x.svg: cannot be written",
        false},
   };
