@@ -95,9 +95,7 @@ void Os::run() {
           robot_ = robot_at(address, [this](const std::string& t, bool e) { say(t, e); });
           end_at_exit();
         } catch (const std::exception& error) {
-          const char* const variable = address.starts_with(kOnBus) ? "SAPHIRA_ROBOT: "
-                                       : address == port           ? "SAPHIRA_PORT: "
-                                                                   : "";
+          const char* const variable = address == port ? "SAPHIRA_PORT: " : "";
           say(variable + std::string(error.what()), true);
           wants_robot_ = false;
         }

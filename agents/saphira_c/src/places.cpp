@@ -58,7 +58,7 @@ std::unique_ptr<Robot> robot_at(const std::string& address, Say say) {
 // The bus is a separate part: a program with a robot of its own needs no DDS.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say) {
   if (const std::string trouble = trouble_of_robot(name); !trouble.empty())
-    throw std::invalid_argument(trouble);
+    throw std::invalid_argument("SAPHIRA_ROBOT: " + trouble);
   const std::string path = (above_library() / "libsfx-bus.so").string();
   void* const part = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (part == nullptr)
