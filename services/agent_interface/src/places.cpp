@@ -174,13 +174,15 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
     if (std::find(names.begin(), names.end(), one) == names.end())
       names.push_back(one);
   };
-  for (const maps::Feature& feature : situation.map.features)
-    if (is_place(feature))
-      add(feature.name);
-  // Numbers of offices say less than names.
-  std::stable_partition(names.begin(), names.end(), [](const std::string& one) {
-    return one.find_first_of("0123456789") == std::string::npos;
-  });
+  // Numbers of offices say less than names, and corridors less than rooms.
+  const auto rank = [](const maps::Feature& one) {
+    const bool numbered = one.name.find_first_of("0123456789") != std::string::npos;
+    return one.type == lps::PointType::corridor ? 2 : numbered ? 1 : 0;
+  };
+  for (int i = 0; i < 3; ++i)
+    for (const maps::Feature& feature : situation.map.features)
+      if (is_place(feature) && rank(feature) == i)
+        add(feature.name);
   const std::size_t places = names.size();
   if (people) {
     for (const Advice& one : knowledge_.all())
@@ -205,7 +207,7 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
                          names.begin() + static_cast<std::ptrdiff_t>(std::min(places, kShown))));
   if (places > kShown)
     text += " and " + std::to_string(places - kShown) + " more";
-  return text + ". Which one?";
+  return text + (people ? ". Which one, or where is " + name + "?" : ". Which one?");
 }
 
 std::string Dialogue::kept_out(const std::string& place, const Situation& situation) const {

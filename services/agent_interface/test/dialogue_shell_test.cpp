@@ -335,7 +335,7 @@ TEST_F(DialogueOnTheBus, APersonWhosePlaceAnotherProgramBelievesIsLookedFor) {
   believed.beliefs()[2].value("nil");
   beliefs.write(believed);
   EXPECT_EQ(say("Flakey, go to Bob"),
-            "I know no place or person called bob, but north. Which one?");
+            "I know no place or person called bob, but north. Which one, or where is bob?");
   EXPECT_TRUE(goals.take().empty());
   EXPECT_EQ(say("Flakey, go to Karen"), "I go to karen");
   EXPECT_EQ(say("Flakey, find John"), "I drop the way to karen / I look for john");

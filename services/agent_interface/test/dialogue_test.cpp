@@ -18,7 +18,7 @@ DOOR (1233) 7000, 2000, -90, 900 "EJ-233"
 DOOR (1235) 3000, 0, 90, 900
 )";
 constexpr const char* kNoAttic =
-    "I know no place called attic, but upper corridor, EJ-231, EJ-233. Which one?";
+    "I know no place called attic, but EJ-231, EJ-233, upper corridor. Which one?";
 
 struct DialogueTest : testing::Test {
   DialogueTest() {
@@ -273,8 +273,8 @@ TEST_F(DialogueTest, WhereAPersonIsComesBeforeWhoKnowsAndAnOfficeIsAnOffice) {
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
   EXPECT_EQ(said("Flakey, go to Johns office"), "nobody has told me where john's office is");
   EXPECT_EQ(said("Flakey, go to Bobs office"),
-            "I know no place or person called bobs office, but upper corridor, EJ-231, EJ-233. "
-            "Which one?");
+            "I know no place or person called bobs office, but EJ-231, EJ-233, upper corridor. "
+            "Which one, or where is bobs office?");
 }
 
 TEST_F(DialogueTest, FactsAboutPeopleAreTakenBackInWords) {
@@ -771,9 +771,9 @@ TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
 }
 
 TEST_F(DialogueTest, StepsAreDoneOneAfterAnotherOrNotAtAll) {
-  EXPECT_EQ(
-      said("Flakey, go to EJ-231 and then go to the attic"),
-      "I know no place or person called attic, but upper corridor, EJ-231, EJ-233. Which one?");
+  EXPECT_EQ(said("Flakey, go to EJ-231 and then go to the attic"),
+            "I know no place or person called attic, but EJ-231, EJ-233, upper corridor. Which "
+            "one, or where is attic?");
   EXPECT_TRUE(last.goals.empty());
   EXPECT_EQ(said("Flakey, go to EJ-233 and wait there"), "I go to EJ-233, and then I wait there");
   const Dialogue::Outputs there = dialogue.ended({last.goals.at(0).tag, true, "arrived"});
@@ -931,10 +931,14 @@ TEST_F(DialogueTest, ItSaysWhatItKnows) {
 
 TEST_F(DialogueTest, ANameThatNothingHasIsAnsweredAtOnceWithTheNearest) {
   EXPECT_EQ(said("Flakey, go to Xyz"),
-            "I know no place or person called xyz, but upper corridor, EJ-231, EJ-233. Which one?");
+            "I know no place or person called xyz, but EJ-231, EJ-233, upper corridor. Which one, "
+            "or where is xyz?");
   EXPECT_TRUE(last.goals.empty() && last.said.at(0).refused);
   EXPECT_EQ(said("Flakey, take the report to Karn"),
             "I know no place or person called karn; do you mean karen?");
+  EXPECT_EQ(said("Flakey, get the report from Zoe"),
+            "I know no place or person called zoe, but EJ-231, EJ-233, upper corridor. Which one, "
+            "or where is zoe?");
   EXPECT_EQ(said("Flakey, find Jhon"), "I know no place or person called jhon; do you mean john?");
   EXPECT_EQ(said("Flakey, go to office 231"),
             "I know no place or person called office 231; do you mean EJ-231?");
@@ -947,7 +951,8 @@ TEST_F(DialogueTest, ANameThatNothingHasIsAnsweredAtOnceWithTheNearest) {
   situation.map = maps::parse_map(
       std::string(kMap) + "ZONE (900) 9000, 1000, 0, 500, 500 keep-out \"lab\"\n", "map");
   EXPECT_EQ(said("Flakey, go to the lab"),
-            "I know no place or person called lab, but upper corridor, EJ-231, EJ-233. Which one?");
+            "I know no place or person called lab, but EJ-231, EJ-233, upper corridor. Which one, "
+            "or where is lab?");
   // Without a map the places are not known yet.
   situation.map = {};
   hear("Flakey, take the report to Xyz");
