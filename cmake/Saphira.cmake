@@ -32,8 +32,13 @@ if(SAPHIRA_SANITIZE)
   elseif(SAPHIRA_SANITIZE MATCHES thread)
     set(SAPHIRA_SANITIZER_OPTIONS "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/cmake/tsan.supp")
   endif()
-  # With a sanitizer's branches in it GCC 12 takes members of an optional for uninitialized.
-  add_compile_options(-Wno-maybe-uninitialized)
+  if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    # Coverage of the fuzzers.
+    add_compile_options(-fsanitize=fuzzer-no-link)
+  else()
+    # With a sanitizer's branches in it GCC 12 takes members of an optional for uninitialized.
+    add_compile_options(-Wno-maybe-uninitialized)
+  endif()
 endif()
 
 # Eigen: vectors and rotations of the geometry.
