@@ -94,7 +94,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       link_(transport::parse_address(options_.robot_port)),
       core_(settings_of(options_, lockstep_)),
       devices_(node_, core_.reflector()),
-      position_file_(options_.state_file, node_.options().dry_run ? Files::kStay : Files::kChange),
+      position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
   resets_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
                 [this](const Request& request) {

@@ -69,7 +69,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
           if (const std::size_t bad = dialogue_.restore(text); bad > 0)
             throw std::runtime_error(counted(bad, "line") + " cannot be read, the others count");
         },
-        files());
+        node_.options().files());
     if (!trouble.empty())
       node_.warn(trouble);
   }
@@ -185,12 +185,8 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
   }
 }
 
-Files DialogueShell::files() const {
-  return node_.options().dry_run ? Files::kStay : Files::kChange;
-}
-
 void DialogueShell::remember() {
-  if (files() == Files::kChange && !options_.memory.empty() &&
+  if (node_.options().files() == Files::kChange && !options_.memory.empty() &&
       !replace_file(options_.memory, dialogue_.save()))
     node_.warn("what the robot was told cannot be kept: " + cannot_be(options_.memory, "written"));
 }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
-#include "saphira/base/durable.hpp"
 #include "saphira/base/watched_folder.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -41,7 +40,6 @@ class DialogueShell {
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
   void claim(const Claimed& claim);
-  Files files() const;
   void remember();
   void publish();
 

@@ -39,7 +39,7 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memo
       robot_(node) {
   if (memory_.empty())
     return;
-  const Files files = node_.options().dry_run ? Files::kStay : Files::kChange;
+  const Files files = node_.options().files();
   const std::string trouble = read_or_set_aside(
       memory_,
       [this](const std::string& text) {

@@ -69,6 +69,15 @@ std::string order_in_text(const Grammar::Understood& understood) {
   return "the rest";
 }
 
+/// Puts a name in the place of another in all steps.
+void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
+  for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
+    for (Meaning& step : *steps)
+      for (auto& [slot, value] : step.slots)
+        if (value == from)
+          value = to;
+}
+
 /// The place or person of a meaning; empty: none, or several.
 std::string only_name(const Meaning& meaning) {
   std::string only;
@@ -505,16 +514,22 @@ std::string Dialogue::named(const Grammar::Understood& understood, const Utteran
 
 bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& utterance,
                         const Situation& situation, Outputs& out) {
-  if (understood.meanings.size() + (understood.meanings.empty() ? understood.bare.size() : 0) != 1)
+  const std::vector<Meaning>& heard =
+      understood.meanings.empty() ? understood.bare : understood.meanings;
+  if (heard.size() != 1)
     return false;
   Offer offer = *offer_;
-  std::string name;
-  if (!understood.meanings.empty() && is_yes_or_no(understood.meanings.front())) {
-    const bool yes = understood.meanings.front().functor == "yes";
-    const bool which = yes && offer.yes.empty() && offer.meant.empty();
-    if (offer.done || (which && !situation.asked_about.empty()))
+  if (understood.meanings.empty() || !is_yes_or_no(heard.front())) {
+    const std::string name = named(understood, utterance, situation);
+    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
       return false;
-    if (which) {
+    rename(offer.understood, offer.name, name);
+  } else {
+    const bool yes = heard.front().functor == "yes";
+    const bool any = offer.yes.empty() && offer.meant.empty();  // a yes names none of several
+    if (offer.done || (yes && any && !situation.asked_about.empty()))
+      return false;
+    if (yes && any) {
       refuse(utterance, "which one?", out);
       return true;
     }
@@ -523,21 +538,13 @@ bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& 
       say(utterance, "then I leave it", true, out);
       return true;
     }
-    if (!offer.yes.empty() && yes) {
+    if (offer.yes.empty()) {
+      rename(offer.understood, offer.name, lowered(offer.meant));
+    } else if (yes) {
       offer.understood.meanings = {offer.yes.front()};
       offer.understood.then.assign(offer.yes.begin() + 1, offer.yes.end());
     }
-    name = lowered(offer.meant);
-  } else {
-    name = named(understood, utterance, situation);
-    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
-      return false;
   }
-  for (std::vector<Meaning>* const steps : {&offer.understood.meanings, &offer.understood.then})
-    for (Meaning& step : *steps)
-      for (auto& [slot, value] : step.slots)
-        if (!name.empty() && value == offer.name)
-          value = name;
   offer_.reset();
   Utterance again = offer.raised_by;
   again.id = utterance.id;

@@ -49,8 +49,8 @@ std::string letters_of(std::string_view name) {
   return letters;
 }
 
-/// The only one of the names that shares a word with what was said, as "EJ-231" with "number 231";
-/// empty: none or several.
+/// The only name that shares a word with the said one, as "EJ-231" with "number 231". Empty: none,
+/// or several.
 std::string only_with_word_of(const std::string& said, const std::vector<std::string>& names) {
   const auto parts = [](std::string name) {
     std::replace(name.begin(), name.end(), '-', ' ');

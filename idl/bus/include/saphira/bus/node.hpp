@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/stop.hpp"
 #include "saphira/bus/topics.hpp"
@@ -35,6 +36,8 @@ struct NodeOptions {
   std::string security;   ///< folder of credentials [empty or kOpenBus: an open bus]
   std::string program;    ///< program name, which gives its role [empty: as its name]
   bool dry_run = false;   ///< checks the credentials only; joins nothing but a bus in memory
+
+  Files files() const { return dry_run ? Files::kStay : Files::kChange; }
 };
 
 class Node;

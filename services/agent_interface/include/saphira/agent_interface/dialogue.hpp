@@ -138,7 +138,7 @@ class Dialogue {
     Advice advice;
     Utterance raised_by;
   };
-  /// What the speaker of a sentence may answer with yes, no or a name.
+  /// A sentence whose speaker may answer the robot with yes, no or a name.
   struct Offer {
     Grammar::Understood understood;  ///< of the sentence; after a yes, with the other name
     std::string name{};              ///< in the sentence, for which another one may be said
@@ -157,7 +157,7 @@ class Dialogue {
     std::string reason;
   };
 
-  /// Does what a sentence means, or asks back.
+  /// Carries out a sentence, or asks back.
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
   /// True where the sentence answers the robot's offer; then that is done.
@@ -231,13 +231,13 @@ class Dialogue {
   std::string place(const std::string& name, const Situation& situation) const;
   /// True where somebody or something says where that person is, or who knows it.
   bool findable(const std::string& person, const Situation& situation) const;
-  /// True for a place of the map, and a person who is findable or whom the robot asks for.
+  /// True for a place of the map, and for a person who is findable or asked for.
   bool is_known(const std::string& name, const Situation& situation) const;
   /// That no place, or neither place nor person, has this name; with the nearest name, or some of
   /// the places.
   std::string unknown(const std::string& name, bool people, const Situation& situation,
                       Outputs& out) const;
-  /// The reason why a task would fail by what is known already; empty: none.
+  /// The reason for which a task would fail, as far as it is known before; empty: none.
   std::string hindrance(const WantedGoal& goal, const Situation& situation, Outputs& out) const;
   /// The reason why the robot is not to go to that place of the map; empty: none.
   std::string kept_out(const std::string& place, const Situation& situation) const;

@@ -146,8 +146,7 @@ class Ports {
   /// The service's name on the bus.
   const std::string& name() const { return node_.options().name; }
   bool lockstep() const { return node_.options().lockstep; }
-  /// What becomes of the service's files.
-  Files files() const { return node_.options().dry_run ? Files::kStay : Files::kChange; }
+  Files files() const { return node_.options().files(); }
   /// Random, one a process start.
   std::uint64_t instance() const { return node_.instance(); }
   /// Of the newest step.

@@ -10,7 +10,7 @@
 /// start; but a file of another kind, which a person named by mistake, stays as it is.
 namespace saphira {
 
-/// What becomes of files: a program that only checks what it was given (--dry-run) leaves them.
+/// A program that only checks its input (--dry-run) leaves files as they are: kStay.
 enum class Files { kChange, kStay };
 
 /// The line behind its checksum: "9ae16a3b placed ...".
