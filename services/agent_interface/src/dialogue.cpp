@@ -405,7 +405,10 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
   const bool drops = tasks_.asks(utterance);
   const bool asked = !situation.asked_about.empty();
-  const bool offer = offer_ && may_answer(utterance, offer_->raised_by);
+  // A correction of a task needs no haste.
+  const bool offer =
+      offer_ && (offer_->done ? same_person(utterance.speaker, offer_->raised_by.speaker)
+                              : may_answer(utterance, offer_->raised_by));
   const bool offered = offer && !(offer_->done && asked);
   const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
   Grammar::Understood understood =

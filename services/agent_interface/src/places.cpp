@@ -200,7 +200,7 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
   if (!out.meant.empty())
     return text + "; do you mean " + out.meant + "?";
   if (places == 0)
-    return text;
+    return text + ": no map with names has come yet";
   names.resize(places);
   text += ", but " + saphira::joined(std::vector(
                          names.begin(),

@@ -955,6 +955,8 @@ TEST_F(DialogueTest, ANameThatNothingHasIsAnsweredAtOnceWithTheNearest) {
             "or where is lab?");
   // Without a map the places are not known yet.
   situation.map = {};
+  EXPECT_EQ(said("Flakey, EJ-231 is Bob's office"),
+            "I know no place called ej-231: no map with names has come yet");
   hear("Flakey, take the report to Xyz");
   EXPECT_EQ(goals(), "deliver object=\"the report\" to=\"xyz\" sender=\"Alice\"");
 }
@@ -991,6 +993,7 @@ TEST_F(DialogueTest, ATaskIsCorrectedByAnotherNameAfterTheKeyword) {
   hear("Flakey, go to EJ-231");
   EXPECT_EQ(said("no, I meant EJ-233"), "") << "a word to somebody else";
   hear("Flakey, go to EJ-231");
+  now += 60.0;
   EXPECT_EQ(said("Flakey, no, I meant EJ-233"), "I drop the way to EJ-231 / I go to EJ-233");
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
   EXPECT_EQ(said("Flakey, turn left"),
