@@ -169,6 +169,7 @@ void Gateway::feed_all() {
   feed(topics::kRobotState);
   feed(topics::kGrant);
   control_topic_ = board_.topic("console/control");
+  board_.urgent_so_far();
   feed(topics::kRobotDescription);
   feed(topics::kRegistration);
   feed(topics::kPerception);

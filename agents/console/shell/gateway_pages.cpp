@@ -114,7 +114,7 @@ bool Gateway::came(Connection connection, const std::string& text) {
   if (!page.greeted)
     return false;
   if (const auto* ack = std::get_if<Ack>(&message)) {
-    Board::seen(page.viewer, ack->frame);
+    Board::seen(page.viewer, ack->frame, now());
     server_.want(connection);
   } else if (page.channel == Channel::commands) {
     obey(connection, page, message);

@@ -51,7 +51,13 @@ void Board::forget_oldest(int topic) {
 }
 
 std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
-  if (viewer.sent - viewer.seen >= settings_.unseen)
+  const std::deque<Viewer::UnderWay>& under_way = viewer.under_way;
+  const bool whole = std::count_if(under_way.begin(), under_way.end(),
+                                   [](const auto& one) { return one.whole; }) < settings_.unseen;
+  const double delay =
+      under_way.empty() ? viewer.delay : std::max(viewer.delay, now - under_way.front().sent);
+  const bool full = delay > viewer.quickest + settings_.queue;
+  if (!whole && (full || under_way.size() >= settings_.most_unseen))
     return std::nullopt;
   std::string items;
   const auto add = [&](const Place& place, double age, const std::string& json) {
@@ -70,6 +76,8 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
     }
   }
   for (const auto& [place, item] : items_) {
+    if (!whole && place.first >= urgent_)
+      break;
     std::uint64_t& has = viewer.has[place];
     if (has == item.version)
       continue;
@@ -81,18 +89,25 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
     has = item.version;
     add(place, now - item.came, item.json);
   }
-  if (items.empty() && now - viewer.last < settings_.silence)
+  if (items.empty() && (!whole || now - viewer.last < settings_.silence))
     return std::nullopt;
   viewer.last = now;
+  viewer.under_way.push_back({++viewer.sent, now, whole});
   char head[80];
   std::snprintf(head, sizeof head, "{\"seq\":%llu,\"now\":%.4f,\"items\":[",
-                static_cast<unsigned long long>(++viewer.sent), now);
+                static_cast<unsigned long long>(viewer.sent), now);
   return head + items + "]}";
 }
 
-void Board::seen(Viewer& viewer, std::uint64_t frame) {
-  if (frame <= viewer.sent)
-    viewer.seen = std::max(viewer.seen, frame);
+void Board::seen(Viewer& viewer, std::uint64_t frame, double now) {
+  std::deque<Viewer::UnderWay>& under_way = viewer.under_way;
+  if (frame > viewer.sent)
+    return;
+  while (!under_way.empty() && under_way.front().frame <= frame) {
+    viewer.delay = now - under_way.front().sent;
+    viewer.quickest = std::min(viewer.quickest, viewer.delay);
+    under_way.pop_front();
+  }
 }
 
 }  // namespace saphira::console

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <deque>
 #include <nlohmann/json.hpp>
 
 namespace saphira::console {
@@ -15,7 +17,7 @@ Json read(const Board& board, Viewer& viewer, double now) {
   if (!frame)
     return {};
   Json json = Json::parse(*frame);
-  Board::seen(viewer, json.at("seq").get<std::uint64_t>());
+  Board::seen(viewer, json.at("seq").get<std::uint64_t>(), now);
   return json;
 }
 
@@ -50,15 +52,62 @@ TEST(Board, ASlowViewerGetsTheNewestAndNothingQueuesUp) {
     EXPECT_EQ(read(board, quick, 0.1 * i).at("items")[0]["d"], i);
   }
   EXPECT_EQ(frames, 2);  // on their way, until the viewer acknowledges them
-  Board::seen(slow, 2);
+  Board::seen(slow, 2, 10.0);
   EXPECT_EQ(read(board, slow, 10.0).at("items")[0]["d"], 99);
+}
+
+/// A link on which a frame needs `transfer` seconds, one after the other, and its acknowledgement
+/// comes `trip` seconds later. The robot and its percepts change ten times a second for 20 s.
+struct Carried {
+  Carried(double transfer, double trip) {
+    Board board;
+    const int robot = board.topic("robot/state");
+    board.urgent_so_far();
+    const int percepts = board.topic("perception");
+    Viewer viewer;
+    std::deque<std::pair<double, std::uint64_t>> answers;
+    double free = 0.0;
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      const double now = 0.1 * cycle;
+      for (; !answers.empty() && answers.front().first <= now; answers.pop_front())
+        Board::seen(viewer, answers.front().second, now);
+      board.put(robot, "", std::to_string(cycle), now);
+      board.put(percepts, "", std::to_string(cycle), now);
+      most = std::max(most, viewer.under_way.size());
+      const auto frame = board.frame(viewer, now);
+      if (!frame)
+        continue;
+      const Json json = Json::parse(*frame);
+      free = std::max(free, now) + transfer;
+      answers.emplace_back(free + trip, json.at("seq").get<std::uint64_t>());
+      robots += 1;
+      wholes += json["items"].size() > 1 ? 1 : 0;
+    }
+  }
+  int robots = 0;
+  int wholes = 0;
+  std::size_t most = 0;  ///< frames under way
+};
+
+TEST(Board, OverALongDelayTheUrgentTopicsComeEachCycle) {
+  const Carried far(0.0, 0.95);
+  EXPECT_EQ(far.robots, 200);
+  EXPECT_LE(far.wholes, 40 + 2);
+  EXPECT_GE(far.wholes, 30);
+}
+
+TEST(Board, OnAFullLinkNothingIsAddedToTheWholeFrames) {
+  const Carried thin(0.5, 0.1);
+  EXPECT_LE(thin.robots, 40 + 12);  // two a second, and those before the delay was known
+  EXPECT_LE(thin.most, 12U);
+  EXPECT_GE(thin.wholes, 25);
 }
 
 TEST(Board, WhatIsSeenBeforeItWasSentCountsForNothing) {
   Board board;
   const int robot = board.topic("robot/state");
   Viewer viewer;
-  Board::seen(viewer, 1'000'000);
+  Board::seen(viewer, 1'000'000, 0.0);
   int frames = 0;
   for (int i = 0; i < 10; ++i) {
     board.put(robot, "", std::to_string(i), i);
@@ -115,7 +164,7 @@ TEST(Board, ALargeBoardComesInPartsWithTheFirstTopicsFirst) {
     const Json json = Json::parse(*frame);
     EXPECT_EQ(json["items"][0]["d"], frames);  // the robot is in each
     tiles += json["items"].size() - 1;
-    Board::seen(viewer, json["seq"].get<std::uint64_t>());
+    Board::seen(viewer, json["seq"].get<std::uint64_t>(), 0.1 * frames);
     ++frames;
   }
   EXPECT_EQ(tiles, 20U);

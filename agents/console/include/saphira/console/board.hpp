@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,8 +18,15 @@ using Place = std::pair<int, std::string>;
 struct Viewer {
   std::map<Place, std::uint64_t> has;  ///< the version of each sent item
   std::uint64_t sent = 0;              ///< frames
-  std::uint64_t seen = 0;              ///< the newest frame that it has acknowledged
-  double last = -1e9;                  ///< [s] time of the newest frame
+  struct UnderWay {
+    std::uint64_t frame = 0;
+    double sent = 0.0;   ///< [s]
+    bool whole = false;  ///< of all topics
+  };
+  std::deque<UnderWay> under_way;  ///< frames that it has not acknowledged, the oldest first
+  double last = -1e9;              ///< [s] time of the newest frame
+  double delay = 0.0;              ///< [s] from the newest acknowledged frame to its answer
+  double quickest = 1e9;           ///< [s] the shortest delay
 };
 
 /// The newest state of all items, as JSON texts, and each viewer's news. Nothing queues up: a slow
@@ -28,7 +36,9 @@ class Board {
  public:
   struct Settings {
     std::size_t frame_bytes = 200'000;  ///< about the largest frame; the rest comes in the next
-    std::uint64_t unseen = 2;           ///< frames on their way to a viewer at once
+    int unseen = 2;                     ///< whole frames on their way to a viewer at once
+    std::size_t most_unseen = 12;       ///< frames in all
+    double queue = 0.2;                 ///< [s] a link that delays by this much more is full
     double silence = 0.5;               ///< [s] until an empty frame as a sign of life
   };
 
@@ -37,6 +47,8 @@ class Board {
 
   /// A topic, with its newest `most` items. Returns its rank: the first topic has the smallest.
   int topic(std::string name, std::size_t most = 1);
+  /// The topics so far are urgent: an operator needs each cycle, however long the link delays.
+  void urgent_so_far() { urgent_ = static_cast<int>(topics_.size()); }
 
   void put(int topic, const std::string& key, std::string json, double now);
   void withdraw(int topic, const std::string& key);
@@ -44,10 +56,12 @@ class Board {
 
   /// The news for a viewer, as one JSON text:
   ///   {"seq": 7, "now": 12.345, "items": [{"t": topic, "k": key, "a": age [ms], "d": {...}}, ...]}
-  /// "d" is null where the item was withdrawn. Nothing while too many frames are on their way, or
-  /// without news and with a recent frame.
+  /// "d" is null where the item was withdrawn. While enough whole frames are on their way, only the
+  /// urgent topics, and those only while the link is not full: the delay shows when frames queue
+  /// up. Nothing while too many frames are on their way, or without news and with a recent frame.
   std::optional<std::string> frame(Viewer& viewer, double now) const;
-  static void seen(Viewer& viewer, std::uint64_t frame);
+  /// The viewer has acknowledged a frame.
+  static void seen(Viewer& viewer, std::uint64_t frame, double now);
 
  private:
   struct Topic {
@@ -65,6 +79,7 @@ class Board {
 
   Settings settings_;
   std::vector<Topic> topics_;
+  int urgent_ = 0;  ///< topics, the first ones
   std::map<Place, Item> items_;
   std::uint64_t version_ = 0;
 };
