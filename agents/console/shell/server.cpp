@@ -112,7 +112,7 @@ int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
   if (file == files.end()) {
     if (lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND, "There is only the page: /") != 0)
       return -1;
-    return lws_http_transaction_completed(wsi);
+    return web::answered(wsi);
   }
   http.file = &*file;
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
@@ -145,7 +145,7 @@ int Server::Impl::send_http(lws* wsi, Http& http) const {
       size)
     return -1;
   http.file = nullptr;
-  return lws_http_transaction_completed(wsi);
+  return web::answered(wsi);
 }
 
 /// True where a WebSocket may be opened: 0, or -1.

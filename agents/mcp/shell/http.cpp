@@ -192,7 +192,7 @@ int HttpServer::Impl::finish(lws* wsi, Connection& connection) {
   const bool ends = found->second.streams || found->second.is_only;
   open.erase(found);
   connection.exchange = 0;
-  return ends ? -1 : lws_http_transaction_completed(wsi);
+  return ends ? -1 : web::answered(wsi);
 }
 
 void HttpServer::Impl::closed(Connection& connection) {

@@ -86,6 +86,16 @@ test('who says no hello is let go', async () => {
   await alive();
 });
 
+test('an answered connection costs nothing', async () => {
+  const used = () => readFileSync(`/proc/${gateway.pid}/stat`, 'utf8').split(' ').slice(13, 15).reduce((sum, ticks) => sum + Number(ticks), 0);
+  const before = used();
+  let ended = false;
+  const socket = net.connect(port, '127.0.0.1').on('close', () => { ended = true; }).resume();
+  socket.write('GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n');
+  await until('the end', () => ended);
+  assert.ok(used() - before < 100, `${used() - before} ticks`);
+});
+
 test('broken, huge and half frames', async () => {
   const bad = [
     () => randomBytes(300),
