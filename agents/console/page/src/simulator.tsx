@@ -154,7 +154,7 @@ function App() {
     <header>
       <h1>Simulator</h1>
       <span class={`chip link ${connected && !still ? 'good' : 'bad'}`}>{!connected ? 'link gone' : !scene ? 'no simulator' : scene.paused ? 'paused' : still ? 'time stands still' : 'runs'}</span>
-      <span class="grow small faint wide">The robot does not know this truth. Its own view is <a href="/">the console</a>.</span>
+      <span class="grow small faint"><span class="wide">The robot does not know this truth. Its own view is </span><a href="/">the console</a></span>
     </header>
     <main>
       <section class="picture" aria-label="World">
@@ -176,7 +176,7 @@ function App() {
         </div>
         <dl>
           <div><dt>Time</dt><dd>{scene ? `${scene.time.toFixed(2)} s` : ''}</dd></div>
-          <div><dt>Contacts</dt><dd>{contacts}</dd></div>
+          <div><dt>Contacts</dt><dd>{scene ? contacts : ''}</dd></div>
         </dl>
         <h2>Things</h2>
         <label class="check">Chosen <select value={chosen} onChange={e => setChosen((e.target as HTMLSelectElement).value)}>
