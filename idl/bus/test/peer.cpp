@@ -5,13 +5,8 @@
 //   saphira-bus-peer --role reader --count N      ends when it has the goal and N states: exit 0;
 //                                                 after --seconds without: exit 1
 //   saphira-bus-peer --role watch --seconds S     reads for so long; says the longest silence
-//   saphira-bus-peer --role answer                answers each RobotState on drive/behaviors: its
-//                                                 stamp, how many others answered in the last
-//                                                 second (number), and the newest goal it has read
-//                                                 (move)
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <string>
 
 #include "saphira/bus/program.hpp"
@@ -91,32 +86,6 @@ int read(Node& node, const Wanted& wanted, const Stop& stop) {
   return complete ? kExitOk : kExitFailed;
 }
 
-int answer(Node& node, const Stop& stop) {
-  auto states = node.reader(topics::kRobotState);
-  auto goals = node.reader(topics::kGoals);
-  auto others = node.reader(topics::kDriveBehaviors);
-  auto answers = node.writer(topics::kDriveBehaviors);
-  std::map<std::string, Clock::time_point> heard;
-  v1::MotorCommand own;
-  own.source(node.options().name);
-  while (!stop.requested()) {
-    node.wait(std::chrono::milliseconds(500), &stop);
-    node.publish_status();
-    for (const auto& sample : goals.take())
-      own.move(std::max<std::uint64_t>(own.move(), sample.data.id().number()));
-    for (const auto& sample : others.take())
-      if (sample.data.source() != own.source())
-        heard[sample.data.source()] = Clock::now();
-    std::erase_if(heard, [](const auto& other) { return seconds_since(other.second) > 1.0; });
-    own.number(heard.size());
-    if (const auto state = states.take_newest()) {
-      own.stamp(state->stamp());
-      answers.write(own);
-    }
-  }
-  return kExitOk;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -125,15 +94,13 @@ int main(int argc, char** argv) {
       argc, argv, "peer", "The other side of a test of the bus",
       [&](CommandLine& app) {
         app.add_option("--role", wanted.role, "of this process")
-            .one_of({"writer", "reader", "watch", "answer"});
+            .one_of({"writer", "reader", "watch"});
         app.add_option("--hz", wanted.hz, "samples a second").positive();
         app.add_option("--count", wanted.count, "of samples");
         app.add_option("--seconds", wanted.seconds, "at most");
       },
       [&](const NodeOptions& options, const Stop& stop) {
         Node node(options);
-        if (wanted.role == "answer")
-          return answer(node, stop);
         return wanted.role == "writer" ? write(node, wanted, stop) : read(node, wanted, stop);
       });
 }
