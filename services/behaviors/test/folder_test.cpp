@@ -5,11 +5,8 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include "process.hpp"
-#include "saphira/base/random.hpp"
-#include "saphira/base/text.hpp"
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/language.hpp"
 
@@ -190,58 +187,6 @@ TEST_F(FolderTest, AFolderThatIsNotThereIsAFaultAndTakesNothingAway) {
   EXPECT_NE(registry.find("Counter"), nullptr);
   EXPECT_NE(folder.trouble().find("expected a folder"), std::string::npos);
   EXPECT_THROW(load_behaviors(path_.string()), std::runtime_error);
-}
-
-/// The shipped files with one word removed, doubled, or replaced: more than a thousand.
-TEST(BrokenFiles, GiveMessagesAndNoneIsTakenHalf) {
-  Random random(7);
-  const char* const others[] = {"(",     ")",  ";",    "If", "Then",   "BeginBehavior",
-                                "\"",    "/*", "1e9",  "=",  "Params", "nothing_known",
-                                "sfPTR", "%",  "Turn", "0.5"};
-  int broken = 0;
-  int files = 0;
-  std::set<std::string> shipped;
-  for (const auto& entry : fs::directory_iterator(test::source("config/behaviors")))
-    if (entry.path().extension() == ".beh")
-      shipped.insert(entry.path().string());
-  ASSERT_GE(shipped.size(), 8U);
-  for (const std::string& path : shipped) {
-    const std::string text = read_file(path);
-    ASSERT_TRUE(compile(text, path).errors.empty()) << path;
-    for (int trial = 0; trial < 200; ++trial) {
-      // A word begins where a blank ends.
-      std::size_t at = random.next() % text.size();
-      at = text.find_first_not_of(" \n", std::min(text.find_first_of(" \n", at), text.size() - 1));
-      if (at == std::string::npos)
-        continue;
-      const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
-      std::string changed = text;
-      switch (random.next() % 3) {
-        case 0:
-          changed.erase(at, end - at);
-          break;
-        case 1:
-          changed.insert(at, text.substr(at, end - at) + " ");
-          break;
-        default:
-          changed.replace(at, end - at, others[random.next() % std::size(others)]);
-          break;
-      }
-      ++files;
-      const Compiled compiled = compile(changed, "broken.beh");
-      if (compiled.errors.empty())
-        continue;
-      ++broken;
-      EXPECT_TRUE(compiled.schemas.empty());
-      for (const FileError& error : compiled.errors) {
-        const std::string what = error.what();
-        EXPECT_TRUE(error.line() >= 1 && error.column() >= 1) << what;
-        EXPECT_NE(what.find("\n"), std::string::npos) << what;  // with the line and a caret
-      }
-    }
-  }
-  EXPECT_GE(broken, 1000);
-  EXPECT_LE(broken, files);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "language_bench.hpp"
 #include "saphira/base/random.hpp"
-#include "saphira/base/text.hpp"
 
 // Random schemas in random worlds: properties that always hold.
 
@@ -223,67 +222,6 @@ TEST(RandomActivities, DependOnNothingButTheirWorld) {
     }
     EXPECT_EQ(displays[0], displays[1]);
   }
-}
-
-TEST(RandomActivities, AThousandBrokenFilesGiveErrorsAndLeaveWhatRunsUntouched) {
-  const std::string whole = R"(
-(defintention :umbrella
-  :params (dest (speed :number 0.3 :unit m/s :low 0 :high 2))
-  :goals
-  '((:plan (AND (EXECUTE (say "to ~a" dest)) (EXECUTE (setq *failed* nil)) (= path (list 1 2 3))))
-    (IF (null path) (GOTO :end))
-    (INTEND :monitor () :blocking nil)
-    (INTEND :follow ((path . path) (speed . speed)) :blocking 0.8 :name follow-it :timeout 60s
-            :else (EXECUTE (say "~a" (reason))))
-    (PRESERVE (not stalled) (WAIT-FOR *failed* :timeout 5s :else (= path nil)))
-    (:end (SUCCEED "there"))))
-(defintention :monitor :goals '((WAIT-FOR *failed* :forever t) (UNINTEND 'follow-it)))
-(defintention :follow :params (path speed)
-  :goals '((:next (= goal (first path)) (= path (rest path)))
-           (IF goal ((INTEND :GoToPos ((goal . (point goal 0)) (speed . speed))) (GOTO :next)))))
-)";
-  Stage stage(whole);
-  stage.ask(1, "umbrella", {text("dest", "there")});
-  stage.step(5);
-  const std::string before = stage.display();
-  const std::vector<const Schema*> schemas = stage.executor->registry().all();
-  Random random(1);
-  int broken = 0;
-  for (int i = 0; i < 1500; ++i) {
-    std::string file = whole;
-    for (std::uint32_t change = 0; change < 1 + random.next() % 3; ++change) {
-      const std::size_t at = random.next() % file.size();
-      switch (random.next() % 4) {
-        case 0:
-          file.erase(at, 1 + random.next() % 5);
-          break;
-        case 1:
-          file.insert(at, 1, "()'\":;.x7 "[random.next() % 10]);
-          break;
-        case 2:
-          file.resize(at + 1);
-          break;
-        default:
-          file[at] = static_cast<char>(32 + random.next() % 95);
-          break;
-      }
-    }
-    const Loaded loaded =
-        load_text("test.act", file, *stage.options.functions, stage.executor->registry());
-    if (loaded.ok())
-      continue;
-    ++broken;
-    ASSERT_TRUE(loaded.schemas.empty());
-    for (const Diagnostic& trouble : loaded.troubles) {
-      ASSERT_GE(trouble.line, 1);
-      ASSERT_GE(trouble.column, 1);
-      ASSERT_FALSE(trouble.message.empty());
-    }
-  }
-  EXPECT_GE(broken, 1000);
-  EXPECT_EQ(stage.executor->registry().all(), schemas);
-  stage.step(5);
-  EXPECT_EQ(stage.display(), before);
 }
 
 }  // namespace
