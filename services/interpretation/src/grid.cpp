@@ -22,7 +22,7 @@ double logit(double probability) {
 Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(settings.prior)) {
   // With the probability `mirror` the surface of an occupied cell reflects the sound away, and the
   // readings from this direction give no evidence.
-  const double q = settings_.model == GridModel::muriel ? settings_.mirror : 0.0;
+  const double q = settings_.mirror;
   int evidence = -kHalf;
   for (std::int16_t& weighed : weighed_) {
     const double said = std::log(q + (1.0 - q) * std::exp(kStep * evidence));
@@ -112,21 +112,17 @@ std::vector<std::uint8_t> Grid::cells(const TileKey& key) const {
 }
 
 void Grid::add(int sonar, const Pose& sonar_in_grid, std::optional<double> range) {
-  if (sonar < 0 || (!range && settings_.silence <= 0.0))
+  if (sonar < 0)
     return;
   const auto number = static_cast<std::size_t>(sonar);
   if (number >= fired_.size())
     fired_.resize(number + 1);
   Fired& fired = fired_[number];
-  if (settings_.model == GridModel::cone) {
-    add_cone(sonar_in_grid, range);
-    return;
-  }
   if (fired.before && (fired.pose.position() - sonar_in_grid.position()).norm() < settings_.move &&
       std::abs(norm2_angle(fired.pose.th - sonar_in_grid.th)) < settings_.turn)
     return;
   fired = {true, sonar_in_grid};
-  add_muriel(sonar_in_grid, range);
+  weigh(sonar_in_grid, range);
 }
 
 // f(tile, cell, distance [m], tangent of the bearing off the axis)
@@ -203,7 +199,7 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
   tile.total[cell] = static_cast<std::int16_t>(tile.total[cell] + weighed(after) - weighed(before));
 }
 
-void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
+void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double edge = std::tan(settings_.beam);
   const double far = settings_.range;
   // Beyond three deviations behind the echo there is no evidence.
@@ -213,12 +209,11 @@ void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
   const double spread = std::hypot(deviation, half_cell);
   const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
   const double bins = kBins / (2.0 * kPi);
-  const double detection = settings_.detection * (range ? 1.0 : settings_.silence);
   arc_.clear();
   double sum = 0.0;
   for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double tangent) {
     const double off = 1.0 - tangent * tangent / (edge * edge);
-    const double found = detection * (1.0 - z / far) * off * off;
+    const double found = settings_.detection * (1.0 - z / far) * off * off;
     if (found <= 0.0)
       return;
     const double bearing = sonar.th + tangent * (1.0 - tangent * tangent / 3.0);
@@ -241,23 +236,6 @@ void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
         settings_.false_echoes + settings_.attribution * (sum - arc.odds * arc.density);
     evidence(*arc.tile, arc.cell, arc.bin, std::log(arc.before * arc.density / rest + arc.before));
   }
-}
-
-void Grid::add_cone(const Pose& sonar, std::optional<double> range) {
-  const double edge = std::tan(settings_.beam);
-  const double half = settings_.resolution;
-  const double reach = range ? std::min(5.0, *range + half) : settings_.range;
-  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double tangent) {
-    const double off = 1.0 - tangent * tangent / (edge * edge);
-    const bool met = range && z > *range - half;
-    const double most = settings_.most / kStep;
-    const double before = tile.bins[cell][0];
-    const double change =
-        (met ? settings_.met
-             : -settings_.passed * (range ? 1.0 : settings_.silence) * (1.0 - z / 5.0)) *
-        off / kStep;
-    evidence(tile, cell, 0, (std::clamp(before + change, -most, most) - before) * kStep);
-  });
 }
 
 }  // namespace saphira::interpretation

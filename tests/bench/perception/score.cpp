@@ -223,10 +223,9 @@ namespace {
 
 // The ground truth for a grid, in the grid's frame.
 struct GridTruth {
-  enum class Cell { unknown, free, occupied };
   std::vector<Vec2> surfaces;           // points of visible surfaces within 2 m of the way
   std::vector<maps::Feature> doorways;  // open ones, within 1.5 m of it
-  std::function<Cell(const Vec2& at)> cell;
+  std::function<bool(const Vec2& at)> is_free;
 };
 // True for a point within 2 m of the path that is not `blocked` from its nearest point.
 bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
@@ -261,13 +260,9 @@ GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::v
     }
   }
   truth.doorways = doorways_beside(path, map);
-  truth.cell = [&world, cell](const Vec2& at) {
-    if (at.x() < 0.0 || at.y() < 0.0 || at.x() >= world.width || at.y() >= world.height)
-      return GridTruth::Cell::unknown;
-    const double off = sim::distance(world.segments, at);
-    return off <= 0.71 * cell ? GridTruth::Cell::occupied
-           : off > 0.15       ? GridTruth::Cell::free
-                              : GridTruth::Cell::unknown;
+  truth.is_free = [&world](const Vec2& at) {
+    return at.x() >= 0.0 && at.y() >= 0.0 && at.x() < world.width && at.y() < world.height &&
+           sim::distance(world.segments, at) > 0.15;
   };
   return truth;
 }
@@ -301,11 +296,8 @@ GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
   }
   if (inside > 0)
     score.doorways = static_cast<double>(blocked) / inside;
-  std::vector<double> occupied(202, 0.0);
-  std::vector<double> empty(202, 0.0);
-  double all_occupied = 0.0;
-  double all_empty = 0.0;
-  double wrong = 0.0;
+  int free = 0;
+  int wrong = 0;
   for (const interpretation::TileKey& key : grid.tiles())
     for (long row = 0; row < interpretation::Grid::kTile; ++row)
       for (long column = 0; column < interpretation::Grid::kTile; ++column) {
@@ -314,26 +306,12 @@ GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
             Vec2(static_cast<double>(key.column * interpretation::Grid::kTile + column) + 0.5,
                  static_cast<double>(key.row * interpretation::Grid::kTile + row) + 0.5);
         const auto probability = grid.probability(at);
-        if (!probability)
+        if (!probability || !truth.is_free(at))
           continue;
-        const GridTruth::Cell is = truth.cell(at);
-        const auto step = static_cast<std::size_t>(*probability * 200.0);
-        if (is == GridTruth::Cell::occupied) {
-          ++occupied[step];
-          ++all_occupied;
-        } else if (is == GridTruth::Cell::free) {
-          ++empty[step];
-          ++all_empty;
-          wrong += *probability > 0.5 ? 1.0 : 0.0;
-        }
+        ++free;
+        wrong += *probability > 0.5 ? 1 : 0;
       }
-  double below = 0.0;
-  for (std::size_t i = 0; i < occupied.size(); ++i) {
-    score.auc += occupied[i] * (below + empty[i] / 2.0);
-    below += empty[i];
-  }
-  score.auc /= std::max(1.0, all_occupied * all_empty);
-  score.free = wrong / std::max(1.0, all_empty);
+  score.free = static_cast<double>(wrong) / std::max(1, free);
   return score;
 }
 
@@ -357,29 +335,23 @@ maps::Map map_of(const std::string& world) {
   return maps::load_map(find_file(config_folder() + "/maps", world, ".map"));
 }
 
-std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles) {
+GridScore grid_after(const DriveOptions& options, std::uint64_t cycles) {
   Drive drive(options);
   interpretation::Settings settings;
   settings.sonars = drive.mounts();
   settings.grid.window = 100.0;
-  interpretation::Interpretation muriel(settings);
-  settings.grid.model = interpretation::GridModel::cone;
-  interpretation::Interpretation cone(settings);
+  interpretation::Interpretation interpretation(settings);
   Tour tour(patrol(options.world), true);
   std::vector<Vec2> path;
   while (drive.seen().cycle < cycles) {
     tour.act(drive, drive.seen().true_pose_in_world);
     const Seen& seen = drive.advance();
-    const interpretation::Inputs inputs{
-        seen.cycle, seen.pose_in_odom, seen.readings,
-        compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))};
-    muriel.step(inputs);
-    cone.step(inputs);
+    interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings,
+                         compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))});
     if (seen.cycle % 10 == 0)
       path.push_back(seen.true_pose_in_world.position());
   }
-  const GridTruth truth = grid_truth(drive.world(), map_of(options.world), path);
-  return {score_grid(muriel.grid(), truth), score_grid(cone.grid(), truth)};
+  return score_grid(interpretation.grid(), grid_truth(drive.world(), map_of(options.world), path));
 }
 
 }  // namespace saphira::test

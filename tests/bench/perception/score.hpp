@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -95,11 +94,9 @@ struct GridScore {
   /// Share of the open doorways along the way that the grid shows as blocked; nothing without any.
   std::optional<double> doorways;
   double free = 0.0;  ///< share of the free cells that the grid shows as occupied
-  double auc = 0.0;   ///< probability that an occupied cell has a higher value than a free one
 };
-/// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: only the
-/// models are compared.
-std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles);
+/// After a patrol, from the readings at the true pose.
+GridScore grid_after(const DriveOptions& options, std::uint64_t cycles);
 
 /// The points of a patrol of a world of config/worlds that goes through all its corridors.
 std::vector<Vec2> patrol(const std::string& world);

@@ -10,17 +10,7 @@
 
 namespace saphira::interpretation {
 
-enum class GridModel {
-  /// Konolige, "Improved occupancy grids for map building", Autonomous Robots 4, 1997: evidence
-  /// counts once for each place of the sonar and is stored by the direction of view. No direction
-  /// alone can clear a cell, since its surface may be a mirror from there.
-  muriel,
-  /// Log odds over the cone, every reading by itself (Elfes 1989): for comparison.
-  cone
-};
-
 struct GridSettings {
-  GridModel model = GridModel::muriel;
   double resolution = 0.05;       ///< [m] edge of a cell
   double window = 8.0;            ///< [m] cells farther from the robot, to any side, are dropped
   double beam = radians(15.0);    ///< half angle of the cone
@@ -37,10 +27,6 @@ struct GridSettings {
   double prior = 0.25;         ///< probability that a cell is occupied
   double move = 0.06;          ///< [m] a sonar that has moved less, and...
   double turn = radians(6.0);  ///< ...turned less, repeats itself
-  double silence = 1.0;        ///< weight of a beam without an echo, of its detection
-  double passed = 0.4;         ///< cone: log odds subtracted along a beam...
-  double met = 0.9;            ///< ...and added at its echo
-  double most = 4.0;           ///< cone: log odds stay within this
 };
 
 /// A tile's key: its corner is (column, row) * kTile * resolution.
@@ -53,7 +39,10 @@ struct TileKey {
   }
 };
 
-/// An occupancy grid in the frame of its caller, in square tiles around the robot.
+/// An occupancy grid in the frame of its caller, in square tiles around the robot: MURIEL
+/// (Konolige, "Improved occupancy grids for map building", Autonomous Robots 4, 1997). Evidence
+/// counts once for each place of the sonar and is stored by the direction of view. No direction
+/// alone can clear a cell, since its surface may be a mirror from there.
 class Grid {
  public:
   static constexpr long kTile = 32;  ///< cells along a tile's edge
@@ -106,8 +95,7 @@ class Grid {
   };
   template <class F>
   void for_cone(const Pose& sonar, double range, F&& f);
-  void add_muriel(const Pose& sonar, std::optional<double> range);
-  void add_cone(const Pose& sonar, std::optional<double> range);
+  void weigh(const Pose& sonar, std::optional<double> range);
   int weighed(int said) const;
   void evidence(Tile& tile, std::size_t cell, int bin, double log_odds);
   double probability(const Tile& tile, std::size_t cell) const;
