@@ -351,26 +351,7 @@ int run(const Options& options) {
                               {"carried_sure_m_p50", test::quantile(carried.sure_way, 0.5)},
                               {"carried_sure_m_p90", test::quantile(carried.sure_way, 0.9)},
                               {"floors", floors}};
-  if (options.json) {
-    std::printf("%s\n", result.dump().c_str());
-    return 0;
-  }
-  std::printf(
-      "in all: p95 %.2f m, worst %.2f m, tracking %.0f %%, of the cycles with confidence 0.9 %.0f "
-      "%% "
-      "within 0.5 m, doors noticed %d of %d (%d of %d closed ones that stand back; %d of %d "
-      "hypotheses real); carried: %d of %d goals arrived, %d said so falsely, "
-      "sure and "
-      "wrong for %.1f m (p50), %.1f m (p90); "
-      "explored %.0f %% of the corridors, %d of %d doors (%d of %d that stand back; %d false), %d "
-      "of "
-      "%d floors well\n",
-      test::quantile(offs.position, 0.95), test::quantile(offs.position, 1.0),
-      100.0 * share(all.tracking, all.cycles), 100.0 * share(all.sure_right, all.sure), all.noticed,
-      all.doors, all.recessed_noticed, all.recessed, all.real, all.reported, carried.arrived,
-      carried.goals, carried.false_success, test::quantile(carried.sure_way, 0.5),
-      test::quantile(carried.sure_way, 0.9), 100.0 * share(covered, length), built_found,
-      built_doors, recessed_found, built_recessed, built_false, good, options.floors);
+  std::printf("%s\n", result.dump(options.json ? -1 : 2).c_str());
   return 0;
 }
 

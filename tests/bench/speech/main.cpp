@@ -230,17 +230,7 @@ int run(const Options& options) {
       {"um_s_p50", test::quantile(bench.um, 0.5)},
       {"um_s_p95", test::quantile(bench.um, 0.95)},
       {"voices", voices}};
-  if (options.json) {
-    std::printf("%s\n", result.dump().c_str());
-    return 0;
-  }
-  std::printf(
-      "right: %.1f %% of known voices, %.1f %% of new ones, %.1f %% with noise (wrong %.1f %%); "
-      "without the keyword %.1f %% were taken for commands; um after %.2f s (p50), %.2f s (p95)\n",
-      100.0 * share(all[0].right, all[0].commands), 100.0 * share(all[1].right, all[1].commands),
-      100.0 * share(noisy.right, noisy.commands), 100.0 * share(noisy.wrong, noisy.commands),
-      100.0 * result["false_accept"].get<double>(), test::quantile(bench.um, 0.5),
-      test::quantile(bench.um, 0.95));
+  std::printf("%s\n", result.dump(options.json ? -1 : 2).c_str());
   return 0;
 }
 
