@@ -57,6 +57,11 @@ class Stage {
     event.goal.level = level;
     inputs.events.push_back(event);
   }
+  /// Asks for the activity :it as goal 1, and steps.
+  void begin(int cycles = 1) {
+    ask(1, "it");
+    step(cycles);
+  }
   void dispose(std::uint64_t id) {
     GoalEvent event;
     event.kind = GoalEvent::Kind::kDisposed;

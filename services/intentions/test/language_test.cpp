@@ -13,8 +13,7 @@ TEST(Activities, OneGoalSetForACycle) {
   Stage stage(
       activity("(EXECUTE (say \"one\")) ((EXECUTE (say \"two\")) (EXECUTE (say \"more\")))"
                "(:three (EXECUTE (say \"three\")))"));
-  stage.ask(1, "it");
-  stage.step();
+  stage.begin();
   EXPECT_EQ(stage.messages, Names({"one"}));
   stage.step();
   EXPECT_EQ(stage.messages, Names({"one", "two", "more"}));
@@ -48,8 +47,7 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   Stage stage(
       activity("(INTEND :go-to-pos ((goal . (point 1 2)) (speed . 300mm/s)) :name first)"
                "(INTEND :TurnTo ((goal . (point 1 2))) :name second :priority 1)"));
-  stage.ask(1, "it");
-  stage.step(5);
+  stage.begin(5);
   ASSERT_EQ(stage.behaviors(), Names({"GoToPos"}));
   EXPECT_EQ(stage.out.behaviors[0].priority, 2);
   EXPECT_TRUE(stage.out.behaviors[0].blocking);
@@ -70,8 +68,7 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
 
 TEST(Activities, WaitsThatLong) {
   Stage stage(activity("(WAIT 2s) (SUCCEED \"waited\")"));
-  stage.ask(1, "it");
-  stage.step(19);
+  stage.begin(19);
   EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
   EXPECT_NE(stage.status(1).step.find("waits for 2s"), std::string::npos) << stage.status(1).step;
   stage.step(4);

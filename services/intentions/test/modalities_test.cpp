@@ -20,8 +20,7 @@ TEST(Modality, TestFailsWithAReasonUpToTheGoal) {
   Stage stage(
       "(defintention :it :goals '((INTEND :part ())))"
       "(defintention :part :goals '((TEST (> 1 2) :reason (format \"~a is too small\" 1))))");
-  stage.ask(1, "it");
-  stage.step(2);
+  stage.begin(2);
   EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
   EXPECT_EQ(stage.status(1).code, GoalCode::kActivity);
   EXPECT_EQ(stage.status(1).reason, "part: 1 is too small");
@@ -33,8 +32,7 @@ TEST(Modality, WhatFailsCanBeGoneAround) {
                "(FAIL \"not here\") (:other (TEST stalled :else (EXECUTE (say \"not stalled\"))))"
                "(SUCCEED \"~a\" (outcome))") +
       "(defintention :part :goals '((FAIL \"no way\")))");
-  stage.ask(1, "it");
-  stage.step(5);
+  stage.begin(5);
   EXPECT_EQ(stage.messages, Names({"because no way", "not stalled"}));
   EXPECT_EQ(stage.status(1).reason, "failure");
 }
@@ -42,8 +40,7 @@ TEST(Modality, WhatFailsCanBeGoneAround) {
 TEST(Modality, WaitForAConditionAndItsLimit) {
   Stage stage(activity("(WAIT-FOR stalled :timeout 0.5s)", ":timeout 60s"));
   ASSERT_TRUE(stage.loaded.troubles.empty()) << errors(stage.loaded);
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.status(1).step, "waits until a wheel is stalled");
   stage.inputs.robot.left_stalled = true;
   stage.step(2);
@@ -60,8 +57,7 @@ TEST(Modality, WaitForAConditionAndItsLimit) {
 TEST(Modality, StepsAreToldInWords) {
   const auto step_of = [](const std::string& goals) {
     Stage stage(activity(goals));
-    stage.ask(1, "it");
-    stage.step(3);
+    stage.begin(3);
     return stage.status(1).step;
   };
   EXPECT_EQ(step_of("(WAIT-FOR nil :forever t)"), "waits");
@@ -121,8 +117,7 @@ TEST(Modality, AndJoinsSplitDoesNot) {
 TEST(Modality, AReasonThatCannotBeComputedFails) {
   Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
               "(defintention :part :goals '((= x nil) (SUCCEED \"~a\" (+ 1 x))))");
-  stage.ask(1, "it");
-  stage.step(5);
+  stage.begin(5);
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
   EXPECT_EQ(stage.messages.size(), 1U);
 }
@@ -133,8 +128,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   const std::string rest = "(WAIT-FOR *x* :forever t)";
   Stage preserve(activity("(PRESERVE (not stalled) " + aside + rest +
                           " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
-  preserve.ask(1, "it");
-  preserve.step(2);
+  preserve.begin(2);
   EXPECT_EQ(preserve.behaviors(), Names({"Watch", "Follow"}));
   preserve.inputs.robot.left_stalled = true;
   preserve.step();
@@ -144,8 +138,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   // Also when the goal is over, and its intentions continue.
   Stage over(activity("(PRESERVE (not stalled) (SPLIT (INTEND :Watch () :blocking nil))" + rest +
                       " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
-  over.ask(1, "it");
-  over.step(2);
+  over.begin(2);
   EXPECT_EQ(over.behaviors(), Names({"Watch"}));
   over.inputs.robot.left_stalled = true;
   over.step();
@@ -153,8 +146,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
 
   Stage all(activity("(AND (SEQ " + aside + ") (SEQ " + rest +
                      " (FAIL \"no\")) :else (= y 1)) (WAIT-FOR nil :forever t)"));
-  all.ask(1, "it");
-  all.step(2);
+  all.begin(2);
   EXPECT_EQ(all.behaviors(), Names({"Watch", "Follow"}));
   claim(all, "*x*", true);
   EXPECT_TRUE(all.behaviors().empty());
@@ -164,8 +156,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
       activity("(MAINTAIN (not stalled) :by (SEQ (SPLIT (INTEND :Back ()))"
                " (WAIT-FOR (not stalled) :forever t)) " +
                aside + rest + ") (WAIT-FOR nil :forever t)"));
-  maintain.ask(1, "it");
-  maintain.step(2);
+  maintain.begin(2);
   for (int i = 0; i < 2; ++i) {
     maintain.inputs.robot.left_stalled = true;
     maintain.step(3);
@@ -183,8 +174,7 @@ TEST(Modality, ASplitGoesOnBehindTheGoalThatItStoodIn) {
                " (WAIT-FOR *x* :forever t))"
                "(PRESERVE (not stalled) (WAIT-FOR nil :forever t) :else (= y 2))"
                "(WAIT-FOR nil :forever t)"));
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   claim(stage, "*x*", true);
   stage.step(2);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"}));
@@ -202,8 +192,7 @@ TEST(Modality, AGotoLeavesWhatItStandsIn) {
     SCOPED_TRACE(goal);
     Stage stage(activity(goal + "(EXECUTE (say \"joined\"))"
                                 "(:end (EXECUTE (say \"end\"))) (WAIT-FOR stalled :forever t)"));
-    stage.ask(1, "it");
-    stage.step(2);
+    stage.begin(2);
     EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
     claim(stage, "*x*", true);
     EXPECT_TRUE(stage.behaviors().empty());
@@ -219,8 +208,7 @@ TEST(Modality, AndFailsWithOneOfItsGoalsAndEndsTheOthers) {
                        " :else (EXECUTE (say \"~a\" (reason)))) (WAIT-FOR stalled)",
                        ":timeout 60s") +
               "(defintention :part :goals '((WAIT-FOR *x*) (FAIL \"enough\")))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
   stage.inputs.claims.push_back(
       {ClaimEvent::Kind::kSaid, {9, 1}, "somebody", "*x*", Value::truth(true)});
@@ -234,8 +222,7 @@ TEST(Modality, WhatIsNotWaitedForEndsWithItsParent) {
   Stage stage(activity("(INTEND :guard () :blocking nil) (INTEND :GoToPos () :name go)") +
               "(defintention :guard :goals '((INTEND :AvoidCollision () :blocking nil :priority 0)"
               "                              (WAIT-FOR stalled :forever t)))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"AvoidCollision", "GoToPos"}));
   EXPECT_EQ(stage.display(), "* it END; o guard END; o AvoidCollision B; * GoToPos B");
   stage.satisfy("go", 1.0);
@@ -250,8 +237,7 @@ TEST(Modality, UnintendEndsTheNearestOfThatNameAndWhoWaitedGoesOn) {
                        "(SUCCEED \"~a\" (outcome))") +
               "(defintention :follow :goals '((INTEND :GoToPos () :name way)))"
               "(defintention :watch :goals '((WAIT-FOR stalled :forever t) (UNINTEND 'way)))");
-  stage.ask(1, "it");
-  stage.step(4);
+  stage.begin(4);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
   stage.inputs.robot.right_stalled = true;
   stage.step();
@@ -264,8 +250,7 @@ TEST(Modality, UnintendMeansTheNewestAsStateDoes) {
   Stage stage(activity(
       "((INTEND :Follow () :blocking nil :name way) (INTEND :Go () :blocking nil :name way)"
       " (UNINTEND 'way)) (WAIT-FOR nil :forever t)"));
-  stage.ask(1, "it");
-  stage.step(2);
+  stage.begin(2);
   EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
 }
 
@@ -273,8 +258,7 @@ TEST(Modality, AnActivityMayEndWhatItStandsIn) {
   Stage stage(activity("(INTEND :outer () :name outer) (SUCCEED \"~a\" (outcome))") +
               "(defintention :outer :goals '((INTEND :inner ()) (FAIL \"not this\")))"
               "(defintention :inner :goals '((UNINTEND 'outer) (WAIT-FOR stalled :forever t)))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded) << stage.status(1).reason;
   EXPECT_EQ(stage.status(1).reason, "removed");
 }
@@ -283,8 +267,7 @@ TEST(Modality, PreserveEndsItsGoalsWhenTheConditionBreaks) {
   Stage stage(
       activity("(PRESERVE (not stalled) (INTEND :GoToPos () :name go)"
                " :else (EXECUTE (say \"~a\" (reason)))) (EXECUTE (say \"on\"))"));
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
   stage.inputs.robot.left_stalled = true;
   stage.step();
@@ -298,8 +281,7 @@ TEST(Modality, MaintainRestoresAndGoesOn) {
               "(defintention :walk :goals '((INTEND :GoToPos () :name go)"
               "                             (EXECUTE (say \"walked\"))))"
               "(defintention :back :goals '((INTEND :ConstantVelocity ((speed . -100mm/s)))))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
   stage.inputs.robot.left_stalled = true;
   stage.step();
@@ -322,8 +304,7 @@ TEST(Modality, MaintainWithinMaintainGoesOnWhenBothHold) {
                "  (AND (SEQ (INTEND :Watch () :blocking nil) (= y 1)) (INTEND :GoToPos ()))))"));
   claim(stage, "*a*", true);
   claim(stage, "*b*", true);
-  stage.ask(1, "it");
-  stage.step(2);
+  stage.begin(2);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "GoToPos"}));
   claim(stage, "*b*", false);
   EXPECT_EQ(stage.behaviors(), Names({"ByB"})) << "also what a branch that is over has begun";
@@ -360,8 +341,7 @@ TEST(Modality, MaintainFailsWhereItCannotRestore) {
   Stage stage(
       activity("(MAINTAIN (not stalled) :by (EXECUTE (say \"trying\"))"
                " (INTEND :GoToPos ()))"));
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   stage.inputs.robot.left_stalled = true;
   stage.step();
   EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
@@ -375,8 +355,7 @@ TEST(Modality, AnInterruptedGoalGoesOnWhereItWas) {
               "(defintention :part :goals '((EXECUTE (say \"part\"))"
               "                             (INTEND :GoToPos () :name go :timeout 2s)))"
               "(defintention :other :goals '((INTEND :TurnTo () :name turn)))");
-  stage.ask(1, "it");
-  stage.step(5);
+  stage.begin(5);
   stage.ask(2, "other", {}, 1);
   stage.step(50);
   EXPECT_EQ(stage.behaviors(), Names({"TurnTo"}));
@@ -395,8 +374,7 @@ TEST(Modality, APersonInterruptsAndResumesAnIntention) {
   Stage stage(activity("(INTEND :part ())") +
               "(defintention :part :goals '((INTEND :GoToPos () :name go)))"
               "(defintention :other :goals '((EXECUTE (say \"other\"))))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   const std::uint32_t part = stage.out.nodes[1].id;
   EXPECT_FALSE(stage.executor->interrupt(stage.out.nodes[2].id)) << "a behavior is none";
   ASSERT_TRUE(stage.executor->interrupt(part));
@@ -415,8 +393,7 @@ TEST(Modality, APersonInterruptsAndResumesAnIntention) {
 
 TEST(Modality, LevelsAndTrends) {
   Stage stage(activity("(INTEND :GoToPos () :name go)"));
-  stage.ask(1, "it");
-  stage.step(4);
+  stage.begin(4);
   for (int i = 0; i < 20; ++i) {
     stage.satisfy("go", 0.03 * i);
     stage.step();
@@ -441,8 +418,7 @@ TEST(Modality, LevelsAndTrends) {
 
 TEST(Modality, BehaviorControlIsBackWhenItsGoalIsOver) {
   Stage stage(activity("(EXECUTE (setq *behavior-control* nil)) (WAIT-FOR stalled :forever t)"));
-  stage.ask(1, "it");
-  stage.step();
+  stage.begin();
   EXPECT_FALSE(stage.out.behavior_control);
   stage.step(3);
   EXPECT_FALSE(stage.out.behavior_control);
@@ -456,8 +432,7 @@ TEST(Modality, BehaviorControlIsBackWhenNobodyWantsItOff) {
       "(defintention :it :concurrent t"
       " :goals '((EXECUTE (setq *behavior-control* nil)) (WAIT-FOR *x* :forever t)"
       "          (EXECUTE (setq *behavior-control* t)) (WAIT-FOR nil :forever t)))");
-  stage.ask(1, "it");
-  stage.step();
+  stage.begin();
   stage.ask(2, "it");
   stage.step();
   stage.dispose(2);
@@ -479,8 +454,7 @@ TEST(Modality, ABeliefWhileAnIntentionLastsEndsWithIt) {
       "                             (WAIT-FOR stalled :forever t)))"
       "(defintention :other :concurrent t :goals"
       " '((EXECUTE (believe-while 'asking \"mine\")) (EXECUTE (believe 'asking \"all\"))))");
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   EXPECT_EQ(stage.belief("asking"), Value("x"));
   // Its own end.
   stage.step(20);
@@ -506,8 +480,7 @@ TEST(Modality, ABehaviorThatCannotBeMadeFailsAlsoWhoDoesNotWaitForIt) {
               "                             (INTEND :near () :blocking 0.5)"
               "                             (WAIT-FOR nil :forever t)))"
               "(defintention :near :level 1 :goals '((INTEND :GoToPos ())))");
-  stage.ask(1, "it");
-  stage.step(4);
+  stage.begin(4);
   EXPECT_EQ(stage.behaviors(), Names({"Avoid", "GoToPos"}));
   stage.inputs.troubles = {{stage.out.behaviors.at(0).name, "it is broken"}};
   stage.step();
@@ -517,8 +490,7 @@ TEST(Modality, ABehaviorThatCannotBeMadeFailsAlsoWhoDoesNotWaitForIt) {
 
 TEST(Modality, ABehaviorThatCannotBeMadeFailsItsIntention) {
   Stage stage(activity("(INTEND :Fly () :name fly)"));
-  stage.ask(1, "it");
-  stage.step(2);
+  stage.begin(2);
   stage.inputs.troubles = {{stage.out.behaviors.at(0).name, "there is no behavior \"Fly\""}};
   stage.step();
   EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
@@ -544,8 +516,7 @@ TEST(Modality, AnActivityBeginsAnewWhenDeadReckoningDoes) {
   Stage stage(
       activity("(= here (robot)) (EXECUTE (say \"from ~a\" here))"
                "(INTEND :GoToPos ((goal . here)))"));
-  stage.ask(1, "it");
-  stage.step(4);
+  stage.begin(4);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
   stage.inputs.robot.odom = 2;
   stage.inputs.robot.pose_in_odom = {5.0, 0.0, 0.0};
@@ -603,8 +574,7 @@ TEST(Modality, TheEndOfAConcurrentGoalIsNoStepForTheOneThatDrives) {
 TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
   Stage stage(activity("(WAIT-FOR stalled :forever t) (INTEND :part ())") +
               "(defintention :part :goals '((SUCCEED)))");
-  stage.ask(1, "it");
-  stage.step(2);
+  stage.begin(2);
   const Loaded changed = load_text(
       "test.act", activity("(FAIL \"new\")") + "(defintention :part :goals '((FAIL \"new part\")))",
       *stage.options.functions, stage.executor->registry());
@@ -642,8 +612,7 @@ TEST(Modality, WhenABeliefWasSaid) {
                "(SUCCEED \"~a ~a ~a\" (yes (belief name)) *kept* (yes (belief 'other)))"));
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 1}, "a person", "answer", "yes"});
   stage.step(3);
-  stage.ask(1, "it");
-  stage.step(5);
+  stage.begin(5);
   EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 2}, "a person", "answer", "Yes"});
   stage.step(4);
@@ -652,8 +621,7 @@ TEST(Modality, WhenABeliefWasSaid) {
 
 TEST(Modality, ClaimsOfThirdPartiesAreBeliefs) {
   Stage stage(activity("(WAIT-FOR (belief 'door-open) :forever t)"));
-  stage.ask(1, "it");
-  stage.step(3);
+  stage.begin(3);
   stage.inputs.claims.push_back(
       {ClaimEvent::Kind::kSaid, {9, 1}, "a door", "door_open", Value::truth(true)});
   stage.step();
@@ -684,27 +652,23 @@ TEST(Modality, WhatAnActivityHasSaidIsNewsAlsoWhereItSaysItAgain) {
 TEST(Modality, NothingGrowsWithoutBound) {
   Stage round(activity("(:again (SPLIT (INTEND :part ()))) (GOTO :again)") +
               "(defintention :part :goals '((SUCCEED)))");
-  round.ask(1, "it");
-  round.step(2500);
+  round.begin(2500);
   EXPECT_EQ(round.status(1).state, GoalState::kUnderway) << round.status(1).reason;
   EXPECT_LT(round.out.nodes.size(), 10U);
 
   Stage deep("(defintention :it :goals '((INTEND :it ())))");
-  deep.ask(1, "it");
-  deep.step(3);
+  deep.begin(3);
   EXPECT_EQ(deep.status(1).state, GoalState::kFailed);
   EXPECT_NE(deep.status(1).reason.find("64 deep"), std::string::npos) << deep.status(1).reason;
 
   Stage wide(activity("(:again (INTEND :part () :blocking nil)) (GOTO :again)") +
              "(defintention :part :goals '((WAIT-FOR stalled :forever t)))");
-  wide.ask(1, "it");
-  wide.step(3000);
+  wide.begin(3000);
   EXPECT_EQ(wide.status(1).state, GoalState::kFailed);
   EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already");
 
   Stage driving(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
-  driving.ask(1, "it");
-  driving.step(3000);
+  driving.begin(3000);
   EXPECT_EQ(driving.status(1).state, GoalState::kFailed);
   EXPECT_EQ(driving.status(1).reason,
             "there are 256 behaviors already: does an activity begin others without end?");
@@ -729,19 +693,16 @@ TEST(Modality, NothingGrowsWithoutBound) {
   EXPECT_GE(most, 200U) << "the bound was not tried";
 
   Stage parallel(activity("(:again (SPLIT (WAIT-FOR stalled :forever t))) (GOTO :again)"));
-  parallel.ask(1, "it");
-  parallel.step(300);
+  parallel.begin(300);
   EXPECT_EQ(parallel.status(1).reason, "more than 64 goals in parallel");
 
   Stage bomb("(defintention :it :goals '((AND (INTEND :it ()) (INTEND :it ()))))");
-  bomb.ask(1, "it");
-  bomb.step(200);
+  bomb.begin(200);
   EXPECT_EQ(bomb.status(1).state, GoalState::kFailed);
 
   Stage lists(
       activity("(:again (= x (list x x)) (= y (format \"~a~a~a\" y y \"abc\"))) (GOTO :again)"));
-  lists.ask(1, "it");
-  lists.step(200);
+  lists.begin(200);
   EXPECT_EQ(lists.status(1).reason, "a list of more than 4096 values");
 }
 
