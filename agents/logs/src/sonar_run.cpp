@@ -21,7 +21,7 @@ SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
   SonarRun out;
   const auto step = [&](std::uint64_t cycle, const Pose& pose_in_odom,
                         const std::vector<lps::SonarReading>& readings) -> const auto& {
-    const auto& seen = interpretation.step({cycle, pose_in_odom, readings, Pose{}});
+    const auto& seen = interpretation.step({cycle, pose_in_odom, readings});
     return registration.step({cycle, 1, pose_in_odom, seen.percepts, readings});
   };
   std::uint64_t cycle = 0;

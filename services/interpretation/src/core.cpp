@@ -16,7 +16,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
     begin(*inputs.new_robot, outputs.gone);
   else if (inputs.new_frame)
     interpretation_->reset();  // percepts were in the old frame
-  outputs.output = &interpretation_->step({inputs.cycle, inputs.pose_in_odom, inputs.readings, {}});
+  outputs.output = &interpretation_->step({inputs.cycle, inputs.pose_in_odom, inputs.readings});
   note_tiles(*outputs.output, inputs.cycle, outputs);
   return outputs;
 }

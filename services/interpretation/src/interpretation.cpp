@@ -94,9 +94,8 @@ const Output& Interpretation::step(const Inputs& inputs) {
   turned_ += std::abs(moved.th);
   travelled_ += std::hypot(moved.x, moved.y) + settings_.side.turn_cost * std::abs(moved.th);
   changed_ = {false, false};
-  odom_in_grid_ = inputs.odom_in_grid;
   if (works(&Tasks::grid_))
-    grid_.move_to(transform(odom_in_grid_, pose_in_odom_.position()));
+    grid_.move_to(pose_in_odom_.position());
   for (std::size_t i = 0; i < inputs.readings.size(); ++i) {
     const double part = static_cast<double>(i + 1) / static_cast<double>(inputs.readings.size());
     take(inputs.readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}),
@@ -152,8 +151,7 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
     return;
   const Pose sonar = compose(robot_in_odom, mount->in_robot);
   if (works(&Tasks::grid_))
-    grid_.add(reading.sonar, compose(odom_in_grid_, sonar),
-              reading.echo ? std::optional(reading.range) : std::nullopt);
+    grid_.add(reading.sonar, sonar, reading.echo ? std::optional(reading.range) : std::nullopt);
   if (!works(&Tasks::sides_))
     return;
   const Return firing{sonar.position(), sonar.direction(),       reading.range, reading.echo,

@@ -33,7 +33,7 @@ class Corridor {
   }
 
   const Output& drive(double to) {
-    const Output* output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, {}, {}});
+    const Output* output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, {}});
     while (x_ < to) {
       x_ += kSpeed;
       ++cycle_;
@@ -43,7 +43,7 @@ class Corridor {
       // One reading of each sonar in three cycles.
       if (cycle_ % 3 == 0)
         readings = {reading(0, left_(x_)), reading(6, right_(x_))};
-      output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, readings, {}});
+      output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, readings});
       for (const Percept& percept : output->percepts)
         ids_.insert(percept.id);
     }
@@ -339,7 +339,7 @@ TEST(InterpretationTasks, ASuspendedGridStaysAsItWas) {
 
 TEST(Interpretation, KnowsNothingOfSonarsThatTheRobotDoesNotHave) {
   Interpretation interpretation({});
-  const Output& output = interpretation.step({1, {}, {{3, 1.0, true}}, {}});
+  const Output& output = interpretation.step({1, {}, {{3, 1.0, true}}});
   EXPECT_TRUE(output.percepts.empty());
   EXPECT_TRUE(output.changed_tiles.empty());
 }

@@ -346,8 +346,7 @@ GridScore grid_after(const DriveOptions& options, std::uint64_t cycles) {
   while (drive.seen().cycle < cycles) {
     tour.act(drive, drive.seen().true_pose_in_world);
     const Seen& seen = drive.advance();
-    interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings,
-                         compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))});
+    interpretation.step({seen.cycle, seen.true_pose_in_world, seen.readings});
     if (seen.cycle % 10 == 0)
       path.push_back(seen.true_pose_in_world.position());
   }

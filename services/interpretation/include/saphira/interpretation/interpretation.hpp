@@ -38,9 +38,6 @@ struct Inputs {
   std::uint64_t cycle = 0;
   Pose pose_in_odom;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
-  /// The pose of odom in the frame of the grid; by default the grid is in odom. It may change a
-  /// little from cycle to cycle, as registration corrects it.
-  Pose odom_in_grid{};
 };
 
 struct Output {
@@ -122,7 +119,6 @@ class Interpretation {
   std::uint64_t cycle_ = 0;
   double travelled_ = 0.0;
   double turned_ = 0.0;
-  Pose odom_in_grid_;
   Grid grid_;
   std::array<SideView, 2> sides_;
   std::array<bool, 2> changed_{false, false};
