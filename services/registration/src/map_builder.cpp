@@ -48,8 +48,6 @@ MapBuilder::MapBuilder(MapBuilderSettings settings, maps::Map known, Pose start_
 
 bool MapBuilder::step(const MapBuilderInputs& inputs) {
   drive(inputs);
-  if (!settings_.add_new_features)
-    return false;
   for (const lps::Percept& percept : inputs.percepts)
     if (percept.confidence >= settings_.least_confidence)
       news_ = take(percept, inputs.cycle) || news_;
@@ -384,14 +382,6 @@ bool MapBuilder::remove(std::uint32_t id) {
   std::erase(own_, id);
   std::erase_if(given_.features, [id](const Feature& each) { return each.id == id; });
   return editor_.remove(id);
-}
-
-std::vector<Vec2> MapBuilder::way() const {
-  std::vector<Vec2> out;
-  for (const GraphNode& node : graph_.nodes)
-    out.push_back(node.in_map.position());
-  out.push_back(pose_in_map_.position());
-  return out;
 }
 
 void MapBuilder::settle() {

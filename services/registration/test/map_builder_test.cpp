@@ -260,16 +260,6 @@ TEST(MapBuilder, AnIdThatTheKnownMapGaveOnceIsNotGivenAgain) {
   EXPECT_NE(builder.put(box), id);
 }
 
-TEST(MapBuilder, SwitchedOffItAddsNothing) {
-  MapBuilderSettings settings;
-  settings.add_new_features = false;
-  Driven d(settings);
-  d.walls = {{{0.0, 1.0}, {12.0, 1.0}}, {{0.0, -1.0}, {12.0, -1.0}}};
-  d.drive(12.0);
-  EXPECT_TRUE(d.builder.map().features.empty());
-  EXPECT_NEAR(d.builder.pose_in_map().x, 12.0, 0.05) << "the pose goes on";
-}
-
 TEST(FeatureGraph, ALoopThatClosesCorrectsTheWholeWay) {
   // Round a square of 10 m with a drifting heading; the first wall is seen again at the end.
   FeatureGraph graph;

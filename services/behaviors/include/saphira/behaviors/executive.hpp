@@ -105,7 +105,6 @@ class Executive {
   void reset(RobotModel model);
 
   const lps::LocalPerceptualSpace& lps() const { return lps_; }
-  const RobotModel& model() const { return model_; }
   Registry& registry() { return registry_; }
 
  private:

@@ -18,7 +18,6 @@ namespace saphira::registration {
 
 struct MapBuilderSettings {
   std::vector<lps::SonarMount> sonars;    ///< those that look ahead find the ends of corridors
-  bool add_new_features = true;           ///< manual 6.9.2
   bool snap_to_right_angle_grid = true;   ///< manual 6.9.2
   double grid_tolerance = radians(12.0);  ///< [rad] a wall with a larger deviation follows no grid
 
@@ -93,7 +92,6 @@ class MapBuilder {
   /// Removes an artifact. The builder forgets its own artifact, so that it must be seen anew.
   /// False: no such artifact.
   bool remove(std::uint32_t id);
-  std::uint64_t revision() const { return editor_.revision(); }
   /// The robot's pose on the map.
   const Pose& pose_in_map() const { return pose_in_map_; }
   /// Of x, y, th in the map, at the newest node of the way.
@@ -102,8 +100,6 @@ class MapBuilder {
   std::vector<std::uint32_t> closed() const;
   /// The number of sightings again after a long way.
   int closures() const { return closures_; }
-  /// The present estimate of the way.
-  std::vector<Vec2> way() const;
   const FeatureGraph& graph() const { return graph_; }
 
  private:

@@ -66,7 +66,6 @@ class LocalPerceptualSpace {
   void reset();
 
   const LpsSettings& settings() const { return settings_; }
-  const Pose& robot_in_odom() const { return robot_in_odom_; }
   std::uint64_t cycle() const { return cycle_; }
 
   const SonarBuffer& front() const { return front_; }

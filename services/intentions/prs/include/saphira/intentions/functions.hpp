@@ -90,7 +90,6 @@ class Functions {
   using Conditions = std::map<std::string, Condition, std::less<>>;
   const Conditions& conditions() const { return conditions_; }
   const std::map<std::string, Function, std::less<>>& functions() const { return functions_; }
-  const std::map<std::string, Action, std::less<>>& actions() const { return actions_; }
 
  private:
   std::map<std::string, Function, std::less<>> functions_;
