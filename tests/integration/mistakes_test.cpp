@@ -244,6 +244,7 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
       {{"saphira-registration", "--map", "FOLDER/latin.map"}, no_text},
       {{"saphira-registration", "--map-memory", "FOLDER/notes"}, other},
       {{"saphira-intentions", "--memory", "FOLDER/notes"}, other},
+      {{"saphira-intentions", "--memory", "/nowhere/memory"}, "/nowhere/memory", false},
       {{"saphira-facilitator", "--memory", "FOLDER/notes"}, other},
       {{"saphira-dialogue", "--memory", "FOLDER/notes"}, other},
       {{"saphira-dialogue", "--grammar", "FOLDER/latin.grammar"}, no_text},

@@ -66,17 +66,6 @@ class IntentionsProgram : public testing::Test {
   bus::GoalClient goals{requester, "a test"};
 };
 
-TEST_F(IntentionsProgram, TakesGoalsToTheirEnd) {
-  test::Process service(command(), dir.path("log"));
-  const v1::GoalId refused = goals.ask(test::goal("fly"));
-  EXPECT_TRUE(goals.delivered(10000));
-  EXPECT_TRUE(reaches(refused, v1::GOAL_REFUSED)) << told(refused);
-  const v1::GoalId id = goals.ask(go_to(1.0, 0.0));
-  EXPECT_TRUE(reaches(id, v1::GOAL_WAITING)) << told(id);
-  Robot10Hz world(robot);
-  EXPECT_TRUE(reaches(id, v1::GOAL_SUCCEEDED)) << told(id) << service.output();
-}
-
 // Killed at 90 degrees of a half turn, it turns the other 90, not another 180.
 TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
   bus::Node node(test::node_options("robot", robot));
@@ -120,13 +109,6 @@ TEST_F(IntentionsProgram, StartsWithADamagedMemoryAndSaysSo) {
   EXPECT_TRUE(reaches(id, v1::GOAL_SUCCEEDED)) << told(id) << service.output();
   EXPECT_NE(service.output().find("memory.damaged"), std::string::npos) << service.output();
   EXPECT_NE(service.output().find("memory.work.damaged"), std::string::npos);
-}
-
-TEST_F(IntentionsProgram, SaysWhatIsWrongWithItsMemory) {
-  test::Process service({"saphira-intentions", "--memory", "/no/such/folder/memory"},
-                        dir.path("log"));
-  EXPECT_EQ(service.wait(), std::optional<int>(2)) << service.output();
-  EXPECT_NE(service.output().find("/no/such/folder/memory"), std::string::npos);
 }
 
 }  // namespace
