@@ -133,9 +133,7 @@ void Cores::step_interpretation(const RobotCycle& robot, Said& now) {
   inputs.new_robot = first() ? &settings_.robot.lps.sonars : nullptr;
   inputs.pose_in_odom = robot.pose_in_odom;
   inputs.readings = robot.readings;
-  const double before = time();
   now.percepts = interpretation_->step(inputs).output->percepts;
-  interpretation_took_ = time() - before;
 }
 
 void Cores::step_registration(const RobotCycle& robot, Said& now) {
@@ -146,13 +144,11 @@ void Cores::step_registration(const RobotCycle& robot, Said& now) {
   inputs.pose_in_odom = robot.pose_in_odom;
   inputs.percepts = said_.percepts;
   inputs.readings = robot.readings;
-  const double before = time();
   for (const Request& request : asked_)
     registration_->act(request);
   // As in lockstep: a request of the last cycle counts in the next one.
   asked_ = said_.intentions.intended.requests;
   now.registration = registration_->step(inputs);
-  registration_took_ = time() - before;
   now.map_revision = registration_->map_revision();
   now.adds_features = registration_->adds_features();
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,8 +37,6 @@ class Cores {
     std::optional<registration::Core::Settings> registration;
     /// None: intend() sets the intent.
     std::optional<intentions::Core::Settings> intentions;
-    /// [s] Measures the time of the services. None: no measurement.
-    std::function<double()> clock;
   };
   /// The outputs of the services for a cycle; empty for missing services.
   struct Said {
@@ -75,9 +72,6 @@ class Cores {
   registration::Core& registration() { return registration_.value(); }
   const registration::Core& registration() const { return registration_.value(); }
   intentions::Core& intentions() { return intentions_.value(); }
-  /// [s] The time of interpretation and registration in the newest step.
-  double interpretation_took() const { return interpretation_took_; }
-  double registration_took() const { return registration_took_; }
 
  private:
   behaviors::Core::Outputs step_behaviors(const RobotCycle& robot);
@@ -86,7 +80,6 @@ class Cores {
   intentions::Core::Outputs step_intentions(const RobotCycle& robot);
   void know_map();
   bool first() const { return said_.cycle == 0; }
-  double time() const { return settings_.clock ? settings_.clock() : 0.0; }
 
   Settings settings_;
   behaviors::Core behaviors_;
@@ -98,8 +91,6 @@ class Cores {
   std::vector<Request> asked_;
   std::uint64_t known_map_ = 0;  ///< the revision that intentions has
   Said said_;
-  double interpretation_took_ = 0.0;
-  double registration_took_ = 0.0;
 };
 
 /// The announcement of the behaviors service.

@@ -36,7 +36,6 @@ system::Cores::Settings services_of(const DriveOptions& options,
   if (settings.registration && options.knows_pose)
     settings.registration->start = start;
   settings.intentions = options.intentions;
-  settings.clock = options.clock;
   return settings;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +40,6 @@ struct DriveOptions {
   std::optional<registration::Core::Settings> registration;
   bool knows_pose = false;  ///< registration gets the robot's start
   std::optional<intentions::Core::Settings> intentions;
-  std::function<double()> clock;  ///< [s] for the time of the services
 };
 
 /// With interpretation and with registration on that map. `knows_pose`: as in DriveOptions.

@@ -9,16 +9,11 @@ void Offs::add(const Pose& believed, const Pose& truth) {
   heading.push_back(std::abs(norm2_angle(believed.th - truth.th)));
 }
 
-std::vector<Vec2> office_tour(bool library) {
-  std::vector<Vec2> points{{17.5, 8.0},  {19.0, 7.0},  {24.6, 7.0},  {25.6, 8.5},
-                           {25.6, 24.0}, {24.0, 25.0}, {17.5, 25.0}, {12.0, 25.0}};
-  if (library)
-    points.insert(points.end(), {{8.0, 25.0}, {6.25, 22.0}, {6.25, 10.0}, {6.25, 7.2}});
-  else
-    points.insert(points.end(), {{16.0, 25.0}, {17.5, 23.5}, {17.5, 9.0}, {16.0, 7.0}, {3.0, 6.8}});
-  points.insert(points.end(),
-                {{17.0, 7.0}, {35.0, 7.0}, {27.0, 7.0}, {19.0, 7.0}, {17.5, 9.0}, {17.5, 23.0}});
-  return points;
+std::vector<Vec2> office_tour() {
+  return {{17.5, 8.0},  {19.0, 7.0},  {24.6, 7.0},  {25.6, 8.5},  {25.6, 24.0},
+          {24.0, 25.0}, {17.5, 25.0}, {12.0, 25.0}, {16.0, 25.0}, {17.5, 23.5},
+          {17.5, 9.0},  {16.0, 7.0},  {3.0, 6.8},   {17.0, 7.0},  {35.0, 7.0},
+          {27.0, 7.0},  {19.0, 7.0},  {17.5, 9.0},  {17.5, 23.0}};
 }
 
 PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles) {
@@ -36,7 +31,6 @@ PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles) {
       result.registered.add(told.pose_in_map, robot.truth());
     else
       ++result.not_tracking;
-    result.took.push_back(robot.cores().interpretation_took() + robot.cores().registration_took());
   }
   result.reached = tour.reached();
   return result;

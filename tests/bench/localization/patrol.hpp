@@ -14,16 +14,15 @@ struct Offs {
   void add(const Pose& believed, const Pose& truth);
 };
 
-/// Round the corridors of the office floor; `library`: and through the library.
-std::vector<Vec2> office_tour(bool library = false);
+/// Round the corridors of the office floor.
+std::vector<Vec2> office_tour();
 
 struct PatrolResult {
   Offs registered;  ///< while it tracks
   Offs reckoned;
-  double way = 0.0;          ///< [m]
-  std::size_t reached = 0;   ///< points of the tour
-  int not_tracking = 0;      ///< cycles
-  std::vector<double> took;  ///< [s] of a cycle, if there is a clock
+  double way = 0.0;         ///< [m]
+  std::size_t reached = 0;  ///< points of the tour
+  int not_tracking = 0;     ///< cycles
 };
 /// Drives by its own estimate.
 PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles);

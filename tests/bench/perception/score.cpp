@@ -24,12 +24,6 @@ double parallel(double a, double b) {
   return std::min(off, kPi - off);
 }
 
-bool is_open(const sim::Things& things, const Vec2& from, const Vec2& to) {
-  const Vec2 way = to - from;
-  const double length = way.norm();
-  return length <= 0.0 || !sim::cast_ray(things, from, way / length, length);
-}
-
 double nearest_end(const sim::Things& things, const Vec2& at) {
   double least = 1e9;
   for (const sim::Segment& segment : things.segments)
@@ -86,68 +80,15 @@ const maps::Feature* Score::door_at(const Pose& at, double width) const {
   return nullptr;
 }
 
-bool Score::is_real(const lps::Percept& percept, const Pose& at) {
+bool Score::is_real(const lps::Percept& percept, const Pose& at) const {
   const sim::Things things = surfaces_(at.position());
   switch (percept.type) {
-    case PointType::wall: {
-      if (!is_surface(things, at, percept))
-        return false;
-      double best = 1e9;
-      double heading = 0.0;
-      for (const sim::Segment& segment : things.segments) {
-        const Vec2 way = segment.to - segment.from;
-        const double th = std::atan2(way.y(), way.x());
-        const Pose from = relative({segment.from.x(), segment.from.y(), th}, at);
-        if (parallel(th, at.th) > kAskew || from.x < 0.0 || from.x > way.norm() ||
-            std::abs(from.y) > std::abs(best))
-          continue;
-        best = from.y;
-        heading = std::abs(from.th) < kPi / 2 ? from.th : norm2_angle(from.th + kPi);
-      }
-      if (best < 1.0) {
-        wall_offset.push_back(std::abs(best));
-        wall_heading.push_back(std::abs(heading));
-        wall_offset_sigmas.push_back(std::abs(best) / percept.sigma_across);
-        wall_heading_sigmas.push_back(std::abs(heading) / percept.sigma_heading);
-      }
-      return true;
-    }
-    case PointType::door: {
-      const maps::Feature* door = door_at(at, percept.width);
-      if (!door)
-        return false;
-      const double off = std::abs(relative(door->pose_in_map, at).y);
-      door_place.push_back(off);
-      door_place_sigmas.push_back(off / percept.sigma_across);
-      door_width.push_back(std::abs(door->width - percept.width));
-      return true;
-    }
-    case PointType::junction: {
-      const double half = percept.width / 2.0;
-      const Vec2 left = transform(at, Vec2(0.0, half));
-      const Vec2 right = transform(at, Vec2(0.0, -half));
-      return nearest_end(things, left) <= kOnCorner && nearest_end(things, right) <= kOnCorner &&
-             is_open(things, transform(at, Vec2(0.0, half - kOnCorner)),
-                     transform(at, Vec2(0.0, -half + kOnCorner)));
-    }
-    case PointType::breach: {
-      const double off = nearest_end(things, at.position());
-      if (off > kOnCorner)
-        return false;
-      breach_place.push_back(off);
-      breach_place_sigmas.push_back(off / percept.sigma_across);
-      return true;
-    }
-    case PointType::corridor: {
-      for (const maps::Feature& feature : map_.features) {
-        const Pose from = relative(feature.pose_in_map, at);
-        if (feature.type == PointType::corridor && std::abs(from.x) < feature.length / 2.0 &&
-            std::abs(from.y) < kOnWall && parallel(from.th, 0.0) < kAskew &&
-            std::abs(feature.width - percept.width) < 0.2)
-          return true;
-      }
-      return false;
-    }
+    case PointType::wall:
+      return is_surface(things, at, percept);
+    case PointType::door:
+      return door_at(at, percept.width) != nullptr;
+    case PointType::breach:
+      return nearest_end(things, at.position()) <= kOnCorner;
     default:
       return false;
   }
@@ -165,11 +106,7 @@ void Score::look(const Drive& drive) {
     const Pose at = in_world(percept);
     Judged& judged = judged_[percept.id];
     judged.type = percept.type;
-    if (!is_real(percept, at)) {
-      if (judged.real)
-        mistakes_.push_back({percept, at, seen.cycle});
-      judged.real = false;
-    }
+    judged.real = judged.real && is_real(percept, at);
   }
   pass(seen, percepts);
 }
@@ -203,7 +140,6 @@ void Score::pass(const Seen& seen, const std::vector<lps::Percept>& percepts) {
     if (passing.waits && (passing.found || seen.cycle >= passing.until)) {
       ++passed_;
       found_ += passing.found ? 1 : 0;
-      passages_.push_back({door.id, seen.cycle, passing.found});
       passing = {};
     }
   }

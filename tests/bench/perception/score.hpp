@@ -22,19 +22,6 @@ struct Count {
   }
 };
 
-struct Mistake {
-  lps::Percept percept;
-  Pose pose_in_world;
-  std::uint64_t cycle = 0;
-};
-
-/// A door that the robot passed.
-struct Passage {
-  std::uint32_t door = 0;   ///< its id in the map
-  std::uint64_t cycle = 0;  ///< time of its judgement
-  bool found = false;
-};
-
 /// The judgement of a percept.
 struct Judged {
   lps::PointType type = lps::PointType::invalid;
@@ -56,13 +43,6 @@ class Score {
   Count count(lps::PointType type) const;
   int doors_passed() const { return passed_; }
   int doors_found() const { return found_; }
-  const std::vector<Mistake>& mistakes() const { return mistakes_; }
-  const std::vector<Passage>& passages() const { return passages_; }
-
-  /// Errors of real percepts, and the same in sigmas.
-  std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
-  std::vector<double> door_place, door_place_sigmas, door_width;
-  std::vector<double> breach_place, breach_place_sigmas;
 
  private:
   struct Passing {
@@ -73,7 +53,7 @@ class Score {
     bool waits = false;  // for a report
   };
   Pose in_world(const lps::Percept& percept) const;
-  bool is_real(const lps::Percept& percept, const Pose& in_world);
+  bool is_real(const lps::Percept& percept, const Pose& in_world) const;
   bool is_surface(const sim::Things& things, const Pose& middle, const lps::Percept& wall) const;
   const maps::Feature* door_at(const Pose& in_world, double width) const;
   void pass(const Seen& seen, const std::vector<lps::Percept>& percepts);
@@ -85,8 +65,6 @@ class Score {
   std::map<std::size_t, Passing> passing_;
   int passed_ = 0;
   int found_ = 0;
-  std::vector<Mistake> mistakes_;
-  std::vector<Passage> passages_;
 };
 
 struct GridScore {
