@@ -87,7 +87,13 @@ const page = () => new Promise(resolve => {
   http.get({host: '127.0.0.1', port, path: '/', agent: false, timeout: 10_000},
     response => response.resume().on('end', () => resolve(Date.now() - begun))).on('error', () => resolve(Infinity));
 });
-const used = pid => readFileSync(`/proc/${pid}/stat`, 'utf8').split(' ').slice(13, 15).reduce((sum, ticks) => sum + Number(ticks), 0);
+function used(pid) {   // ticks of 10 ms; of a process that is gone nothing is known
+  try {
+    return readFileSync(`/proc/${pid}/stat`, 'utf8').split(' ').slice(13, 15).reduce((sum, ticks) => sum + Number(ticks), 0);
+  } catch {
+    return NaN;
+  }
+}
 const programs = async () => JSON.parse(await run('status', '--json')).programs;
 async function period(name, length, each) {
   const before = await programs();
@@ -101,7 +107,7 @@ async function period(name, length, each) {
     took === Infinity ? ++unanswered : slowest = Math.max(slowest, took);
     memory = Math.max(memory, (await programs()).find(one => one.name === 'console')?.rss_mb ?? 0);
   }
-  const cpu = (used(pid) - usedBefore) / (Date.now() - begun) * 1000;   // a tick is 10 ms
+  const cpu = (used(pid) - usedBefore) / (Date.now() - begun) * 1000;
   await sleep(2000);   // the last status of each
   const after = await programs();
   const late = Object.fromEntries(after.map(program => [program.name,
@@ -137,6 +143,7 @@ try {
   }
   console.log(JSON.stringify(total));
 } finally {
+  console.log(output().split('\n').filter(line => /ended|hung|started again/.test(line)).join('\n'));
   patrol?.kill('SIGTERM');
   await end(robot);
   rmSync(folder, {recursive: true, force: true});
