@@ -21,7 +21,7 @@ StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& soc
   std::error_code error;
   if (!folder_.empty() && !std::filesystem::is_directory(folder_) &&
       !std::filesystem::create_directories(folder_, error))
-    throw std::runtime_error(folder_ + ": " + error.message());
+    throw UnusableFile(folder_ + ": cannot be made: " + error.message());
   if (socket)
     listener_.emplace(Listener::local(*socket));
 }
