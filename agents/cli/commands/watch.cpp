@@ -6,6 +6,7 @@
 #include <ctime>
 #include <string_view>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/cli/printer.hpp"
 
@@ -60,15 +61,7 @@ void DeploymentWatch::settle(const bus::Stop& stop) {
 }
 
 const char* name_of(bus::Profile profile) {
-  switch (profile) {
-    case bus::Profile::host:
-      return "host";
-    case bus::Profile::lan:
-      return "lan";
-    case bus::Profile::wan:
-      return "wan";
-  }
-  return "?";
+  return word_of(profile, {"host", "lan", "wan"});
 }
 
 std::string person(const std::string& program, bool since) {

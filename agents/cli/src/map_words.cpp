@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
@@ -152,17 +153,7 @@ void check_map_words(const std::vector<std::string>& words) {
 }
 
 const char* name_of(v1::RegistrationState state) {
-  switch (state) {
-    case v1::REGISTRATION_OFF:
-      return "off";
-    case v1::REGISTRATION_UNPLACED:
-      return "unplaced";
-    case v1::REGISTRATION_LOST:
-      return "lost";
-    case v1::REGISTRATION_TRACKING:
-      return "tracking";
-  }
-  return "?";
+  return word_of(state, {"off", "unplaced", "lost", "tracking"});
 }
 
 std::string describe(const v1::Registration& registration, const maps::Map& map) {

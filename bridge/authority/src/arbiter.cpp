@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "saphira/base/enumerators.hpp"
+
 namespace saphira::authority {
 
 namespace {
@@ -35,19 +37,7 @@ std::string seconds(double value) {
 }  // namespace
 
 const char* name(Role role) {
-  switch (role) {
-    case Role::estop:
-      return "estop";
-    case Role::teleop:
-      return "teleop";
-    case Role::direct:
-      return "direct";
-    case Role::behaviors:
-      return "behaviors";
-    case Role::none:
-      break;
-  }
-  return "none";
+  return word_of(role, {"none", "estop", "teleop", "direct", "behaviors"});
 }
 
 void Arbiter::let_go() {
