@@ -16,6 +16,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -27,7 +28,6 @@
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/maps/topology.hpp"
-#include "saphira/situation/format.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -166,8 +166,8 @@ class Watcher {
       return "no robot yet";
     const Pose pose = lps::from_bus(robot_->pose_in_odom());
     std::string line =
-        situation::format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(),
-                          pose.x, pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
+        format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
+               pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
     line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
     if (grant_ && !latched(*grant_).empty())
       line += ", " + latched(*grant_);
@@ -235,7 +235,7 @@ class Watcher {
         range = reading.range;
         sonar = index;
       }
-    return std::isfinite(range) ? situation::format("  nearest %.2f m (sonar %d)", range, sonar)
+    return std::isfinite(range) ? format("  nearest %.2f m (sonar %d)", range, sonar)
                                 : std::string();
   }
 

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/device_words.hpp"
 #include "watch.hpp"
@@ -97,9 +98,7 @@ void print_serial(const v1::SerialData& data) {
   std::string hex;
   std::string text;
   for (const std::uint8_t byte : data.data()) {
-    std::array<char, 8> out{};
-    std::snprintf(out.data(), out.size(), "%02x ", byte);
-    hex += out.data();
+    hex += format("%02x ", byte);
     text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '.';
   }
   std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
@@ -374,20 +375,17 @@ class Teleop {
     const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
     if (refused)
       setpoint.velocity = 0.0;  // a refused setpoint is not shown as wanted
-    std::array<char, 256> text{};
     std::string line;
     if (!robot_ || seconds_since(robot_came_) > 1.0) {
       line = "no robot: " + who_is_there(node_.options(), processes_);
     } else {
-      std::snprintf(
-          text.data(), text.size(),
-          "want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",
-          setpoint.velocity, robot_->velocity(), degrees(robot_->rotation_velocity()),
-          robot_->pose_in_odom().x(), robot_->pose_in_odom().y(),
-          degrees(robot_->pose_in_odom().th()), robot_->battery(),
-          robot_->left_stalled() ? "  LEFT STALLED" : "",
-          robot_->right_stalled() ? "  RIGHT STALLED" : "");
-      line = text.data();
+      line =
+          format("want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",
+                 setpoint.velocity, robot_->velocity(), degrees(robot_->rotation_velocity()),
+                 robot_->pose_in_odom().x(), robot_->pose_in_odom().y(),
+                 degrees(robot_->pose_in_odom().th()), robot_->battery(),
+                 robot_->left_stalled() ? "  LEFT STALLED" : "",
+                 robot_->right_stalled() ? "  RIGHT STALLED" : "");
     }
     const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0 && setpoint.turn == 0.0;
     std::string second = !setpoint.active    ? "released"

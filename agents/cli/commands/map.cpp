@@ -11,6 +11,7 @@
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
@@ -218,9 +219,7 @@ void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::D
   const Pose frame = drawn.frame() == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map())
                      : drawn.frame() == v1::FRAME_ODOM ? odom
                                                        : Pose{};
-  char color[8];
-  std::snprintf(color, sizeof color, "#%02x%02x%02x", static_cast<unsigned>(drawn.red()),
-                static_cast<unsigned>(drawn.green()), static_cast<unsigned>(drawn.blue()));
+  const std::string color = format("#%02x%02x%02x", drawn.red(), drawn.green(), drawn.blue());
   std::vector<Vec2> points;
   for (const v1::DrawnPoint& point : drawn.points())
     if (std::isfinite(point.x()) && std::isfinite(point.y()))

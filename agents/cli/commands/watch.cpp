@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/cli/printer.hpp"
 
@@ -74,12 +75,7 @@ std::string person(const std::string& program, bool since) {
   if (const char* const terminal = ttyname(STDIN_FILENO); terminal != nullptr)
     where = std::string_view(terminal).starts_with("/dev/") ? terminal + 5 : terminal;
   if (since) {
-    const std::time_t now = std::time(nullptr);
-    std::tm local{};
-    std::array<char, 16> time{};
-    if (localtime_r(&now, &local) != nullptr &&
-        std::strftime(time.data(), time.size(), "since %H:%M", &local) > 0)
-      where += (where.empty() ? "" : ", ") + std::string(time.data());
+    where += (where.empty() ? "" : ", ") + local_text(std::time(nullptr), "since %H:%M");
   }
   return where.empty() ? text : text + " (" + where + ")";
 }

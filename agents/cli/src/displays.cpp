@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
 
-using situation::format;
 using situation::is_behavior;
 
 namespace {

@@ -9,6 +9,7 @@
 
 #include "lps/shell/convert.hpp"
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
@@ -166,12 +167,9 @@ std::string describe(const v1::Registration& registration, const maps::Map& map)
   text.resize(8, ' ');
   if (sigma < kAnywhere) {
     const v1::Pose2& pose = registration.pose_in_map();
-    char numbers[120];
-    std::snprintf(numbers, sizeof numbers,
-                  " (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
-                  degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
-                  100.0 * registration.confidence());
-    text += numbers;
+    text += format(" (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
+                   degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
+                   100.0 * registration.confidence());
   } else {
     text += " it may be anywhere";
   }

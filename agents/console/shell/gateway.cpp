@@ -9,6 +9,7 @@
 #include "key.hpp"
 #include "page_files.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/situation/why.hpp"
 
@@ -57,10 +58,8 @@ double now() {
 }
 
 std::string key_text(const bus::InstanceKey& key) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%llx:%llx", static_cast<unsigned long long>(key[0]),
+  return format("%llx:%llx", static_cast<unsigned long long>(key[0]),
                 static_cast<unsigned long long>(key[1]));
-  return text;
 }
 
 std::string operator_of(const std::string& name) {
@@ -142,9 +141,7 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
         return;
       std::string key = type.keyed ? key_text(type.key(&sample)) : std::string();
       if (topic.qos == bus::Qos::event) {
-        char number[24];
-        std::snprintf(number, sizeof number, "%020llu", static_cast<unsigned long long>(++events_));
-        key = number;
+        key = format("%020llu", static_cast<unsigned long long>(++events_));
       }
       if (info.disposed) {
         board_.withdraw(rank, key);

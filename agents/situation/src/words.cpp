@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::situation {
 

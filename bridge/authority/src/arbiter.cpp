@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::authority {
 
@@ -29,9 +30,7 @@ bool is_autonomy(Role role) {
 }
 
 std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", value);
-  return text;
+  return format("%.2f s", value);
 }
 
 }  // namespace

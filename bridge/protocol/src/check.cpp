@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::protocol {
 
 namespace {
@@ -19,9 +21,7 @@ constexpr std::size_t kSmallest = 25;  // body of an information packet without 
 constexpr std::array<std::size_t, 10> kTrailingEnds{0, 2, 3, 5, 7, 9, 10, 11, 15, 19};
 
 std::string hex(unsigned value) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%02X", value);
-  return text.data();
+  return format("0x%02X", value);
 }
 
 /// A zero setpoint.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dds_convert.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::bus::internal {
 
@@ -116,7 +117,7 @@ void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
     }
     endpoint.ownership =
         proxy.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
-    endpoint.id = to_hex(to_id(proxy.guid()));
+    endpoint.id = hex_text(to_id(proxy.guid()));
     endpoints_[proxy.guid()] = endpoint;
     tell_forbidden(proxy.guid(), endpoint);
     for (const auto& own : own_)
@@ -229,7 +230,7 @@ void Discovery::add_malformed(const std::string& topic, const rtps::GUID_t& writ
   const std::scoped_lock lock(mutex_);
   ++malformed_.count;
   if (told_.size() >= kMostProgramsTold ||
-      !told_.insert({"malformed " + topic, to_hex(to_id(writer))}).second)
+      !told_.insert({"malformed " + topic, hex_text(to_id(writer))}).second)
     return;
   EndpointEntry from;
   from.writer = true;
