@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
 
@@ -35,28 +36,8 @@ std::string date_of(double time) {
 }
 
 const char* kind_of(v1::ArtifactType type) {
-  switch (type) {
-    case v1::ARTIFACT_POSITION:
-      return "place";
-    case v1::ARTIFACT_WALL:
-      return "wall";
-    case v1::ARTIFACT_CORRIDOR:
-      return "corridor";
-    case v1::ARTIFACT_LANE:
-      return "lane";
-    case v1::ARTIFACT_DOOR:
-      return "door";
-    case v1::ARTIFACT_JUNCTION:
-      return "junction";
-    case v1::ARTIFACT_OFFICE:
-      return "room";
-    case v1::ARTIFACT_BREAK:
-      return "end of an opening";
-    case v1::ARTIFACT_ZONE:
-      return "zone";
-    default:
-      return "object";
-  }
+  return word_of(type, {"object", "place", "wall", "corridor", "lane", "door", "junction", "room",
+                        "end of an opening", "object", "zone"});
 }
 
 /// The direction of a bearing [rad, counter-clockwise from ahead] in words.

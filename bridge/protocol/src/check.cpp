@@ -296,35 +296,20 @@ void Checker::remember(const Command& command) {
   } else if (std::holds_alternative<SetOrigin>(command) || command == Command(SimReset{})) {
     last_.reset();
   } else if (const auto* integer = std::get_if<Integer>(&command)) {
-    const int value = integer->value;
-    switch (integer->number) {
-      case Number::kConfigRequest:
-        ask(PacketType::kConfig, 1);
-        break;
-      case Number::kEncoderRequest:
-        ask(PacketType::kEncoder, value);
-        break;
-      case Number::kIoRequest:
-        ask(PacketType::kIo, value);
-        break;
-      case Number::kGripperRequest:
-        ask(PacketType::kGripper, value);
-        break;
-      case Number::kBatteryRequest:
-        ask(PacketType::kBattery, value);
-        break;
-      case Number::kJoystickRequest:
-        ask(PacketType::kJoystick, value);
-        break;
-      case Number::kGyroRequest:
-        ask(PacketType::kGyro, value != 0 ? 2 : 0);
-        break;
-      case Number::kSimStatus:
-        ask(PacketType::kSimStatus, value);
-        break;
-      default:
-        break;
-    }
+    static constexpr std::pair<Number, PacketType> kReports[]{
+        {Number::kConfigRequest, PacketType::kConfig},
+        {Number::kEncoderRequest, PacketType::kEncoder},
+        {Number::kIoRequest, PacketType::kIo},
+        {Number::kGripperRequest, PacketType::kGripper},
+        {Number::kBatteryRequest, PacketType::kBattery},
+        {Number::kJoystickRequest, PacketType::kJoystick},
+        {Number::kGyroRequest, PacketType::kGyro},
+        {Number::kSimStatus, PacketType::kSimStatus}};
+    for (const auto& [number, report] : kReports)
+      if (number == integer->number)
+        ask(report, number == Number::kConfigRequest ? 1
+                    : number == Number::kGyroRequest ? (integer->value != 0 ? 2 : 0)
+                                                     : integer->value);
   }
 }
 
