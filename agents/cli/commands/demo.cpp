@@ -119,15 +119,7 @@ bool is_utf8() {
 /// The state of the robot from the bus during the drive, and its display.
 class Watcher {
  public:
-  Watcher(bus::Node& node, const Vec2& goal)
-      : goal_(goal),
-        robots_(node.reader(bus::topics::kRobotState)),
-        descriptions_(node.reader(bus::topics::kRobotDescription)),
-        grants_(node.reader(bus::topics::kGrant)),
-        maps_(node.reader(bus::topics::kMap)),
-        registrations_(node.reader(bus::topics::kRegistration)) {
-    picture_.set_goal(goal);
-  }
+  Watcher(bus::Node& node, const Vec2& goal) : node_(node), goal_(goal) { picture_.set_goal(goal); }
 
   /// True when there was a new sample.
   bool poll() {
@@ -239,13 +231,14 @@ class Watcher {
                                 : std::string();
   }
 
+  bus::Node& node_;
   Vec2 goal_;
   Picture picture_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::RobotDescription> descriptions_;
-  bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
   maps::Map map_;
   std::optional<Pose> odom_in_map_;
   std::optional<v1::RobotState> robot_;

@@ -22,11 +22,7 @@ constexpr double kAnswerTime = 1.0;       ///< [s] for a device on a serial port
 /// The robot's devices as they are on the bus.
 class Watch {
  public:
-  explicit Watch(const bus::NodeOptions& options)
-      : node(options),
-        processes(node),
-        robots_(node.reader(bus::topics::kRobotState)),
-        devices_(node.reader(bus::topics::kDevices)) {}
+  explicit Watch(const bus::NodeOptions& options) : node(options), processes(node) {}
 
   void poll() {
     processes.poll();
@@ -42,8 +38,8 @@ class Watch {
   std::optional<v1::Devices> devices;
 
  private:
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::Devices> devices_;
+  bus::Reader<v1::RobotState> robots_ = node.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Devices> devices_ = node.reader(bus::topics::kDevices);
 };
 
 int nobody(const bus::NodeOptions& options, const Watch& watch) {

@@ -124,14 +124,7 @@ class Joystick {
 class Teleop {
  public:
   explicit Teleop(const bus::NodeOptions& options, const std::string& joystick = kJoystick)
-      : joystick_(joystick),
-        node_(options),
-        processes_(node_),
-        goals_(node_, "saphira drive"),
-        commands_(node_.writer(bus::topics::kDriveTeleop)),
-        robots_(node_.reader(bus::topics::kRobotState)),
-        descriptions_(node_.reader(bus::topics::kRobotDescription)),
-        grants_(node_.reader(bus::topics::kGrant)) {}
+      : joystick_(joystick), node_(options), processes_(node_), goals_(node_, "saphira drive") {}
 
   int run(const bus::Stop& stop) {
     const RawTerminal terminal;
@@ -439,10 +432,10 @@ class Teleop {
   bus::Node node_;
   Processes processes_;
   bus::GoalClient goals_;
-  bus::Writer<v1::MotorCommand> commands_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::RobotDescription> descriptions_;
-  bus::Reader<v1::Grant> grants_;
+  bus::Writer<v1::MotorCommand> commands_ = node_.writer(bus::topics::kDriveTeleop);
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
 
   KeyDrive keys_;
   std::string input_;

@@ -45,15 +45,7 @@ v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
-      : node(options),
-        processes(node),
-        deployments(node, processes),
-        options_(options),
-        grants_(node.reader(bus::topics::kGrant)),
-        maps_(node.reader(bus::topics::kMap)),
-        registrations_(node.reader(bus::topics::kRegistration)),
-        beliefs_(node.reader(bus::topics::kBeliefs)),
-        descriptions_(node.reader(bus::topics::kRobotDescription)) {}
+      : node(options), processes(node), deployments(node, processes), options_(options) {}
 
   /// True where a new sample of registration came.
   bool poll() {
@@ -116,11 +108,11 @@ class View {
 
  private:
   bus::NodeOptions options_;
-  bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Registration> registrations_;
-  bus::Reader<v1::BeliefSet> beliefs_;
-  bus::Reader<v1::RobotDescription> descriptions_;
+  bus::Reader<v1::Grant> grants_ = node.reader(bus::topics::kGrant);
+  bus::Reader<v1::FloorMap> maps_ = node.reader(bus::topics::kMap);
+  bus::Reader<v1::Registration> registrations_ = node.reader(bus::topics::kRegistration);
+  bus::Reader<v1::BeliefSet> beliefs_ = node.reader(bus::topics::kBeliefs);
+  bus::Reader<v1::RobotDescription> descriptions_ = node.reader(bus::topics::kRobotDescription);
 };
 
 int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {

@@ -78,11 +78,6 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
       resets_(node_, topics::kEstopReset, "console"),
       registration_(node_, topics::kRegistrationRequest, "console"),
       processes_(node_, topics::kProcessRequest, "console"),
-      teleop_(node_.writer(topics::kDriveTeleop)),
-      estop_(node_.writer(topics::kDriveEstop)),
-      heard_(node_.writer(topics::kHeard)),
-      pointed_out_(node_.writer(topics::kAgentEvents)),
-      grants_(node_.reader(topics::kGrant)),
       server_(server_of(options, kept), access_, page_files(), events()) {
   keep_port(options.key_file, kept, server_.port());
   feed_all();

@@ -33,12 +33,6 @@ Story::Story(bus::Node& node, Cast cast, StoryOptions options)
     : node_(node),
       cast_(std::move(cast)),
       options_(std::move(options)),
-      robots_(node.reader(bus::topics::kRobotState)),
-      registrations_(node.reader(bus::topics::kRegistration)),
-      maps_(node.reader(bus::topics::kMap)),
-      statuses_(node.reader(bus::topics::kStatus)),
-      said_(node.reader(bus::topics::kSaid)),
-      heard_(node.writer(bus::topics::kHeard)),
       waiting_for_(options_.services.begin(), options_.services.end()) {}
 
 void Story::take() {
