@@ -73,11 +73,6 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
     : access_(access_of(options, kept)),
       origin_(origin_of(options.server)),
       node_(node),
-      mind_(node_, false),
-      goals_(node_, "console"),
-      resets_(node_, topics::kEstopReset, "console"),
-      registration_(node_, topics::kRegistrationRequest, "console"),
-      processes_(node_, topics::kProcessRequest, "console"),
       server_(server_of(options, kept), access_, page_files(), events()) {
   keep_port(options.key_file, kept, server_.port());
   feed_all();

@@ -114,11 +114,11 @@ class Gateway {
   bus::Node node_;
   Board board_;
   Control control_;
-  cli::Mind mind_;
-  bus::GoalClient goals_;
-  bus::RequestClient resets_;
-  bus::RequestClient registration_;
-  bus::RequestClient processes_;
+  cli::Mind mind_{node_, false};
+  bus::GoalClient goals_{node_, "console"};
+  bus::RequestClient resets_{node_, bus::topics::kEstopReset, "console"};
+  bus::RequestClient registration_{node_, bus::topics::kRegistrationRequest, "console"};
+  bus::RequestClient processes_{node_, bus::topics::kProcessRequest, "console"};
   bus::Writer<v1::MotorCommand> teleop_ = node_.writer(bus::topics::kDriveTeleop);
   bus::Writer<v1::MotorCommand> estop_ = node_.writer(bus::topics::kDriveEstop);
   bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
