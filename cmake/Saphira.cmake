@@ -121,6 +121,7 @@ function(saphira_test name)
     set(main saphira_test_live_main)
   endif()
   target_link_libraries(${name} PRIVATE ${arg_LINK} ${main} saphira_warnings)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests/support)  # trouble.hpp
   # A third less to compile, and a sixth of the disk. What is tested keeps its flags.
   target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1;-g0>)
   target_link_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-Wl,--strip-debug>)

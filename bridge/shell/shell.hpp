@@ -106,18 +106,19 @@ class Shell {
   std::unique_ptr<transport::Keeper> keeper_;
   bus::Node node_;
 
-  bus::Writer<v1::RobotState> state_writer_;
-  bus::Writer<v1::SonarBuckets> buckets_writer_;
-  bus::Writer<v1::RobotDescription> description_writer_;
-  bus::Writer<v1::Grant> grant_writer_;
-  bus::Writer<v1::RobotState> state_recall_;
-  bus::Writer<v1::Grant> grant_recall_;
-  bus::Reader<v1::MotorCommand> estop_;
-  bus::Reader<v1::MotorCommand> teleop_;
-  bus::Reader<v1::MotorCommand> direct_;
-  bus::Reader<v1::MotorCommand> behaviors_;
+  bus::Writer<v1::RobotState> state_writer_ = node_.writer(bus::topics::kRobotState);
+  bus::Writer<v1::SonarBuckets> buckets_writer_ = node_.writer(bus::topics::kSonarBuckets);
+  bus::Writer<v1::RobotDescription> description_writer_ =
+      node_.writer(bus::topics::kRobotDescription);
+  bus::Writer<v1::Grant> grant_writer_ = node_.writer(bus::topics::kGrant);
+  bus::Writer<v1::RobotState> state_recall_ = node_.writer(bus::topics::kRecallRobot);
+  bus::Writer<v1::Grant> grant_recall_ = node_.writer(bus::topics::kRecallGrant);
+  bus::Reader<v1::MotorCommand> estop_ = node_.reader(bus::topics::kDriveEstop);
+  bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
+  bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
+  bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
   Desk resets_;
-  bus::Reader<v1::StepPermit> permits_;
+  bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);
   OtherPrograms other_programs_;
 
   transport::Link link_;

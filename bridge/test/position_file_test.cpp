@@ -9,6 +9,7 @@
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::bridge {
 namespace {
@@ -81,13 +82,9 @@ TEST(PositionFile, WithoutAPathNothingIsKept) {
 
 TEST(PositionFile, NamesTheOptionWhereItCannotBeOpened) {
   const test::TempDir folder;
-  try {
-    const PositionFile file(folder.path("nowhere/state"));
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "--state " + folder.path("nowhere/state") + ": No such file or directory");
-  }
+  const std::string path = folder.path("nowhere/state");
+  EXPECT_EQ(test::trouble_of<std::invalid_argument>([&] { const PositionFile file(path); }),
+            "--state " + path + ": No such file or directory");
 }
 
 TEST(PositionFile, SaysOnceWhyNothingCanBeKept) {

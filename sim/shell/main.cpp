@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
 
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/log_line.hpp"
@@ -19,8 +18,6 @@
 
 namespace {
 
-constexpr int kExitUsage = 2;
-
 bool is_rate(const std::string& text) {
   const auto rate = saphira::number_in<double>(text);
   return rate && *rate >= 1e-6 && *rate <= 1000.0;
@@ -29,7 +26,7 @@ bool is_rate(const std::string& text) {
 saphira::Pose parse_position(const std::string& text) {
   const auto lines = saphira::split_lines(text);
   if (lines.size() != 1)
-    throw std::runtime_error("--position: expected \"x y th\" in mm, mm, degrees");
+    throw std::invalid_argument("--position: expected \"x y th\" in mm, mm, degrees");
   saphira::LineReader in("--position", lines.front());
   const double x = in.number("x in mm") / 1000.0;
   const double y = in.number("y in mm") / 1000.0;
@@ -62,7 +59,7 @@ void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions
   std::ofstream out(files[1], std::ios::binary);
   out << saphira::sim::plot_svg(world, trace, robot.radius) << std::flush;
   if (!out)
-    throw std::runtime_error(saphira::cannot_be(files[1], "written"));
+    throw saphira::UnusableFile(saphira::cannot_be(files[1], "written"));
 }
 
 }  // namespace
@@ -139,7 +136,7 @@ int main(int argc, char** argv) {
   if (const auto code = app.parse(argc, argv))
     return *code;
 
-  try {
+  return saphira::exit_code_of("saphira-sim", [&] {
     if (robots.empty())
       robots.emplace_back("pioneer");
     const std::string config = saphira::config_folder();
@@ -153,20 +150,17 @@ int main(int argc, char** argv) {
     options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {
       plot(plot_files, options);
-      return 0;
+      return saphira::kExitOk;
     }
     if (dry_run) {
       saphira::sim::check(options);
-      return 0;
+      return saphira::kExitOk;
     }
     options.log = [](std::string_view level, const std::string& text) {
       const std::string line = saphira::log_line(saphira::unix_time(), level, "sim", text);
       std::fprintf(stderr, "%s\n", line.c_str());
     };
     saphira::sim::run(options, saphira::stop_on_signals());
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "saphira-sim: " << error.what() << '\n';
-    return kExitUsage;
-  }
+    return saphira::kExitOk;
+  });
 }

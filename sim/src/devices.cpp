@@ -36,41 +36,21 @@ void Gripper::Axis::cycle(double step) {
 }
 
 void Gripper::act(int action) {
+  struct Move {
+    GripperAction action;
+    std::optional<int> paddles;  ///< direction
+    std::optional<int> lift;
+  };
+  using enum GripperAction;
+  static constexpr Move kMoves[]{{kOpen, 1, {}},   {kClose, -1, {}},    {kStop, 0, {}},
+                                 {kLiftUp, {}, 1}, {kLiftDown, {}, -1}, {kLiftStop, {}, 0},
+                                 {kStore, -1, 1},  {kDeploy, 1, -1},    {kHalt, 0, 0}};
   action_ = action;
-  switch (static_cast<GripperAction>(action)) {
-    case GripperAction::kOpen:
-      paddles_.direction = 1;
-      break;
-    case GripperAction::kClose:
-      paddles_.direction = -1;
-      break;
-    case GripperAction::kStop:
-      paddles_.direction = 0;
-      break;
-    case GripperAction::kLiftUp:
-      lift_.direction = 1;
-      break;
-    case GripperAction::kLiftDown:
-      lift_.direction = -1;
-      break;
-    case GripperAction::kLiftStop:
-      lift_.direction = 0;
-      break;
-    case GripperAction::kStore:
-      paddles_.direction = -1;
-      lift_.direction = 1;
-      break;
-    case GripperAction::kDeploy:
-      paddles_.direction = 1;
-      lift_.direction = -1;
-      break;
-    case GripperAction::kHalt:
-      paddles_.direction = lift_.direction = 0;
-      break;
-    case GripperAction::kPressure:
-    case GripperAction::kCarry:
-      break;
-  }
+  for (const Move& move : kMoves)
+    if (static_cast<int>(move.action) == action) {
+      paddles_.direction = move.paddles.value_or(paddles_.direction);
+      lift_.direction = move.lift.value_or(lift_.direction);
+    }
 }
 
 void Gripper::cycle() {
@@ -245,19 +225,10 @@ Devices::Answer Devices::act(const Integer& c, const Robot& robot, Bytes& out) {
 }
 
 bool Devices::has(Request request) const {
-  switch (request) {
-    case kEncoder:
-      return parameters_.encoder_unit > 0.0;
-    case kGyro:
-      return parameters_.gyro;
-    case kConfig:
-    case kIo:
-    case Request::kGripper:
-    case kJoystick:
-    case kBattery:
-    case kRequests:
-      break;
-  }
+  if (request == kEncoder)
+    return parameters_.encoder_unit > 0.0;
+  if (request == kGyro)
+    return parameters_.gyro;
   return later_;
 }
 

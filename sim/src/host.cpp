@@ -11,7 +11,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -62,7 +61,7 @@ std::optional<Listener> listen(const HostOptions& options, std::size_t number) {
     return Listener::local(numbered(options.socket.value_or(default_socket()), number));
   const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
   if (port > 65535)
-    throw std::runtime_error("port " + std::to_string(port) + ": expected at most 65535");
+    throw std::invalid_argument("port " + std::to_string(port) + ": expected at most 65535");
   return Listener::tcp(options.tcp_address, static_cast<std::uint16_t>(port));
 }
 
@@ -73,7 +72,7 @@ class TraceFile {
       return;
     file_.reset(std::fopen(path.c_str(), "we"));
     if (!file_)
-      fail("trace " + path);
+      throw UnusableFile(cannot_be("trace " + path, "written"));
   }
   void write(const std::vector<TraceRow>& rows) {
     if (!file_)
@@ -648,16 +647,16 @@ void Host::Parts::add_robots(const HostOptions& options) {
   };
   warn(world.warnings);
   if (!((options.rate > 0.0 && options.rate <= 1000.0) || options.rate == kMaxRate))
-    throw std::runtime_error(
+    throw std::invalid_argument(
         "rate: expected more than 0 and at most 1000 times real time, or \"max\"");
   const auto add = [&](const std::string& file, const std::optional<Pose>& start,
                        const std::optional<Place>& place, std::size_t number) {
     const protocol::RobotParameters parameters = protocol::load_parameters(file);
     warn(parameters.warnings);
     if (!start)
-      throw std::runtime_error(options.world + ": expected a directive " +
-                               (number == 0 ? "position" : "robot for each further robot") +
-                               ", or a position among the options");
+      throw std::invalid_argument(options.world + ": expected a directive " +
+                                  (number == 0 ? "position" : "robot for each further robot") +
+                                  ", or a position among the options");
     ServerOptions server_options;
     server_options.seed = options.seed + number;
     server_options.single_step = options.step;
@@ -669,8 +668,8 @@ void Host::Parts::add_robots(const HostOptions& options) {
     } catch (const std::invalid_argument& error) {
       if (place)
         throw FileError(options.world, place->line, place->column, error.what());
-      throw std::runtime_error("--position of robot " + std::to_string(number + 1) + ": " +
-                               error.what());
+      throw std::invalid_argument("--position of robot " + std::to_string(number + 1) + ": " +
+                                  error.what());
     }
   };
   if (options.position)

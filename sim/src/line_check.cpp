@@ -3,12 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira::sim {
 
@@ -18,7 +18,7 @@ LineCheck::LineCheck(const std::string& path, std::string prefix,
       file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)),
       checker_([parameters](const protocol::RobotIdentity&) { return parameters; }) {
   if (file_ < 0)
-    throw std::runtime_error(path + ": " + std::strerror(errno));
+    throw UnusableFile(cannot_be(path, "written"));
 }
 
 LineCheck::~LineCheck() {

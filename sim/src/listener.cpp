@@ -78,14 +78,14 @@ Listener Listener::local(const std::string& path) {
   struct stat there {};
   if (::lstat(path.c_str(), &there) == 0) {
     if (::connect(probe.get(), where, sizeof address) == 0)
-      throw std::runtime_error("socket " + path + ": another simulator listens on it");
+      throw UnusableFile("socket " + path + ": another simulator listens on it");
     if (errno == ECONNREFUSED)
       ::unlink(path.c_str());
   }
   out.fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!out.fd_ || ::bind(out.fd_.get(), where, sizeof address) != 0 ||
       ::listen(out.fd_.get(), 8) != 0)
-    fail("socket " + path);
+    throw UnusableFile(cannot_be("socket " + path, "made"));
   out.path_ = path;
   if (::stat(path.c_str(), &there) == 0)
     out.inode_ = there.st_ino;
@@ -99,7 +99,7 @@ Listener Listener::tcp(const std::string& text, std::uint16_t port) {
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   if (::inet_pton(AF_INET, text.c_str(), &address.sin_addr) != 1)
-    throw std::runtime_error("address " + text + ": expected four numbers, such as 127.0.0.1");
+    throw std::invalid_argument("address " + text + ": expected four numbers, such as 127.0.0.1");
   out.fd_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   if (out.fd_)
@@ -137,7 +137,7 @@ Terminal::Terminal(std::string link) : link_(std::move(link)) {
     ::unlink(link_.c_str());
   }
   if (::symlink(device_.c_str(), link_.c_str()) != 0)
-    fail("terminal " + link_);
+    throw UnusableFile(cannot_be("terminal " + link_, "made"));
 }
 
 Terminal::~Terminal() {

@@ -1,11 +1,11 @@
 #include "saphira/sim/stereo.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
 #include "pixels.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::sim {
 
@@ -277,14 +277,12 @@ StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig&
 }
 
 std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle) {
-  std::array<char, 256> head{};
-  std::snprintf(head.data(), head.size(),
-                "P5\n# saphira stereo cycle=%llu focal=%.9g baseline=%.9g height=%.9g forward=%.9g "
-                "pan=%.9g\n"
-                "%d %d\n255\n",
-                static_cast<unsigned long long>(cycle), rig.focal(), rig.baseline, rig.height,
-                rig.pose_in_robot.x, rig.pose_in_robot.th, 2 * pair.left.columns, pair.left.rows);
-  std::string out = head.data();
+  std::string out = format(
+      "P5\n# saphira stereo cycle=%llu focal=%.9g baseline=%.9g height=%.9g forward=%.9g "
+      "pan=%.9g\n"
+      "%d %d\n255\n",
+      static_cast<unsigned long long>(cycle), rig.focal(), rig.baseline, rig.height,
+      rig.pose_in_robot.x, rig.pose_in_robot.th, 2 * pair.left.columns, pair.left.rows);
   for (int row = 0; row < pair.left.rows; ++row)
     for (const GreyImage* image : {&pair.left, &pair.right}) {
       const auto begin = image->pixels.begin() + static_cast<std::ptrdiff_t>(row) * image->columns;

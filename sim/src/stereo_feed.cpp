@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::sim {
@@ -21,7 +22,7 @@ StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& soc
   std::error_code error;
   if (!folder_.empty() && !std::filesystem::is_directory(folder_) &&
       !std::filesystem::create_directories(folder_, error))
-    throw std::runtime_error(folder_ + ": " + error.message());
+    throw UnusableFile(folder_ + ": cannot be made: " + error.message());
   if (socket)
     listener_.emplace(Listener::local(*socket));
 }
@@ -52,12 +53,11 @@ bool StereoFeed::send(Viewer& viewer) {
 }
 
 void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "/%06llu.pgm", static_cast<unsigned long long>(cycle));
-  std::ofstream file(folder_ + name.data(), std::ios::binary);
+  const std::string name = folder_ + format("/%06llu.pgm", static_cast<unsigned long long>(cycle));
+  std::ofstream file(name, std::ios::binary);
   file << picture << std::flush;
   if (!file)
-    throw std::runtime_error(cannot_be(folder_ + name.data(), "written"));
+    throw std::runtime_error(cannot_be(name, "written"));
 }
 
 void StereoFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,

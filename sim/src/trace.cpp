@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
@@ -26,19 +27,12 @@ double trace_number(std::string_view text, const std::string& file, int line, in
   return *value;
 }
 
-template <class... Args>
-void print(std::string& out, const char* format, Args... args) {
-  std::array<char, 512> line{};
-  const int size = std::snprintf(line.data(), line.size(), format, args...);
-  out.append(line.data(), static_cast<std::size_t>(size));
-}
-
 void outline(std::string& out, const Pose& at, double height, double radius, const char* style) {
-  print(out,
-        "<g transform=\"translate(%.1f %.1f) rotate(%.1f)\" %s><circle r=\"%.1f\"/>"
-        "<path d=\"M 0 0 H %.1f\"/></g>\n",
-        at.x * 1000.0, (height - at.y) * 1000.0, -degrees(at.th), style, radius * 1000.0,
-        radius * 1000.0);
+  out += format(
+      "<g transform=\"translate(%.1f %.1f) rotate(%.1f)\" %s><circle r=\"%.1f\"/>"
+      "<path d=\"M 0 0 H %.1f\"/></g>\n",
+      at.x * 1000.0, (height - at.y) * 1000.0, -degrees(at.th), style, radius * 1000.0,
+      radius * 1000.0);
 }
 
 }  // namespace
@@ -49,13 +43,11 @@ std::string trace_header() {
 }
 
 std::string to_csv(const TraceRow& row) {
-  char line[512];
-  const int size = std::snprintf(
-      line, sizeof line, "%llu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n",
-      static_cast<unsigned long long>(row.cycle), row.pose_in_world.x, row.pose_in_world.y,
-      row.pose_in_world.th, row.velocity, row.rotation_velocity, row.set_velocity, row.set_heading,
-      row.set_rotation_velocity, row.clearance, row.contacts);
-  return {line, static_cast<std::size_t>(size)};
+  return format("%llu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n",
+                static_cast<unsigned long long>(row.cycle), row.pose_in_world.x,
+                row.pose_in_world.y, row.pose_in_world.th, row.velocity, row.rotation_velocity,
+                row.set_velocity, row.set_heading, row.set_rotation_velocity, row.clearance,
+                row.contacts);
 }
 
 std::vector<TraceRow> parse_trace(std::string_view text, const std::string& file) {
@@ -106,23 +98,23 @@ std::vector<TraceRow> parse_trace(std::string_view text, const std::string& file
 std::string plot_svg(const World& world, const std::vector<TraceRow>& trace, double radius) {
   const double height = world.height;
   std::string out;
-  print(out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-300 -300 %.0f %.0f\" "
-        "width=\"1200\">\n<rect x=\"-300\" y=\"-300\" width=\"100%%\" height=\"100%%\" "
-        "fill=\"#ffffff\"/>\n",
-        world.width * 1000.0 + 600.0, height * 1000.0 + 600.0);
+  out += format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-300 -300 %.0f %.0f\" "
+      "width=\"1200\">\n<rect x=\"-300\" y=\"-300\" width=\"100%%\" height=\"100%%\" "
+      "fill=\"#ffffff\"/>\n",
+      world.width * 1000.0 + 600.0, height * 1000.0 + 600.0);
   out += "<path fill=\"none\" stroke=\"#30343b\" stroke-width=\"50\" stroke-linecap=\"round\" d=\"";
   for (const Segment& s : world.segments)
-    print(out, "M%.0f %.0fL%.0f %.0f", s.from.x() * 1000.0, (height - s.from.y()) * 1000.0,
-          s.to.x() * 1000.0, (height - s.to.y()) * 1000.0);
+    out += format("M%.0f %.0fL%.0f %.0f", s.from.x() * 1000.0, (height - s.from.y()) * 1000.0,
+                  s.to.x() * 1000.0, (height - s.to.y()) * 1000.0);
   out += "\"/>\n";
   if (trace.empty())
     return out + "</svg>\n";
   out +=
       "<path fill=\"none\" stroke=\"#1f77b4\" stroke-width=\"60\" stroke-linejoin=\"round\" d=\"";
   for (const TraceRow& row : trace)
-    print(out, "%s%.0f %.0f", row.first || &row == &trace.front() ? "M" : "L",
-          row.pose_in_world.x * 1000.0, (height - row.pose_in_world.y) * 1000.0);
+    out += format("%s%.0f %.0f", row.first || &row == &trace.front() ? "M" : "L",
+                  row.pose_in_world.x * 1000.0, (height - row.pose_in_world.y) * 1000.0);
   out += "\"/>\n";
   for (std::size_t i = kRowsBetweenOutlines; i + 1 < trace.size(); i += kRowsBetweenOutlines)
     outline(out, trace[i].pose_in_world, height, radius,
@@ -134,8 +126,8 @@ std::string plot_svg(const World& world, const std::vector<TraceRow>& trace, dou
   int contacts = trace.front().contacts;
   for (const TraceRow& row : trace) {
     if (row.contacts != contacts)
-      print(out, "<circle cx=\"%.0f\" cy=\"%.0f\" r=\"120\" fill=\"#d62728\"/>\n",
-            row.pose_in_world.x * 1000.0, (height - row.pose_in_world.y) * 1000.0);
+      out += format("<circle cx=\"%.0f\" cy=\"%.0f\" r=\"120\" fill=\"#d62728\"/>\n",
+                    row.pose_in_world.x * 1000.0, (height - row.pose_in_world.y) * 1000.0);
     contacts = row.contacts;
   }
   return out + "</svg>\n";

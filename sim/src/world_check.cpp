@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::sim {
 
 namespace {
@@ -17,9 +19,7 @@ constexpr double kFrame = 0.05;  // [m]
 constexpr double kAgainst = 0.005;  // [m]
 
 std::string metres(const Vec2& point) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "(%.0f, %.0f)", point.x() * 1000.0, point.y() * 1000.0);
-  return text.data();
+  return format("(%.0f, %.0f)", point.x() * 1000.0, point.y() * 1000.0);
 }
 
 const Segment* wall_across(const World& world, const Segment& way) {

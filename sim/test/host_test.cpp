@@ -26,6 +26,7 @@
 #include "saphira/sim/trace.hpp"
 #include "saphira/transport/address.hpp"
 #include "saphira/transport/link.hpp"
+#include "trouble.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -241,12 +242,8 @@ TEST_F(HostTest, ATerminalTakesNoFilesPlace) {
   options_.socket.reset();
   options_.terminal = directory_ + "/tty";
   std::ofstream(*options_.terminal) << "precious";
-  try {
-    run(options_, stop_);
-    FAIL() << "it ran";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("is no symbolic link"), std::string::npos);
-  }
+  EXPECT_TRUE(test::has(test::trouble_of<UnusableFile>([&] { run(options_, stop_); }),
+                        "is no symbolic link"));
   EXPECT_EQ(read_file(*options_.terminal), "precious");
 }
 
@@ -256,14 +253,7 @@ TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
   std::ofstream(world) << "width 4000 height 4000\n0 0 4000 0\n  position 2000 150 0\n"
                           "robot 2000 160 0\n";
   options_.world = world;
-  const auto trouble = [&] {
-    try {
-      run(options_, stop_);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto trouble = [&] { return test::trouble([&] { run(options_, stop_); }); };
   EXPECT_NE(trouble().find("narrow.wld:3:3: "), std::string::npos) << trouble();
   options_.position = Pose{2.0, 2.0, 0.0};
   options_.more.push_back({});
@@ -279,10 +269,10 @@ TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
 // A dry run reports the mistakes that a run reports.
 TEST_F(HostTest, ACheckPlacesTheRobotsAndOpensNothing) {
   options_.position = Pose{1.5, 6.0, 0.0};
-  EXPECT_THROW(check(options_), std::runtime_error);
+  EXPECT_THROW(check(options_), std::invalid_argument);
   options_.position.reset();
   options_.more.push_back({});
-  EXPECT_THROW(check(options_), std::runtime_error) << "no place for the second robot";
+  EXPECT_THROW(check(options_), std::invalid_argument) << "no place for the second robot";
   options_.more.clear();
   options_.socket = "/nowhere/robot";
   EXPECT_NO_THROW(check(options_));
@@ -379,7 +369,9 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
     try {
       run(options, stop_);
       return "no error";
-    } catch (const std::runtime_error& error) {
+    } catch (const UnusableFile& error) {  // 2 is the exit code of these two
+      return error.what();
+    } catch (const std::invalid_argument& error) {
       return error.what();
     }
   };

@@ -255,6 +255,9 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
        "expected a new name, or a socket; found a file"},
       {{"saphira-console", "--certificate", "FOLDER/empty", "--certificate-key", "FOLDER/empty"},
        "/empty: expected a certificate in PEM"},
+      {{"saphira-console", "--dial-authority", "/nowhere/x.pem"},
+       "--dial-authority: /nowhere/x.pem: cannot be read: No such file or directory; give the "
+       "certificate (PEM)"},
       {{"saphira-relay", "--dial-port", "1", "--robots", "FOLDER/notes", "--certificate",
         "FOLDER/empty", "--certificate-key", "FOLDER/empty"},
        "/empty: expected a certificate in PEM",

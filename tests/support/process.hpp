@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "trouble.hpp"
+
 /// The common parts of tests of whole programs: processes, temporary folders, waiting.
 namespace saphira::test {
 
@@ -85,10 +87,6 @@ Outcome run(const std::vector<std::string>& argv,
 Outcome saphira(std::vector<std::string> words,
                 const std::map<std::string, std::string>& environment = {},
                 std::chrono::milliseconds limit = std::chrono::seconds(60));
-
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// A program of this build, such as saphira-bridge; a file of the source tree, such as
 /// config/robots.

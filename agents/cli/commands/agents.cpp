@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/introspect.hpp"
@@ -76,11 +77,7 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
 
 /// The program that holds a trigger, for people; empty: unknown.
 std::string holder(const bus::Census& census, const bus::WriterId& writer) {
-  std::string id;
-  for (const auto byte : writer) {
-    id += "0123456789abcdef"[byte >> 4U];
-    id += "0123456789abcdef"[byte & 15U];
-  }
+  const std::string id = hex_text(writer);
   for (const bus::EndpointEntry& entry : census.endpoints())
     if (entry.writer && entry.id == id)
       return entry.program + ", process " + std::to_string(entry.pid) +

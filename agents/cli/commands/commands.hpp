@@ -76,40 +76,12 @@ inline CLI::Validator number_in_unit(const std::string& unit) {
           ""};
 }
 
-void add_demo(CLI::App& app, Chosen& chosen);
-void add_up(CLI::App& app, Chosen& chosen);
-void add_check(CLI::App& app, Chosen& chosen);
-void add_security(CLI::App& app, Chosen& chosen);
-void add_stop(CLI::App& app, Chosen& chosen);
-void add_renew(CLI::App& app, Chosen& chosen);
-void add_status(CLI::App& app, Chosen& chosen);
-void add_list(CLI::App& app, Chosen& chosen);
-void add_echo(CLI::App& app, Chosen& chosen);
-void add_log(CLI::App& app, Chosen& chosen);
-void add_goal(CLI::App& app, Chosen& chosen);
-void add_intentions(CLI::App& app, Chosen& chosen);
-void add_behaviors(CLI::App& app, Chosen& chosen);
-void add_why(CLI::App& app, Chosen& chosen);
-void add_beliefs(CLI::App& app, Chosen& chosen);
-void add_processes(CLI::App& app, Chosen& chosen);
-void add_device(CLI::App& app, Chosen& chosen);
-void add_map(CLI::App& app, Chosen& chosen);
-void add_scenario(CLI::App& app, Chosen& chosen);
-void add_say(CLI::App& app, Chosen& chosen);
-void add_talk(CLI::App& app, Chosen& chosen);
-void add_knows(CLI::App& app, Chosen& chosen);
-void add_ask(CLI::App& app, Chosen& chosen);
-void add_agents(CLI::App& app, Chosen& chosen);
-void add_drive(CLI::App& app, Chosen& chosen);
-void add_direct(CLI::App& app, Chosen& chosen);
-void add_estop(CLI::App& app, Chosen& chosen);
-void add_complete(CLI::App& app, Chosen& chosen);
-void add_write(CLI::App& app, Chosen& chosen);
-void add_wiring(CLI::App& app, Chosen& chosen);
-void add_console(CLI::App& app, Chosen& chosen);
-void add_mcp(CLI::App& app, Chosen& chosen);
-void add_record(CLI::App& app, Chosen& chosen);
-void add_replay(CLI::App& app, Chosen& chosen);
-void add_bench(CLI::App& app, Chosen& chosen);
+/// Adds a subcommand to the parser.
+using AddCommand = void(CLI::App& app, Chosen& chosen);
+AddCommand add_demo, add_up, add_check, add_security, add_stop, add_renew, add_status, add_list,
+    add_echo, add_log, add_goal, add_intentions, add_behaviors, add_why, add_beliefs, add_processes,
+    add_device, add_map, add_scenario, add_say, add_talk, add_knows, add_ask, add_agents, add_drive,
+    add_direct, add_estop, add_complete, add_write, add_wiring, add_console, add_mcp, add_record,
+    add_replay, add_bench;
 
 }  // namespace saphira::cli

@@ -16,6 +16,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -27,7 +28,6 @@
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/maps/topology.hpp"
-#include "saphira/situation/format.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -119,15 +119,7 @@ bool is_utf8() {
 /// The state of the robot from the bus during the drive, and its display.
 class Watcher {
  public:
-  Watcher(bus::Node& node, const Vec2& goal)
-      : goal_(goal),
-        robots_(node.reader(bus::topics::kRobotState)),
-        descriptions_(node.reader(bus::topics::kRobotDescription)),
-        grants_(node.reader(bus::topics::kGrant)),
-        maps_(node.reader(bus::topics::kMap)),
-        registrations_(node.reader(bus::topics::kRegistration)) {
-    picture_.set_goal(goal);
-  }
+  Watcher(bus::Node& node, const Vec2& goal) : node_(node), goal_(goal) { picture_.set_goal(goal); }
 
   /// True when there was a new sample.
   bool poll() {
@@ -166,8 +158,8 @@ class Watcher {
       return "no robot yet";
     const Pose pose = lps::from_bus(robot_->pose_in_odom());
     std::string line =
-        situation::format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(),
-                          pose.x, pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
+        format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
+               pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
     line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
     if (grant_ && !latched(*grant_).empty())
       line += ", " + latched(*grant_);
@@ -235,17 +227,18 @@ class Watcher {
         range = reading.range;
         sonar = index;
       }
-    return std::isfinite(range) ? situation::format("  nearest %.2f m (sonar %d)", range, sonar)
+    return std::isfinite(range) ? format("  nearest %.2f m (sonar %d)", range, sonar)
                                 : std::string();
   }
 
+  bus::Node& node_;
   Vec2 goal_;
   Picture picture_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::RobotDescription> descriptions_;
-  bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
   maps::Map map_;
   std::optional<Pose> odom_in_map_;
   std::optional<v1::RobotState> robot_;

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/device_words.hpp"
 #include "watch.hpp"
@@ -21,11 +22,7 @@ constexpr double kAnswerTime = 1.0;       ///< [s] for a device on a serial port
 /// The robot's devices as they are on the bus.
 class Watch {
  public:
-  explicit Watch(const bus::NodeOptions& options)
-      : node(options),
-        processes(node),
-        robots_(node.reader(bus::topics::kRobotState)),
-        devices_(node.reader(bus::topics::kDevices)) {}
+  explicit Watch(const bus::NodeOptions& options) : node(options), processes(node) {}
 
   void poll() {
     processes.poll();
@@ -41,8 +38,8 @@ class Watch {
   std::optional<v1::Devices> devices;
 
  private:
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::Devices> devices_;
+  bus::Reader<v1::RobotState> robots_ = node.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Devices> devices_ = node.reader(bus::topics::kDevices);
 };
 
 int nobody(const bus::NodeOptions& options, const Watch& watch) {
@@ -97,9 +94,7 @@ void print_serial(const v1::SerialData& data) {
   std::string hex;
   std::string text;
   for (const std::uint8_t byte : data.data()) {
-    std::array<char, 8> out{};
-    std::snprintf(out.data(), out.size(), "%02x ", byte);
-    hex += out.data();
+    hex += format("%02x ", byte);
     text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '.';
   }
   std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());

@@ -25,12 +25,7 @@ constexpr double kStuck = 5.0;       ///< [s] without any progress
 
 DirectDriver::DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& topic,
                            const std::string& program)
-    : node_(node),
-      processes_(node),
-      commands_(node.writer(topic)),
-      robots_(node.reader(bus::topics::kRobotState)),
-      grants_(node.reader(bus::topics::kGrant)),
-      source_(person(program)) {}
+    : node_(node), processes_(node), commands_(node.writer(topic)), source_(person(program)) {}
 
 void DirectDriver::drive(v1::MotorCommand command) {
   // The stamp names the robot state that the command answers: an old one is refused.

@@ -39,8 +39,8 @@ class DirectDriver {
   bus::Node& node_;
   Processes processes_;
   bus::Writer<v1::MotorCommand> commands_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   std::string source_;
   std::uint64_t number_ = 0;
   std::optional<v1::RobotState> robot_;

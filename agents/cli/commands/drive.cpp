@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
@@ -123,14 +124,7 @@ class Joystick {
 class Teleop {
  public:
   explicit Teleop(const bus::NodeOptions& options, const std::string& joystick = kJoystick)
-      : joystick_(joystick),
-        node_(options),
-        processes_(node_),
-        goals_(node_, "saphira drive"),
-        commands_(node_.writer(bus::topics::kDriveTeleop)),
-        robots_(node_.reader(bus::topics::kRobotState)),
-        descriptions_(node_.reader(bus::topics::kRobotDescription)),
-        grants_(node_.reader(bus::topics::kGrant)) {}
+      : joystick_(joystick), node_(options), processes_(node_), goals_(node_, "saphira drive") {}
 
   int run(const bus::Stop& stop) {
     const RawTerminal terminal;
@@ -374,20 +368,17 @@ class Teleop {
     const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
     if (refused)
       setpoint.velocity = 0.0;  // a refused setpoint is not shown as wanted
-    std::array<char, 256> text{};
     std::string line;
     if (!robot_ || seconds_since(robot_came_) > 1.0) {
       line = "no robot: " + who_is_there(node_.options(), processes_);
     } else {
-      std::snprintf(
-          text.data(), text.size(),
-          "want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",
-          setpoint.velocity, robot_->velocity(), degrees(robot_->rotation_velocity()),
-          robot_->pose_in_odom().x(), robot_->pose_in_odom().y(),
-          degrees(robot_->pose_in_odom().th()), robot_->battery(),
-          robot_->left_stalled() ? "  LEFT STALLED" : "",
-          robot_->right_stalled() ? "  RIGHT STALLED" : "");
-      line = text.data();
+      line =
+          format("want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",
+                 setpoint.velocity, robot_->velocity(), degrees(robot_->rotation_velocity()),
+                 robot_->pose_in_odom().x(), robot_->pose_in_odom().y(),
+                 degrees(robot_->pose_in_odom().th()), robot_->battery(),
+                 robot_->left_stalled() ? "  LEFT STALLED" : "",
+                 robot_->right_stalled() ? "  RIGHT STALLED" : "");
     }
     const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0 && setpoint.turn == 0.0;
     std::string second = !setpoint.active    ? "released"
@@ -441,10 +432,10 @@ class Teleop {
   bus::Node node_;
   Processes processes_;
   bus::GoalClient goals_;
-  bus::Writer<v1::MotorCommand> commands_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::RobotDescription> descriptions_;
-  bus::Reader<v1::Grant> grants_;
+  bus::Writer<v1::MotorCommand> commands_ = node_.writer(bus::topics::kDriveTeleop);
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
 
   KeyDrive keys_;
   std::string input_;

@@ -20,8 +20,6 @@ class Button {
  public:
   explicit Button(const bus::NodeOptions& options)
       : node_(options),
-        stops_(node_.writer(bus::topics::kDriveEstop)),
-        grants_(node_.reader(bus::topics::kGrant)),
         processes_(node_),
         source_(person("saphira estop")),
         resets_(node_, bus::topics::kEstopReset, source_) {}
@@ -99,8 +97,8 @@ class Button {
 
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
-  bus::Writer<v1::MotorCommand> stops_;
-  bus::Reader<v1::Grant> grants_;
+  bus::Writer<v1::MotorCommand> stops_ = node_.writer(bus::topics::kDriveEstop);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   Processes processes_;
   std::string source_;
   bus::RequestClient resets_;

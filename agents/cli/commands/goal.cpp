@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/goal_words.hpp"
@@ -226,17 +227,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
 }
 
 const char* kind_word(v1::ParameterKind kind) {
-  switch (kind) {
-    case v1::PARAMETER_ANY:
-      return "anything";
-    case v1::PARAMETER_NUMBER:
-      return "number";
-    case v1::PARAMETER_TEXT:
-      return "text";
-    case v1::PARAMETER_POINT:
-      return "point";
-  }
-  return "?";
+  return word_of(kind, {"anything", "number", "text", "point"});
 }
 
 void print_schema(const v1::ActivitySchema& schema) {

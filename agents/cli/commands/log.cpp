@@ -1,11 +1,10 @@
-#include <array>
-#include <cstdio>
 #include <ctime>
 #include <iostream>
 #include <map>
 
 #include "commands.hpp"
 #include "robot_log.hpp"
+#include "saphira/base/format.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -16,14 +15,8 @@ constexpr double kLogPatience = 3.0;  ///< [s] for the first line
 constexpr double kQuiet = 0.7;        ///< [s] after the last line: all earlier ones have come
 
 std::string clock_time(std::int64_t time_ns) {
-  const std::time_t seconds = time_ns / 1'000'000'000;
-  std::tm local{};
-  localtime_r(&seconds, &local);
-  std::array<char, 32> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%H:%M:%S", &local);
-  std::snprintf(text.data() + length, text.size() - length, ".%03d",
-                static_cast<int>(time_ns / 1'000'000 % 1000));
-  return text.data();
+  return local_text(time_ns / 1'000'000'000, "%H:%M:%S") +
+         format(".%03d", static_cast<int>(time_ns / 1'000'000 % 1000));
 }
 
 std::string record_line(const v1::LogRecord& record) {

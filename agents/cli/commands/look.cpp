@@ -1,5 +1,4 @@
 // list and echo: the present bus.
-#include <algorithm>
 #include <iostream>
 
 #include "commands.hpp"

@@ -15,6 +15,15 @@
 namespace saphira::cli {
 namespace {
 
+/// In the order of the help.
+constexpr AddCommand* kCommands[]{
+    add_demo,      add_scenario, add_up,         add_check,     add_stop,     add_renew,
+    add_console,   add_mcp,      add_record,     add_replay,    add_security, add_estop,
+    add_status,    add_goal,     add_intentions, add_behaviors, add_why,      add_beliefs,
+    add_processes, add_say,      add_talk,       add_knows,     add_ask,      add_agents,
+    add_map,       add_drive,    add_direct,     add_device,    add_list,     add_echo,
+    add_write,     add_log,      add_wiring,     add_bench,     add_complete};
+
 int print_help(const CLI::App& root, const std::string& name) {
   std::vector<std::string> names;
   for (const CLI::App* const command : root.get_subcommands({})) {
@@ -74,41 +83,8 @@ int main(int argc, char** argv) {
         app.name("saphira");
         app.require_subcommand(0, 1);
         app.remove_option(app.get_option("--dry-run"));  // saphira check has that
-        cli::add_demo(app, chosen);
-        cli::add_scenario(app, chosen);
-        cli::add_up(app, chosen);
-        cli::add_check(app, chosen);
-        cli::add_stop(app, chosen);
-        cli::add_renew(app, chosen);
-        cli::add_console(app, chosen);
-        cli::add_mcp(app, chosen);
-        cli::add_record(app, chosen);
-        cli::add_replay(app, chosen);
-        cli::add_security(app, chosen);
-        cli::add_estop(app, chosen);
-        cli::add_status(app, chosen);
-        cli::add_goal(app, chosen);
-        cli::add_intentions(app, chosen);
-        cli::add_behaviors(app, chosen);
-        cli::add_why(app, chosen);
-        cli::add_beliefs(app, chosen);
-        cli::add_processes(app, chosen);
-        cli::add_say(app, chosen);
-        cli::add_talk(app, chosen);
-        cli::add_knows(app, chosen);
-        cli::add_ask(app, chosen);
-        cli::add_agents(app, chosen);
-        cli::add_map(app, chosen);
-        cli::add_drive(app, chosen);
-        cli::add_direct(app, chosen);
-        cli::add_device(app, chosen);
-        cli::add_list(app, chosen);
-        cli::add_echo(app, chosen);
-        cli::add_write(app, chosen);
-        cli::add_log(app, chosen);
-        cli::add_wiring(app, chosen);
-        cli::add_bench(app, chosen);
-        cli::add_complete(app, chosen);
+        for (cli::AddCommand* const add : cli::kCommands)
+          add(app, chosen);
         app.add_subcommand("help", "This text; with a command's name: what that takes")
             ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well. (Separate programs have

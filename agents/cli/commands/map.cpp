@@ -11,6 +11,7 @@
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
@@ -44,15 +45,7 @@ v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
-      : node(options),
-        processes(node),
-        deployments(node, processes),
-        options_(options),
-        grants_(node.reader(bus::topics::kGrant)),
-        maps_(node.reader(bus::topics::kMap)),
-        registrations_(node.reader(bus::topics::kRegistration)),
-        beliefs_(node.reader(bus::topics::kBeliefs)),
-        descriptions_(node.reader(bus::topics::kRobotDescription)) {}
+      : node(options), processes(node), deployments(node, processes), options_(options) {}
 
   /// True where a new sample of registration came.
   bool poll() {
@@ -115,11 +108,11 @@ class View {
 
  private:
   bus::NodeOptions options_;
-  bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Registration> registrations_;
-  bus::Reader<v1::BeliefSet> beliefs_;
-  bus::Reader<v1::RobotDescription> descriptions_;
+  bus::Reader<v1::Grant> grants_ = node.reader(bus::topics::kGrant);
+  bus::Reader<v1::FloorMap> maps_ = node.reader(bus::topics::kMap);
+  bus::Reader<v1::Registration> registrations_ = node.reader(bus::topics::kRegistration);
+  bus::Reader<v1::BeliefSet> beliefs_ = node.reader(bus::topics::kBeliefs);
+  bus::Reader<v1::RobotDescription> descriptions_ = node.reader(bus::topics::kRobotDescription);
 };
 
 int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
@@ -218,9 +211,7 @@ void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::D
   const Pose frame = drawn.frame() == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map())
                      : drawn.frame() == v1::FRAME_ODOM ? odom
                                                        : Pose{};
-  char color[8];
-  std::snprintf(color, sizeof color, "#%02x%02x%02x", static_cast<unsigned>(drawn.red()),
-                static_cast<unsigned>(drawn.green()), static_cast<unsigned>(drawn.blue()));
+  const std::string color = format("#%02x%02x%02x", drawn.red(), drawn.green(), drawn.blue());
   std::vector<Vec2> points;
   for (const v1::DrawnPoint& point : drawn.points())
     if (std::isfinite(point.x()) && std::isfinite(point.y()))

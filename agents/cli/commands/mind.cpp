@@ -17,21 +17,7 @@ std::optional<T> copy(const T* sample) {
 
 }  // namespace
 
-Mind::Mind(bus::Node& node, bool recalled)
-    : node_(node),
-      processes_(node),
-      description_reader_(node.reader(bus::topics::kRobotDescription)),
-      robot_reader_(node.reader(bus::topics::kRobotState)),
-      grant_reader_(node.reader(bus::topics::kGrant)),
-      behavior_reader_(node.reader(bus::topics::kBehaviors)),
-      intention_reader_(node.reader(bus::topics::kIntentions)),
-      goal_reader_(node.reader(bus::topics::kGoals)),
-      status_reader_(node.reader(bus::topics::kGoalStatus)),
-      schema_reader_(node.reader(bus::topics::kBehaviorSchemas)),
-      belief_reader_(node.reader(bus::topics::kBeliefs)),
-      registration_reader_(node.reader(bus::topics::kRegistration)),
-      process_reader_(node.reader(bus::topics::kProcesses)),
-      program_reader_(node.reader(bus::topics::kProgramMinds)) {
+Mind::Mind(bus::Node& node, bool recalled) : node_(node), processes_(node) {
   if (recalled)
     recall();
 }

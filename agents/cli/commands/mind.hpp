@@ -106,18 +106,19 @@ class Mind {
 
   bus::Node& node_;
   Processes processes_;
-  bus::Reader<v1::RobotDescription> description_reader_;
-  bus::Reader<v1::RobotState> robot_reader_;
-  bus::Reader<v1::Grant> grant_reader_;
-  bus::Reader<v1::BehaviorSet> behavior_reader_;
-  bus::Reader<v1::Intentions> intention_reader_;
-  bus::Reader<v1::Goal> goal_reader_;
-  bus::Reader<v1::GoalStatus> status_reader_;
-  bus::Reader<v1::BehaviorSchemas> schema_reader_;
-  bus::Reader<v1::BeliefSet> belief_reader_;
-  bus::Reader<v1::Registration> registration_reader_;
-  bus::Reader<v1::ProcessSet> process_reader_;
-  bus::Reader<v1::ProgramMind> program_reader_;
+  bus::Reader<v1::RobotDescription> description_reader_ =
+      node_.reader(bus::topics::kRobotDescription);
+  bus::Reader<v1::RobotState> robot_reader_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Grant> grant_reader_ = node_.reader(bus::topics::kGrant);
+  bus::Reader<v1::BehaviorSet> behavior_reader_ = node_.reader(bus::topics::kBehaviors);
+  bus::Reader<v1::Intentions> intention_reader_ = node_.reader(bus::topics::kIntentions);
+  bus::Reader<v1::Goal> goal_reader_ = node_.reader(bus::topics::kGoals);
+  bus::Reader<v1::GoalStatus> status_reader_ = node_.reader(bus::topics::kGoalStatus);
+  bus::Reader<v1::BehaviorSchemas> schema_reader_ = node_.reader(bus::topics::kBehaviorSchemas);
+  bus::Reader<v1::BeliefSet> belief_reader_ = node_.reader(bus::topics::kBeliefs);
+  bus::Reader<v1::Registration> registration_reader_ = node_.reader(bus::topics::kRegistration);
+  bus::Reader<v1::ProcessSet> process_reader_ = node_.reader(bus::topics::kProcesses);
+  bus::Reader<v1::ProgramMind> program_reader_ = node_.reader(bus::topics::kProgramMinds);
   std::unique_ptr<Recall> recall_;
   Clock::time_point began_ = Clock::now();
   Clock::time_point robot_came_ = Clock::now();

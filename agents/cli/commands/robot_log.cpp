@@ -5,7 +5,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
@@ -40,7 +41,7 @@ std::int64_t now() {
 }
 
 std::string day_of(std::int64_t seconds) {
-  return security::utc_text(seconds, "%Y-%m-%d");
+  return utc_text(seconds, "%Y-%m-%d");
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -14,15 +14,7 @@ namespace {
 /// The status of all programs, and the driver of the robot.
 class StatusView {
  public:
-  explicit StatusView(bus::Node& node)
-      : node_(node),
-        processes_(node),
-        grants_(node.reader(bus::topics::kGrant)),
-        robots_(node.reader(bus::topics::kRobotState)),
-        behaviors_(node.reader(bus::topics::kBehaviors)),
-        intentions_(node.reader(bus::topics::kIntentions)),
-        goals_(node.reader(bus::topics::kGoalStatus)),
-        log_(node.reader(bus::topics::kLog)) {}
+  explicit StatusView(bus::Node& node) : node_(node), processes_(node) {}
 
   void poll() {
     processes_.poll();
@@ -94,12 +86,12 @@ class StatusView {
 
   bus::Node& node_;
   Processes processes_;
-  bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::BehaviorSet> behaviors_;
-  bus::Reader<v1::Intentions> intentions_;
-  bus::Reader<v1::GoalStatus> goals_;
-  bus::Reader<v1::LogRecord> log_;
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::BehaviorSet> behaviors_ = node_.reader(bus::topics::kBehaviors);
+  bus::Reader<v1::Intentions> intentions_ = node_.reader(bus::topics::kIntentions);
+  bus::Reader<v1::GoalStatus> goals_ = node_.reader(bus::topics::kGoalStatus);
+  bus::Reader<v1::LogRecord> log_ = node_.reader(bus::topics::kLog);
   std::optional<v1::Grant> grant_;
   v1::Stamp robot_, behaved_, intended_;  ///< the newest
   Clock::time_point robot_came_ = Clock::now();

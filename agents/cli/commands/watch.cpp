@@ -6,6 +6,8 @@
 #include <ctime>
 #include <string_view>
 
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/cli/printer.hpp"
 
@@ -60,15 +62,7 @@ void DeploymentWatch::settle(const bus::Stop& stop) {
 }
 
 const char* name_of(bus::Profile profile) {
-  switch (profile) {
-    case bus::Profile::host:
-      return "host";
-    case bus::Profile::lan:
-      return "lan";
-    case bus::Profile::wan:
-      return "wan";
-  }
-  return "?";
+  return word_of(profile, {"host", "lan", "wan"});
 }
 
 std::string person(const std::string& program, bool since) {
@@ -81,12 +75,7 @@ std::string person(const std::string& program, bool since) {
   if (const char* const terminal = ttyname(STDIN_FILENO); terminal != nullptr)
     where = std::string_view(terminal).starts_with("/dev/") ? terminal + 5 : terminal;
   if (since) {
-    const std::time_t now = std::time(nullptr);
-    std::tm local{};
-    std::array<char, 16> time{};
-    if (localtime_r(&now, &local) != nullptr &&
-        std::strftime(time.data(), time.size(), "since %H:%M", &local) > 0)
-      where += (where.empty() ? "" : ", ") + std::string(time.data());
+    where += (where.empty() ? "" : ", ") + local_text(std::time(nullptr), "since %H:%M");
   }
   return where.empty() ? text : text + " (" + where + ")";
 }

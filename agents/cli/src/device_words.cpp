@@ -4,13 +4,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
-
-using situation::format;
 
 const char* const kDeviceWords =
     "  servo WIDTH                    pulse width [us]\n"

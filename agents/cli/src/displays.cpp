@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
 
-using situation::format;
 using situation::is_behavior;
 
 namespace {
@@ -63,20 +63,8 @@ std::string speed_words(double speed, bool recommends) {
   return recommends ? format("%.2f", std::abs(speed) < 0.005 ? 0.0 : speed) : "-";
 }
 
-char sign_of(v1::ControlAction action) {
-  switch (action) {
-    case v1::CONTROL_TURN_LEFT:
-      return '<';
-    case v1::CONTROL_TURN_RIGHT:
-      return '>';
-    case v1::CONTROL_ACCELERATE:
-      return '+';
-    case v1::CONTROL_DECELERATE:
-      return '-';
-    case v1::CONTROL_SPEED:
-      break;
-  }
-  return '=';
+const char* sign_of(v1::ControlAction action) {
+  return word_of(action, {"<", ">", "+", "-", "="});
 }
 
 /// Such as "2.5 s", for people.
@@ -121,26 +109,10 @@ TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node
           (node.label().empty() ? "" : " then " + node.label()),
       node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
           node.step()};
-  const char* how = "";
-  switch (node.state()) {
-    case v1::INTENTION_SUSPENDED:
-      how = "suspended";
-      break;
-    case v1::INTENTION_INTERRUPTED:
-      how = "interrupted";
-      break;
-    case v1::INTENTION_SUCCESS:
-      how = "has succeeded";
-      break;
-    case v1::INTENTION_FAILURE:
-      how = "has failed";
-      break;
-    case v1::INTENTION_TIMEOUT:
-      how = "took too long";
-      break;
-    default:
-      return line;
-  }
+  if (node.state() == v1::INTENTION_INIT || node.state() == v1::INTENTION_RUNNING)
+    return line;
+  const std::string how = word_of(node.state(), {"", "", "suspended", "interrupted",
+                                                 "has succeeded", "has failed", "took too long"});
   line.right = how + (line.right.empty() ? "" : "; " + line.right);
   return line;
 }
@@ -344,7 +316,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
     const bool turn =
         rule.action() == v1::CONTROL_TURN_LEFT || rule.action() == v1::CONTROL_TURN_RIGHT;
     text += "  " + padded(rule.name(), width) +
-            format("  %.2f %c ", rule.strength(), sign_of(rule.action())) +
+            format("  %.2f %s ", rule.strength(), sign_of(rule.action())) +
             (turn ? format("%5.1f deg", degrees(rule.value())) : format("%5.2f m/s", rule.value()));
     if (schema != nullptr)
       for (const v1::RuleText& written : schema->rules())
@@ -374,21 +346,9 @@ std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part)
 }
 
 std::string state_text(const v1::Process& process) {
-  switch (process.state()) {
-    case v1::PROCESS_INIT:
-      return "INIT";
-    case v1::PROCESS_RUNNING:
-      return process.number() == 0 ? "RUN" : std::to_string(process.number());
-    case v1::PROCESS_SUSPENDED:
-      return "SUSP";
-    case v1::PROCESS_RESUMED:
-      return "RESUME";
-    case v1::PROCESS_INTERRUPTED:
-      return "INTERRUPT";
-    case v1::PROCESS_SLEEPING:
-      return "SLEEP";
-  }
-  return "?";
+  if (process.state() == v1::PROCESS_RUNNING && process.number() != 0)
+    return std::to_string(process.number());
+  return word_of(process.state(), {"INIT", "RUN", "SUSP", "RESUME", "INTERRUPT", "SLEEP"});
 }
 
 std::string processes_table(std::vector<v1::ProcessSet> services) {

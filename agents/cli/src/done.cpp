@@ -2,13 +2,11 @@
 
 #include <cmath>
 
+#include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
 namespace {
-
-using situation::format;
 
 constexpr double kFarthest = 100.0;            // [m]
 constexpr double kFastest = 5.0;               // [m/s]

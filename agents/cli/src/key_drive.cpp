@@ -3,56 +3,38 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace saphira::cli {
 
 namespace {
 
+using Keys = std::vector<std::pair<std::string_view, DriveKey>>;
+
+/// The key that has this character among its own.
+std::optional<DriveKey> key_of(char c, const Keys& keys) {
+  for (const auto& [characters, key] : keys)
+    if (characters.find(c) != std::string_view::npos)
+      return key;
+  return std::nullopt;
+}
+
 std::optional<DriveKey> plain_key(char c) {
-  switch (std::tolower(static_cast<unsigned char>(c))) {
-    case 'i':
-      return DriveKey::faster;
-    case 'm':
-      return DriveKey::slower;
-    case 'j':
-      return DriveKey::left;
-    case 'l':
-      return DriveKey::right;
-    case 'k':
-    case ' ':
-      return DriveKey::stop;
-    case '.':
-    case '\r':
-    case '\n':
-      return DriveKey::keep;
-    case 'g':
-      return DriveKey::constant;
-    case 'c':
-      return DriveKey::avoidance;
-    case 'h':
-      return DriveKey::hand_back;
-    case 'q':
-    case '\x03':
-    case '\x04':
-      return DriveKey::quit;
-    default:
-      return std::nullopt;
-  }
+  static const Keys keys{{"i", DriveKey::faster},    {"m", DriveKey::slower},
+                         {"j", DriveKey::left},      {"l", DriveKey::right},
+                         {"k ", DriveKey::stop},     {".\r\n", DriveKey::keep},
+                         {"g", DriveKey::constant},  {"c", DriveKey::avoidance},
+                         {"h", DriveKey::hand_back}, {"q\x03\x04", DriveKey::quit}};
+  return key_of(static_cast<char>(std::tolower(static_cast<unsigned char>(c))), keys);
 }
 
 std::optional<DriveKey> arrow(char c) {
-  switch (c) {
-    case 'A':
-      return DriveKey::faster;
-    case 'B':
-      return DriveKey::slower;
-    case 'D':
-      return DriveKey::left;
-    case 'C':
-      return DriveKey::right;
-    default:
-      return std::nullopt;
-  }
+  static const Keys keys{{"A", DriveKey::faster},
+                         {"B", DriveKey::slower},
+                         {"D", DriveKey::left},
+                         {"C", DriveKey::right}};
+  return key_of(c, keys);
 }
 
 }  // namespace

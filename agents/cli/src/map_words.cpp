@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
@@ -152,17 +154,7 @@ void check_map_words(const std::vector<std::string>& words) {
 }
 
 const char* name_of(v1::RegistrationState state) {
-  switch (state) {
-    case v1::REGISTRATION_OFF:
-      return "off";
-    case v1::REGISTRATION_UNPLACED:
-      return "unplaced";
-    case v1::REGISTRATION_LOST:
-      return "lost";
-    case v1::REGISTRATION_TRACKING:
-      return "tracking";
-  }
-  return "?";
+  return word_of(state, {"off", "unplaced", "lost", "tracking"});
 }
 
 std::string describe(const v1::Registration& registration, const maps::Map& map) {
@@ -175,12 +167,9 @@ std::string describe(const v1::Registration& registration, const maps::Map& map)
   text.resize(8, ' ');
   if (sigma < kAnywhere) {
     const v1::Pose2& pose = registration.pose_in_map();
-    char numbers[120];
-    std::snprintf(numbers, sizeof numbers,
-                  " (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
-                  degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
-                  100.0 * registration.confidence());
-    text += numbers;
+    text += format(" (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
+                   degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
+                   100.0 * registration.confidence());
   } else {
     text += " it may be anywhere";
   }

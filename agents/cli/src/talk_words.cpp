@@ -7,6 +7,7 @@
 
 #include "requests/shell/convert.hpp"
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/words.hpp"
@@ -64,14 +65,7 @@ nlohmann::ordered_json value_of(const v1::Argument& argument) {
 
 /// The local time of day, such as 10:02.
 std::string time_of(double time) {
-  if (time <= 0.0)
-    return "-";
-  const auto seconds = static_cast<std::time_t>(time);
-  std::tm local{};
-  localtime_r(&seconds, &local);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%a %H:%M", &local);
-  return text.data();
+  return time <= 0.0 ? "-" : local_text(static_cast<std::int64_t>(time), "%a %H:%M");
 }
 
 std::string describe(const v1::Agent& agent) {

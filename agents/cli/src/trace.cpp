@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "saphira/base/fnv1a.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -99,18 +100,16 @@ std::string to_json(const Summary& summary) {
 }
 
 std::string to_text(const Summary& summary) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(),
-                "time                %.1f s (%.2f x real time)\n"
-                "path                %.2f m\n"
-                "smallest clearance  %.2f m\n"
-                "contacts            %llu\n"
-                "cycles              %llu, %llu late\n",
-                summary.time, summary.speed_factor, summary.track.path, summary.track.min_clearance,
-                static_cast<unsigned long long>(summary.track.contacts),
-                static_cast<unsigned long long>(summary.track.cycles),
-                static_cast<unsigned long long>(summary.late_cycles));
-  return text.data();
+  return format(
+      "time                %.1f s (%.2f x real time)\n"
+      "path                %.2f m\n"
+      "smallest clearance  %.2f m\n"
+      "contacts            %llu\n"
+      "cycles              %llu, %llu late\n",
+      summary.time, summary.speed_factor, summary.track.path, summary.track.min_clearance,
+      static_cast<unsigned long long>(summary.track.contacts),
+      static_cast<unsigned long long>(summary.track.cycles),
+      static_cast<unsigned long long>(summary.late_cycles));
 }
 
 }  // namespace saphira::cli

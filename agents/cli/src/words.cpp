@@ -4,7 +4,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "saphira/situation/format.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::cli {
 
@@ -54,12 +54,11 @@ std::string status_table(std::vector<SeenProcess> processes) {
   for (const auto& [status, age, namesake] : processes) {
     const bool lost = age > kLostAge;
     rows.push_back(
-        {status.name(), lost ? "lost" : name_of(status.state()), situation::format("%.1f", age),
+        {status.name(), lost ? "lost" : name_of(status.state()), format("%.1f", age),
          std::to_string(status.stamp().epoch()), std::to_string(status.stamp().cycle()),
-         std::to_string(status.late_cycles()), situation::format("%.2f", status.step_ms_mean()),
-         situation::format("%.2f", status.step_ms_max()),
-         situation::format("%.1f", status.cpu_percent()),
-         situation::format("%.1f", status.rss_mb()), status.host(), std::to_string(status.pid()),
+         std::to_string(status.late_cycles()), format("%.2f", status.step_ms_mean()),
+         format("%.2f", status.step_ms_max()), format("%.1f", status.cpu_percent()),
+         format("%.1f", status.rss_mb()), status.host(), std::to_string(status.pid()),
          lost ? "not heard any more; its last words: " + std::string(name_of(status.state())) +
                     (status.reason().empty() ? "" : ", " + status.reason())
               : status.reason()});

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::cli {
 namespace {
 
@@ -74,12 +76,9 @@ TEST(DeviceWords, SayWhatWasExpected) {
     std::string all;
     for (const std::string& word : words)
       all += word + " ";
-    try {
-      parse_device(words);
-      ADD_FAILURE() << all;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find("expected "), std::string::npos) << all;
-    }
+    EXPECT_TRUE(test::has(test::trouble_of<std::invalid_argument>([&] { parse_device(words); }),
+                          "expected "))
+        << all;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::cli {
 namespace {
 
@@ -50,11 +52,8 @@ TEST(GoalWords, WhatIsWrongIsRefusedInWords) {
         "position=1,", "position=1,2,@odom", "a-name-that-is-longer-than-31-chars=1"})
     EXPECT_THROW(parse_argument(word), std::invalid_argument) << word;
   EXPECT_THROW(parse_argument("a=" + std::string(256, 'x')), std::invalid_argument);
-  try {
-    parse_argument("position=1,2@moon");
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("\"moon\" is not a frame"), std::string::npos);
-  }
+  EXPECT_TRUE(test::has(test::trouble([] { parse_argument("position=1,2@moon"); }),
+                        "\"moon\" is not a frame"));
 }
 
 TEST(GoalWords, AWholeGoal) {

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::cli {
 namespace {
 
@@ -47,14 +49,8 @@ TEST(StatusTable, SaysWhoIsLost) {
 
 TEST(Ending, IsThatOfTheContent) {
   EXPECT_NO_THROW(expect_ending("floor.svg", ".svg"));
-  try {
-    expect_ending("floor.txt", ".svg");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "floor.txt: expected a name that ends with .svg, the kind of file that this "
-                 "writes");
-  }
+  EXPECT_EQ(test::trouble_of<std::invalid_argument>([] { expect_ending("floor.txt", ".svg"); }),
+            "floor.txt: expected a name that ends with .svg, the kind of file that this writes");
 }
 
 }  // namespace

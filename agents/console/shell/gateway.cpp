@@ -9,6 +9,7 @@
 #include "key.hpp"
 #include "page_files.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/situation/why.hpp"
 
@@ -57,10 +58,8 @@ double now() {
 }
 
 std::string key_text(const bus::InstanceKey& key) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%llx:%llx", static_cast<unsigned long long>(key[0]),
+  return format("%llx:%llx", static_cast<unsigned long long>(key[0]),
                 static_cast<unsigned long long>(key[1]));
-  return text;
 }
 
 std::string operator_of(const std::string& name) {
@@ -74,16 +73,6 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
     : access_(access_of(options, kept)),
       origin_(origin_of(options.server)),
       node_(node),
-      mind_(node_, false),
-      goals_(node_, "console"),
-      resets_(node_, topics::kEstopReset, "console"),
-      registration_(node_, topics::kRegistrationRequest, "console"),
-      processes_(node_, topics::kProcessRequest, "console"),
-      teleop_(node_.writer(topics::kDriveTeleop)),
-      estop_(node_.writer(topics::kDriveEstop)),
-      heard_(node_.writer(topics::kHeard)),
-      pointed_out_(node_.writer(topics::kAgentEvents)),
-      grants_(node_.reader(topics::kGrant)),
       server_(server_of(options, kept), access_, page_files(), events()) {
   keep_port(options.key_file, kept, server_.port());
   feed_all();
@@ -142,9 +131,7 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
         return;
       std::string key = type.keyed ? key_text(type.key(&sample)) : std::string();
       if (topic.qos == bus::Qos::event) {
-        char number[24];
-        std::snprintf(number, sizeof number, "%020llu", static_cast<unsigned long long>(++events_));
-        key = number;
+        key = format("%020llu", static_cast<unsigned long long>(++events_));
       }
       if (info.disposed) {
         board_.withdraw(rank, key);

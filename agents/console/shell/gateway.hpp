@@ -114,16 +114,16 @@ class Gateway {
   bus::Node node_;
   Board board_;
   Control control_;
-  cli::Mind mind_;
-  bus::GoalClient goals_;
-  bus::RequestClient resets_;
-  bus::RequestClient registration_;
-  bus::RequestClient processes_;
-  bus::Writer<v1::MotorCommand> teleop_;
-  bus::Writer<v1::MotorCommand> estop_;
-  bus::Writer<v1::Utterance> heard_;
-  bus::Writer<v1::AgentEvent> pointed_out_;
-  bus::Reader<v1::Grant> grants_;
+  cli::Mind mind_{node_, false};
+  bus::GoalClient goals_{node_, "console"};
+  bus::RequestClient resets_{node_, bus::topics::kEstopReset, "console"};
+  bus::RequestClient registration_{node_, bus::topics::kRegistrationRequest, "console"};
+  bus::RequestClient processes_{node_, bus::topics::kProcessRequest, "console"};
+  bus::Writer<v1::MotorCommand> teleop_ = node_.writer(bus::topics::kDriveTeleop);
+  bus::Writer<v1::MotorCommand> estop_ = node_.writer(bus::topics::kDriveEstop);
+  bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
+  bus::Writer<v1::AgentEvent> pointed_out_ = node_.writer(bus::topics::kAgentEvents);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
 
   std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
   int control_topic_ = 0;

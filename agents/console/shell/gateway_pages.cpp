@@ -5,6 +5,7 @@
 #include "gateway.hpp"
 #include "key.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/situation/words.hpp"
 
@@ -173,11 +174,8 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
 
 void Gateway::obey(Connection connection, Page& page, const Message& message) {
   if (const auto* ping = std::get_if<Ping>(&message)) {
-    char text[100];
-    std::snprintf(text, sizeof text, "{\"type\":\"pong\",\"at\":%.3f,\"cycle\":%llu}", ping->at,
-                  static_cast<unsigned long long>(stamp_.cycle()));
-    say(connection, text);
-    return;
+    return say(connection, format("{\"type\":\"pong\",\"at\":%.3f,\"cycle\":%llu}", ping->at,
+                                  static_cast<unsigned long long>(stamp_.cycle())));
   }
   // The right to watch includes the right to stop.
   if (std::holds_alternative<EmergencyStop>(message)) {

@@ -1,7 +1,6 @@
 #include "key.hpp"
 
 #include <fcntl.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,8 +8,8 @@
 #include <cstdint>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::console {
@@ -29,14 +28,7 @@ bool write_all(int fd, const Kept& kept) {
 }  // namespace
 
 std::string new_key() {
-  std::array<std::uint8_t, kBytes> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("no random numbers for a key");
-  std::string key;
-  for (const std::uint8_t byte : bytes)
-    for (const int half : {byte >> 4, byte & 15})
-      key += "0123456789abcdef"[half];
-  return key;
+  return random_hex(kBytes);
 }
 
 Kept keep(const std::string& file) {

@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
         app.add_option("--dial-authority", options.dial_authority,
                        "PEM file that the relay's certificate is checked by, in the place of the "
                        "system's authorities")
-            .existing_file();
+            .placeholder("TEXT:FILE");
         app.add_option("--simulator", options.simulator,
                        "socket of a simulator's own view (saphira-sim --view-socket), for the page "
                        "/simulator.html");
@@ -91,6 +91,8 @@ int main(int argc, char** argv) {
           options.dial = relay::parse_address(dial);
           options.dial_token = console::read_secret(token_file);
         }
+        if (!options.dial_authority.empty())
+          security::check_dial_authority(options.dial_authority);
         if (!options.server.certificate.empty()) {
           const std::string trouble =
               security::check_pair(options.server.certificate, options.server.certificate_key,

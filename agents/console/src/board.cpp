@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::console {
 
 std::string quoted(const std::string& text) {
@@ -12,9 +14,7 @@ std::string quoted(const std::string& text) {
       out += '\\';
       out += c;
     } else if (static_cast<unsigned char>(c) < 0x20) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(c));
-      out += escape;
+      out += format("\\u%04x", static_cast<unsigned>(c));
     } else {
       out += c;
     }
@@ -61,8 +61,7 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
     return std::nullopt;
   std::string items;
   const auto add = [&](const Place& place, double age, const std::string& json) {
-    char head[48];
-    std::snprintf(head, sizeof head, ",\"a\":%.0f,\"d\":", 1000.0 * std::max(0.0, age));
+    const std::string head = format(",\"a\":%.0f,\"d\":", 1000.0 * std::max(0.0, age));
     items += items.empty() ? "{\"t\":" : ",{\"t\":";
     items += quoted(topics_.at(static_cast<std::size_t>(place.first)).name);
     items += ",\"k\":" + quoted(place.second) + head + json + '}';
@@ -93,10 +92,9 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
     return std::nullopt;
   viewer.last = now;
   viewer.under_way.push_back({++viewer.sent, now, whole});
-  char head[80];
-  std::snprintf(head, sizeof head, "{\"seq\":%llu,\"now\":%.4f,\"items\":[",
-                static_cast<unsigned long long>(viewer.sent), now);
-  return head + items + "]}";
+  return format("{\"seq\":%llu,\"now\":%.4f,\"items\":[",
+                static_cast<unsigned long long>(viewer.sent), now) +
+         items + "]}";
 }
 
 void Board::seen(Viewer& viewer, std::uint64_t frame, double now) {

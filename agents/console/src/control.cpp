@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "saphira/base/format.hpp"
 #include "saphira/console/board.hpp"
 
 namespace saphira::console {
@@ -13,9 +14,7 @@ namespace {
 constexpr double kClockDrift = 1e-3;  // more than the drift of two clocks
 
 std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", value);
-  return text;
+  return format("%.1f s", value);
 }
 
 }  // namespace

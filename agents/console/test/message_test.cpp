@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::console {
 namespace {
 
@@ -88,12 +90,8 @@ TEST(Message, TheWordsOfAGoal) {
   EXPECT_EQ(words_of(R"(a="the \"big\" room" b="c:\\d e")"),
             (Words{R"(a=the "big" room)", R"(b=c:\d e)"}));
   EXPECT_EQ(words_of(R"(a=c:\d b=Karen's)"), (Words{R"(a=c:\d)", "b=Karen's"}));
-  try {
-    words_of(R"(go "meeting room)");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), R"(expected a closing " behind "meeting room)");
-  }
+  EXPECT_EQ(test::trouble_of<std::invalid_argument>([] { words_of(R"(go "meeting room)"); }),
+            R"(expected a closing " behind "meeting room)");
 }
 
 }  // namespace

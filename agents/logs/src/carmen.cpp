@@ -12,9 +12,9 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/logs/metrics.hpp"
@@ -489,13 +489,11 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
   }
   if (parameters.contradicted && log.scans.front().laser == Laser::flaser) {
     const LaserScan& scan = log.scans.front();
-    char said[200];
-    std::snprintf(said, sizeof said,
-                  "laser_front_laser_resolution %g does not fit %zu beams, which usual lasers have "
-                  "%g degrees apart: taken as that, over %.0f degrees",
-                  parameters.resolution, scan.ranges.size(), degrees(scan.step),
-                  degrees(scan.step) * static_cast<double>(scan.ranges.size()));
-    log.notes.emplace_back(said);
+    log.notes.push_back(
+        format("laser_front_laser_resolution %g does not fit %zu beams, which usual lasers have "
+               "%g degrees apart: taken as that, over %.0f degrees",
+               parameters.resolution, scan.ranges.size(), degrees(scan.step),
+               degrees(scan.step) * static_cast<double>(scan.ranges.size())));
   }
   mount(log, parameters);
   const std::optional<double> no_return = find_no_return(log.scans);

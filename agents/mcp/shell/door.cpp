@@ -60,11 +60,7 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       session_(session),
       who_(who),
       goals_(node, who),
-      requests_(node, bus::topics::kSolve, who),
-      said_reader_(node.reader(bus::topics::kSaid)),
-      event_reader_(node.reader(bus::topics::kAgentEvents)),
-      heard_writer_(node.writer(bus::topics::kHeard)),
-      stop_writer_(node.writer(bus::topics::kDriveEstop)) {
+      requests_(node, bus::topics::kSolve, who) {
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }

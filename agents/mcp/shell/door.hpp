@@ -52,14 +52,14 @@ class Robot {
 
   bus::Node& node_;
   cli::Mind mind_;
-  bus::Reader<v1::ActivitySchemas> schema_reader_;
-  bus::Reader<v1::Agent> agent_reader_;
-  bus::Reader<v1::SonarBuckets> sonar_reader_;
-  bus::Reader<v1::Perception> perception_reader_;
-  bus::Reader<v1::Vision> vision_reader_;
-  bus::Reader<v1::FloorMap> map_reader_;
-  bus::Reader<v1::Registration> registration_reader_;
-  bus::Reader<v1::Knowledge> knowledge_reader_;
+  bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
+  bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
+  bus::Reader<v1::SonarBuckets> sonar_reader_ = node_.reader(bus::topics::kSonarBuckets);
+  bus::Reader<v1::Perception> perception_reader_ = node_.reader(bus::topics::kPerception);
+  bus::Reader<v1::Vision> vision_reader_ = node_.reader(bus::topics::kVision);
+  bus::Reader<v1::FloorMap> map_reader_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::Registration> registration_reader_ = node_.reader(bus::topics::kRegistration);
+  bus::Reader<v1::Knowledge> knowledge_reader_ = node_.reader(bus::topics::kKnows);
   std::optional<v1::SonarBuckets> sonars_;
   std::optional<v1::Perception> perception_;
   std::optional<v1::Vision> vision_;
@@ -139,10 +139,10 @@ class Door {
   const std::string who_;
   bus::GoalClient goals_;
   bus::RequestClient requests_;
-  bus::Reader<v1::Utterance> said_reader_;
-  bus::Reader<v1::AgentEvent> event_reader_;
-  bus::Writer<v1::Utterance> heard_writer_;
-  bus::Writer<v1::MotorCommand> stop_writer_;
+  bus::Reader<v1::Utterance> said_reader_ = node_.reader(bus::topics::kSaid);
+  bus::Reader<v1::AgentEvent> event_reader_ = node_.reader(bus::topics::kAgentEvents);
+  bus::Writer<v1::Utterance> heard_writer_ = node_.writer(bus::topics::kHeard);
+  bus::Writer<v1::MotorCommand> stop_writer_ = node_.writer(bus::topics::kDriveEstop);
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
   std::vector<Call> early_;                   ///< whose facts may still come
   bool left_ = false;                         ///< the client sends no more

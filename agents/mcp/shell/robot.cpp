@@ -176,17 +176,7 @@ std::vector<Tool> fixed_tools() {
 
 }  // namespace
 
-Robot::Robot(bus::Node& node)
-    : node_(node),
-      mind_(node, false),
-      schema_reader_(node.reader(bus::topics::kActivitySchemas)),
-      agent_reader_(node.reader(bus::topics::kAgents)),
-      sonar_reader_(node.reader(bus::topics::kSonarBuckets)),
-      perception_reader_(node.reader(bus::topics::kPerception)),
-      vision_reader_(node.reader(bus::topics::kVision)),
-      map_reader_(node.reader(bus::topics::kMap)),
-      registration_reader_(node.reader(bus::topics::kRegistration)),
-      knowledge_reader_(node.reader(bus::topics::kKnows)) {
+Robot::Robot(bus::Node& node) : node_(node), mind_(node, false) {
   make_tools();
 }
 

@@ -1,7 +1,5 @@
 #include "saphira/mcp/actions.hpp"
 
-#include <algorithm>
-
 #include "saphira/bus/goal_client.hpp"
 
 namespace saphira::mcp {

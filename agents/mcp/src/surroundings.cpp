@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <string>
 
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::mcp {
@@ -23,13 +24,6 @@ Pose pose(const v1::Pose2& from) {
   return {from.x(), from.y(), from.th()};
 }
 
-template <class... Values>
-std::string format(const char* form, Values... values) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), form, values...);
-  return text.data();
-}
-
 /// Two decimals are enough for a reader.
 double rounded(double value) {
   return std::round(100.0 * value) / 100.0;
@@ -37,39 +31,13 @@ double rounded(double value) {
 
 /// Such as 2026-11-26 12:30 UTC; empty where the time [s since 1970] is not known.
 std::string date_of(double time) {
-  if (!(time > 0.0 && time < 1e11))
-    return {};
-  const auto seconds = static_cast<std::time_t>(time);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 64> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &parts);
-  return text.data();
+  return time > 0.0 && time < 1e11 ? utc_text(static_cast<std::int64_t>(time), "%Y-%m-%d %H:%M UTC")
+                                   : std::string();
 }
 
 const char* kind_of(v1::ArtifactType type) {
-  switch (type) {
-    case v1::ARTIFACT_POSITION:
-      return "place";
-    case v1::ARTIFACT_WALL:
-      return "wall";
-    case v1::ARTIFACT_CORRIDOR:
-      return "corridor";
-    case v1::ARTIFACT_LANE:
-      return "lane";
-    case v1::ARTIFACT_DOOR:
-      return "door";
-    case v1::ARTIFACT_JUNCTION:
-      return "junction";
-    case v1::ARTIFACT_OFFICE:
-      return "room";
-    case v1::ARTIFACT_BREAK:
-      return "end of an opening";
-    case v1::ARTIFACT_ZONE:
-      return "zone";
-    default:
-      return "object";
-  }
+  return word_of(type, {"object", "place", "wall", "corridor", "lane", "door", "junction", "room",
+                        "end of an opening", "object", "zone"});
 }
 
 /// The direction of a bearing [rad, counter-clockwise from ahead] in words.

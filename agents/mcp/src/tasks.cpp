@@ -1,13 +1,13 @@
 // Calls that outlast their request: the extension io.modelcontextprotocol/tasks. A task is a call
 // that is not answered yet, under the id of its goal.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <utility>
 
 #include "protocol.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::mcp {
 
@@ -20,14 +20,8 @@ constexpr int kPoll = 1000;  // [ms]
 /// Such as 2026-11-26T12:30:07.250Z.
 std::string stamp_of(double date) {
   const auto milliseconds = static_cast<long long>(std::llround(date * 1000.0));
-  const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 64> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
-  std::array<char, 16> rest{};
-  std::snprintf(rest.data(), rest.size(), ".%03dZ", static_cast<int>(milliseconds % 1000));
-  return std::string(text.data()) + rest.data();
+  return utc_text(milliseconds / 1000, "%Y-%m-%dT%H:%M:%S") +
+         format(".%03dZ", static_cast<int>(milliseconds % 1000));
 }
 
 }  // namespace

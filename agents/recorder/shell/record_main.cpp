@@ -1,5 +1,4 @@
 // Records the bus as an MCAP file. README.md.
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -10,6 +9,7 @@
 
 #include "recorder.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
@@ -32,12 +32,7 @@ std::int64_t now_ns() {
 }
 
 std::string usual_name(const std::string& robot) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  std::array<char, 32> time{};
-  std::strftime(time.data(), time.size(), "-%Y-%m-%d-%H%M%S.mcap", &local);
-  return robot + time.data();
+  return robot + local_text(std::time(nullptr), "-%Y-%m-%d-%H%M%S.mcap");
 }
 
 /// std::invalid_argument where a recording of that name would lose something else.

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::recorder {
 namespace {
 
@@ -68,13 +70,8 @@ TEST(Recording, WithoutItsEndHasEveryChunk) {
 }
 
 TEST(Recording, SaysWhatIsWrongAndWhere) {
-  const auto error = [](std::string file) -> std::string {
-    try {
-      read(file);
-    } catch (const std::invalid_argument& wrong) {
-      return wrong.what();
-    }
-    return "";
+  const auto error = [](const std::string& file) {
+    return test::trouble_of<std::invalid_argument>([&] { read(file); });
   };
   EXPECT_EQ(error("P5 640 480"),
             "not an MCAP file: this is a picture (PGM), such as occupancy grids are kept in");

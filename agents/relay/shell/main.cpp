@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   key.needs(certificate);
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return exit_code_of("saphira-relay", [&] {
     if (certificate.given()) {
       const std::string trouble = security::check_pair(options.certificate, options.certificate_key,
                                                        static_cast<std::int64_t>(unix_time()));
@@ -65,12 +65,6 @@ int main(int argc, char** argv) {
     relay::Relay server(options, read_robots(robots));
     relay::say("listens for robots on port " + std::to_string(options.dial_port));
     server.run(stop);
-  } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "saphira-relay: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-relay: %s\n", error.what());
-    return 3;
-  }
-  return 0;
+    return kExitOk;
+  });
 }

@@ -2,7 +2,6 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "loop.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/log_line.hpp"
 #include "splice.hpp"
 
@@ -36,18 +36,6 @@ void say(const std::string& text) {
 }
 
 namespace {
-
-/// An unguessable ticket.
-std::string new_ticket() {
-  std::array<unsigned char, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("no random numbers for a ticket");
-  std::string text;
-  for (const unsigned char byte : bytes)
-    for (const int half : {byte >> 4, byte & 15})
-      text += "0123456789abcdef"[half];
-  return text;
-}
 
 /// The path of a gateway's request; empty for any other.
 Path path_of(lws* wsi) {
@@ -162,8 +150,8 @@ int Relay::Impl::arrived(lws* wsi, Leg& leg) {
   const auto door = doors.find(lws_get_vhost(wsi));
   const auto gateway = door == doors.end() ? gateways.end() : gateways.find(door->second->name);
   if (gateway == gateways.end())
-    return -1;  // no gateway has dialled in
-  const std::string ticket = new_ticket();
+    return -1;                                // no gateway has dialled in
+  const std::string ticket = random_hex(16);  // unguessable
   if (gateway->second.out.size() > Rendezvous::kMost ||
       !rendezvous.arrive(door->second->name, web::peer(wsi), last + 1, ticket,
                          BootClock::seconds()))

@@ -4,18 +4,15 @@
 
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira::relay {
 namespace {
 
 constexpr const char* kToken = "0123456789abcdef0123";
 
 std::string why(const std::string& text) {
-  try {
-    parse_robots("robots", text);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
+  return test::trouble_of<std::invalid_argument>([&] { parse_robots("robots", text); });
 }
 
 TEST(Relay, ReadsItsRobots) {

@@ -291,32 +291,21 @@ class BusRobot final : public ServedRobot {
  private:
   /// The endpoints on the bus, for the thread alone.
   struct Ends {
-    explicit Ends(bus::Node& node, const std::string& source)
-        : robots(node.reader(bus::topics::kRobotState)),
-          descriptions(node.reader(bus::topics::kRobotDescription)),
-          grants(node.reader(bus::topics::kGrant)),
-          perceptions(node.reader(bus::topics::kPerception)),
-          registrations(node.reader(bus::topics::kRegistration)),
-          maps(node.reader(bus::topics::kMap)),
-          channels(node.reader(bus::topics::kVisionChannels)),
-          events(node.reader(bus::topics::kAgentEvents)),
-          commands(node.writer(bus::topics::kDriveDirect)),
-          messages(node.writer(bus::topics::kMessages)),
-          drawings(node.writer(bus::topics::kDrawings)),
-          minds(node.writer(bus::topics::kProgramMinds)),
-          registration(node, bus::topics::kRegistrationRequest, source) {}
-    bus::Reader<v1::RobotState> robots;
-    bus::Reader<v1::RobotDescription> descriptions;
-    bus::Reader<v1::Grant> grants;
-    bus::Reader<v1::Perception> perceptions;
-    bus::Reader<v1::Registration> registrations;
-    bus::Reader<v1::FloorMap> maps;
-    bus::Reader<v1::VisionChannels> channels;
-    bus::Reader<v1::AgentEvent> events;
-    bus::Writer<v1::MotorCommand> commands;
-    bus::Writer<v1::Message> messages;
-    bus::Writer<v1::Drawing> drawings;
-    bus::Writer<v1::ProgramMind> minds;
+    Ends(bus::Node& of, const std::string& source)
+        : node(of), registration(node, bus::topics::kRegistrationRequest, source) {}
+    bus::Node& node;
+    bus::Reader<v1::RobotState> robots = node.reader(bus::topics::kRobotState);
+    bus::Reader<v1::RobotDescription> descriptions = node.reader(bus::topics::kRobotDescription);
+    bus::Reader<v1::Grant> grants = node.reader(bus::topics::kGrant);
+    bus::Reader<v1::Perception> perceptions = node.reader(bus::topics::kPerception);
+    bus::Reader<v1::Registration> registrations = node.reader(bus::topics::kRegistration);
+    bus::Reader<v1::FloorMap> maps = node.reader(bus::topics::kMap);
+    bus::Reader<v1::VisionChannels> channels = node.reader(bus::topics::kVisionChannels);
+    bus::Reader<v1::AgentEvent> events = node.reader(bus::topics::kAgentEvents);
+    bus::Writer<v1::MotorCommand> commands = node.writer(bus::topics::kDriveDirect);
+    bus::Writer<v1::Message> messages = node.writer(bus::topics::kMessages);
+    bus::Writer<v1::Drawing> drawings = node.writer(bus::topics::kDrawings);
+    bus::Writer<v1::ProgramMind> minds = node.writer(bus::topics::kProgramMinds);
     bus::RequestClient registration;
   };
 

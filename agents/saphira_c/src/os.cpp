@@ -39,6 +39,12 @@ void end_at_exit() {
 
 }  // namespace
 
+void show_names(const protocol::RobotIdentity& robot) {
+  std::snprintf(sfRobotName, sizeof sfRobotName, "%s", robot.name.c_str());
+  std::snprintf(sfRobotClass, sizeof sfRobotClass, "%s", robot.robot_class.c_str());
+  std::snprintf(sfRobotSubclass, sizeof sfRobotSubclass, "%s", robot.subclass.c_str());
+}
+
 Os& Os::get() {
   static Os* const os = new Os();
   return *os;
@@ -143,10 +149,7 @@ void Os::session_began(const std::shared_ptr<Robot>& robot) {
     reset();
     session_ = robot->session();
     parameters = robot->parameters();
-    const protocol::RobotIdentity identity = robot->identity();
-    std::snprintf(sfRobotName, sizeof sfRobotName, "%s", identity.name.c_str());
-    std::snprintf(sfRobotClass, sizeof sfRobotClass, "%s", identity.robot_class.c_str());
-    std::snprintf(sfRobotSubclass, sizeof sfRobotSubclass, "%s", identity.subclass.c_str());
+    show_names(robot->identity());
     sfFrontMaxRange = static_cast<float>(parameters.front_max_range * 1000.0);
     lps = lps::LocalPerceptualSpace(model_of(parameters).lps);
   }

@@ -212,5 +212,7 @@ bool read_arguments(const std::string& function, std::vector<beh_param>& params,
                     std::vector<int>& kinds, va_list list);
 /// The parameters' types of one of the library's behaviors.
 std::vector<int> kinds_of(const behavior* b);
+/// Sets the program's sfRobotName, sfRobotClass and sfRobotSubclass.
+void show_names(const protocol::RobotIdentity& robot);
 
 }  // namespace saphira::c

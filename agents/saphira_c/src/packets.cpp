@@ -112,9 +112,7 @@ class Line {
       why = error.what();
       return false;
     }
-    std::snprintf(sfRobotName, sizeof sfRobotName, "%s", robot.name.c_str());
-    std::snprintf(sfRobotClass, sizeof sfRobotClass, "%s", robot.robot_class.c_str());
-    std::snprintf(sfRobotSubclass, sizeof sfRobotSubclass, "%s", robot.subclass.c_str());
+    c::show_names(robot);
     reset();
     return true;
   }
@@ -187,23 +185,21 @@ std::string address_of(int port, const char* name) {
 }
 
 bool drives(int command) {
-  switch (static_cast<protocol::Number>(command)) {
-    case protocol::Number::kOpen:
-    case protocol::Number::kClose:
-    case protocol::Number::kMove:
-    case protocol::Number::kRotate:
-    case protocol::Number::kVelocity:
-    case protocol::Number::kHeading:
-    case protocol::Number::kDeltaHeading:
-    case protocol::Number::kRotationVelocity:
-    case protocol::Number::kWheelVelocities:
-    case protocol::Number::kDeltaSetpoint:
-    case protocol::Number::kLateralVelocity:
-    case protocol::Number::kStep:
-      return true;
-    default:
-      return false;
-  }
+  using enum protocol::Number;
+  static constexpr protocol::Number kDriving[]{kOpen,
+                                               kClose,
+                                               kMove,
+                                               kRotate,
+                                               kVelocity,
+                                               kHeading,
+                                               kDeltaHeading,
+                                               kRotationVelocity,
+                                               kWheelVelocities,
+                                               kDeltaSetpoint,
+                                               kLateralVelocity,
+                                               kStep};
+  return std::find(std::begin(kDriving), std::end(kDriving),
+                   static_cast<protocol::Number>(command)) != std::end(kDriving);
 }
 
 void command(const char* function, int number, protocol::Bytes argument) {

@@ -5,8 +5,8 @@
 
 #include "behavior.h"
 #include "intention.h"
+#include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/situation/format.hpp"
 
 // The words and simple predicates of explanations.
 namespace saphira::situation {

@@ -2,85 +2,34 @@
 
 #include <algorithm>
 
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
-#include "saphira/situation/format.hpp"
 
 namespace saphira::situation {
 
 namespace {
 
 const char* name_of(v1::Frame frame) {
-  switch (frame) {
-    case v1::FRAME_ROBOT:
-      return "robot";
-    case v1::FRAME_ODOM:
-      return "odom";
-    case v1::FRAME_MAP:
-      return "map";
-  }
-  return "?";
+  return word_of(frame, {"robot", "odom", "map"});
 }
 
 }  // namespace
 
 const char* name_of(v1::ServiceState state) {
-  switch (state) {
-    case v1::SERVICE_STARTING:
-      return "starting";
-    case v1::SERVICE_WAITING:
-      return "waiting";
-    case v1::SERVICE_RUNNING:
-      return "running";
-    case v1::SERVICE_DEGRADED:
-      return "degraded";
-    case v1::SERVICE_STOPPING:
-      return "stopping";
-  }
-  return "?";
+  return word_of(state, {"starting", "waiting", "running", "degraded", "stopping"});
 }
 
 const char* name_of(v1::LogLevel level) {
-  switch (level) {
-    case v1::LOG_DEBUG:
-      return "debug";
-    case v1::LOG_INFO:
-      return "info";
-    case v1::LOG_WARNING:
-      return "warning";
-    case v1::LOG_ERROR:
-      return "error";
-  }
-  return "?";
+  return word_of(level, {"debug", "info", "warning", "error"});
 }
 
 const char* name_of(v1::Role role) {
-  switch (role) {
-    case v1::ROLE_NONE:
-      return "nobody";
-    case v1::ROLE_ESTOP:
-      return "estop";
-    case v1::ROLE_TELEOP:
-      return "teleop";
-    case v1::ROLE_DIRECT:
-      return "direct";
-    case v1::ROLE_BEHAVIORS:
-      return "behaviors";
-  }
-  return "?";
+  return word_of(role, {"nobody", "estop", "teleop", "direct", "behaviors"});
 }
 
 const char* name_of(v1::GuardAction action) {
-  switch (action) {
-    case v1::GUARD_NONE:
-      return "passes";
-    case v1::GUARD_LIMIT:
-      return "limits";
-    case v1::GUARD_SLOW:
-      return "slows";
-    case v1::GUARD_STOP:
-      return "stops";
-  }
-  return "?";
+  return word_of(action, {"passes", "limits", "slows", "stops"});
 }
 
 std::string latched(const v1::Grant& grant) {

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::speech {
@@ -241,10 +242,9 @@ void Speaker::play_once(const Sound& sound) {
     play_on_device(sound);
     return;
   }
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "/%04d.wav", ++files_);
-  if (!(std::ofstream(sink_ + name.data(), std::ios::binary) << wav(sound)))
-    throw std::runtime_error(cannot_be(sink_ + name.data(), "written"));
+  const std::string file = sink_ + format("/%04d.wav", ++files_);
+  if (!(std::ofstream(file, std::ios::binary) << wav(sound)))
+    throw std::runtime_error(cannot_be(file, "written"));
 }
 
 void Speaker::play_on_device(const Sound& sound) const {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
@@ -32,9 +33,7 @@ void read_aloud(const std::string& dialogue, const std::filesystem::path& folder
   }
   std::size_t number = 0;
   for (const speech::Passage& passage : passages) {
-    char name[16];
-    std::snprintf(name, sizeof name, "%03zu-", ++number);
-    write_sound(folder / (name + passage.speaker + ".wav"), passage.sound);
+    write_sound(folder / (format("%03zu-", ++number) + passage.speaker + ".wav"), passage.sound);
   }
   write_sound(folder / "dialogue.wav", speech::joined(passages));
 }

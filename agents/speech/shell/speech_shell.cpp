@@ -26,9 +26,6 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
       voice_(options.voice),
       um_(voice_.say("um")),
       folder_(folder_of(options.grammar), fs::path(options.grammar).extension()),
-      maps_(node.reader(bus::topics::kMap)),
-      said_(node.reader(bus::topics::kSaid)),
-      heard_(node.writer(bus::topics::kHeard)),
       microphone_(options.microphone,
                   [this](const std::string& text) {
                     const std::lock_guard lock(mutex_);

@@ -42,9 +42,9 @@ class SpeechShell {
   Voice voice_;
   Sound um_;
   WatchedFolder folder_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Utterance> said_;
-  bus::Writer<v1::Utterance> heard_;
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::Utterance> said_ = node_.reader(bus::topics::kSaid);
+  bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
   std::uint64_t number_ = 0;
   std::mutex mutex_;
   std::string microphone_trouble_;  ///< of the threads; guarded, with the next

@@ -4,6 +4,7 @@
 
 #include "saphira/base/text.hpp"
 #include "saphira/speech/voice.hpp"
+#include "trouble.hpp"
 
 namespace saphira::speech {
 namespace {
@@ -47,13 +48,8 @@ TEST(Pronunciations, OfACodeAreItsLettersAndTheWaysToSayItsNumber) {
 }
 
 TEST(Pronunciations, AMistakeInTheFileIsNamedWithItsLine) {
-  const auto error = [](const char* text) -> std::string {
-    try {
-      Pronunciations(text, "names.dict", few);
-    } catch (const FileError& e) {
-      return e.what();
-    }
-    return "";
+  const auto error = [](const char* text) {
+    return test::trouble_of<FileError>([&] { Pronunciations(text, "names.dict", few); });
   };
   EXPECT_NE(error("two T UW\nkurt K UR T\n").find("names.dict:2:8"), std::string::npos)
       << error("two T UW\nkurt K UR T\n");

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "saphira/speech/voice.hpp"
+#include "trouble.hpp"
 
 namespace saphira::speech {
 namespace {
@@ -30,12 +31,9 @@ TEST(Reading, EverySpeakerKeepsAVoiceOfTheirOwn) {
 }
 
 TEST(Reading, ALineWithoutASpeakerIsNamed) {
-  try {
-    read_aloud("alice: hello\nhello\n");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()).rfind("line 2: ", 0), 0U) << error.what();
-  }
+  const std::string said =
+      test::trouble_of<std::invalid_argument>([] { read_aloud("alice: hello\nhello\n"); });
+  EXPECT_TRUE(said.starts_with("line 2: ")) << said;
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "maps/shell/convert.hpp"
 #include "saphira/agent_interface/dialogue.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::story {
 namespace {
@@ -17,9 +17,7 @@ constexpr double kPause = 1.5;      // [s] of standing, before the next line
 }  // namespace
 
 std::string story_line(double time, const std::string& place, const std::string& line) {
-  char begin[64];
-  std::snprintf(begin, sizeof begin, "%7.1f s  %-16.30s ", time, place.c_str());
-  return begin + line;
+  return format("%7.1f s  %-16.30s ", time, place.c_str()) + line;
 }
 
 bool is_story_line(std::string_view line) {
@@ -35,12 +33,6 @@ Story::Story(bus::Node& node, Cast cast, StoryOptions options)
     : node_(node),
       cast_(std::move(cast)),
       options_(std::move(options)),
-      robots_(node.reader(bus::topics::kRobotState)),
-      registrations_(node.reader(bus::topics::kRegistration)),
-      maps_(node.reader(bus::topics::kMap)),
-      statuses_(node.reader(bus::topics::kStatus)),
-      said_(node.reader(bus::topics::kSaid)),
-      heard_(node.writer(bus::topics::kHeard)),
       waiting_for_(options_.services.begin(), options_.services.end()) {}
 
 void Story::take() {

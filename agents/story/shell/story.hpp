@@ -61,12 +61,12 @@ class Story {
   bus::Node& node_;
   Cast cast_;
   StoryOptions options_;
-  bus::Reader<v1::RobotState> robots_;
-  bus::Reader<v1::Registration> registrations_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::ServiceStatus> statuses_;
-  bus::Reader<v1::Utterance> said_;
-  bus::Writer<v1::Utterance> heard_;
+  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::ServiceStatus> statuses_ = node_.reader(bus::topics::kStatus);
+  bus::Reader<v1::Utterance> said_ = node_.reader(bus::topics::kSaid);
+  bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
   std::set<std::string> waiting_for_;  ///< services
   maps::Map map_;
   std::string place_;  ///< of the robot

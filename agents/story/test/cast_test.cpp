@@ -4,6 +4,7 @@
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::story {
 namespace {
@@ -66,14 +67,10 @@ TEST(Cast, MistakesNameLineAndColumn) {
 }
 
 TEST(Cast, AStoryHasABeginningAndPlacesOfTheMap) {
-  const auto mistake = [](const std::string& text) -> std::string {
-    try {
-      Cast(text, "f").check([](const std::string& place) { return place == "N1"; });
-    } catch (const FileError& error) {
-      const std::string what = error.what();
-      return what.substr(0, what.find('\n'));
-    }
-    return "none";
+  const auto mistake = [](const std::string& text) {
+    const std::string what = test::trouble_of<FileError>(
+        [&] { Cast(text, "f").check([](const std::string& place) { return place == "N1"; }); });
+    return what.empty() ? "none" : what.substr(0, what.find('\n'));
   };
   const std::string nobody =
       "f:1:1: expected a line SAYS PERSON SENTENCE: without one the story does not begin";

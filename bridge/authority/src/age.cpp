@@ -1,9 +1,9 @@
 #include "saphira/authority/age.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "saphira/base/age.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::authority {
 
@@ -13,11 +13,9 @@ Guarded slow_for_age(Guarded guarded, double age, double fresh) {
     return guarded;
   // The stronger limit gives the reason.
   if (guarded.action <= GuardAction::limit) {
-    char text[128];
-    std::snprintf(text, sizeof text,
-                  "%.2f m/s cut to %.2f: the command answers what the robot said %.1f s ago",
-                  guarded.velocity, limit, age);
-    guarded.reason = text;
+    guarded.reason =
+        format("%.2f m/s cut to %.2f: the command answers what the robot said %.1f s ago",
+               guarded.velocity, limit, age);
     guarded.action = GuardAction::limit;
   }
   guarded.velocity = std::copysign(limit, guarded.velocity);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
+
 namespace saphira::authority {
 
 namespace {
@@ -27,27 +30,13 @@ bool is_autonomy(Role role) {
 }
 
 std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", value);
-  return text;
+  return format("%.2f s", value);
 }
 
 }  // namespace
 
 const char* name(Role role) {
-  switch (role) {
-    case Role::estop:
-      return "estop";
-    case Role::teleop:
-      return "teleop";
-    case Role::direct:
-      return "direct";
-    case Role::behaviors:
-      return "behaviors";
-    case Role::none:
-      break;
-  }
-  return "none";
+  return word_of(role, {"none", "estop", "teleop", "direct", "behaviors"});
 }
 
 void Arbiter::let_go() {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "saphira/base/format.hpp"
 
 namespace saphira::authority {
 
@@ -16,12 +17,6 @@ constexpr double kSameWay = radians(3.0);
 constexpr double kShareOfReach = 0.25;
 // An approaching obstacle takes at most this share of the range until the robot brakes.
 constexpr double kShareOfWay = 0.1;
-
-std::string text(const char* format, double a, double b) {
-  char out[128];
-  std::snprintf(out, sizeof out, format, a, b);
-  return out;
-}
 
 double limit_of(double setting, double robot) {
   if (setting <= 0.0)
@@ -135,32 +130,33 @@ class Cut {
     if (most <= 0.0 || std::abs(wanted) <= most)
       return;
     turning_ = std::copysign(most, wanted);
-    act(GuardAction::limit, text("rotation of %.2f rad/s cut to the limit of %.2f", wanted, most));
+    act(GuardAction::limit,
+        format("rotation of %.2f rad/s cut to the limit of %.2f", wanted, most));
   }
 
   void robot() {
     const double most = limit_of(settings_.max_velocity, body_.max_velocity);
     if (most > 0.0)
-      cut(most, GuardAction::limit, text("%.2f m/s cut to the limit of %.2f", wanted_, most));
+      cut(most, GuardAction::limit, format("%.2f m/s cut to the limit of %.2f", wanted_, most));
     const double blind = settings_.max_blind_velocity;
     if (blind > 0.0 && !(forward() ? body_.sees_ahead : body_.sees_behind))
       cut(blind, GuardAction::limit,
-          text(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
-                         : "%.2f m/s cut to %.2f: no sonar looks behind",
-               wanted_, blind));
+          format(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
+                           : "%.2f m/s cut to %.2f: no sonar looks behind",
+                 wanted_, blind));
     const double unheard = stops_within(reach_ - margin_, 0.0);
     cut(unheard, GuardAction::limit,
-        text("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));
+        format("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));
   }
 
   void beside(const Allowed& allowed) {
     cut(allowed.speed, GuardAction::slow,
-        text("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside,
-             allowed.speed));
+        format("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside,
+               allowed.speed));
     const double past = stops_within(allowed.until_beside - margin_, settings_.beside_velocity);
     cut(past, GuardAction::slow,
-        text("something near the path, %.2f m ahead: slowed to %.2f m/s", allowed.until_beside,
-             past));
+        format("something near the path, %.2f m ahead: slowed to %.2f m/s", allowed.until_beside,
+               past));
   }
 
   void ahead(double free) {
@@ -172,7 +168,7 @@ class Cut {
                                  stops_within(free - margin_, 0.0));
     if (safe < kCreep)
       cut(0.0, GuardAction::stop,
-          text("something %.2f m ahead: stopped (margin %.2f m)", free, margin_));
+          format("something %.2f m ahead: stopped (margin %.2f m)", free, margin_));
     else
       cut(safe, GuardAction::slow, slowed(free, safe));
   }
@@ -184,7 +180,8 @@ class Cut {
       return;
     speed_ = speed;
     action_ = GuardAction::slow;
-    reason_ = text("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, speed);
+    reason_ =
+        format("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, speed);
   }
 
   const Body& body() const { return body_; }
@@ -196,7 +193,7 @@ class Cut {
     return approach_speed(way, end, body_.reaction, body_.deceleration, closing);
   }
   static std::string slowed(double free, double speed) {
-    return text("something %.2f m ahead: slowed to %.2f m/s", free, speed);
+    return format("something %.2f m ahead: slowed to %.2f m/s", free, speed);
   }
   void cut(double speed, GuardAction action, std::string reason) {
     if (speed_ <= speed)

@@ -6,6 +6,7 @@
 #include "limits.hpp"
 #include "saphira/authority/robot.hpp"
 #include "saphira/base/age.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/protocol/impossible.hpp"
 
 namespace saphira::bridge {
@@ -270,10 +271,7 @@ void Core::heed(const protocol::ConfigPacket& set, double now) {
     return;
   const double before = std::exchange(session_.body.deceleration, std::min(brakes, asked));
   if (brakes <= 0.95 * asked && (first || brakes < before)) {
-    char text[96];
-    std::snprintf(text, sizeof text, "the robot brakes with %.2f m/s2, not with %.2f as asked for",
-                  brakes, asked);
-    warn(text);
+    warn(format("the robot brakes with %.2f m/s2, not with %.2f as asked for", brakes, asked));
   }
 }
 
@@ -283,12 +281,10 @@ void Core::mind_brakes() {
   const double asked = reflector_.parameters().deceleration;
   if (session_.stamp.cycle != kConfigCycles || session_.configured || own_deceleration_ >= asked)
     return;
-  char text[192];
-  std::snprintf(text, sizeof text,
-                "the robot does not say how it brakes (CONFIG): it is reckoned to brake with %.2f "
-                "m/s2, as its parameter file says, not with %.2f as asked for",
-                own_deceleration_, asked);
-  warn(text);
+  warn(
+      format("the robot does not say how it brakes (CONFIG): it is reckoned to brake with %.2f "
+             "m/s2, as its parameter file says, not with %.2f as asked for",
+             own_deceleration_, asked));
 }
 
 /// The time of a packet and its answer. On a slow line a stop takes effect that much later.
@@ -304,13 +300,10 @@ void Core::set_delay(double round_trip) {
 }
 
 std::string Core::delay_words() const {
-  char text[128];
-  std::snprintf(
-      text, sizeof text,
+  return format(
       "the line to the robot is slow: an answer takes %.1f s, so it drives at %.2f m/s at "
       "the most",
       session_.delay, speed_for_age(session_.delay - kCycle));
-  return text;
 }
 
 /// A machine that was busy when the session began makes a line look slow. So the delay is measured

@@ -29,9 +29,6 @@ using namespace saphira;
 using protocol::Bytes;
 using protocol::Side;
 
-constexpr int kExitViolations = 1;
-constexpr int kExitUsage = 2;
-
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -56,7 +53,7 @@ int listen_at(const transport::Address& address) {
     sockaddr_un local{};
     local.sun_family = AF_UNIX;
     if (address.name.size() >= sizeof local.sun_path)
-      throw std::runtime_error(address.name + ": the path of a socket is shorter");
+      throw std::invalid_argument(address.name + ": the path of a socket is shorter");
     std::memcpy(local.sun_path, address.name.c_str(), address.name.size() + 1);
     ::unlink(address.name.c_str());
     return listen_on(AF_UNIX, local, address.name);
@@ -190,7 +187,7 @@ int main(int argc, char** argv) {
   app.add_option("--robots", robots, "Folder of robot parameter files");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return exit_code_of("saphira-protocol-check", [&] {
     sigset_t signals;
     sigemptyset(&signals);
     sigaddset(&signals, SIGTERM);
@@ -200,9 +197,6 @@ int main(int argc, char** argv) {
     Proxy proxy(transport::parse_address(listen), transport::parse_address(server), robots);
     proxy.run(stop_fd);
     std::cout << proxy.checker().summary() << std::flush;
-    return proxy.checker().violations() == 0 ? 0 : kExitViolations;
-  } catch (const std::exception& error) {
-    std::cerr << "saphira-protocol-check: " << error.what() << '\n';
-    return kExitUsage;
-  }
+    return proxy.checker().violations() == 0 ? kExitOk : kExitFailed;
+  });
 }

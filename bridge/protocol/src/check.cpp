@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::protocol {
 
 namespace {
@@ -19,9 +21,7 @@ constexpr std::size_t kSmallest = 25;  // body of an information packet without 
 constexpr std::array<std::size_t, 10> kTrailingEnds{0, 2, 3, 5, 7, 9, 10, 11, 15, 19};
 
 std::string hex(unsigned value) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%02X", value);
-  return text.data();
+  return format("0x%02X", value);
 }
 
 /// A zero setpoint.
@@ -296,35 +296,20 @@ void Checker::remember(const Command& command) {
   } else if (std::holds_alternative<SetOrigin>(command) || command == Command(SimReset{})) {
     last_.reset();
   } else if (const auto* integer = std::get_if<Integer>(&command)) {
-    const int value = integer->value;
-    switch (integer->number) {
-      case Number::kConfigRequest:
-        ask(PacketType::kConfig, 1);
-        break;
-      case Number::kEncoderRequest:
-        ask(PacketType::kEncoder, value);
-        break;
-      case Number::kIoRequest:
-        ask(PacketType::kIo, value);
-        break;
-      case Number::kGripperRequest:
-        ask(PacketType::kGripper, value);
-        break;
-      case Number::kBatteryRequest:
-        ask(PacketType::kBattery, value);
-        break;
-      case Number::kJoystickRequest:
-        ask(PacketType::kJoystick, value);
-        break;
-      case Number::kGyroRequest:
-        ask(PacketType::kGyro, value != 0 ? 2 : 0);
-        break;
-      case Number::kSimStatus:
-        ask(PacketType::kSimStatus, value);
-        break;
-      default:
-        break;
-    }
+    static constexpr std::pair<Number, PacketType> kReports[]{
+        {Number::kConfigRequest, PacketType::kConfig},
+        {Number::kEncoderRequest, PacketType::kEncoder},
+        {Number::kIoRequest, PacketType::kIo},
+        {Number::kGripperRequest, PacketType::kGripper},
+        {Number::kBatteryRequest, PacketType::kBattery},
+        {Number::kJoystickRequest, PacketType::kJoystick},
+        {Number::kGyroRequest, PacketType::kGyro},
+        {Number::kSimStatus, PacketType::kSimStatus}};
+    for (const auto& [number, report] : kReports)
+      if (number == integer->number)
+        ask(report, number == Number::kConfigRequest ? 1
+                    : number == Number::kGyroRequest ? (integer->value != 0 ? 2 : 0)
+                                                     : integer->value);
   }
 }
 

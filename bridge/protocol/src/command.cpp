@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "fields.hpp"
 #include "saphira/base/overloaded.hpp"
@@ -125,18 +126,11 @@ Command decode_plain(ByteView body) {
   if (found == nullptr)
     return Unknown{body[0]};
   const Number number = found->number;
-  switch (number) {
-    case Number::kStop:
-    case Number::kEmergencyStop:
-    case Number::kEmergencyStop2:
-    case Number::kTrueOrigin:
-    case Number::kSimReset:
-    case Number::kReset:
-    case Number::kMaintenance:
-      return Bare{number};
-    default:
-      break;
-  }
+  static constexpr Number kBare[]{
+      Number::kStop,     Number::kEmergencyStop, Number::kEmergencyStop2, Number::kTrueOrigin,
+      Number::kSimReset, Number::kReset,         Number::kMaintenance};
+  if (std::find(std::begin(kBare), std::end(kBare), number) != std::end(kBare))
+    return Bare{number};
   if (found->form == ArgumentForm::kRaw)
     return Raw{number, Bytes(body.begin() + 1, body.end())};
   const bool text = found->form == ArgumentForm::kString;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <variant>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::protocol {
 
 namespace {
@@ -23,9 +25,7 @@ constexpr int kGripperKinds = 2;
 constexpr int kFarthestPixel = 540;  // three a degree: half a turn to each side
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return format("%.3g", value);
 }
 
 std::string wrong_speed(double speed, const RobotParameters& p) {

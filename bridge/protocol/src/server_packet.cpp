@@ -55,64 +55,23 @@ constexpr std::pair<PacketType, std::string_view> kNames[] = {
 template <class T, class Packet>
 concept Is = std::is_same_v<std::remove_const_t<T>, Packet>;
 
+void each(const auto& visit, auto&... members) {
+  (visit(members), ...);
+}
+
 void fields(Is<ConfigPacket> auto& c, const auto& visit) {
-  visit(c.robot_class);
-  visit(c.subclass);
-  visit(c.serial);
-  visit(c.four_motors);
-  visit(c.rotation_velocity_top);
-  visit(c.velocity_top);
-  visit(c.rotation_acceleration_top);
-  visit(c.acceleration_top);
-  visit(c.pwm_max);
-  visit(c.name);
-  visit(c.cycle);
-  visit(c.host_baud);
-  visit(c.aux1_baud);
-  visit(c.gripper);
-  visit(c.front_sonar);
-  visit(c.rear_sonar);
-  visit(c.low_battery);
-  visit(c.revolution_count);
-  visit(c.watchdog);
-  visit(c.normal_packets);
-  visit(c.stall_value);
-  visit(c.stall_count);
-  visit(c.joystick_velocity);
-  visit(c.joystick_rotation_velocity);
-  visit(c.rotation_velocity_max);
-  visit(c.velocity_max);
-  visit(c.rotation_acceleration);
-  visit(c.rotation_deceleration);
-  visit(c.rotation_kp);
-  visit(c.rotation_kv);
-  visit(c.rotation_ki);
-  visit(c.acceleration);
-  visit(c.deceleration);
-  visit(c.translation_kp);
-  visit(c.translation_kv);
-  visit(c.translation_ki);
-  visit(c.front_bumpers);
-  visit(c.rear_bumpers);
-  visit(c.charger);
-  visit(c.sonar_cycle);
-  visit(c.reset_baud);
-  visit(c.gyro_type);
-  visit(c.drift_factor);
-  visit(c.aux2_baud);
-  visit(c.aux3_baud);
-  visit(c.encoder_ticks_per_mm);
-  visit(c.shutdown_volts);
-  visit(c.firmware);
-  visit(c.gyro_clockwise);
-  visit(c.gyro_counter_clockwise);
-  visit(c.kinematics_delay);
-  visit(c.lateral_velocity_top);
-  visit(c.lateral_acceleration_top);
-  visit(c.lateral_velocity_max);
-  visit(c.lateral_acceleration);
-  visit(c.lateral_deceleration);
-  visit(c.charge_threshold);
+  each(visit, c.robot_class, c.subclass, c.serial, c.four_motors, c.rotation_velocity_top,
+       c.velocity_top, c.rotation_acceleration_top, c.acceleration_top, c.pwm_max, c.name, c.cycle,
+       c.host_baud, c.aux1_baud, c.gripper, c.front_sonar, c.rear_sonar, c.low_battery,
+       c.revolution_count, c.watchdog, c.normal_packets, c.stall_value, c.stall_count,
+       c.joystick_velocity, c.joystick_rotation_velocity, c.rotation_velocity_max, c.velocity_max,
+       c.rotation_acceleration, c.rotation_deceleration, c.rotation_kp, c.rotation_kv,
+       c.rotation_ki, c.acceleration, c.deceleration, c.translation_kp, c.translation_kv,
+       c.translation_ki, c.front_bumpers, c.rear_bumpers, c.charger, c.sonar_cycle, c.reset_baud,
+       c.gyro_type, c.drift_factor, c.aux2_baud, c.aux3_baud, c.encoder_ticks_per_mm,
+       c.shutdown_volts, c.firmware, c.gyro_clockwise, c.gyro_counter_clockwise, c.kinematics_delay,
+       c.lateral_velocity_top, c.lateral_acceleration_top, c.lateral_velocity_max,
+       c.lateral_acceleration, c.lateral_deceleration, c.charge_threshold);
 }
 
 void fields(Is<EncoderPacket> auto& p, const auto& visit) {
@@ -127,9 +86,7 @@ void fields(Is<IoPacket> auto& p, const auto& visit) {
 }
 
 void fields(Is<GripperPacket> auto& p, const auto& visit) {
-  visit(p.kind);
-  visit(p.state);
-  visit(p.grasp_time);
+  each(visit, p.kind, p.state, p.grasp_time);
 }
 
 void fields(Is<GyroPacket> auto& p, const auto& visit) {
@@ -137,11 +94,7 @@ void fields(Is<GyroPacket> auto& p, const auto& visit) {
 }
 
 void fields(Is<JoystickPacket> auto& p, const auto& visit) {
-  visit(p.button1);
-  visit(p.button2);
-  visit(p.x);
-  visit(p.y);
-  visit(p.throttle);
+  each(visit, p.button1, p.button2, p.x, p.y, p.throttle);
 }
 
 void fields(Is<BatteryPacket> auto& p, const auto& visit) {
@@ -170,32 +123,16 @@ void fields(Is<VisionPacket> auto& p, const auto& visit) {
 }
 
 void fields(Is<SimLaserPacket> auto& p, const auto& visit) {
-  visit(p.x);
-  visit(p.y);
-  visit(p.th);
-  visit(p.total);
-  visit(p.first);
+  each(visit, p.x, p.y, p.th, p.total, p.first);
   visit(p.ranges, (kMaxBody - 12) / 2);
 }
 
 void fields(Is<SimStatusPacket> auto& p, const auto& visit) {
   std::uint16_t unused = 0;
   visit(unused);
-  visit(p.flags);
-  visit(p.sim_interval);
-  visit(p.real_interval);
-  visit(p.last_interval);
-  visit(p.true_x);
-  visit(p.true_y);
-  visit(p.true_z);
-  visit(p.true_th);
-  visit(p.latitude);
-  visit(p.longitude);
-  visit(p.altitude);
-  visit(p.gps);
-  visit(p.odometry_error_x);
-  visit(p.odometry_error_y);
-  visit(p.odometry_error_th);
+  each(visit, p.flags, p.sim_interval, p.real_interval, p.last_interval, p.true_x, p.true_y,
+       p.true_z, p.true_th, p.latitude, p.longitude, p.altitude, p.gps, p.odometry_error_x,
+       p.odometry_error_y, p.odometry_error_th);
 }
 
 struct Put : PutField {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
-#include <utility>
 
 #include "broken_text.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/command.hpp"
+#include "trouble.hpp"
 
 namespace saphira::protocol {
 namespace {
@@ -344,12 +344,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"FrontBuffer 201\n", 1, 13, "between"}));
 
 TEST(Parameters, AMissingFileIsNamed) {
-  try {
-    load_parameters("/nowhere/x.p");
-    FAIL() << "no error";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/nowhere/x.p"), std::string::npos);
-  }
+  EXPECT_TRUE(test::has(test::trouble([] { load_parameters("/nowhere/x.p"); }), "/nowhere/x.p"));
 }
 
 TEST(ParametersOf, TheFileOfTheRobotOtherwiseTheNextThatFitsWithAWarning) {
@@ -382,12 +377,8 @@ TEST(ParametersOf, AGivenFileIsTakenWhereItIsForTheRobot) {
 }
 
 TEST(ParametersOf, WhereNoFileFitsTheErrorSaysWhatWasLookedFor) {
-  const auto trouble = [](const RobotIdentity& robot) -> std::string {
-    try {
-      return "found " + parameters_of(robot, source("config/robots")).file;
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
+  const auto trouble = [](const RobotIdentity& robot) {
+    return test::trouble([&] { parameters_of(robot, source("config/robots")); });
   };
   EXPECT_EQ(
       trouble({"mine", "Pioneer", "wheelchair"}),

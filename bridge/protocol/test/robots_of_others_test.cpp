@@ -8,6 +8,7 @@
 
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "trouble.hpp"
 
 namespace saphira::protocol {
 namespace {
@@ -45,12 +46,7 @@ std::string aria_form(const std::string& subclass, const std::string& more = "")
 
 /// The error message for a text; empty: it is accepted.
 std::string trouble(const std::string& text) {
-  try {
-    parse_parameters(text, "mine.p");
-    return "";
-  } catch (const FileError& error) {
-    return error.what();
-  }
+  return test::trouble_of<FileError>([&] { parse_parameters(text, "mine.p"); });
 }
 
 std::string page() {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/overloaded.hpp"
 #include "saphira/geometry/pose.hpp"
@@ -32,9 +33,7 @@ constexpr std::array kReports{"configuration", "encoders", "io", "gripper"};
 constexpr std::array kOften{"off", "once", "always"};
 
 std::string hex(std::uint8_t value) {
-  char out[8];
-  std::snprintf(out, sizeof out, "0x%02X", value);
-  return out;
+  return format("0x%02X", value);
 }
 
 template <std::size_t count>

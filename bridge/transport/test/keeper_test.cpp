@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "trouble.hpp"
+
 namespace saphira::transport {
 namespace {
 
@@ -157,13 +159,9 @@ TEST(Keeper, OneThatHangsIsReplaced) {
 }
 
 TEST(Keeper, AMissingProgramIsNamed) {
-  try {
-    const Keeper keeper(milliseconds(300), "/nowhere/saphira-keeper");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "keeper: /nowhere/saphira-keeper: No such file or directory");
-  }
+  EXPECT_EQ(test::trouble_of<std::runtime_error>(
+                [] { const Keeper keeper(milliseconds(300), "/nowhere/saphira-keeper"); }),
+            "keeper: /nowhere/saphira-keeper: No such file or directory");
 }
 
 }  // namespace

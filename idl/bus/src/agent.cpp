@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::bus {
 namespace {
 
@@ -142,9 +144,7 @@ void Agent::tell(const std::string& functor, std::vector<v1::Argument> arguments
 }
 
 std::string agent_address(std::uint64_t id, const std::string& name) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%llx/", static_cast<unsigned long long>(id));
-  return text + name;
+  return format("%llx/", static_cast<unsigned long long>(id)) + name;
 }
 
 v1::Capability capability(const std::string& functor, const std::string& summary,

@@ -9,6 +9,7 @@
 #include "epochs.hpp"
 #include "internal.hpp"
 #include "neighbours.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -70,7 +71,7 @@ struct Cycle::Impl {
   // The program of a writer, for people.
   std::string program(const WriterId& writer) const {
     for (const EndpointEntry& entry : internal::transport_of(node).endpoints())
-      if (entry.id == internal::to_hex(writer))
+      if (entry.id == hex_text(writer))
         return entry.program + " (process " + std::to_string(entry.pid) + " at " + entry.host + ")";
     return "an unknown program";
   }

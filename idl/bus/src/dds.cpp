@@ -32,6 +32,7 @@
 #include "dds_types.hpp"
 #include "internal.hpp"
 #include "kept.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::bus::internal {
 namespace {
@@ -136,7 +137,7 @@ class DdsEnd : public Endpoint {
   }
   void add_own(Session& session, OnePart& part, const rtps::GUID_t& guid) const {
     EndpointEntry own = own_;
-    own.id = part.id = to_hex(to_id(guid));
+    own.id = part.id = hex_text(to_id(guid));
     session.discovery.add_own(own);
   }
   void remove_own(Session& session, OnePart& part) const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dds_convert.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::bus::internal {
 
@@ -21,30 +22,21 @@ constexpr std::chrono::seconds kUnexplained{2};
 constexpr std::size_t kMostProgramsTold = 1000;
 
 const char* policy_name(fdds::QosPolicyId_t id) {
-  switch (id) {
-    case fdds::DURABILITY_QOS_POLICY_ID:
-      return "durability";
-    case fdds::PRESENTATION_QOS_POLICY_ID:
-      return "presentation";
-    case fdds::DEADLINE_QOS_POLICY_ID:
-      return "deadline";
-    case fdds::LATENCYBUDGET_QOS_POLICY_ID:
-      return "latency budget";
-    case fdds::OWNERSHIP_QOS_POLICY_ID:
-      return "ownership";
-    case fdds::LIVELINESS_QOS_POLICY_ID:
-      return "liveliness";
-    case fdds::RELIABILITY_QOS_POLICY_ID:
-      return "reliability";
-    case fdds::DESTINATIONORDER_QOS_POLICY_ID:
-      return "destination order";
-    case fdds::DATAREPRESENTATION_QOS_POLICY_ID:
-      return "data representation";
-    case fdds::TYPECONSISTENCYENFORCEMENT_QOS_POLICY_ID:
-      return "type consistency";
-    default:
-      return "another policy";
-  }
+  static constexpr std::pair<fdds::QosPolicyId_t, const char*> kNames[]{
+      {fdds::DURABILITY_QOS_POLICY_ID, "durability"},
+      {fdds::PRESENTATION_QOS_POLICY_ID, "presentation"},
+      {fdds::DEADLINE_QOS_POLICY_ID, "deadline"},
+      {fdds::LATENCYBUDGET_QOS_POLICY_ID, "latency budget"},
+      {fdds::OWNERSHIP_QOS_POLICY_ID, "ownership"},
+      {fdds::LIVELINESS_QOS_POLICY_ID, "liveliness"},
+      {fdds::RELIABILITY_QOS_POLICY_ID, "reliability"},
+      {fdds::DESTINATIONORDER_QOS_POLICY_ID, "destination order"},
+      {fdds::DATAREPRESENTATION_QOS_POLICY_ID, "data representation"},
+      {fdds::TYPECONSISTENCYENFORCEMENT_QOS_POLICY_ID, "type consistency"}};
+  for (const auto& [policy, name] : kNames)
+    if (policy == id)
+      return name;
+  return "another policy";
 }
 
 /// The text behind `key` in a participant's user data, up to the next semicolon.
@@ -116,7 +108,7 @@ void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
     }
     endpoint.ownership =
         proxy.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
-    endpoint.id = to_hex(to_id(proxy.guid()));
+    endpoint.id = hex_text(to_id(proxy.guid()));
     endpoints_[proxy.guid()] = endpoint;
     tell_forbidden(proxy.guid(), endpoint);
     for (const auto& own : own_)
@@ -229,7 +221,7 @@ void Discovery::add_malformed(const std::string& topic, const rtps::GUID_t& writ
   const std::scoped_lock lock(mutex_);
   ++malformed_.count;
   if (told_.size() >= kMostProgramsTold ||
-      !told_.insert({"malformed " + topic, to_hex(to_id(writer))}).second)
+      !told_.insert({"malformed " + topic, hex_text(to_id(writer))}).second)
     return;
   EndpointEntry from;
   from.writer = true;

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/idl/goal_words.hpp"
 
@@ -162,10 +163,8 @@ std::string describe(v1::GoalState state) {
 }
 
 std::string describe(const v1::GoalId& id) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%llx:%llu", static_cast<unsigned long long>(id.writer()),
+  return format("%llx:%llu", static_cast<unsigned long long>(id.writer()),
                 static_cast<unsigned long long>(id.number()));
-  return text;
 }
 
 std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
@@ -187,14 +186,10 @@ std::string describe(const v1::GoalStatus& status) {
   if (!ended(status.state()) && !status.step().empty())
     line += ": " + status.step();
   if (status.state() == v1::GOAL_UNDERWAY) {
-    char percent[48];
-    std::snprintf(percent, sizeof percent, " (%.0f %% done", 100.0 * status.progress());
-    line += percent;
+    line += format(" (%.0f %% done", 100.0 * status.progress());
     // The level of most activities is the part that is done.
-    if (std::abs(status.level() - status.progress()) >= 0.01) {
-      std::snprintf(percent, sizeof percent, ", level %.2f", status.level());
-      line += percent;
-    }
+    if (std::abs(status.level() - status.progress()) >= 0.01)
+      line += format(", level %.2f", status.level());
     line += ")";
   }
   if (!status.reason().empty())

@@ -105,16 +105,6 @@ bool partitions_meet(const std::string& one, const std::string& other);
 
 std::string host_name();
 
-/// The id of an endpoint, as EndpointEntry has it.
-inline std::string to_hex(const WriterId& id) {
-  std::string text;
-  for (const auto byte : id) {
-    text += "0123456789abcdef"[byte >> 4U];
-    text += "0123456789abcdef"[byte & 15U];
-  }
-  return text;
-}
-
 /// True where a node of this program that has ended had a cycle of a robot.
 std::atomic<bool>& has_worked();
 

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira_visit.hpp"
 
@@ -92,9 +93,7 @@ class JsonWriter {
         text_ += '\\';
         text_ += c;
       } else if (static_cast<unsigned char>(c) < 0x20) {
-        std::array<char, 8> escape{};
-        std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
-        text_ += escape.data();
+        text_ += format("\\u%04x", static_cast<unsigned>(c));
       } else {
         text_ += c;
       }

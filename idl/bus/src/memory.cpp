@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "internal.hpp"
+#include "saphira/base/format.hpp"
 
 namespace saphira::bus {
 namespace internal {
@@ -153,7 +154,7 @@ void match(MemoryWriter& writer, MemoryReader& reader) {
 MemoryWriter::MemoryWriter(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
   id = next_id(common);
-  common.entry.id = to_hex(id);
+  common.entry.id = hex_text(id);
   common.bus->writers.push_back(this);
   for (auto* reader : common.bus->readers)
     match(*this, *reader);
@@ -196,7 +197,7 @@ std::size_t MemoryWriter::matched() const {
 
 MemoryReader::MemoryReader(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
-  common.entry.id = to_hex(next_id(common));
+  common.entry.id = hex_text(next_id(common));
   common.bus->readers.push_back(this);
   for (auto* writer : common.bus->writers)
     match(*writer, *this);

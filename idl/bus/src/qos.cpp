@@ -1,6 +1,7 @@
 #include "saphira/bus/qos.hpp"
 
 #include "internal.hpp"
+#include "saphira/base/enumerators.hpp"
 
 namespace saphira::bus::internal {
 
@@ -63,27 +64,8 @@ Policies policies(Qos qos, bool lockstep) {
 }
 
 const char* qos_name(Qos qos) {
-  switch (qos) {
-    case Qos::cyclic:
-      return "cyclic";
-    case Qos::motion:
-      return "motion";
-    case Qos::command:
-      return "command";
-    case Qos::goal:
-      return "goal";
-    case Qos::latched:
-      return "latched";
-    case Qos::event:
-      return "event";
-    case Qos::status:
-      return "status";
-    case Qos::presence:
-      return "presence";
-    case Qos::recall:
-      return "recall";
-  }
-  return "?";
+  return word_of(qos, {"cyclic", "motion", "command", "goal", "latched", "event", "status",
+                       "presence", "recall"});
 }
 
 }  // namespace saphira::bus::internal

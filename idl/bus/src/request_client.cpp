@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::bus {
 namespace {
 
@@ -17,9 +19,7 @@ constexpr std::chrono::milliseconds kLook{50};
 constexpr std::chrono::microseconds kSpin{1000};  // most answers are there by then
 
 std::string seconds(double patience) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.0f s", patience);
-  return text;
+  return format("%.0f s", patience);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
+#include "trouble.hpp"
 
 namespace saphira::bus::test {
 namespace {
@@ -339,28 +340,19 @@ TEST(Security, CredentialsOfOneRobotAreForItAlone) {
   auto commands = bridge->reader(topics::kDriveTeleop);
   auto driver = karen->writer(topics::kDriveTeleop);
   EXPECT_TRUE(eventually(*bridge, [&] { return commands.matched() == 1; }));
-  for (const std::string& other : {robot("other"), std::string("*")}) {
-    try {
-      site.node("karen", other);
-      ADD_FAILURE() << other;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find("are for the robot " + robot("s") + " alone"),
-                std::string::npos)
-          << error.what();
-    }
-  }
+  for (const std::string& other : {robot("other"), std::string("*")})
+    EXPECT_TRUE(saphira::test::has(
+        saphira::test::trouble_of<std::invalid_argument>([&] { site.node("karen", other); }),
+        "are for the robot " + robot("s") + " alone"))
+        << other;
 }
 
 TEST(Security, ABusWithoutItsCredentialsDoesNotBegin) {
   NodeOptions options = node_options("a", robot("s"));
   options.security = "/nowhere";
-  try {
-    const Node node(options);
-    ADD_FAILURE();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("/nowhere: there is no such folder"),
-              std::string::npos);
-  }
+  EXPECT_TRUE(saphira::test::has(
+      saphira::test::trouble_of<std::invalid_argument>([&] { const Node node(options); }),
+      "/nowhere: there is no such folder"));
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 #include "saphira/security/documents.hpp"
 
-#include <array>
 #include <ctime>
 #include <string_view>
+
+#include "saphira/base/format.hpp"
 
 namespace saphira::security {
 namespace {
@@ -29,15 +30,6 @@ std::string criteria(const std::string& direction, const std::string& topics,
 }
 
 }  // namespace
-
-std::string utc_text(std::int64_t seconds, const char* format) {
-  const std::time_t time = seconds;
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), format, &utc);
-  return text.data();
-}
 
 std::string day_text(std::int64_t seconds) {
   return utc_text(seconds, "%Y-%m-%d %H:%M UTC");

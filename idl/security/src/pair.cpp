@@ -5,6 +5,7 @@
 #include "saphira/security/documents.hpp"
 
 namespace saphira::security {
+
 std::string check_pair(const std::string& certificate_file, const std::string& key_file,
                        std::int64_t now) {
   std::string certificate;
@@ -23,6 +24,18 @@ std::string check_pair(const std::string& certificate_file, const std::string& k
            "; browsers refuse it: get a new one (the clock of this machine says " + day_text(now) +
            ")";
   return {};
+}
+
+void check_dial_authority(const std::string& file) {
+  try {
+    read_certificate(read_bytes(file));
+  } catch (const std::exception& error) {
+    const std::string why = error.what();
+    throw std::invalid_argument("--dial-authority: " + (why.starts_with(file) ? "" : file + ": ") +
+                                why +
+                                "; give the certificate (PEM) of the authority that signed the "
+                                "relay's, or the relay's own (saphira-relay --certificate)");
+  }
 }
 
 }  // namespace saphira::security

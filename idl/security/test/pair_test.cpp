@@ -60,6 +60,21 @@ TEST_F(PairTest, EachMistakeNamesTheFileAndTheRemedy) {
             nothing + ": cannot be read: No such file or directory");
 }
 
+TEST_F(PairTest, AnAuthorityOfADialNamesOptionFileAndRemedy) {
+  EXPECT_EQ(trouble([&] { check_dial_authority(certificate_); }), "");
+  const std::string remedy =
+      "; give the certificate (PEM) of the authority that signed the relay's, or the relay's own "
+      "(saphira-relay --certificate)";
+  const std::string nothing = folder_.path("nothing.pem");
+  EXPECT_EQ(
+      trouble([&] { check_dial_authority(nothing); }),
+      "--dial-authority: " + nothing + ": cannot be read: No such file or directory" + remedy);
+  const std::string said = trouble([&] { check_dial_authority(key_); });
+  EXPECT_TRUE(said.starts_with("--dial-authority: " + key_ + ": expected a certificate in PEM"))
+      << said;
+  EXPECT_TRUE(said.ends_with(remedy)) << said;
+}
+
 // Each file of an authority's folder.
 TEST_F(PairTest, ADamagedAuthorityNamesTheFile) {
   const std::string folder = folder_.path();

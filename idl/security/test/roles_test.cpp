@@ -6,6 +6,7 @@
 
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::security {
 namespace {
@@ -72,16 +73,12 @@ TEST(Roles, MistakesAreToldWithTheirPlace) {
            Mistake{"topics:", "topic:", "1:1", "expected roles: and topics:"},
            Mistake{"[any]}", "[any]", "9:", "not YAML"},
        }) {
-    try {
-      parse_roles(replaced(mistake.what, mistake.by), "roles.yaml", kTopics);
-      ADD_FAILURE() << mistake.message;
-    } catch (const FileError& error) {
-      const std::string text = error.what();
-      EXPECT_NE(text.find(mistake.message), std::string::npos) << text;
-      EXPECT_EQ(text.find("roles.yaml:" + std::string(mistake.place)), 0U)
-          << mistake.message << "\n"
-          << text;
-    }
+    const std::string text = saphira::test::trouble_of<FileError>(
+        [&] { parse_roles(replaced(mistake.what, mistake.by), "roles.yaml", kTopics); });
+    EXPECT_TRUE(saphira::test::has(text, mistake.message)) << text;
+    EXPECT_TRUE(text.starts_with("roles.yaml:" + std::string(mistake.place)))
+        << mistake.message << "\n"
+        << text;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
+#include "trouble.hpp"
 
 namespace saphira::security::test {
 
@@ -26,19 +27,10 @@ class Folder {
   const saphira::test::TempDir folder_;
 };
 
-/// The message of the exception that f() throws; empty where it throws none.
-template <class F>
-std::string trouble(F&& f) {
-  try {
-    f();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return {};
-}
+using saphira::test::trouble;
 
 inline bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+  return saphira::test::has(text, part);
 }
 
 }  // namespace saphira::security::test

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
@@ -11,12 +12,8 @@ namespace {
 
 /// "at 10:02 ", in local time; empty for an unknown time.
 std::string time_text(double unix_time) {
-  const auto seconds = static_cast<std::time_t>(unix_time);
-  std::tm local{};
-  char text[16] = "";
-  if (seconds > 0 && localtime_r(&seconds, &local) != nullptr)
-    std::strftime(text, sizeof text, "at %H:%M ", &local);
-  return text;
+  const auto seconds = static_cast<std::int64_t>(unix_time);
+  return seconds > 0 ? local_text(seconds, "at %H:%M ") : std::string();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string_view>
 #include <type_traits>
 
 namespace saphira {
@@ -23,6 +24,8 @@ enum class Lamp : unsigned char { off, on, broken };
 static_assert(kEnumerators<Weather>.size() == 3);
 static_assert(kEnumerators<Sky> == std::array{Sky::clear, Sky::grey, Sky::black});
 static_assert(kEnumerators<Lamp>.back() == Lamp::broken);
+static_assert(std::string_view(word_of(Lamp::on, {"off", "on", "broken"})) == "on");
+static_assert(std::string_view(word_of(static_cast<Lamp>(3), {"off", "on", "broken"})) == "?");
 
 /// True where a table with a pair for each of these compiles.
 template <Sky... with>

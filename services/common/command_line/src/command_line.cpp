@@ -12,13 +12,11 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/output.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira {
 
 namespace {
-
-constexpr int kUsage = 2;
-constexpr int kBroken = 3;
 
 /// The command that was chosen, and the ones that it belongs to, from the program on.
 std::vector<const CLI::App*> chosen(const CLI::App& app) {
@@ -233,7 +231,7 @@ int not_understood(const CLI::App& app) {
   const std::string word = words.empty() ? "" : words.front();
   std::fprintf(stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
                did_you_mean(word, known, "; --help lists the options").c_str());
-  return kUsage;
+  return kExitUsage;
 }
 
 bool has_default(const std::string& value) {
@@ -451,13 +449,31 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
       if (lost.empty())
         return 0;
       std::fprintf(stderr, "%s: %s\n", program().c_str(), lost.c_str());
-      return kBroken;
+      return kExitBroken;
     }
     const std::string words = by_variable(*app_, in_words(*app_, error), {argv + 1, argv + argc});
     std::fprintf(stderr, "%s: %s\n", program().c_str(), words.c_str());
-    return kUsage;
+    return kExitUsage;
   }
   return std::nullopt;
+}
+
+int exit_code_of(const std::string& program, const std::function<int()>& body) {
+  const auto fails = [&](const std::exception& error, Exit code) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    return code;
+  };
+  try {
+    return body();
+  } catch (const FileError& error) {
+    return fails(error, kExitUsage);
+  } catch (const UnusableFile& error) {
+    return fails(error, kExitUsage);
+  } catch (const std::invalid_argument& error) {
+    return fails(error, kExitUsage);
+  } catch (const std::exception& error) {
+    return fails(error, kExitBroken);
+  }
 }
 
 }  // namespace saphira

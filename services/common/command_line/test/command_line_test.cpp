@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira {
 namespace {
@@ -222,6 +225,20 @@ TEST(CommandLine, ANumberIsExpectedInWords) {
   EXPECT_EQ(words({"far"}), "gauge: length: expected a number, found far\n");
   EXPECT_EQ(words({"--part", "2"}),
             "gauge: --part: expected a number between 0 and 0.5, found 2\n");
+}
+
+TEST(ExitCodeOf, AMistakeOfAPersonIsTwoAndOtherErrorsAreThree) {
+  const auto of = [](const auto& error) {
+    testing::internal::CaptureStderr();
+    const int code = exit_code_of("gauge", [&]() -> int { throw error; });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), std::string("gauge: ") + error.what() + "\n");
+    return code;
+  };
+  EXPECT_EQ(of(FileError("a.p", 1, 1, "expected a word")), kExitUsage);
+  EXPECT_EQ(of(UnusableFile("a.p: cannot be read")), kExitUsage);
+  EXPECT_EQ(of(std::invalid_argument("--rate: expected a number")), kExitUsage);
+  EXPECT_EQ(of(std::runtime_error("no memory")), kExitBroken);
+  EXPECT_EQ(exit_code_of("gauge", [] { return 1; }), kExitFailed);
 }
 
 }  // namespace

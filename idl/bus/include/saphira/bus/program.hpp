@@ -8,14 +8,7 @@
 
 namespace saphira::bus {
 
-/// Exit codes of every program.
-enum Exit : int {
-  kExitOk = 0,
-  kExitFailed = 1,  ///< ran, and the outcome is a failure (goal not reached)
-  kExitUsage = 2,   ///< an option or a file that a person wrote is wrong; stderr says where. Of a
-                    ///< service: before its first cycle
-  kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug
-};
+using enum Exit;
 
 /// The text of --version: "saphira 0.1.0, contract 0f1e2d3c". Programs with another
 /// contract (its types and topics, as a digest) do not understand each other.

@@ -8,9 +8,7 @@
 
 namespace saphira::security {
 
-/// A time [s since 1970] in UTC. format: as of strftime, for at most 31 characters.
-std::string utc_text(std::int64_t seconds, const char* format);
-/// Such as "2027-01-25 10:00 UTC".
+/// A time [s since 1970], such as "2027-01-25 10:00 UTC".
 std::string day_text(std::int64_t seconds);
 
 /// The rules that every program of a site demands of every other (DDS Security 1.1, 9.4.1.2).

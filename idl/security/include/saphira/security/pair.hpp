@@ -11,4 +11,8 @@ namespace saphira::security {
 std::string check_pair(const std::string& certificate_file, const std::string& key_file,
                        std::int64_t now);
 
+/// std::invalid_argument that names the option, the file, what was expected and the remedy, unless
+/// the file of --dial-authority is a certificate (PEM).
+void check_dial_authority(const std::string& file);
+
 }  // namespace saphira::security

@@ -34,4 +34,13 @@ consteval auto enumerators(std::index_sequence<i...> /*all*/) {
 template <class E>
 inline constexpr auto kEnumerators = detail::enumerators<E>(std::make_index_sequence<64>());
 
+/// The word of a value, of one for each enumerator from 0 on; "?" where others send another value.
+template <class E, std::size_t count>
+constexpr const char* word_of(E value, const char* const (&words)[count]) {
+  static_assert(kEnumerators<E>.size() == count, "a word for each enumerator");
+  static_assert(static_cast<std::size_t>(kEnumerators<E>.back()) == count - 1);
+  const auto at = static_cast<std::size_t>(value);
+  return at < count ? words[at] : "?";
+}
+
 }  // namespace saphira

@@ -18,6 +18,15 @@ class Option;
 
 namespace saphira {
 
+/// Exit codes of every program.
+enum Exit : int {
+  kExitOk = 0,
+  kExitFailed = 1,  ///< ran, and the outcome is a failure (goal not reached)
+  kExitUsage = 2,   ///< an option or a file that a person wrote is wrong; stderr says where. Of a
+                    ///< service: before its first cycle
+  kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug
+};
+
 /// The error of a whole number outside of T's range, which the parser may let wrap around. Another
 /// text has no error here: the parser reports it.
 template <class T>
@@ -111,5 +120,10 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
 };
+
+/// The exit code of `body`, for a program without a bus. An exception becomes a message of that
+/// program, and kExitUsage where it is a FileError, UnusableFile or std::invalid_argument, else
+/// kExitBroken.
+int exit_code_of(const std::string& program, const std::function<int()>& body);
 
 }  // namespace saphira
