@@ -43,6 +43,15 @@ bool is_fact(const Meaning& meaning) {
   return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
 }
 
+/// The unit of a motion's distance [m]; 0: no motion over a distance.
+double unit_of_move(std::string_view functor) {
+  return functor == "move"               ? 1.0
+         : functor == "move_feet"        ? 0.3048
+         : functor == "move_centimeters" ? 0.01
+         : functor == "move_millimeters" ? 0.001
+                                         : 0.0;
+}
+
 /// Puts the speaker where a slot has "me". False: the speaker has no name.
 bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
   bool named = true;
@@ -125,8 +134,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
   };
   if (meaning.functor == "stop") {
     want(meaning, utterance, "stop", {});
-  } else if (meaning.functor == "move" || meaning.functor == "move_centimeters") {
-    const double unit = meaning.functor == "move" ? 1.0 : 0.01;  // [m]
+  } else if (const double unit = unit_of_move(meaning.functor); unit > 0.0) {
     const double distance = number_of(meaning, "distance") * unit;
     if (distance <= 0.0) {
       refuse(utterance, "that is no way to go", out);
