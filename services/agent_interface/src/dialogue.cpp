@@ -35,6 +35,9 @@ constexpr const char* kOpenLine = "open\t";
 constexpr std::string_view kInstead = "instead";
 constexpr const char* kSaidLine = "said\t";
 constexpr const char* kGoneLine = "gone\t";
+constexpr std::string_view kChoice = "choice";
+constexpr const char* kLeft = "then I leave it";
+constexpr std::size_t kMostQuestions = 16;
 
 /// A sentence that changes the knowledge of the robot.
 bool is_fact(const Meaning& meaning) {
@@ -207,12 +210,12 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     shown.slots["owner"] = "";
     if (!where.empty())
       want(shown, utterance, "go-to-place", {text("place", where)});
-    else if (name.empty() || out.unknown != name)
+    else if (name.empty() || out.unknown.name != name)
       refuse(utterance, wrong, out);
     else if (!findable(name, situation))
       refuse(utterance, unknown(name, true, situation, out), out);
     else {
-      out.unknown.clear();
+      out.unknown = {};
       want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     }
   } else if (functor == "deliver") {
@@ -245,13 +248,17 @@ std::string Dialogue::in_words(const Meaning& meaning) const {
   return grammar_.paraphrase(shown);
 }
 
-void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
-                       Outputs& out) const {
+void Dialogue::choices(const Grammar::Understood& understood, const Utterance& utterance,
+                       Outputs& out) {
   std::vector<std::string> all;
-  for (const Meaning& meaning : meanings)
+  Question question;
+  for (const Meaning& meaning : understood.meanings)
     if (const std::string words = in_words(meaning);
-        !words.empty() && std::find(all.begin(), all.end(), words) == all.end())
+        !words.empty() && std::find(all.begin(), all.end(), words) == all.end()) {
       all.push_back(words);
+      question.yes.push_back(understood);
+      question.yes.back().meanings = {meaning};
+    }
   std::string text;
   for (const std::string& one : all)
     text += (text.empty() ? "\"" : ", or \"") + one + "\"";
@@ -259,28 +266,14 @@ void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& ut
     text = "several things";
   text = "what? That may mean " + text;
   refuse(utterance, text, out);
+  question.no = kLeft;
+  if (all.size() > 1)
+    ask(std::move(question), utterance);
 }
 
-/// The answer to a question of an activity, or of this dialogue.
+/// The answer to a question of an activity.
 bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                      Outputs& out) {
-  const bool yes = meaning.functor == "yes";
-  if (is_yes_or_no(meaning) && tasks_.asks(utterance)) {
-    add(tasks_.answer(yes, utterance), out);
-    note_begin(situation, out);
-    return true;
-  }
-  if (is_yes_or_no(meaning) && doubt_ && may_answer(utterance, doubt_->raised_by)) {
-    const Doubt doubt = *doubt_;
-    doubt_.reset();
-    if (yes) {
-      say(utterance, "I know now that " + describe(doubt.advice), true, out);
-      learn(doubt.advice, out);
-    } else {
-      say(utterance, "then I leave it as it is", true, out);
-    }
-    return true;
-  }
   std::string value;
   const std::string asked_for = lowered(situation.asked_for);
   Advice told;  // about nobody: nothing
@@ -302,7 +295,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
                                                   situation.asked_about) != kHandovers.end()))
       return true;
   }
-  if (yes || meaning.functor == "handed") {
+  if (meaning.functor == "yes" || meaning.functor == "handed") {
     value = "yes";
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
@@ -386,13 +379,52 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
       refuse(utterance, why, out);
       return;
     }
-  add(tasks_.want(std::move(wanted_), utterance), out);
-  wanted_.clear();
+  begin(std::exchange(wanted_, {}), false, utterance, situation, out);
+}
+
+void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utterance,
+                     const Situation& situation, Outputs& out) {
+  const bool goes_on = std::all_of(steps.begin(), steps.end(), [](const Task& step) {
+    return step.brief && step.goal.functor != "stop";
+  });
+  Tasks::Outputs begun = tasks_.want(std::move(steps), utterance, drops);
+  if (!begun.asks.empty()) {
+    Question question;
+    question.drops = std::move(begun.asks);
+    question.no = "good";
+    ask(std::move(question), utterance);
+  } else if (!goes_on) {
+    std::erase_if(questions_, [](const Question& one) { return !one.drops.empty(); });
+  }
+  add(std::move(begun), out);
   note_begin(situation, out);
   if (!out.goals.empty() && out.goals.back().functor == "stop")
     stop_ = out.goals.back().tag;
   else if (!out.goals.empty())
     ended_.reset();
+}
+
+void Dialogue::ask(Question question, const Utterance& utterance) {
+  forget_question(utterance);
+  if (questions_.size() >= kMostQuestions)
+    questions_.erase(questions_.begin());
+  question.raised_by = utterance;
+  questions_.push_back(std::move(question));
+}
+
+const Dialogue::Question* Dialogue::question_for(const Utterance& utterance) const {
+  const auto found =
+      std::find_if(questions_.begin(), questions_.end(), [&](const Question& question) {
+        return question.asked ? may_answer(utterance, question.raised_by)
+                              : same_person(utterance.speaker, question.raised_by.speaker);
+      });
+  return found == questions_.end() ? nullptr : &*found;
+}
+
+void Dialogue::forget_question(const Utterance& utterance) {
+  std::erase_if(questions_, [&](const Question& question) {
+    return same_person(utterance.speaker, question.raised_by.speaker);
+  });
 }
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
@@ -410,26 +442,22 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.changed = true;
   }
-  const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
-  const bool drops = tasks_.asks(utterance);
   const bool asked = !situation.asked_about.empty();
-  // A correction of a task needs no haste.
-  const bool offer =
-      offer_ && (offer_->done ? same_person(utterance.speaker, offer_->raised_by.speaker)
-                              : may_answer(utterance, offer_->raised_by));
-  const bool offered = offer && !(offer_->done && asked);
+  const Question* const question = question_for(utterance);
+  const bool corrects = question != nullptr && !question->asked && !asked;
+  const bool answers = question != nullptr && question->asked;
   const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
-  Grammar::Understood understood =
-      grammar_.understand(utterance.text, asked || doubted || drops || (offered && !offer_->done));
-  if (offered && offer_->done && understood.addressed && understood.meanings.empty()) {
+  Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
+  if (corrects && understood.addressed && understood.meanings.empty()) {
     understood = grammar_.understand(utterance.text, true);
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
     understood.bare.clear();
   }
-  if (offered && sure && answered(understood, utterance, situation, out))
+  if ((answers || corrects) && sure && answered(*question, understood, utterance, situation, out))
     return out;
-  // A name alone at most answers an activity.
+  // A name alone at most answers an activity, and a choice alone means nothing.
   std::vector<Meaning>& meanings = understood.meanings;
+  std::erase_if(meanings, [](const Meaning& one) { return one.functor == kChoice; });
   const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
   if (instead)
     meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
@@ -442,14 +470,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
     std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
   // Another sentence of that speaker ends the robot's question.
   if (utterance.confidence >= kSure &&
-      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front()))) {
-    if (doubted)
-      doubt_.reset();
-    if (drops)
-      tasks_.withdraw_question();
-    if (offer)
-      offer_.reset();
-  }
+      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
+    forget_question(utterance);
   if (utterance.text.size() > kLongestText) {
     const bool meant = understood.addressed && !understood.meanings.empty();
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
@@ -476,7 +498,7 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
       understood.meanings = std::move(known);
   }
   if (understood.meanings.size() > 1) {
-    choices(understood.meanings, utterance, out);
+    choices(understood, utterance, out);
   } else if (is_fact(understood.meanings.front()) && is_question(utterance.text) &&
              !understood.polite) {
     refuse(utterance, "is that a question? Without the question mark I take it as a fact", out);
@@ -487,17 +509,30 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
            "\"" + order_in_text(understood) +
                "\": shall I do that myself (yes), or is it what I am to say (no)?",
            out);
-    offer_ = Offer{std::move(understood)};
-    offer_->yes = std::exchange(offer_->understood.apart, {});
-    offer_->raised_by = utterance;
+    Question question;
+    const std::vector<Meaning> steps = std::exchange(understood.apart, {});
+    question.yes = {understood};
+    question.yes[0].meanings = {steps.front()};
+    question.yes[0].then.assign(steps.begin() + 1, steps.end());
+    question.sentence = std::move(understood);
+    ask(std::move(question), utterance);
   } else {
     act_on_all(understood, utterance, situation, out);
     const bool done = !out.goals.empty();
-    const std::string name = !done                     ? out.unknown
-                             : understood.then.empty() ? only_name(understood.meanings.front())
-                                                       : std::string();
-    if (!name.empty())
-      offer_ = Offer{std::move(understood), name, done ? "" : out.meant, {}, utterance, done};
+    Question question;
+    question.name = !done                     ? out.unknown.name
+                    : understood.then.empty() ? only_name(understood.meanings.front())
+                                              : std::string();
+    if (question.name.empty())
+      return;
+    question.asked = !done;
+    question.no = kLeft;
+    if (!done && !out.unknown.meant.empty()) {
+      question.yes = {understood};
+      rename(question.yes[0], question.name, lowered(out.unknown.meant));
+    }
+    question.sentence = std::move(understood);
+    ask(std::move(question), utterance);
   }
 }
 
@@ -523,44 +558,66 @@ std::string Dialogue::named(const Grammar::Understood& understood, const Utteran
              : std::string();
 }
 
-bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& utterance,
-                        const Situation& situation, Outputs& out) {
-  const std::vector<Meaning>& heard =
-      understood.meanings.empty() ? understood.bare : understood.meanings;
-  if (heard.size() != 1)
-    return false;
-  Offer offer = *offer_;
-  if (understood.meanings.empty() || !is_yes_or_no(heard.front())) {
-    const std::string name = named(understood, utterance, situation);
-    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
-      return false;
-    rename(offer.understood, offer.name, name);
-  } else {
-    const bool yes = heard.front().functor == "yes";
-    const bool any = offer.yes.empty() && offer.meant.empty();  // a yes names none of several
-    if (offer.done || (yes && any && !situation.asked_about.empty()))
-      return false;
-    if (yes && any) {
-      refuse(utterance, "which one?", out);
-      return true;
-    }
-    if (!yes && offer.yes.empty()) {
-      offer_.reset();
-      say(utterance, "then I leave it", true, out);
-      return true;
-    }
-    if (offer.yes.empty()) {
-      rename(offer.understood, offer.name, lowered(offer.meant));
-    } else if (yes) {
-      offer.understood.meanings = {offer.yes.front()};
-      offer.understood.then.assign(offer.yes.begin() + 1, offer.yes.end());
-    }
-  }
-  offer_.reset();
-  Utterance again = offer.raised_by;
+std::optional<std::size_t> Dialogue::chosen(const Question& question,
+                                            const Grammar::Understood& understood,
+                                            const Utterance& utterance) const {
+  std::size_t number = question.yes.size();
+  if (understood.meanings.size() == 1 && understood.meanings.front().functor == kChoice)
+    number = static_cast<std::size_t>(number_of(understood.meanings.front(), "number")) - 1;
+  for (std::size_t i = 0; question.yes.size() > 1 && i < question.yes.size(); ++i)
+    if (words_of(utterance.text) == words_of(in_words(question.yes[i].meanings.front())))
+      number = i;
+  return number < question.yes.size() ? std::optional(number) : std::nullopt;
+}
+
+bool Dialogue::answered(Question question, const Grammar::Understood& understood,
+                        const Utterance& utterance, const Situation& situation, Outputs& out) {
+  Utterance again = question.raised_by;
   again.id = utterance.id;
   again.time = utterance.time;
-  carry_out(std::move(offer.understood), again, situation, out);
+  Grammar::Understood next;
+  const bool bare = understood.meanings.empty();
+  const std::vector<Meaning>& heard = bare ? understood.bare : understood.meanings;
+  if (const auto number = chosen(question, understood, utterance)) {
+    next = std::move(question.yes[*number]);
+  } else if (heard.size() != 1) {
+    return false;
+  } else if (bare || !is_yes_or_no(heard.front())) {
+    const std::string name = named(understood, utterance, situation);
+    if (name.empty() || question.name.empty() || (!question.asked && !understood.addressed))
+      return false;
+    next = std::move(question.sentence);
+    rename(next, question.name, name);
+  } else if (!question.asked) {
+    return false;
+  } else if (heard.front().functor == "no") {
+    forget_question(utterance);
+    if (!question.no.empty()) {
+      say(utterance,
+          question.no + (question.drops.empty() ? "" : tasks_.going_on(utterance.speaker)), true,
+          out);
+      return true;
+    }
+    next = std::move(question.sentence);
+  } else if (question.fact) {
+    forget_question(utterance);
+    say(utterance, "I know now that " + describe(*question.fact), true, out);
+    learn(*question.fact, out);
+    return true;
+  } else if (!question.drops.empty()) {
+    forget_question(utterance);
+    begin(std::move(question.drops), true, again, situation, out);
+    return true;
+  } else if (question.yes.size() == 1) {
+    next = std::move(question.yes.front());
+  } else if (situation.asked_about.empty()) {
+    refuse(utterance, "which one?", out);
+    return true;
+  } else {
+    return false;  // it is for an activity
+  }
+  forget_question(utterance);
+  carry_out(std::move(next), again, situation, out);
   return true;
 }
 

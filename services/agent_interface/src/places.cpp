@@ -191,14 +191,14 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
     for (const std::string& one : situation.findable)
       add(one);
   }
-  out.unknown = name;
-  out.meant = guess(name, names);
-  if (out.meant.empty())
-    out.meant = only_with_word_of(name, names);
+  std::string meant = guess(name, names);
+  if (meant.empty())
+    meant = only_with_word_of(name, names);
+  out.unknown = {name, meant};
   std::string text =
       std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
-  if (!out.meant.empty())
-    return text + "; do you mean " + out.meant + "?";
+  if (!meant.empty())
+    return text + "; do you mean " + meant + "?";
   if (places == 0)
     return text + ": no map with names has come yet";
   names.resize(places);

@@ -98,7 +98,10 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
            named_person(known->speaker) + " told me that " + describe(*known) + ". Is it now " +
                advice.value + "?",
            out);
-    doubt_ = Doubt{advice, utterance};
+    Question question;
+    question.fact = advice;
+    question.no = "then I leave it as it is";
+    ask(std::move(question), utterance);
     return;
   }
   say(utterance, "I know now that " + describe(advice), true, out);
@@ -202,7 +205,6 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
     const std::string place = referred(where, situation, unnamed, artifact, no_place);
     if (!no_place.empty()) {
       out.unknown = unnamed.unknown;
-      out.meant = unnamed.meant;
       refuse(utterance, no_place, out);
       return true;
     }
