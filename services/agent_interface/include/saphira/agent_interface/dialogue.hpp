@@ -11,6 +11,7 @@
 #include "saphira/agent_interface/knowledge.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/maps/map.hpp"
+#include "saphira/maps/route.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
@@ -212,7 +213,8 @@ class Dialogue {
               Outputs& out);
   bool reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
              Outputs& out);
-  void take(const Advice& advice, const Utterance& utterance, Outputs& out);
+  void take(const Advice& advice, const Utterance& utterance, const Situation& situation,
+            Outputs& out);
   /// A fact that also answers the open question.
   void answer_with(const Advice& advice, const Utterance& utterance, const Situation& situation,
                    Outputs& out) const;
@@ -252,6 +254,9 @@ class Dialogue {
                       Outputs& out) const;
   /// The reason for which a task would fail, as far as it is known before; empty: none.
   std::string hindrance(const WantedGoal& goal, const Situation& situation, Outputs& out) const;
+  /// The way to a place of the map by the rules of all zones; no route and no reason: there is
+  /// none to ask for.
+  maps::RouteResult allowed_way(const std::string& place, const Situation& situation) const;
   /// The reason why the robot is not to go to that place of the map; empty: none.
   std::string kept_out(const std::string& place, const Situation& situation) const;
   /// The same, or the name of a person.

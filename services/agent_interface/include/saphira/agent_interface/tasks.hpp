@@ -89,6 +89,8 @@ class Tasks {
   /// ": I go on with the mail for alice"; empty: with nothing.
   std::string going_on(const std::string& listener) const;
 
+  /// The open task that is not brief; nullptr: none.
+  const Task* task() const;
   /// The open task of that tag; nullptr: none.
   const Task* find(std::uint64_t tag) const;
   /// A lasting goal was asked for, under that name. save() includes it.
@@ -106,7 +108,6 @@ class Tasks {
   void restore(const std::string& line);
 
  private:
-  const Task* task() const;
   void begin(Task task, Outputs& out);
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
   void release(Outputs& out);
