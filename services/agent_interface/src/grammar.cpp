@@ -159,7 +159,9 @@ std::vector<std::string> completed(const std::vector<std::string>& before,
   if (words.front() != "to" && words.front() != "the")
     return {};
   const auto same = std::find(before.begin(), before.end(), words.front());
-  if (same == before.begin() || same == before.end())
+  // "Take the mail from Karen to John, then to Bob" is no second way to Karen.
+  if (same == before.begin() || same == before.end() ||
+      std::find(before.begin(), same, "from") != same)
     return {};
   std::vector<std::string> whole(before.begin(), same);
   whole.insert(whole.end(), words.begin(), words.end());
