@@ -19,6 +19,9 @@ constexpr std::size_t kMostSteps = 8;  // of a sequence
 constexpr std::array<std::pair<const char*, const char*>, 4> kUnits{
     {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}}};
 
+/// Short forms, and the words in the grammars.
+constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
+    {{"pls", "please"}, {"plz", "please"}, {"deg", "degrees"}}};
 constexpr const char* kComma = ",";
 
 bool is_number(const std::string& word) {
@@ -87,6 +90,9 @@ std::vector<std::string> words_and_commas_of(std::string_view said) {
         words.push_back(word.substr(0, unit));
         word = spoken;
       }
+    for (const auto& [written, spoken] : kShort)
+      if (word == written)
+        word = spoken;
     words.push_back(std::exchange(word, {}));
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -287,7 +293,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     };
   };
   const auto is_keyword = is_among(keywords_);
-  const auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
+  auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
   if (first != words.end() && is_keyword(*first) &&
       (first == words.begin() || first + 1 != words.end())) {
     result.addressed = true;
@@ -300,6 +306,12 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     words.pop_back();
     said = words;
     result.addressed = !look(words, true, false, Among::urgent).empty();
+  } else if (first = std::find_if(words.begin(), words.end(), is_keyword);
+             first != words.end() &&
+             !look({words.begin(), first}, true, false, Among::urgent).empty()) {
+    words.erase(first);  // "stop, Flakey, stop"
+    said = words;
+    result.addressed = true;
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
   const auto whole = [&](const std::vector<std::string>& sentence) {
