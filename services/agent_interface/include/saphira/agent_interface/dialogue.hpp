@@ -165,6 +165,8 @@ class Dialogue {
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
   void ask(Question question, const Utterance& utterance);
+  void ask_for_order(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
+  void note_name(Grammar::Understood understood, const Utterance& utterance, const Outputs& out);
   /// The question that this utterance may answer; nullptr: none.
   const Question* question_for(const Utterance& utterance) const;
   void forget_question(const Utterance& utterance);
