@@ -215,4 +215,21 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
   return true;
 }
 
+void Dialogue::leave_out(Grammar::Understood& understood, const Situation& situation) const {
+  const bool asked = !situation.asked_about.empty();
+  // A name alone at most answers an activity, and a choice alone means nothing.
+  std::vector<Meaning>& meanings = understood.meanings;
+  std::erase_if(meanings, [](const Meaning& one) { return one.functor == kChoice; });
+  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
+  if (instead)
+    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
+  else if (asked && meanings.empty())
+    meanings = understood.bare;
+  if ((instead || !understood.bare.empty()) &&
+      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
+    meanings.clear();
+  if (!asked && !understood.addressed)
+    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+}
+
 }  // namespace saphira::agent_interface

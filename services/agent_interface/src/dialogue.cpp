@@ -369,19 +369,7 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   if ((answers || corrects) && sure && answered(*question, understood, utterance, situation, out))
     return out;
-  // A name alone at most answers an activity, and a choice alone means nothing.
-  std::vector<Meaning>& meanings = understood.meanings;
-  std::erase_if(meanings, [](const Meaning& one) { return one.functor == kChoice; });
-  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
-  if (instead)
-    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
-  else if (asked && meanings.empty())
-    meanings = understood.bare;
-  if ((instead || !understood.bare.empty()) &&
-      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
-    meanings.clear();
-  if (!asked && !understood.addressed)
-    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+  leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question.
   if (utterance.confidence >= kSure &&
       (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))

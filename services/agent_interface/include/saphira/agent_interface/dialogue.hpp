@@ -173,6 +173,8 @@ class Dialogue {
   /// True where the sentence answers the robot's question; then that is done.
   bool answered(Question question, const Grammar::Understood& understood,
                 const Utterance& utterance, const Situation& situation, Outputs& out);
+  /// Takes away the meanings that answer a question which is not asked.
+  void leave_out(Grammar::Understood& understood, const Situation& situation) const;
   /// The number of the sentence that is chosen of several; none: no choice.
   std::optional<std::size_t> chosen(const Question& question, const Grammar::Understood& understood,
                                     const Utterance& utterance) const;
