@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
+constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
 KnownGoal::State state_of(v1::GoalState state) {
   switch (state) {
@@ -276,7 +277,7 @@ void DialogueShell::take_utterances() {
       continue;
     Utterance utterance;
     utterance.id = {sample.data.id().writer(), sample.data.id().number()};
-    utterance.speaker = sample.data.speaker().substr(0, 31);
+    utterance.speaker = first_letters(sample.data.speaker(), kLongestName);
     utterance.text = sample.data.text();
     utterance.confidence = sample.data.confidence();
     utterance.time = sample.data.time();

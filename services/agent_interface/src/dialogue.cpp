@@ -25,14 +25,10 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
-/// Slots for places and people.
-constexpr std::array kNamed{"place", "from", "to", "person", "owner"};
 /// Questions of activities whether something was handed over.
 constexpr std::array kHandovers{"given", "taken"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
-/// Another name for that of the sentence before.
-constexpr std::string_view kInstead = "instead";
 constexpr const char* kSaidLine = "said\t";
 constexpr const char* kGoneLine = "gone\t";
 
@@ -41,6 +37,15 @@ bool is_fact(const Meaning& meaning) {
   constexpr std::array kFacts{"office_of", "person_at",     "knows_where", "hazard", "no_hazard",
                               "not_at",    "not_office_of", "not_knows",   "forget", "name_of"};
   return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
+}
+
+/// The unit of a motion's distance [m]; 0: no motion over a distance.
+double unit_of_move(std::string_view functor) {
+  return functor == "move"               ? 1.0
+         : functor == "move_feet"        ? 0.3048
+         : functor == "move_centimeters" ? 0.01
+         : functor == "move_millimeters" ? 0.001
+                                         : 0.0;
 }
 
 /// Puts the speaker where a slot has "me". False: the speaker has no name.
@@ -57,39 +62,6 @@ bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
        {&understood.meanings, &understood.then, &understood.apart})
     std::for_each(steps->begin(), steps->end(), name);
   return named;
-}
-
-/// The end of a free text that may be an order of its own: "and then go home".
-std::string order_in_text(const Grammar::Understood& understood) {
-  const std::size_t last = understood.then.size();
-  const Meaning& whole = last == 0 ? understood.meanings.front() : understood.then.back();
-  for (const auto& [name, value] : understood.apart[last].slots)
-    if (const std::string all = slot(whole, name); all != value && all.starts_with(value))
-      return all.substr(std::min(value.size() + 1, all.size()));
-  return "the rest";
-}
-
-/// Puts a name in the place of another in all steps.
-void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
-  for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
-    for (Meaning& step : *steps)
-      for (auto& [slot, value] : step.slots)
-        if (value == from)
-          value = to;
-}
-
-/// The place or person of a meaning; empty: none, or several.
-std::string only_name(const Meaning& meaning) {
-  std::string only;
-  for (const char* const name : kNamed) {
-    const std::string value = slot(meaning, name);
-    if (value.empty() || value == "this")
-      continue;
-    if (!only.empty())
-      return {};
-    only = value;
-  }
-  return only;
 }
 
 }  // namespace
@@ -125,8 +97,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
   };
   if (meaning.functor == "stop") {
     want(meaning, utterance, "stop", {});
-  } else if (meaning.functor == "move" || meaning.functor == "move_centimeters") {
-    const double unit = meaning.functor == "move" ? 1.0 : 0.01;  // [m]
+  } else if (const double unit = unit_of_move(meaning.functor); unit > 0.0) {
     const double distance = number_of(meaning, "distance") * unit;
     if (distance <= 0.0) {
       refuse(utterance, "that is no way to go", out);
@@ -199,12 +170,12 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     shown.slots["owner"] = "";
     if (!where.empty())
       want(shown, utterance, "go-to-place", {text("place", where)});
-    else if (name.empty() || out.unknown != name)
+    else if (name.empty() || out.unknown.name != name)
       refuse(utterance, wrong, out);
     else if (!findable(name, situation))
       refuse(utterance, unknown(name, true, situation, out), out);
     else {
-      out.unknown.clear();
+      out.unknown = {};
       want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     }
   } else if (functor == "deliver") {
@@ -237,42 +208,9 @@ std::string Dialogue::in_words(const Meaning& meaning) const {
   return grammar_.paraphrase(shown);
 }
 
-void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
-                       Outputs& out) const {
-  std::vector<std::string> all;
-  for (const Meaning& meaning : meanings)
-    if (const std::string words = in_words(meaning);
-        !words.empty() && std::find(all.begin(), all.end(), words) == all.end())
-      all.push_back(words);
-  std::string text;
-  for (const std::string& one : all)
-    text += (text.empty() ? "\"" : ", or \"") + one + "\"";
-  if (all.size() < 2)
-    text = "several things";
-  text = "what? That may mean " + text;
-  refuse(utterance, text, out);
-}
-
-/// The answer to a question of an activity, or of this dialogue.
+/// The answer to a question of an activity.
 bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                      Outputs& out) {
-  const bool yes = meaning.functor == "yes";
-  if (is_yes_or_no(meaning) && tasks_.asks(utterance)) {
-    add(tasks_.answer(yes, utterance), out);
-    note_begin(situation, out);
-    return true;
-  }
-  if (is_yes_or_no(meaning) && doubt_ && may_answer(utterance, doubt_->raised_by)) {
-    const Doubt doubt = *doubt_;
-    doubt_.reset();
-    if (yes) {
-      say(utterance, "I know now that " + describe(doubt.advice), true, out);
-      learn(doubt.advice, out);
-    } else {
-      say(utterance, "then I leave it as it is", true, out);
-    }
-    return true;
-  }
   std::string value;
   const std::string asked_for = lowered(situation.asked_for);
   Advice told;  // about nobody: nothing
@@ -294,7 +232,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
                                                   situation.asked_about) != kHandovers.end()))
       return true;
   }
-  if (yes || meaning.functor == "handed") {
+  if (meaning.functor == "yes" || meaning.functor == "handed") {
     value = "yes";
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
@@ -378,8 +316,24 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
       refuse(utterance, why, out);
       return;
     }
-  add(tasks_.want(std::move(wanted_), utterance), out);
-  wanted_.clear();
+  begin(std::exchange(wanted_, {}), false, utterance, situation, out);
+}
+
+void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utterance,
+                     const Situation& situation, Outputs& out) {
+  const bool goes_on = std::all_of(steps.begin(), steps.end(), [](const Task& step) {
+    return step.brief && step.goal.functor != "stop";
+  });
+  Tasks::Outputs begun = tasks_.want(std::move(steps), utterance, drops);
+  if (!begun.asks.empty()) {
+    Question question;
+    question.drops = std::move(begun.asks);
+    question.no = "good";
+    ask(std::move(question), utterance);
+  } else if (!goes_on) {
+    std::erase_if(questions_, [](const Question& one) { return !one.drops.empty(); });
+  }
+  add(std::move(begun), out);
   note_begin(situation, out);
   if (!out.goals.empty() && out.goals.back().functor == "stop")
     stop_ = out.goals.back().tag;
@@ -402,46 +356,24 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.changed = true;
   }
-  const bool doubted = doubt_ && may_answer(utterance, doubt_->raised_by);
-  const bool drops = tasks_.asks(utterance);
   const bool asked = !situation.asked_about.empty();
-  // A correction of a task needs no haste.
-  const bool offer =
-      offer_ && (offer_->done ? same_person(utterance.speaker, offer_->raised_by.speaker)
-                              : may_answer(utterance, offer_->raised_by));
-  const bool offered = offer && !(offer_->done && asked);
+  const Question* const question = question_for(utterance);
+  const bool corrects = question != nullptr && !question->asked && !asked;
+  const bool answers = question != nullptr && question->asked;
   const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
-  Grammar::Understood understood =
-      grammar_.understand(utterance.text, asked || doubted || drops || (offered && !offer_->done));
-  if (offered && offer_->done && understood.addressed && understood.meanings.empty()) {
+  Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
+  if (corrects && understood.addressed && understood.meanings.empty()) {
     understood = grammar_.understand(utterance.text, true);
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
     understood.bare.clear();
   }
-  if (offered && sure && answered(understood, utterance, situation, out))
+  if ((answers || corrects) && sure && answered(*question, understood, utterance, situation, out))
     return out;
-  // A name alone at most answers an activity.
-  std::vector<Meaning>& meanings = understood.meanings;
-  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
-  if (instead)
-    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
-  else if (asked && meanings.empty())
-    meanings = understood.bare;
-  if ((instead || !understood.bare.empty()) &&
-      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
-    meanings.clear();
-  if (!asked && !understood.addressed)
-    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+  leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question.
   if (utterance.confidence >= kSure &&
-      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front()))) {
-    if (doubted)
-      doubt_.reset();
-    if (drops)
-      tasks_.withdraw_question();
-    if (offer)
-      offer_.reset();
-  }
+      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
+    forget_question(utterance);
   if (utterance.text.size() > kLongestText) {
     const bool meant = understood.addressed && !understood.meanings.empty();
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
@@ -468,92 +400,18 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
       understood.meanings = std::move(known);
   }
   if (understood.meanings.size() > 1) {
-    choices(understood.meanings, utterance, out);
+    choices(understood, utterance, out);
   } else if (is_fact(understood.meanings.front()) && is_question(utterance.text) &&
              !understood.polite) {
     refuse(utterance, "is that a question? Without the question mark I take it as a fact", out);
   } else if (!name_speaker(understood, utterance.speaker)) {
     refuse(utterance, "I do not know who you are", out);
   } else if (!understood.apart.empty()) {
-    refuse(utterance,
-           "\"" + order_in_text(understood) +
-               "\": shall I do that myself (yes), or is it what I am to say (no)?",
-           out);
-    offer_ = Offer{std::move(understood)};
-    offer_->yes = std::exchange(offer_->understood.apart, {});
-    offer_->raised_by = utterance;
+    ask_for_order(std::move(understood), utterance, out);
   } else {
     act_on_all(understood, utterance, situation, out);
-    const bool done = !out.goals.empty();
-    const std::string name = !done                     ? out.unknown
-                             : understood.then.empty() ? only_name(understood.meanings.front())
-                                                       : std::string();
-    if (!name.empty())
-      offer_ = Offer{std::move(understood), name, done ? "" : out.meant, {}, utterance, done};
+    note_name(std::move(understood), utterance, out);
   }
-}
-
-bool Dialogue::names_unknown(const Meaning& meaning, const Situation& situation) const {
-  return std::any_of(kNamed.begin(), kNamed.end(), [&](const char* name) {
-    const std::string value = slot(meaning, name);
-    return !value.empty() && value != "this" && value != "me" && !is_known(value, situation);
-  });
-}
-
-std::string Dialogue::named(const Grammar::Understood& understood, const Utterance& utterance,
-                            const Situation& situation) const {
-  const bool bare = understood.meanings.empty();
-  const Meaning& said = bare ? understood.bare.front() : understood.meanings.front();
-  const bool instead = said.functor == kInstead;
-  const std::string name = slot(said, instead ? "name" : "person");
-  if (instead && understood.addressed)
-    return name;
-  // Without the keyword it may be a word to somebody else.
-  const bool alone = bare || saphira::joined(words_of(utterance.text), " ") == name;
-  return (instead || (said.functor == "somebody" && alone)) && is_known(name, situation)
-             ? name
-             : std::string();
-}
-
-bool Dialogue::answered(const Grammar::Understood& understood, const Utterance& utterance,
-                        const Situation& situation, Outputs& out) {
-  const std::vector<Meaning>& heard =
-      understood.meanings.empty() ? understood.bare : understood.meanings;
-  if (heard.size() != 1)
-    return false;
-  Offer offer = *offer_;
-  if (understood.meanings.empty() || !is_yes_or_no(heard.front())) {
-    const std::string name = named(understood, utterance, situation);
-    if (name.empty() || offer.name.empty() || (offer.done && !understood.addressed))
-      return false;
-    rename(offer.understood, offer.name, name);
-  } else {
-    const bool yes = heard.front().functor == "yes";
-    const bool any = offer.yes.empty() && offer.meant.empty();  // a yes names none of several
-    if (offer.done || (yes && any && !situation.asked_about.empty()))
-      return false;
-    if (yes && any) {
-      refuse(utterance, "which one?", out);
-      return true;
-    }
-    if (!yes && offer.yes.empty()) {
-      offer_.reset();
-      say(utterance, "then I leave it", true, out);
-      return true;
-    }
-    if (offer.yes.empty()) {
-      rename(offer.understood, offer.name, lowered(offer.meant));
-    } else if (yes) {
-      offer.understood.meanings = {offer.yes.front()};
-      offer.understood.then.assign(offer.yes.begin() + 1, offer.yes.end());
-    }
-  }
-  offer_.reset();
-  Utterance again = offer.raised_by;
-  again.id = utterance.id;
-  again.time = utterance.time;
-  carry_out(std::move(offer.understood), again, situation, out);
-  return true;
 }
 
 void Dialogue::end(const Outcome& outcome, Outputs& out) {

@@ -19,6 +19,11 @@ constexpr std::size_t kMostSteps = 8;  // of a sequence
 constexpr std::array<std::pair<const char*, const char*>, 4> kUnits{
     {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}}};
 
+/// Short forms, and the words in the grammars.
+constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
+    {{"pls", "please"}, {"plz", "please"}, {"deg", "degrees"}}};
+constexpr const char* kComma = ",";
+
 bool is_number(const std::string& word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
          std::all_of(
@@ -66,7 +71,10 @@ std::string describe(const Meaning& meaning) {
   return text + ")";
 }
 
-std::vector<std::string> words_of(std::string_view said) {
+namespace {
+
+/// The words, and the commas between them.
+std::vector<std::string> words_and_commas_of(std::string_view said) {
   const std::string text = plain(said);
   std::vector<std::string> words;
   std::string word;
@@ -82,6 +90,9 @@ std::vector<std::string> words_of(std::string_view said) {
         words.push_back(word.substr(0, unit));
         word = spoken;
       }
+    for (const auto& [written, spoken] : kShort)
+      if (word == written)
+        word = spoken;
     words.push_back(std::exchange(word, {}));
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -103,13 +114,18 @@ std::vector<std::string> words_of(std::string_view said) {
       }
     } else {
       end();
+      if (c == ',' && !words.empty())
+        words.emplace_back(kComma);
     }
   }
   end();
   return words;
 }
 
-namespace {
+std::vector<std::string> without_commas(std::vector<std::string> words) {
+  std::erase(words, kComma);
+  return words;
+}
 
 /// Words as people write them: "karen's office".
 std::string joined(const std::vector<std::string>& words, std::size_t from) {
@@ -124,18 +140,45 @@ bool has_rest(const Grammar::Node& node) {
          std::any_of(node.parts.begin(), node.parts.end(), has_rest);
 }
 
-/// The number of words there that join two sentences: "and", "then", "and after that"; 0: none.
+/// The number of words and commas there that join two sentences: a comma, "and", "then", ", and
+/// after that,"; 0: none.
 std::size_t joint(const std::vector<std::string>& words, std::size_t at) {
-  const auto is = [&](std::size_t i, const char* word) {
-    return i < words.size() && words[i] == word;
+  std::size_t next = at;
+  const auto take = [&](std::string_view word) {
+    const bool is = next < words.size() && words[next] == word;
+    next += is ? 1U : 0U;
+    return is;
   };
-  const std::size_t next = is(at, "and") ? at + 1 : at;
-  const bool one = is(next, "then") || is(next, "afterwards");
-  const bool two = is(next, "after") && is(next + 1, "that");
-  return next - at + (one ? 1U : two ? 2U : 0U);
+  take(kComma);
+  take("and");
+  if (!take("then") && !take("afterwards") && take("after") && !take("that"))
+    --next;
+  if (next > at)
+    take(kComma);
+  return next - at;
+}
+
+/// A step that leaves out how the step before it began: "to the library" or "the library" after "go
+/// to the kitchen". Empty: it does not.
+std::vector<std::string> completed(const std::vector<std::string>& before,
+                                   const std::vector<std::string>& words) {
+  if (words.front() != "to" && words.front() != "the")
+    return {};
+  const auto same = std::find(before.begin(), before.end(), words.front());
+  // "Take the mail from Karen to John, then to Bob" is no second way to Karen.
+  if (same == before.begin() || same == before.end() ||
+      std::find(before.begin(), same, "from") != same)
+    return {};
+  std::vector<std::string> whole(before.begin(), same);
+  whole.insert(whole.end(), words.begin(), words.end());
+  return whole;
 }
 
 }  // namespace
+
+std::vector<std::string> words_of(std::string_view text) {
+  return without_commas(words_and_commas_of(text));
+}
 
 std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<std::string>& words,
                                            const Match& from) const {
@@ -242,32 +285,43 @@ std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<s
 
 Grammar::Understood Grammar::understand(std::string_view text, bool replies) const {
   Understood result;
-  std::vector<std::string> words = words_of(text);
+  std::vector<std::string> said = words_and_commas_of(text);
+  std::vector<std::string> words = without_commas(said);
   const auto is_among = [](const std::vector<std::string>& some) {
     return [&some](const std::string& word) {
       return std::find(some.begin(), some.end(), word) != some.end();
     };
   };
   const auto is_keyword = is_among(keywords_);
-  const auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
+  auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
   if (first != words.end() && is_keyword(*first) &&
       (first == words.begin() || first + 1 != words.end())) {
     result.addressed = true;
     words.erase(words.begin(), first + 1);
+    said.erase(said.begin(), std::find_if(said.begin(), said.end(), is_keyword) + 1);
+    if (!said.empty() && said.front() == kComma)
+      said.erase(said.begin());
   } else if (words.size() > 1 && is_keyword(words.back())) {
     // "Stop, Flakey!"; other words before the keyword at most answer the robot.
     words.pop_back();
+    said = words;
     result.addressed = !look(words, true, false, Among::urgent).empty();
+  } else if (first = std::find_if(words.begin(), words.end(), is_keyword);
+             first != words.end() &&
+             !look({words.begin(), first}, true, false, Among::urgent).empty()) {
+    words.erase(first);  // "stop, Flakey, stop"
+    said = words;
+    result.addressed = true;
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
   const auto whole = [&](const std::vector<std::string>& sentence) {
-    result.meanings = look(sentence, result.addressed, replies, Among::usual);
+    result.meanings = look(without_commas(sentence), result.addressed, replies, Among::usual);
     if (!result.addressed)
       return;
     // Of several ways to divide it, the one with the fewest steps.
     const bool counted = sentence.size() > 1 && sentence.front() == "first";
     std::vector<std::vector<Meaning>> ways =
-        divided({sentence.begin() + (counted ? 1 : 0), sentence.end()}, true);
+        divided({sentence.begin() + (counted ? 1 : 0), sentence.end()}, {});
     std::stable_sort(ways.begin(), ways.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (result.meanings.empty()) {
@@ -282,9 +336,14 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       result.apart = ways.front();
   };
   if (words.size() <= kLongestUtterance) {
-    whole(words);
-    std::vector<std::string> order = words;
-    if (result.meanings.empty() && result.addressed && make_plain_order(order)) {
+    whole(said);
+    // "No, go to the library" corrects the sentence before. Without the comma it forbids.
+    std::vector<std::string> order = said;
+    while (result.meanings.empty() && order.size() > 2 && order[0] == "no" && order[1] == kComma) {
+      order.erase(order.begin(), order.begin() + 2);
+      whole(order);
+    }
+    while (result.meanings.empty() && result.addressed && make_plain_order(order)) {
       whole(order);
       result.polite = true;
     }
@@ -301,12 +360,20 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
 /// "Could you go home" becomes "please go home". So it is an order, or nothing: no line for facts
 /// or questions begins with "please".
 bool Grammar::make_plain_order(std::vector<std::string>& words) const {
-  const std::size_t begin = !words.empty() && words.front() == "please" ? 1 : 0;
+  const auto after_commas = [&](auto at) {
+    return std::find_if(at, words.end(), [](const std::string& word) { return word != kComma; });
+  };
+  const auto begin = words.begin() + (!words.empty() && words.front() == "please" ? 1 : 0);
   for (const std::vector<std::string>& polite : polite_) {
-    const auto from = words.begin() + static_cast<std::ptrdiff_t>(begin);
-    if (words.size() - begin <= polite.size() || !std::equal(polite.begin(), polite.end(), from))
+    auto end = after_commas(begin);
+    const bool same = std::all_of(polite.begin(), polite.end(), [&](const std::string& word) {
+      const bool is = end != words.end() && *end == word;
+      end = is ? after_commas(end + 1) : end;
+      return is;
+    });
+    if (!same || end == words.end())
       continue;
-    words.erase(words.begin(), from + static_cast<std::ptrdiff_t>(polite.size()));
+    words.erase(words.begin(), end);
     if (words.front() != "please")
       words.insert(words.begin(), "please");
     return true;
@@ -346,31 +413,43 @@ std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool a
 }
 
 std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string>& words,
-                                                   bool first) const {
+                                                   const std::vector<std::string>& before) const {
   std::vector<std::vector<Meaning>> ways;
-  const auto step = [&](const std::vector<std::string>& sentence) -> std::optional<Meaning> {
+  const bool first = before.empty();
+  const auto step = [&](std::vector<std::string>& sentence) -> std::optional<Meaning> {
+    sentence = without_commas(std::move(sentence));
+    if (sentence.empty())
+      return std::nullopt;
     std::vector<Meaning> meanings;
     if (!first)
       meanings = look(sentence, true, false, Among::later);
     if (meanings.empty())
       meanings = look(sentence, true, false, Among::usual);
+    if (auto all = completed(before, sentence); meanings.empty() && !all.empty()) {
+      meanings = look(all, true, false, Among::usual);
+      if (meanings.size() == 1 && takes_text(meanings[0].functor))
+        return std::nullopt;
+      sentence = std::move(all);
+    }
     if (meanings.size() != 1 ||
         std::find(steps_.begin(), steps_.end(), meanings[0].functor) == steps_.end())
       return std::nullopt;
     return meanings[0];
   };
-  if (const auto whole = step(words); whole && !first)
-    ways.push_back({*whole});
+  if (std::vector<std::string> all = words; !first)
+    if (const auto last = step(all))
+      ways.push_back({*last});
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     const std::size_t between = joint(words, i);
     if (between == 0 || i + between >= words.size() || joint(words, i - 1) > 1)
       continue;
     const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto head = step({words.begin(), at});
+    std::vector<std::string> sentence(words.begin(), at);
+    const auto head = step(sentence);
     if (!head)
       continue;
     const auto next = at + static_cast<std::ptrdiff_t>(between);
-    for (std::vector<Meaning>& rest : divided({next, words.end()}, false)) {
+    for (std::vector<Meaning>& rest : divided({next, words.end()}, sentence)) {
       rest.insert(rest.begin(), *head);
       if (rest.size() <= kMostSteps)
         ways.push_back(std::move(rest));

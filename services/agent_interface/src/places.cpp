@@ -9,7 +9,6 @@
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/artifact_traits.hpp"
-#include "saphira/maps/route.hpp"
 #include "saphira/maps/zones.hpp"
 #include "words.hpp"
 
@@ -191,14 +190,14 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
     for (const std::string& one : situation.findable)
       add(one);
   }
-  out.unknown = name;
-  out.meant = guess(name, names);
-  if (out.meant.empty())
-    out.meant = only_with_word_of(name, names);
+  std::string meant = guess(name, names);
+  if (meant.empty())
+    meant = only_with_word_of(name, names);
+  out.unknown = {name, meant};
   std::string text =
       std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
-  if (!out.meant.empty())
-    return text + "; do you mean " + out.meant + "?";
+  if (!meant.empty())
+    return text + "; do you mean " + meant + "?";
   if (places == 0)
     return text + ": no map with names has come yet";
   names.resize(places);
@@ -208,6 +207,19 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
   if (places > kShown)
     text += " and " + std::to_string(places - kShown) + " more";
   return text + (people ? ". Which one, or where is " + name + "?" : ". Which one?");
+}
+
+maps::RouteResult Dialogue::allowed_way(const std::string& place,
+                                        const Situation& situation) const {
+  if (place.empty() || !situation.pose_in_map)
+    return {};
+  const maps::Topology floor(situation.map);
+  maps::RouteSettings settings;
+  settings.zones = maps::all_zones(situation.map, floor);
+  for (const Claimed& one : claims())
+    if (one.name == maps::kHazards)
+      settings.zones = maps::all_zones(situation.map, floor, one.value, one.source);
+  return maps::find_route(floor, situation.pose_in_map->position(), place, settings);
 }
 
 std::string Dialogue::kept_out(const std::string& place, const Situation& situation) const {
@@ -224,18 +236,11 @@ std::string Dialogue::kept_out(const std::string& place, const Situation& situat
            (rule ? "you may go to " + place : "the " + one.about + " at " + place + " is gone") +
            "\"";
   }
-  maps::RouteSettings settings;
-  for (const Claimed& one : claims())
-    if (one.name == maps::kHazards)
-      settings.zones = maps::all_zones(situation.map, floor, one.value, one.source);
-  if (settings.zones.empty())
-    settings.zones = maps::all_zones(situation.map, floor);
-  if (!situation.pose_in_map || settings.zones.empty())
-    return {};
-  const Vec2 robot = situation.pose_in_map->position();
-  const maps::RouteResult allowed = maps::find_route(floor, robot, place, settings);
-  return allowed.route || !maps::find_route(floor, robot, place).route ? std::string()
-                                                                       : allowed.reason;
+  const maps::RouteResult allowed = allowed_way(place, situation);
+  return allowed.route || !situation.pose_in_map ||
+                 !maps::find_route(floor, situation.pose_in_map->position(), place).route
+             ? std::string()
+             : allowed.reason;
 }
 
 std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situation,

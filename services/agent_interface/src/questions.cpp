@@ -144,7 +144,6 @@ void Dialogue::owner_of(const Meaning& meaning, const Utterance& utterance,
   std::string at = referred(place, situation, unnamed, artifact, wrong);
   if (at.empty()) {
     out.unknown = unnamed.unknown;
-    out.meant = unnamed.meant;
     refuse(utterance, wrong, out);
     return;
   }

@@ -25,7 +25,7 @@ std::string whole_text(const Task& task) {
 
 }  // namespace
 
-Task* Tasks::task() {
+const Task* Tasks::task() const {
   const auto found =
       std::find_if(open_.begin(), open_.end(), [](const Task& one) { return !one.brief; });
   return found == open_.end() ? nullptr : &*found;
@@ -72,7 +72,7 @@ void Tasks::drop(bool brief, const std::string& by, const std::string& text, Out
   }
 }
 
-Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) {
+Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, bool drops) {
   Outputs out;
   if (steps.empty())
     return out;
@@ -82,32 +82,31 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
     step.answers = utterance.id;
     step.brief = all_brief;
   }
-  Task first = std::move(steps.front());
-  first.then.assign(std::make_move_iterator(steps.begin() + 1),
-                    std::make_move_iterator(steps.end()));
-  const bool stop = is_stop(first);
-  const bool brief = !stop && first.brief;
-  Task* const other = task();
-  if (!stop && !brief && other != nullptr && !same_person(other->goal.speaker, utterance.speaker)) {
+  const bool stop = is_stop(steps.front());
+  const bool brief = !stop && all_brief;
+  const Task* const other = task();
+  if (!stop && !brief && !drops && other != nullptr &&
+      !same_person(other->goal.speaker, utterance.speaker)) {
     const std::string owner = named_person(other->goal.speaker);
     out.said.push_back({utterance.id, utterance.speaker,
                         (other->doing.empty() ? "I am at work for " + owner + ": " + other->what
                                               : "I am " + other->doing + " for " + owner) +
                             ". Shall I drop that?",
                         true, true});
-    question_ = Question{std::move(first), utterance};
+    out.asks = std::move(steps);
     return out;
   }
+  Task first = std::move(steps.front());
+  first.then.assign(std::make_move_iterator(steps.begin() + 1),
+                    std::make_move_iterator(steps.end()));
   std::string text = whole_text(first);
   if (brief && other != nullptr)
     text += ", and then I go on with " + named_task(*other, utterance.speaker);
   const Said announced{utterance.id, utterance.speaker, text, false};
   if (stop)
     out.said.push_back(announced);
-  if (!brief) {
-    question_.reset();
+  if (!brief)
     drop(false, utterance.speaker, utterance.text, out);
-  }
   drop(true, utterance.speaker, utterance.text, out);
   if (!stop)
     out.said.push_back(announced);
@@ -115,34 +114,9 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
   return out;
 }
 
-bool Tasks::asks(const Utterance& utterance) const {
-  return question_ && may_answer(utterance, question_->raised_by);
-}
-
-Tasks::Outputs Tasks::answer(bool yes, const Utterance& utterance) {
-  Outputs out;
-  if (!question_)
-    return out;
-  Question question = std::move(*question_);
-  question_.reset();
-  if (!yes) {
-    const Task* const other = task();
-    out.said.push_back(
-        {utterance.id, utterance.speaker,
-         other == nullptr ? "good" : "good: I go on with " + named_task(*other, utterance.speaker),
-         true});
-    return out;
-  }
-  const Utterance& raised_by = question.raised_by;
-  drop(false, raised_by.speaker, raised_by.text, out);
-  drop(true, raised_by.speaker, raised_by.text, out);
-  Task task = std::move(question.task);
-  task.answers = utterance.id;
-  for (Task& step : task.then)
-    step.answers = utterance.id;
-  out.said.push_back({utterance.id, utterance.speaker, whole_text(task), false});
-  begin(std::move(task), out);
-  return out;
+std::string Tasks::going_on(const std::string& listener) const {
+  const Task* const other = task();
+  return other == nullptr ? std::string() : ": I go on with " + named_task(*other, listener);
 }
 
 Tasks::Outputs Tasks::ended(const Outcome& outcome) {

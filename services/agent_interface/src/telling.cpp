@@ -86,7 +86,8 @@ std::string Dialogue::told_of(const std::string& about) const {
   return text;
 }
 
-void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& out) {
+void Dialogue::take(const Advice& advice, const Utterance& utterance, const Situation& situation,
+                    Outputs& out) {
   const Advice* const known = knowledge_.find(advice.kind, advice.about, advice.value);
   if (known != nullptr && known->value == advice.value) {
     say(utterance, "I know: " + describe(advice), true, out);
@@ -98,11 +99,28 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
            named_person(known->speaker) + " told me that " + describe(*known) + ". Is it now " +
                advice.value + "?",
            out);
-    doubt_ = Doubt{advice, utterance};
+    Question question;
+    question.fact = advice;
+    question.no = "then I leave it as it is";
+    ask(std::move(question), utterance);
     return;
   }
-  say(utterance, "I know now that " + describe(advice), true, out);
+  // The activity that drives replans at once; the answer says so.
+  const Task* const task = tasks_.task();
+  std::string goal;
+  if (advice.kind == Advice::Kind::hazard && task != nullptr)
+    for (const Argument& one : task->goal.arguments)
+      if (one.name == "place")
+        goal = one.text;
+  const maps::RouteResult before = allowed_way(goal, situation);
   learn(advice, out);
+  const maps::RouteResult now = allowed_way(goal, situation);
+  std::string change;
+  if (before.route && !now.route)
+    change = "; so " + named_task(*task, utterance.speaker) + " ends";
+  else if (before.around != now.around)
+    change = "; so I look for another way";
+  say(utterance, "I know now that " + describe(advice) + change, true, out);
 }
 
 bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
@@ -157,7 +175,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   if (!wrong.empty()) {
     refuse(utterance, wrong, out);
   } else {
-    take(advice, utterance, out);
+    take(advice, utterance, situation, out);
     answer_with(advice, utterance, situation, out);
   }
   return true;
@@ -202,7 +220,6 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
     const std::string place = referred(where, situation, unnamed, artifact, no_place);
     if (!no_place.empty()) {
       out.unknown = unnamed.unknown;
-      out.meant = unnamed.meant;
       refuse(utterance, no_place, out);
       return true;
     }

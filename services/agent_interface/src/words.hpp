@@ -9,6 +9,11 @@
 
 namespace saphira::agent_interface {
 
+/// The functors of answers to a question back: another name for that of the sentence before, and
+/// the number of one of several meanings.
+inline constexpr std::string_view kInstead = "instead";
+inline constexpr std::string_view kChoice = "choice";
+
 /// Of a word: a letter, a digit, a hyphen, or a byte of a letter in UTF-8.
 bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.

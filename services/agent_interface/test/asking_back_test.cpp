@@ -127,6 +127,69 @@ TEST_F(DialogueTest, SeveralMeaningsAreNamedInWords) {
   EXPECT_EQ(said("flakey roll EJ-231"), "what? That may mean several things");
 }
 
+/// Of two meanings of one sentence, the speaker chooses.
+TEST_F(DialogueTest, OneOfSeveralMeaningsIsChosenByItsNumberOrItsWords) {
+  std::string both = read_file(test::source("config/grammars/flakey.grammar"));
+  both += "\ntyped turn(direction=left, degrees=90)\n  swerve\n";
+  both += "typed turn(direction=right, degrees=90)\n  swerve\n";
+  dialogue.use(Grammar(both, "test"));
+  const std::string asks =
+      "what? That may mean \"I turn 90 degrees to the left\", or \"I turn 90 degrees to the "
+      "right\"";
+  EXPECT_EQ(said("the second"), "");
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("the second", "Bob"), "") << "a word of somebody else";
+  EXPECT_EQ(said("the third"), "");
+  EXPECT_EQ(said("the second"), "") << "another sentence has ended the question";
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  EXPECT_EQ(said("yes"), "which one?");
+  EXPECT_EQ(said("the second one please"), "I turn 90 degrees to the right");
+  EXPECT_EQ(last.goals.size(), 1u);
+  dialogue.ended({last.goals.at(0).tag, true, "turned"});
+  EXPECT_EQ(said("the second"), "") << "nothing is asked any more";
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  EXPECT_EQ(said("Flakey, I meant the first"), "I turn 90 degrees to the left");
+  dialogue.ended({last.goals.at(0).tag, true, "turned"});
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  EXPECT_EQ(said("I turn 90 degrees to the left"), "I turn 90 degrees to the left");
+  dialogue.ended({last.goals.at(0).tag, true, "turned"});
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  EXPECT_EQ(said("neither"), "then I leave it");
+  EXPECT_EQ(said("Flakey, swerve"), asks);
+  now += 21.0;
+  EXPECT_EQ(said("the first"), "");
+  EXPECT_TRUE(last.goals.empty());
+}
+
+TEST_F(DialogueTest, EachSpeakerHasAQuestionOfTheirOwn) {
+  hear("Flakey, EJ-231 is Karen's office", "Carol");
+  EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"),
+            "Carol told me that EJ-231 is karen's office. Is it now EJ-233?");
+  EXPECT_EQ(said("Flakey, go to EJ-232"),
+            "I know no place or person called ej-232; do you mean EJ-231?");
+  EXPECT_EQ(said("yes", "Bob"), "I know now that EJ-233 is karen's office");
+  EXPECT_EQ(said("yes"), "I go to EJ-231");
+}
+
+TEST_F(DialogueTest, AnotherTaskOrAStopEndsTheQuestionWhetherToDropOne) {
+  hear("Flakey, get the mail from John");
+  const std::string asks = "I am bringing the mail for Alice. Shall I drop that?";
+  EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"), asks);
+  now += 21.0;
+  EXPECT_EQ(said("yes", "Bob"), "") << "too late";
+  EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"), asks);
+  hear("Flakey, turn left", "Carol");
+  EXPECT_EQ(said("yes", "Carol"), "");
+  hear("Flakey, get the book from John");
+  EXPECT_EQ(said("yes", "Bob"), "") << "it is about a task that is over";
+  EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"),
+            "I am bringing the book for Alice. Shall I drop that?");
+  hear("Flakey, stop", "Carol");
+  EXPECT_EQ(said("yes", "Bob"), "");
+  EXPECT_TRUE(last.goals.empty());
+}
+
 TEST_F(DialogueTest, TheTaskOfSomebodyElseIsDroppedOnlyAfterAQuestion) {
   hear("Flakey, get the mail from John");
   const std::uint64_t first = last.goals.at(0).tag;

@@ -83,6 +83,14 @@ class DialogueOnTheBus : public testing::Test {
   bool refused = false;  ///< the newest answer
 };
 
+TEST_F(DialogueOnTheBus, ALongNameOfASpeakerIsCutBehindALetter) {
+  const std::string letters = "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaa";  // 30 bytes
+  say("Flakey, turn left", letters + "\u00fc");
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].data.requester(), letters + " (by words)");
+}
+
 TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   auto maps = person.writer(bus::topics::kMap);
   auto registrations = person.writer(bus::topics::kRegistration);

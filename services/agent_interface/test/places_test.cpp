@@ -148,6 +148,25 @@ TEST_F(DialogueTest, APlaceToKeepOutOfIsRefusedAtOnceWithTheReason) {
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"") << "it may go there, slowly";
 }
 
+TEST_F(DialogueTest, AKeepOutOnTheWayIsAnsweredWithItsConsequence) {
+  situation.map = maps::parse_map(std::string(kMap) + R"(
+OFFICE (235) 5000, 8000, 0, 8000, 4000 "EJ-235"
+DOOR (1236) 3000, 6000, -90, 900
+DOOR (1237) 7000, 6000, -90, 900
+)",
+                                  "map");
+  EXPECT_EQ(said("Flakey, keep out of EJ-233"), "I know now that I am to keep out of EJ-233");
+  hear("Flakey, you may go to EJ-233");
+  hear("Flakey, go to EJ-235");
+  EXPECT_EQ(said("Flakey, there is a ladder in EJ-231", "Bob"),
+            "I know now that there is a ladder at EJ-231; so I look for another way");
+  EXPECT_EQ(said("Flakey, go slowly in EJ-235", "Bob"),
+            "I know now that I am to go slowly in EJ-235");
+  EXPECT_EQ(said("Flakey, keep out of EJ-233", "Bob"),
+            "I know now that I am to keep out of EJ-233; so the way to EJ-235 for Alice ends");
+  EXPECT_TRUE(last.canceled.empty()) << "its activity ends it, with the reason";
+}
+
 TEST_F(DialogueTest, APlaceBehindAKeepOutIsRefusedAtOnce) {
   situation.map = maps::parse_map(
       std::string(kMap) + "ZONE (900) 5200, 1000, 0, 800, 2000 keep-out \"works\"\n", "map");

@@ -39,17 +39,16 @@ struct TasksTest : testing::Test {
              std::to_string(goal.priority) + "\n";
     return all;
   }
-  std::string want(std::vector<Task> steps, const std::string& speaker, double time = 0.0) {
-    said = Utterance{{7, ++number}, speaker, "do it", 1.0, time};
-    return told(tasks.want(std::move(steps), said));
-  }
-  std::string reply(bool yes, const std::string& speaker, double time = 0.0) {
-    said = Utterance{{7, ++number}, speaker, yes ? "yes" : "no", 1.0, time};
-    return tasks.asks(said) ? told(tasks.answer(yes, said)) : "not asked";
+  std::string want(std::vector<Task> steps, const std::string& speaker) {
+    said = Utterance{{7, ++number}, speaker, "do it"};
+    const Tasks::Outputs out = tasks.want(std::move(steps), said);
+    asks = out.asks;
+    return told(out);
   }
 
   Tasks tasks;
   Utterance said;
+  std::vector<Task> asks;  ///< the newest question is about
   std::uint64_t number = 0;
 };
 
@@ -94,41 +93,16 @@ TEST_F(TasksTest, ForTheTaskOfSomebodyElseItAsks) {
   want({errand("alice", "the mail")}, "alice");
   EXPECT_EQ(want({errand("bob", "the book")}, "bob"),
             "bob: I am bringing the mail for alice. Shall I drop that?.\n");
-  EXPECT_EQ(reply(true, "carol"), "not asked");
-  EXPECT_EQ(reply(false, "bob"), "bob: good: I go on with the mail for alice.\n");
-  EXPECT_EQ(reply(true, "bob"), "not asked");
-  want({errand("bob", "the book")}, "bob");
-  EXPECT_EQ(reply(true, "bob"),
+  ASSERT_EQ(asks.size(), 1u);
+  EXPECT_EQ(tasks.going_on("bob"), ": I go on with the mail for alice");
+  EXPECT_EQ(tasks.going_on("alice"), ": I go on with the mail");
+  EXPECT_EQ(told(tasks.want(asks, said, true)),
             "alice: I drop the mail for alice: bob said \"do it\".\n"
             "bob: I bring the book\n"
             "cancel 1\n"
             "goal 2 deliver 0\n");
-}
-
-TEST_F(TasksTest, TheQuestionIsOpenForTwentySeconds) {
-  want({errand("alice", "the mail")}, "alice", 1000.0);
-  want({errand("bob", "the book")}, "bob", 1000.0);
-  EXPECT_EQ(reply(true, "bob", 1020.1), "not asked");
-  EXPECT_EQ(reply(false, "bob", 1019.9), "bob: good: I go on with the mail for alice.\n");
-}
-
-TEST_F(TasksTest, AWithdrawnQuestionIsNotAnswered) {
-  want({errand("alice", "the mail")}, "alice");
-  want({errand("bob", "the book")}, "bob");
-  tasks.withdraw_question();
-  EXPECT_EQ(reply(true, "bob"), "not asked");
-  EXPECT_FALSE(tasks.empty());
-}
-
-TEST_F(TasksTest, AnythingElseThatTheRobotBeginsEndsTheQuestion) {
-  want({errand("alice", "the mail")}, "alice");
-  want({errand("bob", "the book")}, "bob");
-  want({motion("carol")}, "carol");
-  want({errand("alice", "the cup")}, "alice");
-  EXPECT_EQ(reply(true, "bob"), "not asked");
-  want({errand("bob", "the book")}, "bob");
-  want({motion("carol", "stop")}, "carol");
-  EXPECT_EQ(reply(true, "bob"), "not asked");
+  tasks.ended({2, true, "brought"});
+  EXPECT_EQ(tasks.going_on("bob"), "");
 }
 
 TEST_F(TasksTest, AStopOfAnybodyEndsEverythingAndEachOwnerHearsIt) {

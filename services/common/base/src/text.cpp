@@ -222,6 +222,14 @@ std::size_t letter_size(std::string_view text) {
   return letter ? size : 0;
 }
 
+std::string_view first_letters(std::string_view text, std::size_t most) {
+  std::size_t size = 0;
+  for (std::size_t letter = letter_size(text); letter > 0 && size + letter <= most;
+       letter = letter_size(text.substr(size)))
+    size += letter;
+  return text.substr(0, size);
+}
+
 std::string read_bytes(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)

@@ -109,6 +109,10 @@ TEST(Text, AByteOrderMarkIsNoPartOfTheText) {
 }
 
 TEST(Text, ALetterHasItsBytes) {
+  EXPECT_EQ(first_letters("a\u00fcb", 4), "a\u00fcb");
+  EXPECT_EQ(first_letters("a\u00fcb", 3), "a\u00fc");
+  EXPECT_EQ(first_letters("a\u00fcb", 2), "a");
+  EXPECT_EQ(first_letters("", 2), "");
   EXPECT_EQ(letter_size(""), 0U);
   EXPECT_EQ(letter_size("ab"), 1U);
   EXPECT_EQ(letter_size(std::string_view("\0", 1)), 1U);

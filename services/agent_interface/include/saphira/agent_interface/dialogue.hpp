@@ -11,6 +11,7 @@
 #include "saphira/agent_interface/knowledge.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/maps/map.hpp"
+#include "saphira/maps/route.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
@@ -90,6 +91,11 @@ class Dialogue {
   explicit Dialogue(Grammar grammar) : grammar_(std::move(grammar)) {}
   void use(Grammar grammar) { grammar_ = std::move(grammar); }
 
+  /// A name in a sentence that nothing has.
+  struct UnknownName {
+    std::string name{};   ///< empty: none
+    std::string meant{};  ///< the one that the robot asks back for instead; empty: none
+  };
   struct Outputs {
     std::vector<Said> said;
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
@@ -98,9 +104,8 @@ class Dialogue {
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
     bool changed = false;                ///< save() has other contents
     std::string note;                    ///< for the log; empty: none
-    std::string unknown{};               ///< a name in the sentence that nothing has; empty: none
-    std::string meant{};  ///< the one that the robot asks back for instead; empty: none
-    Answer answer{};      ///< of forget()
+    UnknownName unknown{};
+    Answer answer{};  ///< of forget()
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
@@ -134,18 +139,17 @@ class Dialogue {
   std::size_t restore(std::string_view text);
 
  private:
-  struct Doubt {  ///< contradicting advice, until its speaker says yes or no
-    Advice advice;
-    Utterance raised_by;
-  };
-  /// A sentence whose speaker may answer the robot with yes, no or a name.
-  struct Offer {
-    Grammar::Understood understood;  ///< of the sentence; after a yes, with the other name
-    std::string name{};              ///< in the sentence, for which another one may be said
-    std::string meant{};             ///< the one that the robot named; empty: none or several
-    std::vector<Meaning> yes{};      ///< the steps after a yes; otherwise a no means `understood`
+  /// A question back to the speaker of a sentence, until their next sentence or for 20 s. Of the
+  /// members for a yes, one has a value, or none where only a name is an answer.
+  struct Question {
     Utterance raised_by{};
-    bool done = false;  ///< the robot asked nothing, and does it: only another name is an answer
+    Grammar::Understood sentence{};          ///< as it was heard
+    std::vector<Grammar::Understood> yes{};  ///< after a yes; of several the speaker names one
+    std::vector<Task> drops{};     ///< after a yes; the task of somebody else is dropped for it
+    std::optional<Advice> fact{};  ///< after a yes; against what the robot knows
+    std::string no{};              ///< the answer to a no; empty: the sentence is carried out
+    std::string name{};            ///< in the sentence, for which another one may be said
+    bool asked = true;  ///< false: the robot does it; only another name is an answer, at any time
   };
   struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
@@ -160,9 +164,20 @@ class Dialogue {
   /// Carries out a sentence, or asks back.
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
-  /// True where the sentence answers the robot's offer; then that is done.
-  bool answered(const Grammar::Understood& understood, const Utterance& utterance,
-                const Situation& situation, Outputs& out);
+  void ask(Question question, const Utterance& utterance);
+  void ask_for_order(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
+  void note_name(Grammar::Understood understood, const Utterance& utterance, const Outputs& out);
+  /// The question that this utterance may answer; nullptr: none.
+  const Question* question_for(const Utterance& utterance) const;
+  void forget_question(const Utterance& utterance);
+  /// True where the sentence answers the robot's question; then that is done.
+  bool answered(Question question, const Grammar::Understood& understood,
+                const Utterance& utterance, const Situation& situation, Outputs& out);
+  /// Takes away the meanings that answer a question which is not asked.
+  void leave_out(Grammar::Understood& understood, const Situation& situation) const;
+  /// The number of the sentence that is chosen of several; none: no choice.
+  std::optional<std::size_t> chosen(const Question& question, const Grammar::Understood& understood,
+                                    const Utterance& utterance) const;
   bool names_unknown(const Meaning& meaning, const Situation& situation) const;
   /// The place or person that a reply names; empty: none.
   std::string named(const Grammar::Understood& understood, const Utterance& utterance,
@@ -171,6 +186,9 @@ class Dialogue {
            Outputs& out);
   void act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
                   const Situation& situation, Outputs& out);
+  /// Begins the steps, or asks whether to drop the task of somebody else.
+  void begin(std::vector<Task> steps, bool drops, const Utterance& utterance,
+             const Situation& situation, Outputs& out);
   static void add(Tasks::Outputs more, Outputs& out);
   void end(const Outcome& outcome, Outputs& out);
   bool move(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -199,7 +217,8 @@ class Dialogue {
               Outputs& out);
   bool reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
              Outputs& out);
-  void take(const Advice& advice, const Utterance& utterance, Outputs& out);
+  void take(const Advice& advice, const Utterance& utterance, const Situation& situation,
+            Outputs& out);
   /// A fact that also answers the open question.
   void answer_with(const Advice& advice, const Utterance& utterance, const Situation& situation,
                    Outputs& out) const;
@@ -216,8 +235,8 @@ class Dialogue {
   std::string owner_in(const std::string& name) const;
   /// The reason for which the robot stands or drives.
   std::string why(const Situation& situation) const;
-  void choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
-               Outputs& out) const;
+  /// Asks which of several meanings a sentence has.
+  void choices(const Grammar::Understood& understood, const Utterance& utterance, Outputs& out);
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
             Arguments arguments, double deadline = 0.0);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
@@ -239,6 +258,9 @@ class Dialogue {
                       Outputs& out) const;
   /// The reason for which a task would fail, as far as it is known before; empty: none.
   std::string hindrance(const WantedGoal& goal, const Situation& situation, Outputs& out) const;
+  /// The way to a place of the map by the rules of all zones; no route and no reason: there is
+  /// none to ask for.
+  maps::RouteResult allowed_way(const std::string& place, const Situation& situation) const;
   /// The reason why the robot is not to go to that place of the map; empty: none.
   std::string kept_out(const std::string& place, const Situation& situation) const;
   /// The same, or the name of a person.
@@ -249,8 +271,7 @@ class Dialogue {
 
   Grammar grammar_;
   Knowledge knowledge_;
-  std::optional<Doubt> doubt_;
-  std::optional<Offer> offer_;
+  std::vector<Question> questions_;  ///< the newest of each speaker
   struct Spot {
     std::string place;
     Pose pose_in_map;

@@ -126,9 +126,10 @@ class Grammar {
   enum class Among { usual, reply, urgent, later };  ///< the rules that may match
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
                             Among among) const;
-  /// The ways to divide words into sentences with one meaning each, all of them steps.
+  /// The ways to divide words and commas into sentences with one meaning each, all of them steps.
+  /// `before`: the words of the step before them.
   std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
-                                            bool first) const;
+                                            const std::vector<std::string>& before) const;
   bool takes_text(const std::string& functor) const;
 
   std::vector<std::string> keywords_;

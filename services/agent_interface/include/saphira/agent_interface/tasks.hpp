@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,17 +79,18 @@ class Tasks {
     std::vector<Said> said;
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
     std::vector<WantedGoal> goals;
+    std::vector<Task> asks;  ///< the steps for which it asks "Shall I drop that?"
   };
 
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
-  Outputs want(std::vector<Task> steps, const Utterance& utterance);
-  /// True where this utterance may answer "Shall I drop that?" with yes or no.
-  bool asks(const Utterance& utterance) const;
-  /// That question is no longer open.
-  void withdraw_question() { question_.reset(); }
-  Outputs answer(bool yes, const Utterance& utterance);
+  /// drops: also ends the task of somebody else, without a question.
+  Outputs want(std::vector<Task> steps, const Utterance& utterance, bool drops = false);
   Outputs ended(const Outcome& outcome);
+  /// ": I go on with the mail for alice"; empty: with nothing.
+  std::string going_on(const std::string& listener) const;
 
+  /// The open task that is not brief; nullptr: none.
+  const Task* task() const;
   /// The open task of that tag; nullptr: none.
   const Task* find(std::uint64_t tag) const;
   /// A lasting goal was asked for, under that name. save() includes it.
@@ -108,17 +108,11 @@ class Tasks {
   void restore(const std::string& line);
 
  private:
-  struct Question {
-    Task task;
-    Utterance raised_by;
-  };
-  Task* task();
   void begin(Task task, Outputs& out);
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
   void release(Outputs& out);
 
   std::vector<Task> open_;  ///< at most one brief goal and one task
-  std::optional<Question> question_;
   std::uint64_t tag_ = 0;
   /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
   /// none.

@@ -94,6 +94,9 @@ void expect_last_line_break(std::string_view text, const std::string& file);
 /// The number of bytes of the letter (UTF-8) at the beginning of the text; 0: it begins with none.
 std::size_t letter_size(std::string_view text);
 
+/// The letters at the beginning of the text that take at most that many bytes.
+std::string_view first_letters(std::string_view text, std::size_t most);
+
 /// The whole content of a file, whatever it is. UnusableFile where it cannot be read.
 std::string read_bytes(const std::string& path);
 

@@ -1,0 +1,235 @@
+// The part of the dialogue for what the robot asks back, and for the answers.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "saphira/base/text.hpp"
+#include "words.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+/// Slots for places and people.
+constexpr std::array kNamed{"place", "from", "to", "person", "owner"};
+constexpr const char* kLeft = "then I leave it";
+constexpr std::size_t kMostQuestions = 16;
+
+/// The end of a free text that may be an order of its own: "and then go home".
+std::string order_in_text(const Grammar::Understood& understood) {
+  const std::size_t last = understood.then.size();
+  const Meaning& whole = last == 0 ? understood.meanings.front() : understood.then.back();
+  for (const auto& [name, value] : understood.apart[last].slots)
+    if (const std::string all = slot(whole, name); all != value && all.starts_with(value))
+      return all.substr(std::min(value.size() + 1, all.size()));
+  return "the rest";
+}
+
+/// Puts a name in the place of another in all steps.
+void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
+  for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
+    for (Meaning& step : *steps)
+      for (auto& [slot, value] : step.slots)
+        if (value == from)
+          value = to;
+}
+
+/// The place or person of a meaning; empty: none, or several.
+std::string only_name(const Meaning& meaning) {
+  std::string only;
+  for (const char* const name : kNamed) {
+    const std::string value = slot(meaning, name);
+    if (value.empty() || value == "this")
+      continue;
+    if (!only.empty())
+      return {};
+    only = value;
+  }
+  return only;
+}
+
+}  // namespace
+
+void Dialogue::ask(Question question, const Utterance& utterance) {
+  forget_question(utterance);
+  if (questions_.size() >= kMostQuestions)
+    questions_.erase(questions_.begin());
+  question.raised_by = utterance;
+  questions_.push_back(std::move(question));
+}
+
+const Dialogue::Question* Dialogue::question_for(const Utterance& utterance) const {
+  const auto found =
+      std::find_if(questions_.begin(), questions_.end(), [&](const Question& question) {
+        return question.asked ? may_answer(utterance, question.raised_by)
+                              : same_person(utterance.speaker, question.raised_by.speaker);
+      });
+  return found == questions_.end() ? nullptr : &*found;
+}
+
+void Dialogue::forget_question(const Utterance& utterance) {
+  std::erase_if(questions_, [&](const Question& question) {
+    return same_person(utterance.speaker, question.raised_by.speaker);
+  });
+}
+
+void Dialogue::choices(const Grammar::Understood& understood, const Utterance& utterance,
+                       Outputs& out) {
+  std::vector<std::string> all;
+  Question question;
+  for (const Meaning& meaning : understood.meanings)
+    if (const std::string words = in_words(meaning);
+        !words.empty() && std::find(all.begin(), all.end(), words) == all.end()) {
+      all.push_back(words);
+      question.yes.push_back(understood);
+      question.yes.back().meanings = {meaning};
+    }
+  std::string text;
+  for (const std::string& one : all)
+    text += (text.empty() ? "\"" : ", or \"") + one + "\"";
+  if (all.size() < 2)
+    text = "several things";
+  text = "what? That may mean " + text;
+  refuse(utterance, text, out);
+  question.no = kLeft;
+  if (all.size() > 1)
+    ask(std::move(question), utterance);
+}
+
+/// The end of a free text may be an order to the robot.
+void Dialogue::ask_for_order(Grammar::Understood understood, const Utterance& utterance,
+                             Outputs& out) {
+  refuse(utterance,
+         "\"" + order_in_text(understood) +
+             "\": shall I do that myself (yes), or is it what I am to say (no)?",
+         out);
+  Question question;
+  const std::vector<Meaning> steps = std::exchange(understood.apart, {});
+  question.yes = {understood};
+  question.yes[0].meanings = {steps.front()};
+  question.yes[0].then.assign(steps.begin() + 1, steps.end());
+  question.sentence = std::move(understood);
+  ask(std::move(question), utterance);
+}
+
+/// The robot has asked for another name, or goes to work, and its speaker may correct the name.
+void Dialogue::note_name(Grammar::Understood understood, const Utterance& utterance,
+                         const Outputs& out) {
+  Question question;
+  question.asked = out.goals.empty();
+  question.name = question.asked            ? out.unknown.name
+                  : understood.then.empty() ? only_name(understood.meanings.front())
+                                            : std::string();
+  if (question.name.empty())
+    return;
+  question.no = kLeft;
+  if (question.asked && !out.unknown.meant.empty()) {
+    question.yes = {understood};
+    rename(question.yes[0], question.name, lowered(out.unknown.meant));
+  }
+  question.sentence = std::move(understood);
+  ask(std::move(question), utterance);
+}
+
+bool Dialogue::names_unknown(const Meaning& meaning, const Situation& situation) const {
+  return std::any_of(kNamed.begin(), kNamed.end(), [&](const char* name) {
+    const std::string value = slot(meaning, name);
+    return !value.empty() && value != "this" && value != "me" && !is_known(value, situation);
+  });
+}
+
+std::string Dialogue::named(const Grammar::Understood& understood, const Utterance& utterance,
+                            const Situation& situation) const {
+  const bool bare = understood.meanings.empty();
+  const Meaning& said = bare ? understood.bare.front() : understood.meanings.front();
+  const bool instead = said.functor == kInstead;
+  const std::string name = slot(said, instead ? "name" : "person");
+  if (instead && understood.addressed)
+    return name;
+  // Without the keyword it may be a word to somebody else.
+  const bool alone = bare || saphira::joined(words_of(utterance.text), " ") == name;
+  return (instead || (said.functor == "somebody" && alone)) && is_known(name, situation)
+             ? name
+             : std::string();
+}
+
+std::optional<std::size_t> Dialogue::chosen(const Question& question,
+                                            const Grammar::Understood& understood,
+                                            const Utterance& utterance) const {
+  std::size_t number = question.yes.size();
+  if (understood.meanings.size() == 1 && understood.meanings.front().functor == kChoice)
+    number = static_cast<std::size_t>(number_of(understood.meanings.front(), "number")) - 1;
+  for (std::size_t i = 0; question.yes.size() > 1 && i < question.yes.size(); ++i)
+    if (words_of(utterance.text) == words_of(in_words(question.yes[i].meanings.front())))
+      number = i;
+  return number < question.yes.size() ? std::optional(number) : std::nullopt;
+}
+
+bool Dialogue::answered(Question question, const Grammar::Understood& understood,
+                        const Utterance& utterance, const Situation& situation, Outputs& out) {
+  Utterance again = question.raised_by;
+  again.id = utterance.id;
+  again.time = utterance.time;
+  Grammar::Understood next;
+  const bool bare = understood.meanings.empty();
+  const std::vector<Meaning>& heard = bare ? understood.bare : understood.meanings;
+  if (const auto number = chosen(question, understood, utterance)) {
+    next = std::move(question.yes[*number]);
+  } else if (heard.size() != 1) {
+    return false;
+  } else if (bare || !is_yes_or_no(heard.front())) {
+    const std::string name = named(understood, utterance, situation);
+    if (name.empty() || question.name.empty() || (!question.asked && !understood.addressed))
+      return false;
+    next = std::move(question.sentence);
+    rename(next, question.name, name);
+  } else if (!question.asked) {
+    return false;
+  } else if (heard.front().functor == "no") {
+    forget_question(utterance);
+    if (!question.no.empty()) {
+      say(utterance,
+          question.no + (question.drops.empty() ? "" : tasks_.going_on(utterance.speaker)), true,
+          out);
+      return true;
+    }
+    next = std::move(question.sentence);
+  } else if (question.fact) {
+    forget_question(utterance);
+    say(utterance, "I know now that " + describe(*question.fact), true, out);
+    learn(*question.fact, out);
+    return true;
+  } else if (!question.drops.empty()) {
+    forget_question(utterance);
+    begin(std::move(question.drops), true, again, situation, out);
+    return true;
+  } else if (question.yes.size() == 1) {
+    next = std::move(question.yes.front());
+  } else if (situation.asked_about.empty()) {
+    refuse(utterance, "which one?", out);
+    return true;
+  } else {
+    return false;  // it is for an activity
+  }
+  forget_question(utterance);
+  carry_out(std::move(next), again, situation, out);
+  return true;
+}
+
+void Dialogue::leave_out(Grammar::Understood& understood, const Situation& situation) const {
+  const bool asked = !situation.asked_about.empty();
+  // A name alone at most answers an activity, and a choice alone means nothing.
+  std::vector<Meaning>& meanings = understood.meanings;
+  std::erase_if(meanings, [](const Meaning& one) { return one.functor == kChoice; });
+  const bool instead = meanings.size() == 1 && meanings.front().functor == kInstead;
+  if (instead)
+    meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
+  else if (asked && meanings.empty())
+    meanings = understood.bare;
+  if ((instead || !understood.bare.empty()) &&
+      !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
+    meanings.clear();
+  if (!asked && !understood.addressed)
+    std::erase_if(meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+}
+
+}  // namespace saphira::agent_interface
