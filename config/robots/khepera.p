@@ -33,6 +33,7 @@ AngleDrift       0.01
 ;; Equipment
 Battery           5.0       ; V
 SonarMaxRange     60        ; mm
+SonarMinRange     5         ; mm, assumed
 
 ;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings

@@ -75,6 +75,7 @@ Sonars::Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& 
       self_(self),
       units_(parameters.sonars),
       model_(with_range(in_world(model, scene.world().sonar), parameters.sonar_max_range)),
+      min_range_(parameters.sonar_min_range),
       near_(scene.world(), model_.max_range + farthest(units_)),
       random_(seed, 2),
       crosstalk_(seed, 3),
@@ -145,7 +146,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
       *firing.nearest + noise * (model_.noise + model_.relative_noise * *firing.nearest);
   if (range >= model_.max_range)
     return {number, std::nullopt};
-  return {number, std::max(range, model_.min_range)};
+  return {number, std::max(range, min_range_)};
 }
 
 // Objects before the sonar and within range.
@@ -305,7 +306,7 @@ void Sonars::hear_others(Firing& firing) const {
     // The way of the sound before this sonar began to listen.
     const double gone = static_cast<double>(scene_->ticks() - ping.tick) * kTick * kSound;
     const double range = (apart - gone) / 2.0;
-    if (range < model_.min_range || range >= firing.nearest.value_or(model_.max_range) ||
+    if (range < min_range_ || range >= firing.nearest.value_or(model_.max_range) ||
         -way.dot(ping.ahead) < apart * direct_cosine_)
       continue;
     // The other's sonar stands within its hull.

@@ -37,6 +37,17 @@ TEST(Sonars, RangeIsFromTheTransducer) {
   EXPECT_NEAR(*echo.range, 1.37, 1e-9);
 }
 
+TEST(Sonars, WhatIsNearerThanTheirLeastRangeReadsAsThat) {
+  const World world = wall_at(2000);
+  Scene scene(world);
+  RobotParameters parameters = one_sonar();
+  EXPECT_NEAR(*Sonars(scene, kNobody, parameters, exact(), 1).fire(0, {1.98, 0.0, 0.0}).range, 0.05,
+              1e-9);
+  parameters.sonar_min_range = 0.005;
+  EXPECT_NEAR(*Sonars(scene, kNobody, parameters, exact(), 1).fire(0, {1.98, 0.0, 0.0}).range, 0.02,
+              1e-9);
+}
+
 TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
   const World world = wall_at(2000);
   Scene scene(world);

@@ -50,6 +50,19 @@ TEST_P(LockstepDemo, ArrivesUntouchedAndIsTheSameInOneProcessAndInMany) {
 
 INSTANTIATE_TEST_SUITE_P(TenSeeds, LockstepDemo, testing::Range(1, 11));
 
+// A robot of 55 mm, whose infrared sensors see 60 mm.
+class LockstepKhepera : public testing::TestWithParam<int> {};
+
+TEST_P(LockstepKhepera, ArrivesUntouched) {
+  const Driven driven = demo({"--base", "khepera", "--lockstep", "--single-process", "--seed",
+                              std::to_string(GetParam())});
+  EXPECT_EQ(driven.code, 0) << driven.text;
+  EXPECT_EQ(driven.summary.at("contacts"), 0);
+  EXPECT_GT(driven.summary.at("min_clearance_m"), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LockstepKhepera, testing::Values(2, 3, 6));
+
 TEST(Demo, SeedsDiffer) {
   const auto begins = [](const char* seed) {
     return demo({"--lockstep", "--single-process", "--seed", seed, "--time-limit", "3"})

@@ -72,7 +72,8 @@ Drive::Drive(const DriveOptions& options)
       bend_(options.bend),
       robot_in_odom_(robot_->pose_in_odom()),
       has_guard_(options.guard),
-      body_(authority::body_of(parameters_)) {
+      body_(authority::body_of(parameters_)),
+      echoes_(body_.sonar_range) {
   seen_.pose_in_odom = robot_in_odom_;
   seen_.true_pose_in_world = start_;
 }

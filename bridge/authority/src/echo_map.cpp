@@ -1,5 +1,6 @@
 #include "saphira/authority/echo_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace saphira::authority {
@@ -8,6 +9,7 @@ namespace {
 
 constexpr double kTowards = radians(60.0);
 constexpr std::uint64_t kTurnCycles = 10;
+constexpr double kMatters = 2.5;  // [m] no echo from farther away
 
 /// A robot may take ten seconds past a person whose echo has ended. A person may step into a space
 /// that was free, so free space does not make an echo less believable.
@@ -20,7 +22,8 @@ lps::MemorySettings cautious_memory() {
 
 }  // namespace
 
-EchoMap::EchoMap(double range) : range_(range), memory_(cautious_memory()) {}
+EchoMap::EchoMap(double sonar_range)
+    : range_(std::min(sonar_range, kMatters)), memory_(lps::for_range(range_, cautious_memory())) {}
 
 void EchoMap::clear() {
   memory_.clear();

@@ -84,6 +84,16 @@ TEST(EchoMap, LeavesOutWhatIsTooFarToMatter) {
   EXPECT_TRUE(map.spots().empty());
 }
 
+TEST(EchoMap, OfAShortRangeIsFine) {
+  for (int i = 0; i < 20; ++i) {
+    EchoMap map(0.06);
+    const Pose robot{0.013 * i, 0.007 * i, 0.0};
+    map.update(1, robot, {echo({0.025, 0.006, radians(10.0)}, 0.03)});
+    ASSERT_FALSE(map.spots().empty()) << i;
+    EXPECT_TRUE(any_near(map.spots(), {0.055, 0.011}, 0.01)) << i;
+  }
+}
+
 TEST(EchoMap, KnowsWhereSonarsLook) {
   EchoMap map;
   EXPECT_TRUE(map.sees(10, true)) << "they have not had their turn";

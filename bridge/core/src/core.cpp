@@ -130,6 +130,7 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   session_ = Session();
   session_.stamp = {last_epoch_, 0};
   session_.body = authority::body_of(reflector_.parameters());
+  session_.echoes = authority::EchoMap(session_.body.sonar_range);
   session_.bad_before = parser_.counters().bad_packets();
   line_.begin();
   // Until the robot reports its configuration: it may not accept the values that it is given.

@@ -86,6 +86,7 @@ constexpr std::array kNumbers{
     NumberKeyword{"ShutdownVolts", &P::shutdown_voltage, 1.0, 0.0, 100.0},
     NumberKeyword{"SonarPeriod", &P::sonar_period, kMillimetre, 1.0, 1000.0},
     NumberKeyword{"SonarMaxRange", &P::sonar_max_range, kMillimetre, 1.0, 100000.0},
+    NumberKeyword{"SonarMinRange", &P::sonar_min_range, kMillimetre, 0.0, 1000.0},
     NumberKeyword{"FrontMaxRange", &P::front_max_range, kMillimetre, 0.0, 100000.0},
 };
 

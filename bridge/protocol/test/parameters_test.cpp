@@ -146,6 +146,11 @@ TEST(Parameters, ClassesWithoutSubclass) {
   }
 }
 
+TEST(Parameters, TheLeastRangeOfSonars) {
+  EXPECT_EQ(load_parameters(source("config/robots/pioneer.p")).sonar_min_range, 0.05);
+  EXPECT_EQ(load_parameters(source("config/robots/khepera.p")).sonar_min_range, 0.005);
+}
+
 TEST(Parameters, AHeadTurnsByPulses) {
   const auto p = load_parameters(source("config/robots/flakey.p"));
   EXPECT_EQ(pulse_of_head(p, 0.0), 1500);

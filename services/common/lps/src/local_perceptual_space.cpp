@@ -30,7 +30,7 @@ LocalPerceptualSpace::LocalPerceptualSpace(LpsSettings settings)
       front_(settings_.front_buffer),
       left_(settings_.side_buffer),
       right_(settings_.side_buffer),
-      memory_(settings_.memory) {}
+      memory_(for_range(settings_.front_max_range, settings_.memory)) {}
 
 void LocalPerceptualSpace::reset() {
   *this = LocalPerceptualSpace(settings_);

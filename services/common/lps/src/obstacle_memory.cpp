@@ -9,10 +9,13 @@
 namespace saphira::lps {
 namespace {
 
-/// [m] The grid follows when the robot is this far from its middle.
-constexpr double kFollow = 0.5;
-/// [m] The least size of a hit obstacle, to each side.
-constexpr double kTouched = 0.1;
+/// [cells] The grid follows when the robot is this far from its middle.
+constexpr long kFollow = 10;
+/// [cells] The least size of a hit obstacle, to each side.
+constexpr double kTouched = 2.0;
+/// [cells] The least length of the cone of a sonar.
+constexpr double kRange = 12.0;
+constexpr double kFinest = 0.001;  // [m]
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
@@ -32,6 +35,14 @@ SAPHIRA_WIDE long count_from(double least, const double* values, long count) {
 
 }  // namespace
 
+MemorySettings for_range(double range, MemorySettings settings) {
+  const double finest = std::max(range / kRange, kFinest);
+  settings.cell = std::min(settings.cell, finest);
+  settings.thickness = std::min(settings.thickness, finest);
+  settings.silent_range = std::min(settings.silent_range, range);
+  return settings;
+}
+
 ObstacleMemory::ObstacleMemory(MemorySettings settings)
     : settings_(settings), beliefs_(area(settings.cells), 0.0) {}
 
@@ -46,8 +57,7 @@ void ObstacleMemory::move_to(const Pose& robot_in_odom) {
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
-  const long follow = std::lround(kFollow / settings_.cell);
-  if (placed_ && std::abs(column0 - column0_) <= follow && std::abs(row0 - row0_) <= follow)
+  if (placed_ && std::abs(column0 - column0_) <= kFollow && std::abs(row0 - row0_) <= kFollow)
     return;
   if (placed_) {
     std::vector<double> moved(beliefs_.size(), 0.0);
@@ -153,7 +163,7 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
     for (long column = 0; column < n; ++column) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
                         (static_cast<double>(row + row0_) + 0.5) * cell);
-      if ((middle - at_in_odom).norm() <= kTouched)
+      if ((middle - at_in_odom).norm() <= kTouched * cell)
         beliefs_[static_cast<std::size_t>(row * n + column)] = settings_.most;
     }
 }

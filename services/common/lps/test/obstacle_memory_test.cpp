@@ -113,6 +113,47 @@ TEST_F(ObstacleMemoryTest, NeighboursNarrowTheArc) {
   EXPECT_GT(nearest({std::cos(radians(-11)), std::sin(radians(-11))}), 0.06);
 }
 
+// The infrared sensors of a Khepera, whose cone is no longer than a cell of the others' grid.
+TEST(ObstacleMemory, AShortRangeHasAFineGrid) {
+  const double range = 0.06;
+  for (int i = 0; i < 50; ++i)
+    for (const double distance : {0.01, 0.03, 0.05}) {
+      ObstacleMemory memory(for_range(range));
+      const Pose sonar{0.013 * i, 0.007 * i, radians(7.0 * i)};
+      memory.move_to(sonar);
+      memory.echo(sonar, distance);
+      memory.collect(sonar);
+      ASSERT_FALSE(memory.points().empty()) << i << " at " << distance;
+      for (const Vec2& p : memory.points())
+        EXPECT_NEAR(p.norm(), distance, 0.006) << i;
+    }
+}
+
+TEST(ObstacleMemory, SilenceSaysNothingOfWhatIsOutOfRange) {
+  ObstacleMemory memory(for_range(0.06));
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 0.05);
+  const Pose behind{-0.05, 0.0, 0.0};
+  for (int i = 0; i < 9; ++i)
+    memory.silence(behind);
+  memory.collect(kOrigin);
+  EXPECT_FALSE(memory.points().empty());
+  for (int i = 0; i < 9; ++i)
+    memory.silence(kOrigin);
+  memory.collect(kOrigin);
+  EXPECT_TRUE(memory.points().empty());
+}
+
+TEST(ObstacleMemory, ATouchIsAsFineAsTheGrid) {
+  ObstacleMemory memory(for_range(0.06));
+  memory.move_to(kOrigin);
+  memory.touch({0.028, 0.0});
+  memory.collect(kOrigin);
+  ASSERT_FALSE(memory.points().empty());
+  for (const Vec2& p : memory.points())
+    EXPECT_LT((p - Vec2(0.028, 0.0)).norm(), 0.011) << "the robot is not inside of it";
+}
+
 TEST_F(ObstacleMemoryTest, WhatWasTouchedIsAnObstacleUntilBeamsFindItsPlaceEmpty) {
   memory.touch({0.3, 0.0});
   memory.collect({});

@@ -27,7 +27,6 @@ namespace saphira::sim {
 /// objects before it hide it.
 struct SonarModel {
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
-  double min_range = 0.05;        ///< [m] nearer objects read as this
   double noise = 0.002;           ///< [m] standard deviation of a range...
   double relative_noise = 0.002;  ///< ...plus this share of it
   double dropout = 0.005;         ///< probability that an echo is not heard
@@ -126,6 +125,7 @@ class Sonars {
   RobotNumber self_;
   std::vector<protocol::SonarUnit> units_;
   SonarModel model_;
+  double min_range_;  // [m] nearer objects read as this
   Neighbourhood near_;
   Random random_;
   Random crosstalk_;  // separate, so that crosstalk does not shift the other draws

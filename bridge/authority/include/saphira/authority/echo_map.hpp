@@ -21,8 +21,9 @@ struct Reading {
 /// the behaviors (saphira/lps), with slower forgetting.
 class EchoMap {
  public:
-  /// Echoes from farther away than `range` [m] do not matter.
-  explicit EchoMap(double range = 2.5);
+  /// Of sonars that hear up to `sonar_range` [m]. Echoes from farther away than 2.5 m do not
+  /// matter.
+  explicit EchoMap(double sonar_range = 5.0);
 
   /// A packet came, with these new readings in firing order and this pose of the robot.
   void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings);

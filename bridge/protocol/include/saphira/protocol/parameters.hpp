@@ -77,9 +77,10 @@ struct RobotParameters {
   double low_battery = 11.5;       ///< [V] LowBattery: the server complains
   double shutdown_voltage = 11.0;  ///< [V] ShutdownVolts
 
-  int sonar_arrays = 1;          ///< SonarArrays: arrays fire at the same time, each sonar in turn
-  double sonar_period = 0.040;   ///< [s] SonarPeriod: from one firing of an array to its next
-  double sonar_max_range = 5.0;  ///< [m] SonarMaxRange: no echo beyond
+  int sonar_arrays = 1;           ///< SonarArrays: arrays fire at the same time, each sonar in turn
+  double sonar_period = 0.040;    ///< [s] SonarPeriod: from one firing of an array to its next
+  double sonar_max_range = 5.0;   ///< [m] SonarMaxRange: no echo beyond
+  double sonar_min_range = 0.05;  ///< [m] SonarMinRange: nearer objects read as this
 
   double length = 0.0;      ///< [m] RobotLength; 0: the diameter
   double width = 0.0;       ///< [m] RobotWidth; likewise

@@ -24,6 +24,10 @@ struct MemorySettings {
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
+/// The settings for sonars that hear up to `range` [m]. Below 0.6 m the grid is finer, since a cone
+/// so short holds few cells or none. Silence says nothing of what is out of range.
+MemorySettings for_range(double range, MemorySettings settings = {});
+
 /// The obstacles that the sonars have seen around the robot, until later readings contradict them.
 ///
 /// The manual's buffers forget by count: an obstacle that leaves the front sonars' sight while the
