@@ -336,9 +336,12 @@ void Explorer::probe(const Inputs& inputs) {
     aside_ = 0.0;
   }
   const double turned = norm2_angle(inputs.pose_in_map.th - heading);
-  // Within an opening the echo may be only its edge.
-  const bool entering = lead_->opening && done < settings_.entering;
-  const bool front = !squeeze_ && off < (entering ? 0.3 : settings_.aside) &&
+  // Within an opening the echo may be only its edge. Of a way that was heard from beside it often
+  // is: the robot is not before its middle, and the behaviors find the way in.
+  const bool begins = done < settings_.entering;
+  const bool entering = lead_->opening && begins;
+  const bool front = !squeeze_ && !(lead_->aside && begins) &&
+                     off < (entering ? 0.3 : settings_.aside) &&
                      std::abs(turned) < radians(entering ? 15.0 : 35.0) &&
                      heard(-turned).value_or(lps::kNothing) < settings_.front;
   if (lead_->door && !in_corridor_ &&
@@ -470,8 +473,8 @@ void Explorer::hear_aside(double range, double heading, bool narrow, const Input
   if (range <= settings_.open_side)
     return;
   open_aside_ = open_aside_ || !narrow;
-  Lead side{look_from_, heading, narrow ? "a narrow way aside" : "a way aside",
-            false,      false,   narrow};
+  Lead side{look_from_, heading,     narrow ? "a narrow way aside" : "a way aside", false, false,
+            narrow,     in_corridor_};
   if (!mapped_along(inputs.map, look_from_, heading) && !is_tried(side))
     seen_open_.push_back(side);
 }

@@ -13,9 +13,10 @@ namespace {
 constexpr long kFollow = 10;
 /// [cells] The least size of a hit obstacle, to each side.
 constexpr double kTouched = 2.0;
-/// [cells] The least length of the cone of a sonar.
-constexpr double kRange = 12.0;
-constexpr double kFinest = 0.001;  // [m]
+/// The cone of a sonar is at least as long as so many cells, and as so many errors of its range.
+constexpr double kCells = 20.0;
+constexpr double kErrors = 12.0;
+constexpr double kShortest = 0.01;  // [m] range of a sonar
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
@@ -36,9 +37,9 @@ SAPHIRA_WIDE long count_from(double least, const double* values, long count) {
 }  // namespace
 
 MemorySettings for_range(double range, MemorySettings settings) {
-  const double finest = std::max(range / kRange, kFinest);
-  settings.cell = std::min(settings.cell, finest);
-  settings.thickness = std::min(settings.thickness, finest);
+  const double length = std::max(range, kShortest);
+  settings.cell = std::min(settings.cell, length / kCells);
+  settings.thickness = std::min(settings.thickness, length / kErrors);
   settings.silent_range = std::min(settings.silent_range, range);
   return settings;
 }

@@ -76,6 +76,7 @@ class Explorer {
     bool home = false;
     bool opening = false;  ///< in a wall: a new area begins behind it
     bool door = false;     ///< probably only a room is behind it
+    bool aside = false;    ///< heard along a corridor, so its middle is unknown
   };
   enum class Doing { choosing, going, probing, looking };
 

@@ -24,7 +24,7 @@ struct MemorySettings {
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
-/// The settings for sonars that hear up to `range` [m]. Below 0.6 m the grid is finer, since a cone
+/// The settings for sonars that hear up to `range` [m]. Below 1 m the grid is finer, since a cone
 /// so short holds few cells or none. Silence says nothing of what is out of range.
 MemorySettings for_range(double range, MemorySettings settings = {});
 
