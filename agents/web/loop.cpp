@@ -36,10 +36,6 @@ std::string peer(lws* wsi) {
   return std::string(address.starts_with("::ffff:") ? address.substr(7) : address);
 }
 
-int answered(lws* wsi) {
-  return lws_http_transaction_completed(wsi) == 0 ? 0 : -1;
-}
-
 lws_protocols Loop::descriptors() {
   return {kDescriptor, readable, 0, 0, 0, nullptr, 0};
 }

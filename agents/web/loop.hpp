@@ -14,10 +14,10 @@ std::string header(lws* wsi, lws_token_indexes which);
 /// The network address of the other side; IPv4 as four numbers.
 std::string peer(lws* wsi);
 
-/// The return value of a callback that has sent a whole answer: 0, or -1 where the client asked to
-/// close. Another value does not close the connection, and libwebsockets polls it without a pause
-/// until its timeout.
-int answered(lws* wsi);
+/// The return value of a callback that has sent a whole answer; its headers said "connection:
+/// close". A second request on a connection is never read: libwebsockets 4.1 takes its first bytes
+/// for its body, and hangs.
+constexpr int kAnswered = -1;
 
 /// An event loop of libwebsockets, in one thread, with the further needs of our programs:
 /// descriptors to wait for, a clock, an end.

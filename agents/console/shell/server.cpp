@@ -110,9 +110,8 @@ int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
   const auto file =
       std::find_if(files.begin(), files.end(), [&](const PageFile& f) { return f.path == name; });
   if (file == files.end()) {
-    if (lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND, "There is only the page: /") != 0)
-      return -1;
-    return web::answered(wsi);
+    lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND, "There is only the page: /");
+    return web::kAnswered;
   }
   http.file = &*file;
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
@@ -128,7 +127,7 @@ int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
                                   &at, end) != 0 ||
       !add("content-security-policy:", kSecurityPolicy) ||
       !add("x-content-type-options:", "nosniff") || !add("referrer-policy:", "no-referrer") ||
-      !add("cache-control:", "no-cache") ||
+      !add("cache-control:", "no-cache") || !add("connection:", "close") ||
       lws_finalize_write_http_header(wsi, begin, &at, end) != 0)
     return -1;
   lws_callback_on_writable(wsi);
@@ -145,7 +144,7 @@ int Server::Impl::send_http(lws* wsi, Http& http) const {
       size)
     return -1;
   http.file = nullptr;
-  return web::answered(wsi);
+  return web::kAnswered;
 }
 
 /// True where a WebSocket may be opened: 0, or -1.

@@ -55,8 +55,7 @@ struct HttpServer::Impl {
     HttpRequest request;
     bool too_long = false;
     bool has_come = false;
-    bool is_only = false;  // the client wants no further answer by this connection
-    int status = 0;        // of the answer [0: none yet]
+    int status = 0;  // of the answer [0: none yet]
     std::string type;
     std::string session;
     std::string body;  // to be sent
@@ -92,7 +91,6 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
   exchange.wsi = wsi;
   HttpRequest& request = exchange.request;
   request.path = path;
-  exchange.is_only = header(wsi, WSI_TOKEN_CONNECTION) == "close";
   request.method = lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0     ? "POST"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0    ? "GET"
@@ -152,7 +150,7 @@ bool HttpServer::Impl::send_headers(lws* wsi, const Open& answer) {
   return lws_add_http_common_headers(wsi, static_cast<unsigned>(answer.status), answer.type.c_str(),
                                      length, &at, end) == 0 &&
          add("cache-control:", "no-cache") && add("x-accel-buffering:", "no") &&
-         add("x-content-type-options:", "nosniff") &&
+         add("x-content-type-options:", "nosniff") && add("connection:", "close") &&
          (answer.session.empty() || add("mcp-session-id:", answer.session)) &&
          (answer.status != kUnauthorized || add("www-authenticate:", "Bearer")) &&
          (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "GET, POST, DELETE")) &&
@@ -186,13 +184,12 @@ int HttpServer::Impl::send(lws* wsi, Connection& connection) {
   return final ? finish(wsi, connection) : 0;
 }
 
-/// The answer is sent. The end of a stream is the end of its connection.
+/// The answer is sent.
 int HttpServer::Impl::finish(lws* wsi, Connection& connection) {
   const auto found = open.find(connection.exchange);
-  const bool ends = found->second.streams || found->second.is_only;
   open.erase(found);
   connection.exchange = 0;
-  return ends ? -1 : web::answered(wsi);
+  return web::kAnswered;
 }
 
 void HttpServer::Impl::closed(Connection& connection) {

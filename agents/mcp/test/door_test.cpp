@@ -143,11 +143,13 @@ int connected(int port) {
   return fd;
 }
 
-/// The answer to a request of HTTP, until the server closes.
-std::string http(int port, const std::string& head, const std::string& body = {}) {
+/// The answer to a request of HTTP, until the server closes. next: what follows in the same packet.
+std::string http(int port, const std::string& head, const std::string& body = {},
+                 const std::string& next = {}) {
   const int fd = connected(port);
-  const std::string text = head + "\r\nHost: localhost\r\nConnection: close\r\nContent-Length: " +
-                           std::to_string(body.size()) + "\r\n\r\n" + body;
+  const std::string text = head +
+                           "\r\nHost: localhost\r\nContent-Length: " + std::to_string(body.size()) +
+                           "\r\n\r\n" + body + next;
   EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   std::string answer;
   char buffer[4096];
@@ -213,7 +215,9 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   const std::string post = "POST /mcp HTTP/1.1\r\nAuthorization: Bearer " + token;
 
   EXPECT_TRUE(http(port, "POST /mcp HTTP/1.1", "{}").starts_with("HTTP/1.1 401"));
-  EXPECT_TRUE(http(port, post + "x", "{}").starts_with("HTTP/1.1 401"));
+  const std::string behind =
+      "POST /mcp HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello";
+  EXPECT_TRUE(http(port, post + "x", "{}", behind).starts_with("HTTP/1.1 401"));
   EXPECT_TRUE(
       http(port, post + "\r\nOrigin: http://evil.example", "{}").starts_with("HTTP/1.1 403"));
   EXPECT_TRUE(http(port, post, std::string(70000, ' ')).starts_with("HTTP/1.1 413"));
