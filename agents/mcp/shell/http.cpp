@@ -75,7 +75,7 @@ struct HttpServer::Impl {
   int take(const Connection& connection, const char* data, std::size_t size);
   int complete(const Connection& connection);
   int send(lws* wsi, Connection& connection);
-  int finish(lws* wsi, Connection& connection);
+  int finish(Connection& connection);
   static bool send_headers(lws* wsi, const Open& answer);
   void closed(Connection& connection);
   void tick();
@@ -170,7 +170,7 @@ int HttpServer::Impl::send(lws* wsi, Connection& connection) {
       lws_callback_on_writable(wsi);
       return 0;
     }
-    return finish(wsi, connection);
+    return finish(connection);
   }
   if (answer.body.empty() && !answer.complete)
     return 0;
@@ -181,11 +181,11 @@ int HttpServer::Impl::send(lws* wsi, Connection& connection) {
   if (lws_write(wsi, buffer.data() + LWS_PRE, body.size(),
                 final ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(body.size()))
     return -1;
-  return final ? finish(wsi, connection) : 0;
+  return final ? finish(connection) : 0;
 }
 
 /// The answer is sent.
-int HttpServer::Impl::finish(lws* wsi, Connection& connection) {
+int HttpServer::Impl::finish(Connection& connection) {
   const auto found = open.find(connection.exchange);
   open.erase(found);
   connection.exchange = 0;
