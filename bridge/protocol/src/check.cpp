@@ -296,7 +296,7 @@ void Checker::remember(const Command& command) {
   } else if (std::holds_alternative<SetOrigin>(command) || command == Command(SimReset{})) {
     last_.reset();
   } else if (const auto* integer = std::get_if<Integer>(&command)) {
-    static constexpr std::pair<Number, PacketType> kReports[]{
+    static constexpr std::pair<Number, PacketType> reports[]{
         {Number::kConfigRequest, PacketType::kConfig},
         {Number::kEncoderRequest, PacketType::kEncoder},
         {Number::kIoRequest, PacketType::kIo},
@@ -305,7 +305,7 @@ void Checker::remember(const Command& command) {
         {Number::kJoystickRequest, PacketType::kJoystick},
         {Number::kGyroRequest, PacketType::kGyro},
         {Number::kSimStatus, PacketType::kSimStatus}};
-    for (const auto& [number, report] : kReports)
+    for (const auto& [number, report] : reports)
       if (number == integer->number)
         ask(report, number == Number::kConfigRequest ? 1
                     : number == Number::kGyroRequest ? (integer->value != 0 ? 2 : 0)

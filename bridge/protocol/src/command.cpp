@@ -126,10 +126,10 @@ Command decode_plain(ByteView body) {
   if (found == nullptr)
     return Unknown{body[0]};
   const Number number = found->number;
-  static constexpr Number kBare[]{
+  static constexpr Number bare[]{
       Number::kStop,     Number::kEmergencyStop, Number::kEmergencyStop2, Number::kTrueOrigin,
       Number::kSimReset, Number::kReset,         Number::kMaintenance};
-  if (std::find(std::begin(kBare), std::end(kBare), number) != std::end(kBare))
+  if (std::find(std::begin(bare), std::end(bare), number) != std::end(bare))
     return Bare{number};
   if (found->form == ArgumentForm::kRaw)
     return Raw{number, Bytes(body.begin() + 1, body.end())};

@@ -18,9 +18,9 @@ consteval bool is_enumerator() {
 
 template <class E, std::size_t... i>
 consteval auto enumerators(std::index_sequence<i...> /*all*/) {
-  constexpr std::size_t kCount =
+  constexpr std::size_t count =
       (static_cast<std::size_t>(is_enumerator<E, static_cast<E>(i)>()) + ...);
-  std::array<E, kCount> result{};
+  std::array<E, count> result{};
   std::size_t next = 0;
   ((is_enumerator<E, static_cast<E>(i)>() ? void(result[next++] = static_cast<E>(i)) : void()),
    ...);
