@@ -145,6 +145,8 @@ Explanation Reason::silent() {
                       seconds_text(scene_.silence));
   if (!bridge.words.empty())
     sentence.add(1, "; bridge " + bridge.words);
+  if (nothing_known())
+    return finish(sentence, {"wheels", "not known", {}});
   const Explanation before = known_so_far();
   sentence.add(2, "; before that: " + before.sentence.substr(0, before.sentence.size() - 1));
   return finish(sentence, {"wheels", "before that: " + before.cause.text, before.cause.because});
@@ -231,12 +233,14 @@ Explanation Reason::by_behaviors_known() {
 }
 
 Explanation Reason::known_so_far() {
-  if (!scene_.robot && !scene_.grant && !scene_.behaviors) {
+  if (nothing_known()) {
     Sentence sentence;
     sentence.add(0, "Nothing is known of this cycle");
+    // Without the bridge's robot the other programs wait as well.
+    const Condition bridge = condition(scene_, "bridge");
     if (!scene_.past)
       if (const std::string wrong = trouble(scene_); !wrong.empty())
-        sentence.add(1, ": " + wrong);
+        sentence.add(0, ": " + wrong, bridge.words.empty() ? "" : ": bridge " + bridge.words);
     return finish(sentence, {"wheels", "nothing is known", {}});
   }
   if (scene_.grant && scene_.grant->role() == v1::ROLE_NONE)
@@ -247,7 +251,9 @@ Explanation Reason::known_so_far() {
 }
 
 Explanation Reason::why() {
-  if (!scene_.past && scene_.silence > kSilence && (scene_.robot || scene_.grant))
+  // A bridge that looks for its robot anew grants cycles of no robot: the newest is not known then.
+  const bool heard_before = scene_.robot || scene_.grant || scene_.now > 0;
+  if (!scene_.past && scene_.silence > kSilence && heard_before)
     return silent();
   return known_so_far();
 }

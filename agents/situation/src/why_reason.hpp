@@ -85,6 +85,7 @@ class Reason {
   Cause wheels(const std::string& text);
 
   bool does(Wish wish) const;
+  bool nothing_known() const { return !scene_.robot && !scene_.grant && !scene_.behaviors; }
   Explanation known_so_far();
   Explanation silent();
   Explanation stopped() const;

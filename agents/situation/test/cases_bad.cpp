@@ -172,6 +172,31 @@ void bridge_gone(std::vector<Case>& all) {
       when("the same", "trouble", nothing, {}, {"bridge, behaviors and intentions are not heard"}));
   all.push_back(
       when("the same", "drive", nothing, {}, {"not known", "bridge is not heard"}, {"nobody"}));
+  const Change searching = [](Situation& s) {
+    for (const char* const name : {"bridge", "behaviors", "intentions"}) {
+      Program one = program(name);
+      one.status.state(v1::SERVICE_WAITING);
+      one.status.reason("waits for robot/state of cycle 162");
+      s.programs.push_back(one);
+    }
+    find(s, "bridge")
+        .status.reason(
+            "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
+  };
+  const std::string sync0 =
+      "bridge is waiting: waits for the robot to answer SYNC0 (is it switched on, and the cable "
+      "in?)";
+  all.push_back(when("the robot has been silent since before we came: the bridge looks for it",
+                     "why", nothing, {searching}, {"Nothing is known", sync0}, {"stands"}));
+  all.push_back(
+      when("the robot fell silent 6 s ago, and the bridge looks for it anew", "why", nothing,
+           {searching,
+            [](Situation& s) {
+              s.now = 161;
+              s.silence = 6.0;
+            }},
+           {"The robot's motion is not known", "nothing has been heard of it for 6.0 s", sync0},
+           {"stands", "Nothing is known"}));
   all.push_back(when("we have listened for a moment only", "trouble", Situation{},
                      {[](Situation& s) { s.listened = 0.1; }}, {}, {"is not heard"}));
 }
