@@ -151,26 +151,25 @@ class Cut {
 
   void beside(const Allowed& allowed) {
     cut(allowed.speed, GuardAction::slow,
-        format("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside,
+        format("something beside the path, %.2f m away: at most %.2f m/s", allowed.beside,
                allowed.speed));
     const double past = stops_within(allowed.until_beside - margin_, settings_.beside_velocity);
     cut(past, GuardAction::slow,
-        format("something near the path, %.2f m ahead: slowed to %.2f m/s", allowed.until_beside,
-               past));
+        format("something near the path, %.2f m ", allowed.until_beside) + side() + at_most(past));
   }
 
   void ahead(double free) {
     if (settings_.slow_distance > 0.0 && free < settings_.slow_distance)
-      cut(settings_.slow_velocity, GuardAction::slow, slowed(free, settings_.slow_velocity));
+      cut(settings_.slow_velocity, GuardAction::slow,
+          something(free) + at_most(settings_.slow_velocity));
     const double closing =
         std::min(settings_.closing_velocity, kShareOfWay * reach_ / body_.reaction);
     const double safe = std::min(stops_within(free - margin_, settings_.careful_velocity, closing),
                                  stops_within(free - margin_, 0.0));
     if (safe < kCreep)
-      cut(0.0, GuardAction::stop,
-          format("something %.2f m ahead: stopped (margin %.2f m)", free, margin_));
+      cut(0.0, GuardAction::stop, something(free) + format("; it lets go beyond %.2f m", margin_));
     else
-      cut(safe, GuardAction::slow, slowed(free, safe));
+      cut(safe, GuardAction::slow, something(free) + at_most(safe));
   }
 
   void contact(double meant, double free) {
@@ -180,8 +179,7 @@ class Cut {
       return;
     speed_ = speed;
     action_ = GuardAction::slow;
-    reason_ =
-        format("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, speed);
+    reason_ = something(free) + ", and contact is meant" + at_most(speed);
   }
 
   const Body& body() const { return body_; }
@@ -192,9 +190,9 @@ class Cut {
   double stops_within(double way, double end, double closing = 0.0) const {
     return approach_speed(way, end, body_.reaction, body_.deceleration, closing);
   }
-  static std::string slowed(double free, double speed) {
-    return format("something %.2f m ahead: slowed to %.2f m/s", free, speed);
-  }
+  const char* side() const { return forward() ? "ahead" : "behind"; }
+  std::string something(double free) const { return format("something %.2f m ", free) + side(); }
+  static std::string at_most(double speed) { return format(": at most %.2f m/s", speed); }
   void cut(double speed, GuardAction action, std::string reason) {
     if (speed_ <= speed)
       return;
