@@ -143,12 +143,9 @@ void match(MemoryWriter& writer, MemoryReader& reader) {
   const auto& requested = reader.common.entry;
   if (offered.topic != requested.topic || !partitions_meet(offered.robot, requested.robot))
     return;
-  if (const std::string why = why_incompatible(offered, requested); !why.empty()) {
-    const std::string head = "topic " + offered.topic + ": ";
-    writer.common.troubles->push_back(head + "the reader of " + requested.program +
-                                      " does not match, " + why);
-    reader.common.troubles->push_back(head + "the writer of " + offered.program +
-                                      " does not match, " + why);
+  if (const auto text = mismatch_text(offered, requested, requested.program)) {
+    writer.common.troubles->push_back(*text);
+    reader.common.troubles->push_back(*mismatch_text(requested, offered, offered.program));
   } else {
     writer.matches.push_back(&reader);
     reader.matches.push_back(&writer);

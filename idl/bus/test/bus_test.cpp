@@ -283,6 +283,30 @@ TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {
   EXPECT_EQ(b->status().incompatible(), 1U);
 }
 
+TEST(Mismatch, NamesTheProgramAndTheRemedyAndIsNoneBetweenTwoRobots) {
+  EndpointEntry stops;
+  stops.topic = "drive/estop";
+  stops.type = "saphira::v1::MotorCommand";
+  stops.writer = true;
+  stops.robot = "one";
+  stops.durability = "volatile";
+  stops.ownership = "shared";
+  stops.liveliness = "automatic";
+  EndpointEntry bridge = stops;
+  bridge.writer = false;
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge"), std::nullopt);
+  bridge.reliable = true;
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge at karen"),
+            "topic drive/estop: the reader of bridge at karen does not match, reliability: offered "
+            "best effort, requested reliable; run both programs with --lockstep, or neither");
+  EXPECT_EQ(internal::mismatch_text(bridge, stops, "panel"),
+            "topic drive/estop: the writer of panel does not match, reliability: offered best "
+            "effort, requested reliable; run both programs with --lockstep, or neither");
+  EXPECT_EQ(internal::mismatch_text(stops, stops, "panel"), std::nullopt);
+  bridge.robot = "two";
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge"), "");
+}
+
 TEST_P(Bus, OtherTypeOnATopicOfOursIsReported) {
   auto a = node("odd");
   auto b = node("b");
