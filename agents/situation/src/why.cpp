@@ -60,6 +60,8 @@ void Reason::add_conditions(Cause& cause) const {
                                  ": saphira map place X Y TH",
                              {}});
   }
+  if (const std::string words = doubt(); !words.empty())
+    cause.because.push_back({"registration", words, {}});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
     if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
@@ -69,6 +71,8 @@ void Reason::add_conditions(Cause& cause) const {
 void Reason::add_lost(Sentence& sentence) const {
   if (lost())
     sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
+  else if (const std::string words = doubt(); !words.empty())
+    sentence.add(1, "; " + words, "; it is unsure of its place on the map");
 }
 
 Explanation Reason::stopped() const {
@@ -96,6 +100,10 @@ Explanation Reason::stopped() const {
   if (!idle.empty()) {
     reasons.push_back({idle, idle_reason(true)});
     cause.because.front().because.push_back({"goal", idle, {}});
+  }
+  if (const std::string goal = goal_so_far(false); !goal.empty()) {
+    reasons.push_back({goal, goal_so_far(true)});
+    cause.because.front().because.push_back({"goal", goal, {}});
   }
   if (reasons.empty() && !grant.refused().empty())
     reasons.push_back({"nobody drives it: " + refused(grant.refused().front()), {}});

@@ -69,6 +69,10 @@ class Reason {
   std::string idle_reason(bool brief = false) const;
   /// `brief`: without the goal's arguments.
   std::string goals_reason(bool brief) const;
+  const v1::GoalStatus* foremost() const;
+  std::string goal_so_far(bool brief) const;
+  std::string goal_of(const v1::GoalId& id, bool brief) const;
+  std::string doubt() const;
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
