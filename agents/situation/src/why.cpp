@@ -138,7 +138,7 @@ Explanation Reason::by_hand() const {
     cause.because.push_back(std::move(*hindered));
   }
   if (auto guard = guard_cause()) {
-    sentence.add(1, "; " + guard->text);
+    sentence.add(1, "; " + guard->text, "; " + guard_words(true));
     cause.because.push_back(std::move(*guard));
   }
   add_lost(sentence);
@@ -216,7 +216,7 @@ Explanation Reason::by_behaviors_known() {
   if (const auto hindered = hindrance())
     add(0, hindered->text);
   if (guarded)
-    add(1, guard_cause()->text);
+    add(1, guard_cause()->text, guard_words(true));
   if (aged)
     add(1, age_cause()->text);
   int rank = 2;

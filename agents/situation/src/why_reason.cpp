@@ -282,14 +282,16 @@ Cause Reason::grant_cause() const {
   return cause;
 }
 
+std::string Reason::guard_words(bool brief) const {
+  const std::string& reason = scene_.grant->guard_reason();
+  return std::string("the guard beside the robot ") + situation::name_of(scene_.grant->guard()) +
+         " it (" + (brief ? reason.substr(0, reason.find(';')) : reason) + ")";
+}
+
 std::optional<Cause> Reason::guard_cause() const {
   if (!scene_.grant || scene_.grant->guard() == v1::GUARD_NONE)
     return std::nullopt;
-  return Cause{"guard",
-               std::string("the guard beside the robot ") +
-                   situation::name_of(scene_.grant->guard()) + " it (" +
-                   scene_.grant->guard_reason() + ")",
-               {}};
+  return Cause{"guard", guard_words(false), {}};
 }
 
 std::optional<Cause> Reason::hindrance() const {

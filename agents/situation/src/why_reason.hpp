@@ -76,6 +76,8 @@ class Reason {
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
+  /// `brief`: without the end of its reason.
+  std::string guard_words(bool brief) const;
   /// Of wheels that do not obey: motors that are off, or a stall.
   std::optional<Cause> hindrance() const;
   /// The old inputs of the behaviors, and their effect on the speed.

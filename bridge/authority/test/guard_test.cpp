@@ -26,6 +26,7 @@ TEST(Guard, StopsBeforeWhatIsAhead) {
   EXPECT_EQ(out.velocity, 0.0);
   EXPECT_DOUBLE_EQ(out.rotation_velocity, 0.4) << "turning is the way out";
   EXPECT_EQ(out.reason, "something 0.23 m ahead; it lets go beyond 0.25 m");
+  EXPECT_EQ(out.obstacle, Vec2(0.45, 0.0));
 }
 
 TEST(Guard, SlowsOnTheApproach) {
