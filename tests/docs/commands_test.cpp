@@ -134,10 +134,7 @@ std::string help_of(const Shown& one) {
   static std::map<std::vector<std::string>, std::string> said;
   const std::regex plain("[a-z][a-z-]*");
   std::vector<std::string> argv{one.program};
-  static const std::set<std::string> programs{"console", "mcp", "record", "replay"};
-  if (one.program == "saphira" && programs.contains(one.words[0]))
-    argv[0] += "-" + one.words[0];
-  else if (one.program == "saphira")
+  if (one.program == "saphira")
     for (std::size_t i = 0; i < 2 && i < one.words.size(); ++i) {
       if (!std::regex_match(one.words[i], plain))
         break;

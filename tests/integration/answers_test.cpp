@@ -34,6 +34,8 @@ TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
       << "write it anew: saphira help > agents/cli/help.txt";
   EXPECT_TRUE(has(run({"help", "goal"}).text, "Send a goal and follow it to its end"));
   EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
+  for (const auto& words : {std::vector<std::string>{"help", "console"}, {"console", "--help"}})
+    EXPECT_TRUE(has(run(words).text, "--screenshot TEXT")) << "of the program that it starts";
 }
 
 TEST_F(Answers, OutputThatCannotBeWrittenIsAFailure) {

@@ -19,13 +19,12 @@ int become(const std::string& program, const bus::NodeOptions& options,
   execute(std::move(words));
 }
 
-/// A command that is a separate program, with its own options.
-void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* summary,
-                 const std::string& footer) {
+/// A command that is a separate program, with its own options and help.
+void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* summary) {
   CLI::App* command = app.add_subcommand(name, summary);
   command->allow_extras();
+  command->set_help_flag();
   const std::string program = std::string("saphira-") + name;
-  command->footer("Its options: " + program + " --help. " + footer);
   command->callback([command, program, &chosen] {
     chosen.run = [program, rest = command->remaining()](const bus::NodeOptions& options,
                                                         const bus::Stop&) {
@@ -38,23 +37,19 @@ void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* su
 
 void add_console(CLI::App& app, Chosen& chosen) {
   add_program(app, chosen, "console",
-              "See the robot think and drive it, in a browser; or --screenshot FILE",
-              "Deployments such as demo start one.");
+              "See the robot think and drive it, in a browser; or --screenshot FILE");
 }
 
 void add_mcp(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "mcp", "Let a language model send the robot (Model Context Protocol)",
-              "A client such as a desktop assistant starts it, and ends it.");
+  add_program(app, chosen, "mcp", "Let a language model send the robot (Model Context Protocol)");
 }
 
 void add_record(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "record", "Record the bus as an MCAP file",
-              "Other tools for MCAP files open it.");
+  add_program(app, chosen, "record", "Record the bus as an MCAP file");
 }
 
 void add_replay(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "replay", "Play a recording on the bus, as another robot",
-              "Commands are left out.");
+  add_program(app, chosen, "replay", "Play a recording on the bus, as another robot");
 }
 
 }  // namespace saphira::cli

@@ -9,6 +9,7 @@
 #include "environment.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/cli/printer.hpp"
 #include "watch.hpp"
 
@@ -30,6 +31,8 @@ int print_help(const CLI::App& root, const std::string& name) {
     names.push_back(command->get_name());
     if (command->get_name() != name)
       continue;
+    if (command->get_help_ptr() == nullptr)  // a separate program
+      execute({program_folder() + "/saphira-" + name, "--help"});
     std::fputs(command->help(root.get_name()).c_str(), stdout);
     return bus::kExitOk;
   }

@@ -472,8 +472,9 @@ constexpr const char* kMapWords = R"(
   saphira map follow             the same, a line a second
   saphira map list               the map as the text of a map file
   saphira map save FILE          the same into a file
-  saphira map show FILE.svg      a picture of map, grid, matches and the way, of --seconds;
-                                 closed doors are black, things that the robot put down orange
+  saphira map show FILE.svg      a picture of map, grid, matches, the way and what programs draw,
+                                 of --seconds; closed doors are black, things that the robot put
+                                 down orange
   saphira map build [FILE]       explores the floor, maps it from nothing, and writes the map
   saphira map load FILE          this map instead of the one that is there; or the name of a shipped one
   saphira map delete             no map

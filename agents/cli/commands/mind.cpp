@@ -65,8 +65,13 @@ void Mind::poll() {
     schemas_ = std::move(schemas);
   if (auto beliefs = belief_reader_.take_newest())
     beliefs_ = std::move(beliefs);
-  if (auto registration = registration_reader_.take_newest())
+  if (auto registration = registration_reader_.take_newest()) {
+    if (!situation::is_doubtful(*registration))
+      doubtful_since_ = 0;
+    else if (registration_ && !situation::is_doubtful(*registration_))
+      doubtful_since_ = registration->stamp().cycle();
     registration_ = std::move(registration);
+  }
   if (!recall_ && !heard() && seconds_since(began_) > kSilence)
     recall();
 }
@@ -206,8 +211,10 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   if (beliefs_ && !past)
     now.beliefs = beliefs_->beliefs();
   if (registration_ && !past && registration_->stamp().epoch() == robots_.epoch() &&
-      registration_->stamp().cycle() + kSaidLately >= robots_.known().newest)
+      registration_->stamp().cycle() + kSaidLately >= robots_.known().newest) {
     now.registration = registration_;
+    now.doubtful_since = doubtful_since_;
+  }
   now.programs = processes_.all();
   now.processes = services();
   return now;

@@ -136,6 +136,7 @@ class Mind {
   std::optional<v1::BehaviorSchemas> schemas_;
   std::optional<v1::BeliefSet> beliefs_;
   std::optional<v1::Registration> registration_;
+  std::uint64_t doubtful_since_ = 0;  ///< cycle [0: it is not, or was so before we came]
   std::map<std::uint64_t, v1::ProcessSet> services_;         ///< by instance
   std::map<std::uint64_t, Past<v1::ProgramMind>> programs_;  ///< likewise
 };

@@ -11,6 +11,7 @@
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/request_client.hpp"
+#include "saphira/cli/gathering.hpp"
 #include "saphira/cli/printer.hpp"
 #include "system/system.hpp"
 #include "watch.hpp"
@@ -138,18 +139,21 @@ std::string completed(const std::string& topic, const std::string& text, const b
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Holds samples of QoS goal or latched until Ctrl-C or for the given time; writes others once.
+/// Holds samples of QoS goal or latched until Ctrl-C or for the given time; writes others once, as
+/// soon as the running readers have matched.
 int tell(const WriteOptions& options, const std::string& qos, const bus::NodeOptions& node_options,
          const bus::Stop& stop) {
   const bool holds = qos == "goal" || qos == "latched";
   Samples samples(options.json);
   bus::Node node(node_options);
   bus::Scribe scribe(node, options.topic);
+  Gathering readers;
   bool written = false;
   const auto began = Clock::now();
   while (!stop.requested() && !samples.ended()) {
-    if (scribe.matched() == 0 && !holds) {
-      if (seconds_since(began) > kNobodyReads) {
+    const std::size_t matched = scribe.matched();
+    if (!holds && !readers.complete(matched, seconds_since(began))) {
+      if (matched == 0 && seconds_since(began) > kNobodyReads) {
         complain("saphira: not written: no program reads %s of robot %s in domain %u\n",
                  options.topic.c_str(), node_options.robot.c_str(), node_options.domain);
         return bus::kExitFailed;

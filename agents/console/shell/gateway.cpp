@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "key.hpp"
 #include "page_files.hpp"
@@ -115,14 +114,16 @@ std::string Gateway::address() const {
   return origin_ + ":" + std::to_string(server_.port()) + "/#" + access_.key;
 }
 
-/// with_writer: an instance is removed with its writer.
+/// with_writer: an instance is there as long as its writer.
 template <class T>
 void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
   const int rank = board_.topic(topic.name, most);
   auto reader = std::make_shared<bus::Reader<T>>(node_.reader(topic));
-  auto written = std::make_shared<std::map<bus::WriterId, std::set<std::string>>>();
-  feeds_.push_back([this, rank, reader, written, with_writer, topic] {
+  feeds_.push_back([this, rank, reader, with_writer, topic] {
     const bus::TypeInfo& type = bus::type_of<T>();
+    const auto owner = [](const bus::WriterId& writer) {
+      return std::string(writer.begin(), writer.end());
+    };
     bool any = false;
     reader->visit([&](const T& sample, const bus::SampleInfo& info) {
       any = true;
@@ -137,14 +138,15 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
         board_.withdraw(rank, key);
         return;
       }
-      board_.put(rank, key, type.json(&sample, ""), now());
-      if (with_writer)
-        (*written)[info.writer].insert(key);
+      board_.put(rank, key, type.json(&sample, ""), now(),
+                 with_writer ? owner(info.writer) : std::string());
     });
     for (const bus::WriterId& writer : reader->take_lost()) {
-      for (const std::string& key : (*written)[writer])
-        board_.withdraw(rank, key);
-      written->erase(writer);
+      board_.hide(rank, owner(writer), now());
+      any = true;
+    }
+    for (const bus::WriterId& writer : reader->take_returned()) {
+      board_.show(rank, owner(writer));
       any = true;
     }
     return any;

@@ -19,10 +19,6 @@ constexpr double kListened = 1.0;          // [s] of listening after which silen
 constexpr double kFresh = 5.0;             // [s] after its start
 constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: a fresh program is late
 
-double seconds_of(std::uint64_t cycles) {
-  return 0.1 * static_cast<double>(cycles);
-}
-
 /// The newest instance that is heard, rather not the copy of a second deployment, which only waits;
 /// otherwise the one that was heard last.
 const Program* find(const std::vector<Program>& programs, const std::string& name) {
@@ -146,6 +142,11 @@ nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
 }
 
 }  // namespace
+
+bool is_doubtful(const v1::Registration& registration) {
+  constexpr double kDoubtful = 0.5;  // the confidence of an unconfirmed place is no greater
+  return registration.state() == v1::REGISTRATION_TRACKING && registration.confidence() < kDoubtful;
+}
 
 Condition condition(const Situation& situation, const std::string& program) {
   return situation.past ? past_condition(situation, program)

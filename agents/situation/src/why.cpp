@@ -60,6 +60,8 @@ void Reason::add_conditions(Cause& cause) const {
                                  ": saphira map place X Y TH",
                              {}});
   }
+  if (const std::string words = doubt(); !words.empty())
+    cause.because.push_back({"registration", words, {}});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
     if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
@@ -69,6 +71,8 @@ void Reason::add_conditions(Cause& cause) const {
 void Reason::add_lost(Sentence& sentence) const {
   if (lost())
     sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
+  else if (const std::string words = doubt(); !words.empty())
+    sentence.add(1, "; " + words, "; it is unsure of its place on the map");
 }
 
 Explanation Reason::stopped() const {
@@ -96,6 +100,10 @@ Explanation Reason::stopped() const {
   if (!idle.empty()) {
     reasons.push_back({idle, idle_reason(true)});
     cause.because.front().because.push_back({"goal", idle, {}});
+  }
+  if (const std::string goal = goal_so_far(false); !goal.empty()) {
+    reasons.push_back({goal, goal_so_far(true)});
+    cause.because.front().because.push_back({"goal", goal, {}});
   }
   if (reasons.empty() && !grant.refused().empty())
     reasons.push_back({"nobody drives it: " + refused(grant.refused().front()), {}});
@@ -130,7 +138,7 @@ Explanation Reason::by_hand() const {
     cause.because.push_back(std::move(*hindered));
   }
   if (auto guard = guard_cause()) {
-    sentence.add(1, "; " + guard->text);
+    sentence.add(1, "; " + guard->text, "; " + guard_words(true));
     cause.because.push_back(std::move(*guard));
   }
   add_lost(sentence);
@@ -145,6 +153,8 @@ Explanation Reason::silent() {
                       seconds_text(scene_.silence));
   if (!bridge.words.empty())
     sentence.add(1, "; bridge " + bridge.words);
+  if (nothing_known())
+    return finish(sentence, {"wheels", "not known", {}});
   const Explanation before = known_so_far();
   sentence.add(2, "; before that: " + before.sentence.substr(0, before.sentence.size() - 1));
   return finish(sentence, {"wheels", "before that: " + before.cause.text, before.cause.because});
@@ -206,7 +216,7 @@ Explanation Reason::by_behaviors_known() {
   if (const auto hindered = hindrance())
     add(0, hindered->text);
   if (guarded)
-    add(1, guard_cause()->text);
+    add(1, guard_cause()->text, guard_words(true));
   if (aged)
     add(1, age_cause()->text);
   int rank = 2;
@@ -231,12 +241,14 @@ Explanation Reason::by_behaviors_known() {
 }
 
 Explanation Reason::known_so_far() {
-  if (!scene_.robot && !scene_.grant && !scene_.behaviors) {
+  if (nothing_known()) {
     Sentence sentence;
     sentence.add(0, "Nothing is known of this cycle");
+    // Without the bridge's robot the other programs wait as well.
+    const Condition bridge = condition(scene_, "bridge");
     if (!scene_.past)
       if (const std::string wrong = trouble(scene_); !wrong.empty())
-        sentence.add(1, ": " + wrong);
+        sentence.add(0, ": " + wrong, bridge.words.empty() ? "" : ": bridge " + bridge.words);
     return finish(sentence, {"wheels", "nothing is known", {}});
   }
   if (scene_.grant && scene_.grant->role() == v1::ROLE_NONE)
@@ -247,7 +259,9 @@ Explanation Reason::known_so_far() {
 }
 
 Explanation Reason::why() {
-  if (!scene_.past && scene_.silence > kSilence && (scene_.robot || scene_.grant))
+  // A bridge that looks for its robot anew grants cycles of no robot: the newest is not known then.
+  const bool heard_before = scene_.robot || scene_.grant || scene_.now > 0;
+  if (!scene_.past && scene_.silence > kSilence && heard_before)
     return silent();
   return known_so_far();
 }

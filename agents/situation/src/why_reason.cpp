@@ -282,14 +282,16 @@ Cause Reason::grant_cause() const {
   return cause;
 }
 
+std::string Reason::guard_words(bool brief) const {
+  const std::string& reason = scene_.grant->guard_reason();
+  return std::string("the guard beside the robot ") + situation::name_of(scene_.grant->guard()) +
+         " it (" + (brief ? reason.substr(0, reason.find(';')) : reason) + ")";
+}
+
 std::optional<Cause> Reason::guard_cause() const {
   if (!scene_.grant || scene_.grant->guard() == v1::GUARD_NONE)
     return std::nullopt;
-  return Cause{"guard",
-               std::string("the guard beside the robot ") +
-                   situation::name_of(scene_.grant->guard()) + " it (" +
-                   scene_.grant->guard_reason() + ")",
-               {}};
+  return Cause{"guard", guard_words(false), {}};
 }
 
 std::optional<Cause> Reason::hindrance() const {
@@ -328,6 +330,22 @@ std::optional<Cause> Reason::age_cause() const {
                       all.input_age()) +
                    format("and the command answers what was %.1f s ago", command_age),
                {}};
+}
+
+/// The robot may be elsewhere, and does not count as lost yet; else empty.
+std::string Reason::doubt() const {
+  if (scene_.past || !scene_.registration)
+    return {};
+  const v1::Registration& place = *scene_.registration;
+  if (!is_doubtful(place))
+    return {};
+  const std::uint64_t since = scene_.doubtful_since;
+  return format("the robot is %.0f %% sure of its place on the map", 100.0 * place.confidence()) +
+         (since == 0 ? ""
+                     : ", in doubt for " +
+                           seconds_text(seconds_of(place.stamp().cycle() -
+                                                   std::min(place.stamp().cycle(), since)))) +
+         (place.reason().empty() ? "" : ": " + place.reason());
 }
 
 Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
@@ -456,19 +474,40 @@ std::string Reason::idle_reason(bool brief) const {
   return goals_reason(brief);
 }
 
-/// For a robot without an intended behavior.
-std::string Reason::goals_reason(bool brief) const {
-  const auto goal = [&](const v1::GoalId& id) {
-    return (brief ? goal_name(id) : goal_text(id)) + " of " + requester(id);
-  };
+/// The goal that is underway, else the newest one.
+const v1::GoalStatus* Reason::foremost() const {
   const v1::GoalStatus* newest = nullptr;
   for (const v1::GoalStatus& status : scene_.statuses) {
     if (status.state() == v1::GOAL_UNDERWAY)
-      return goal(status.id()) + " is underway and intends no behavior now" +
-             (status.step().empty() ? "" : ": " + status.step());
+      return &status;
     if (newest == nullptr || later(status.stamp(), newest->stamp()))
       newest = &status;
   }
+  return newest;
+}
+
+/// The state and age of the goal that was there when intentions fell silent; else empty.
+std::string Reason::goal_so_far(bool brief) const {
+  const v1::GoalStatus* const status = foremost();
+  if (scene_.past || status == nullptr || !scene_.robot ||
+      !condition(scene_, "behaviors").heard() || condition(scene_, "intentions").heard() ||
+      status->stamp().epoch() != scene_.robot->stamp().epoch())
+    return {};
+  const double age = seconds_of(scene_.now - std::min(scene_.now, status->stamp().cycle()));
+  return "last known of " + goal_of(status->id(), brief) + ": " + v1::name_of(status->state()) +
+         ", " + seconds_text(age) + " ago";
+}
+
+std::string Reason::goal_of(const v1::GoalId& id, bool brief) const {
+  return (brief ? goal_name(id) : goal_text(id)) + " of " + requester(id);
+}
+
+/// For a robot without an intended behavior.
+std::string Reason::goals_reason(bool brief) const {
+  const v1::GoalStatus* const newest = foremost();
+  if (newest != nullptr && newest->state() == v1::GOAL_UNDERWAY)
+    return goal_of(newest->id(), brief) + " is underway and intends no behavior now" +
+           (newest->step().empty() ? "" : ": " + newest->step());
   if (newest == nullptr) {
     if (!scene_.statuses_known)
       return std::string("which goals there ") + (scene_.past ? "were" : "are") + " is not known";
@@ -477,8 +516,9 @@ std::string Reason::goals_reason(bool brief) const {
   if (newest->functor() == "stop" && newest->state() == v1::GOAL_SUCCEEDED)
     return requester(newest->id()) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason();
-  return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
-         ": " + v1::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);
+  return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") +
+         goal_of(newest->id(), brief) + ": " + v1::name_of(newest->state()) +
+         (reason.empty() ? "" : ", " + reason);
 }
 
 }  // namespace saphira::situation

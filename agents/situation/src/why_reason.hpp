@@ -69,9 +69,15 @@ class Reason {
   std::string idle_reason(bool brief = false) const;
   /// `brief`: without the goal's arguments.
   std::string goals_reason(bool brief) const;
+  const v1::GoalStatus* foremost() const;
+  std::string goal_so_far(bool brief) const;
+  std::string goal_of(const v1::GoalId& id, bool brief) const;
+  std::string doubt() const;
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
+  /// `brief`: without the end of its reason.
+  std::string guard_words(bool brief) const;
   /// Of wheels that do not obey: motors that are off, or a stall.
   std::optional<Cause> hindrance() const;
   /// The old inputs of the behaviors, and their effect on the speed.
@@ -85,6 +91,7 @@ class Reason {
   Cause wheels(const std::string& text);
 
   bool does(Wish wish) const;
+  bool nothing_known() const { return !scene_.robot && !scene_.grant && !scene_.behaviors; }
   Explanation known_so_far();
   Explanation silent();
   Explanation stopped() const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ inline constexpr double kFarFromTold = 0.05;      // [m/s] from the setpoint: me
 inline constexpr double kTurning = radians(3.0);  // [rad/s] a visible turn
 inline constexpr std::size_t kMostMentioned = 3;  // behaviors in the sentence
 
+/// [s]
+inline double seconds_of(std::uint64_t cycles) {
+  return 0.1 * static_cast<double>(cycles);
+}
 std::string speed_text(double speed);
 /// Such as "12 degrees"; invisibly small angles with a decimal.
 std::string angle_text(double angle);

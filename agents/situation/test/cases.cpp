@@ -64,6 +64,19 @@ void all_is_well(std::vector<Case>& all) {
   all.push_back(while_driving(
       "the same", "why not faster", blocked,
       {"because the guard beside the robot stops it", "the behaviors want 0.30 m/s"}));
+  const std::string echo =
+      "something 0.12 m ahead; it lets go beyond 0.25 m; sonar 3 heard it 4.0 s ago";
+  const auto by_memory = [=](Situation& s) { guard(s, v1::GUARD_STOP, echo, 0.0); };
+  all.push_back(while_driving("the guard stops it, by an echo that is old", "why", by_memory,
+                              {"the guard beside the robot stops it (something 0.12 m ahead"}));
+  all.push_back(while_driving("the same", "why tree", by_memory,
+                              {"the guard beside the robot stops it (" + echo + ")"}));
+  all.push_back(while_driving("the same, and a person drives", "why",
+                              [=](Situation& s) {
+                                by_keyboard(s, 0.0, 0.0);
+                                by_memory(s);
+                              },
+                              {"keyboard of ann", "stops it (" + echo + ")"}));
   all.push_back(while_driving("the guard slows it", "why",
                               [](Situation& s) { guard(s, v1::GUARD_SLOW, "0.6 m ahead", 0.1); },
                               {"0.10 m/s", "slows it (0.6 m ahead)"}));

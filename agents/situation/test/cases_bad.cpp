@@ -53,8 +53,16 @@ void intentions_gone(std::vector<Case>& all) {
                      {"intentions has said nothing for 2.0 s"}, {"behaviors"}));
   all.push_back(
       when("intentions was killed 5 s ago", "why", before,
-           {stands("nobody asks to drive"), silent("intentions", 50), lost("intentions", 5.2)},
-           {"intentions has not been heard for 5.2 s"}, never));
+           {stands("nobody asks to drive"), silent("intentions", 50), lost("intentions", 5.2),
+            [](Situation& s) { s.statuses[0].stamp().cycle(s.now - 58); }},
+           {"intentions has not been heard for 5.2 s",
+            "last known of go_to(position=(3, 1) in odom) of saphira goal: underway, 5.8 s ago"},
+           never));
+  all.push_back(
+      when("the same, of a goal of before the robot's restart", "why", before,
+           {stands("nobody asks to drive"), silent("intentions", 50), lost("intentions", 5.2),
+            [](Situation& s) { s.statuses[0].stamp().epoch(6); }},
+           {"intentions has not been heard for 5.2 s"}, {"underway", "ago"}));
   all.push_back(
       when("intentions is on the far side of a cut link, and behaviors says so", "why", before,
            {stands("nobody asks to drive"), no_intent, silent("intentions", 40),
@@ -172,6 +180,31 @@ void bridge_gone(std::vector<Case>& all) {
       when("the same", "trouble", nothing, {}, {"bridge, behaviors and intentions are not heard"}));
   all.push_back(
       when("the same", "drive", nothing, {}, {"not known", "bridge is not heard"}, {"nobody"}));
+  const Change searching = [](Situation& s) {
+    for (const char* const name : {"bridge", "behaviors", "intentions"}) {
+      Program one = program(name);
+      one.status.state(v1::SERVICE_WAITING);
+      one.status.reason("waits for robot/state of cycle 162");
+      s.programs.push_back(one);
+    }
+    find(s, "bridge")
+        .status.reason(
+            "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
+  };
+  const std::string sync0 =
+      "bridge is waiting: waits for the robot to answer SYNC0 (is it switched on, and the cable "
+      "in?)";
+  all.push_back(when("the robot has been silent since before we came: the bridge looks for it",
+                     "why", nothing, {searching}, {"Nothing is known", sync0}, {"stands"}));
+  all.push_back(
+      when("the robot fell silent 6 s ago, and the bridge looks for it anew", "why", nothing,
+           {searching,
+            [](Situation& s) {
+              s.now = 161;
+              s.silence = 6.0;
+            }},
+           {"The robot's motion is not known", "nothing has been heard of it for 6.0 s", sync0},
+           {"stands", "Nothing is known"}));
   all.push_back(when("we have listened for a moment only", "trouble", Situation{},
                      {[](Situation& s) { s.listened = 0.1; }}, {}, {"is not heard"}));
 }
@@ -353,6 +386,23 @@ void lost_on_the_map(std::vector<Case>& all) {
                         s.cycle = 900;
                       }},
                      {"no goal was underway"}, {"map"}));
+  const Change hardly = [&](Situation& s) {
+    tracking(s);
+    s.registration->stamp(s.robot->stamp());
+    s.registration->confidence(0.3);
+    s.registration->reason("the readings hardly fit the map");
+    s.doubtful_since = s.now - 120;
+  };
+  const std::string doubt =
+      "the robot is 30 % sure of its place on the map, in doubt for 12 s: the readings hardly fit "
+      "the map";
+  all.push_back(when("the robot was carried elsewhere, and is not lost yet", "why", resting(),
+                     {hardly}, {"no goal is underway; " + doubt}, {"does not know where it is"}));
+  all.push_back(when("the same, past an obstacle", "why", driving(), {hardly},
+                     {"drive ahead at 0.30 m/s", "of its place on the map"}));
+  all.push_back(when("the same, for who came after that", "why tree", resting(),
+                     {hardly, [](Situation& s) { s.doubtful_since = 0; }},
+                     {"30 % sure of its place on the map: the readings"}, {"in doubt for"}));
   all.push_back(when("the robot knows its place", "why tree", driving(), {tracking}, {},
                      {"on the map", "map place"}));
 }

@@ -26,20 +26,35 @@ double limit_of(double setting, double robot) {
 
 }  // namespace
 
-double free_distance(const std::vector<Vec2>& points, double radius, double side_margin,
-                     bool forward) {
-  double free = std::numeric_limits<double>::infinity();
+namespace {
+
+struct Nearest {
+  double free = std::numeric_limits<double>::infinity();  // [m] as free_distance()
+  std::size_t point = 0;                                  // its index
+};
+
+Nearest nearest(const std::vector<Vec2>& points, double radius, double side_margin, bool forward) {
+  Nearest found;
   const double width = radius + side_margin;
-  for (const Vec2& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2& point = points[i];
     const double ahead = forward ? point.x() : -point.x();
     const double aside = std::abs(point.y());
     // Driving on leaves an obstacle beside or behind. Within 60 degrees of the path it is ahead.
     if (aside >= width || ahead <= 0.0 || aside > std::sqrt(3.0) * ahead)
       continue;
     const double nose = aside < radius ? std::sqrt(radius * radius - aside * aside) : 0.0;
-    free = std::min(free, std::max(0.0, ahead - nose));
+    if (const double free = std::max(0.0, ahead - nose); free < found.free)
+      found = {free, i};
   }
-  return free;
+  return found;
+}
+
+}  // namespace
+
+double free_distance(const std::vector<Vec2>& points, double radius, double side_margin,
+                     bool forward) {
+  return nearest(points, radius, side_margin, forward).free;
 }
 
 double approach_speed(double distance, double end, double reaction, double deceleration,
@@ -62,13 +77,17 @@ struct Allowed {
   double beside = 0.0;                                     // [m] ...at this distance from the hull
   // [m] until the hull is beside an obstacle that may step into its path
   double until_beside = std::numeric_limits<double>::infinity();
+  // The echoes behind these, in the robot's frame.
+  Vec2 free_at{0.0, 0.0};
+  Vec2 speed_at{0.0, 0.0};
+  Vec2 beside_at{0.0, 0.0};
 };
 
 /// The hull passes an obstacle beside the path at the reach of a person, and approaches it closer
 /// only up to `touch_velocity`. The approach to an obstacle that is passed at an angle is slower
 /// than the robot's own motion.
 void pass(const GuardSettings& settings, const Body& body, double ahead, double aside,
-          Allowed& allowed) {
+          const Vec2& point, Allowed& allowed) {
   const double deceleration = body.deceleration;
   const double room = body.radius + settings.person;
   if (ahead <= 0.0 || aside >= room)
@@ -82,6 +101,7 @@ void pass(const GuardSettings& settings, const Body& body, double ahead, double 
   if (speed < allowed.speed) {
     allowed.speed = speed;
     allowed.beside = away - body.radius;
+    allowed.speed_at = point;
   }
 }
 
@@ -89,12 +109,18 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
               bool forward, double turning) {
   Allowed allowed;
   const auto look = [&](const std::vector<Vec2>& seen) {
-    allowed.until_beside =
-        std::min(allowed.until_beside, free_distance(seen, body.radius, settings.beside, forward));
-    allowed.free =
-        std::min(allowed.free, free_distance(seen, body.radius, settings.side_margin, forward));
-    for (const Vec2& point : seen)
-      pass(settings, body, forward ? point.x() : -point.x(), std::abs(point.y()), allowed);
+    const auto take_nearest = [&](double margin, double& least, Vec2& at) {
+      const Nearest found = nearest(seen, body.radius, margin, forward);
+      if (found.free >= least)
+        return;
+      least = found.free;
+      at = points[found.point];
+    };
+    take_nearest(settings.beside, allowed.until_beside, allowed.beside_at);
+    take_nearest(settings.side_margin, allowed.free, allowed.free_at);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      pass(settings, body, forward ? seen[i].x() : -seen[i].x(), std::abs(seen[i].y()), points[i],
+           allowed);
   };
   look(points);
   // The robot turns meanwhile: also check the heading that it will have.
@@ -151,59 +177,66 @@ class Cut {
 
   void beside(const Allowed& allowed) {
     cut(allowed.speed, GuardAction::slow,
-        format("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside,
-               allowed.speed));
+        format("something beside the path, %.2f m away: at most %.2f m/s", allowed.beside,
+               allowed.speed),
+        &allowed.speed_at);
     const double past = stops_within(allowed.until_beside - margin_, settings_.beside_velocity);
     cut(past, GuardAction::slow,
-        format("something near the path, %.2f m ahead: slowed to %.2f m/s", allowed.until_beside,
-               past));
+        format("something near the path, %.2f m ", allowed.until_beside) + side() + at_most(past),
+        &allowed.beside_at);
   }
 
-  void ahead(double free) {
+  void ahead(const Allowed& allowed) {
+    const double free = allowed.free;
+    const Vec2* const at = &allowed.free_at;
     if (settings_.slow_distance > 0.0 && free < settings_.slow_distance)
-      cut(settings_.slow_velocity, GuardAction::slow, slowed(free, settings_.slow_velocity));
+      cut(settings_.slow_velocity, GuardAction::slow,
+          something(free) + at_most(settings_.slow_velocity), at);
     const double closing =
         std::min(settings_.closing_velocity, kShareOfWay * reach_ / body_.reaction);
     const double safe = std::min(stops_within(free - margin_, settings_.careful_velocity, closing),
                                  stops_within(free - margin_, 0.0));
     if (safe < kCreep)
-      cut(0.0, GuardAction::stop,
-          format("something %.2f m ahead: stopped (margin %.2f m)", free, margin_));
+      cut(0.0, GuardAction::stop, something(free) + format("; it lets go beyond %.2f m", margin_),
+          at);
     else
-      cut(safe, GuardAction::slow, slowed(free, safe));
+      cut(safe, GuardAction::slow, something(free) + at_most(safe), at);
   }
 
-  void contact(double meant, double free) {
+  void contact(double meant, const Allowed& allowed) {
     const double speed =
         forward() ? std::min({wanted_, meant, settings_.max_contact_velocity}) : 0.0;
     if (speed <= speed_)
       return;
     speed_ = speed;
     action_ = GuardAction::slow;
-    reason_ =
-        format("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, speed);
+    obstacle_ = allowed.free_at;
+    reason_ = something(allowed.free) + ", and contact is meant" + at_most(speed);
   }
 
   const Body& body() const { return body_; }
-  Guarded result() const { return {forward() ? speed_ : -speed_, turning_, action_, reason_}; }
+  Guarded result() const {
+    return {forward() ? speed_ : -speed_, turning_, action_, reason_, obstacle_};
+  }
 
  private:
   bool forward() const { return wanted_ >= 0.0; }
   double stops_within(double way, double end, double closing = 0.0) const {
     return approach_speed(way, end, body_.reaction, body_.deceleration, closing);
   }
-  static std::string slowed(double free, double speed) {
-    return format("something %.2f m ahead: slowed to %.2f m/s", free, speed);
-  }
-  void cut(double speed, GuardAction action, std::string reason) {
+  const char* side() const { return forward() ? "ahead" : "behind"; }
+  std::string something(double free) const { return format("something %.2f m ", free) + side(); }
+  static std::string at_most(double speed) { return format(": at most %.2f m/s", speed); }
+  void cut(double speed, GuardAction action, std::string reason, const Vec2* at = nullptr) {
     if (speed_ <= speed)
       return;
     speed_ = speed;
-    act(action, std::move(reason));
+    act(action, std::move(reason), at);
   }
-  void act(GuardAction action, std::string reason) {
+  void act(GuardAction action, std::string reason, const Vec2* at = nullptr) {
     action_ = std::max(action_, action);
     reason_ = std::move(reason);
+    obstacle_ = at == nullptr ? std::nullopt : std::optional(*at);
   }
 
   const GuardSettings& settings_;
@@ -215,6 +248,7 @@ class Cut {
   double turning_ = 0.0;
   GuardAction action_ = GuardAction::none;
   std::string reason_;
+  std::optional<Vec2> obstacle_;
 };
 
 }  // namespace
@@ -230,8 +264,8 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   cut.robot();
   const Allowed allowed = allow(settings, cut.body(), points, velocity > 0.0, turning);
   cut.beside(allowed);
-  cut.ahead(allowed.free);
-  cut.contact(contact_speed, allowed.free);
+  cut.ahead(allowed);
+  cut.contact(contact_speed, allowed);
   return cut.result();
 }
 

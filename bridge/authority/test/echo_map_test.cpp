@@ -45,6 +45,24 @@ TEST(EchoMap, KeepsSpotsInTheFrameOfDeadReckoning) {
   EXPECT_TRUE(any_near(map.spots(), {0.0, -1.16}));
 }
 
+TEST(EchoMap, KnowsWhichSonarHeardASpotAndWhen) {
+  EchoMap map;
+  map.update(1, {}, {{3, kAhead, 1.0}});
+  map.update(2, {}, {{4, kAskew, 2.0}});
+  const auto of = [&](const Vec2& spot) {
+    const auto found = map.heard(spot);
+    return found ? std::to_string(found->sonar) + ", " + std::to_string(found->ago) : "nothing";
+  };
+  for (const Vec2& spot : map.spots())
+    EXPECT_EQ(of(spot), spot.norm() < 1.5 ? "3, 1" : "4, 0");
+  EXPECT_EQ(of({0.66, 0.0}), "nothing") << "before the arc";
+  EXPECT_EQ(of({0.0, 1.0}), "nothing") << "beside the cone";
+  map.update(5, {0.5, 0.0, 0.0}, {{3, kAhead, 0.5}});
+  EXPECT_EQ(of({0.66, 0.0}), "3, 0") << "the newest one counts, wherever the robot was then";
+  map.clear();
+  EXPECT_EQ(of({0.66, 0.0}), "nothing");
+}
+
 TEST(EchoMap, LooksThatHearNothingThereDeleteASpot) {
   EchoMap map;
   map.update(1, {}, {echo(kAhead, 1.0)});

@@ -5,6 +5,7 @@
 #include "limits.hpp"
 #include "saphira/authority/age.hpp"
 #include "saphira/base/fnv1a.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
 
 namespace saphira::bridge {
@@ -160,6 +161,12 @@ void Core::guard(reflector::Setpoints& wanted) {
                                 session_.echoes.spots(), wanted.velocity, wanted.rotation_velocity,
                                 reflector_.state().information.rotation_velocity,
                                 driver(grant_.role).contact_speed);
+    if (guarded_.obstacle)
+      if (const auto echo = session_.echoes.heard(*guarded_.obstacle))
+        guarded_.reason += format("; sonar %d ", echo->sonar) +
+                           (echo->ago == 0 ? "hears it"
+                                           : format("heard it %.1f s ago",
+                                                    kCycle * static_cast<double>(echo->ago)));
     guarded_ =
         authority::slow_for_age(std::move(guarded_), grant_.command_age + session_.delay, kCycle);
   }

@@ -152,6 +152,12 @@ TEST(Drive, TheGuardStopsBeforeWhatIsHeardAndSaysSo) {
   ASSERT_TRUE(scene.has<GrantDecided>());
   EXPECT_EQ(scene.all<GrantDecided>().back().guarded.action, authority::GuardAction::stop);
   EXPECT_TRUE(scene.noted("guard: "));
+  const auto reason = [&] { return scene.all<GrantDecided>().back().guarded.reason; };
+  EXPECT_NE(reason().find(" m ahead; it lets go beyond "), std::string::npos) << reason();
+  EXPECT_NE(reason().find("; sonar 0 hea"), std::string::npos) << reason();
+  scene.shown.sonars.clear();
+  scene.cycles(6, Role::behaviors, 0.3);
+  EXPECT_NE(reason().find("; sonar 0 heard it 0."), std::string::npos) << reason();
   EXPECT_TRUE(scene.was_sent(protocol::Velocity{0.0}));
 }
 

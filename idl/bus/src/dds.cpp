@@ -314,6 +314,12 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     lost.insert(lost.end(), more.begin(), more.end());
     return lost;
   }
+  std::vector<WriterId> take_returned() override {
+    std::vector<WriterId> returned = bus_->peers.take_returned(parts_[0].ends);
+    const std::vector<WriterId> more = bus_->peers.take_returned(parts_[1].ends);
+    returned.insert(returned.end(), more.begin(), more.end());
+    return returned;
+  }
   std::size_t matched() const override { return present(); }
 
  private:

@@ -66,11 +66,14 @@ Peers::Program program_of(const rtps::GuidPrefix_t& prefix) {
   return program;
 }
 
+std::string owner(const EndpointEntry& endpoint) {
+  return (endpoint.program.empty() ? "an unknown program" : endpoint.program) +
+         (endpoint.host.empty() ? "" : " at " + endpoint.host);
+}
+
 /// An endpoint by its program and host, for people.
 std::string name(const EndpointEntry& endpoint) {
-  return std::string(endpoint.writer ? "the writer of " : "the reader of ") +
-         (endpoint.program.empty() ? "an unknown program" : endpoint.program) +
-         (endpoint.host.empty() ? "" : " at " + endpoint.host);
+  return std::string(endpoint.writer ? "the writer of " : "the reader of ") + owner(endpoint);
 }
 
 }  // namespace
@@ -291,21 +294,17 @@ bool Discovery::tell_incompatible(const Incompatible& found, bool late,
     if (own.topic != found.topic || own.writer != found.own_writes)
       continue;
     for (const auto& [guid, other] : endpoints_) {
-      if (other.writer == own.writer || other.topic != own.topic ||
-          !partitions_meet(other.robot, own.robot))
-        continue;
-      const std::string why =
-          own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
-      explained = explained || !why.empty();
-      if (!why.empty() && told_.insert({own.id, other.id}).second)
-        texts.push_back("topic " + own.topic + ": " + name(with_program(guid, other)) +
-                        " does not match, " + why);
+      const auto text = mismatch_text(own, other, owner(with_program(guid, other)));
+      explained = explained || text;
+      if (text && !text->empty() && told_.insert({own.id, other.id}).second)
+        texts.push_back(*text);
     }
   }
   if (!explained && late &&
       told_.insert({found.topic + (found.own_writes ? " out" : " in"), found.policy}).second)
     texts.push_back("topic " + found.topic + ": " + (found.own_writes ? "a reader" : "a writer") +
-                    " does not match, " + found.policy);
+                    " of a program that ended at once did not match, " + found.policy +
+                    "; while it runs, saphira list names it");
   return explained || late;
 }
 

@@ -102,6 +102,11 @@ std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
 
 /// True where two partitions, either of them with wildcards, overlap.
 bool partitions_meet(const std::string& one, const std::string& other);
+/// Why `other`, of program and host `name`, does not match our endpoint, and what to do. Nothing:
+/// they match, or are not of one topic. Empty: they are of two robots, and that is no trouble,
+/// though DDS reports it.
+std::optional<std::string> mismatch_text(const EndpointEntry& own, const EndpointEntry& other,
+                                         const std::string& name);
 
 std::string host_name();
 

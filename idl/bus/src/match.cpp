@@ -37,6 +37,22 @@ bool partitions_meet(const std::string& one, const std::string& other) {
   return false;
 }
 
+std::optional<std::string> mismatch_text(const EndpointEntry& own, const EndpointEntry& other,
+                                         const std::string& name) {
+  if (own.topic != other.topic || own.writer == other.writer)
+    return std::nullopt;
+  const std::string why = own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
+  if (why.empty())
+    return std::nullopt;
+  if (!partitions_meet(own.robot, other.robot))
+    return std::string();
+  const bool lockstep = why.starts_with("reliability") || why.starts_with("durability");
+  return "topic " + own.topic + ": the " + (other.writer ? "writer" : "reader") + " of " + name +
+         " does not match, " + why +
+         (lockstep ? "; run both programs with --lockstep, or neither"
+                   : "; are both programs of one version?");
+}
+
 }  // namespace internal
 
 std::string why_incompatible(const EndpointEntry& writer, const EndpointEntry& reader) {

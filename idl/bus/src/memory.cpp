@@ -66,6 +66,7 @@ struct Common {
   Policies policies;
   const TypeInfo* type;
   std::uint64_t node;
+  bool silent = false;
 };
 
 // As over DDS the first 12 bytes are the node's.
@@ -111,6 +112,7 @@ class MemoryReader : public RawReader {
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override;
   std::vector<WriterId> take_lost() override;
+  std::vector<WriterId> take_returned() override;
   std::size_t matched() const override;
 
   void deliver(const Item& item) {
@@ -123,10 +125,17 @@ class MemoryReader : public RawReader {
   std::vector<MemoryWriter*> matches;
   std::deque<Item> queue;
   std::vector<WriterId> lost;
+  std::vector<WriterId> returned;
 
  private:
   std::map<InstanceKey, std::shared_ptr<const void>> last_;  // taken, and not withdrawn since
 };
+
+template <class Matches>
+std::size_t heard(const Matches& matches) {
+  return static_cast<std::size_t>(std::count_if(
+      matches.begin(), matches.end(), [](const auto* other) { return !other->common.silent; }));
+}
 
 // With the bus's mutex.
 void match(MemoryWriter& writer, MemoryReader& reader) {
@@ -134,12 +143,9 @@ void match(MemoryWriter& writer, MemoryReader& reader) {
   const auto& requested = reader.common.entry;
   if (offered.topic != requested.topic || !partitions_meet(offered.robot, requested.robot))
     return;
-  if (const std::string why = why_incompatible(offered, requested); !why.empty()) {
-    const std::string head = "topic " + offered.topic + ": ";
-    writer.common.troubles->push_back(head + "the reader of " + requested.program +
-                                      " does not match, " + why);
-    reader.common.troubles->push_back(head + "the writer of " + offered.program +
-                                      " does not match, " + why);
+  if (const auto text = mismatch_text(offered, requested, requested.program)) {
+    writer.common.troubles->push_back(*text);
+    reader.common.troubles->push_back(*mismatch_text(requested, offered, offered.program));
   } else {
     writer.matches.push_back(&reader);
     reader.matches.push_back(&writer);
@@ -165,7 +171,8 @@ MemoryWriter::~MemoryWriter() {
   std::erase(common.bus->writers, this);
   for (auto* reader : matches) {
     std::erase(reader->matches, this);
-    reader->lost.push_back(id);
+    if (!common.silent)
+      reader->lost.push_back(id);
     reader->common.wake->signal();
   }
 }
@@ -192,7 +199,7 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
 
 std::size_t MemoryWriter::matched() const {
   const std::scoped_lock lock(common.bus->mutex);
-  return matches.size();
+  return heard(matches);
 }
 
 MemoryReader::MemoryReader(Common the_common) : common(std::move(the_common)) {
@@ -239,9 +246,14 @@ std::vector<WriterId> MemoryReader::take_lost() {
   return std::exchange(lost, {});
 }
 
+std::vector<WriterId> MemoryReader::take_returned() {
+  const std::scoped_lock lock(common.bus->mutex);
+  return std::exchange(returned, {});
+}
+
 std::size_t MemoryReader::matched() const {
   const std::scoped_lock lock(common.bus->mutex);
-  return matches.size();
+  return heard(matches);
 }
 
 class MemoryTransport : public Transport {
@@ -320,4 +332,24 @@ std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
 }
 
 }  // namespace internal
+
+void set_silent(MemoryBus& bus, const std::string& program, bool silent) {
+  const std::scoped_lock lock(bus.mutex);
+  const auto change = [&](auto& endpoints, auto tell) {
+    for (auto* const one : endpoints)
+      if (one->common.entry.program == program && one->common.silent != silent) {
+        one->common.silent = silent;
+        for (auto* const other : one->matches) {
+          tell(*one, *other);
+          other->common.wake->signal();
+        }
+      }
+  };
+  change(bus.writers, [&](const internal::MemoryWriter& writer, internal::MemoryReader& reader) {
+    if (silent)
+      std::erase(reader.returned, writer.id);
+    (silent ? reader.lost : reader.returned).push_back(writer.id);
+  });
+  change(bus.readers, [](const auto& /*reader*/, auto& /*writer*/) {});
+}
 }  // namespace saphira::bus

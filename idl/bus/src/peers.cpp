@@ -27,6 +27,8 @@ void Peers::match(Ends& ends, const WriterId& other) {
   ends.before_.erase(other);
   if (const Program program = program_of(other); joined_.contains(program))
     programs_.try_emplace(program);
+  if (ends.late_.erase(other) > 0 && !is_absent(program_of(other)))
+    ends.come_back(other);
   count(ends);
   wake_->signal();
 }
@@ -47,8 +49,7 @@ void Peers::unmatch(Ends& ends, const WriterId& other) {
 void Peers::restart(Ends& ends) {
   const std::scoped_lock lock(mutex_);
   for (const WriterId& other : ends.matched_)
-    if (!is_absent(program_of(other)))
-      ends.before_.insert(other);
+    (is_absent(program_of(other)) ? ends.late_ : ends.before_).insert(other);
   ends.matched_.clear();
   ends.ticks_left_ = kRestart;
   std::erase_if(programs_, [&](const auto& program) {
@@ -60,6 +61,11 @@ void Peers::restart(Ends& ends) {
 std::vector<WriterId> Peers::take_lost(Ends& ends) {
   const std::scoped_lock lock(mutex_);
   return std::exchange(ends.lost_, {});
+}
+
+std::vector<WriterId> Peers::take_returned(Ends& ends) {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(ends.returned_, {});
 }
 
 bool Peers::any_absent(const Ends& ends) const {
@@ -133,10 +139,9 @@ void Peers::count(Ends& ends) const {
 
 void Peers::change(const Program& program, bool absent) {
   for (Ends* ends : ends_) {
-    if (absent)
-      for (const WriterId& other : ends->matched_)
-        if (program_of(other) == program)
-          ends->lose(other);
+    for (const WriterId& other : ends->matched_)
+      if (program_of(other) == program)
+        absent ? ends->lose(other) : ends->come_back(other);
     count(*ends);
   }
   wake_->signal();
@@ -145,6 +150,7 @@ void Peers::change(const Program& program, bool absent) {
 void Peers::lose_old_matches(Ends& ends) {
   for (const WriterId& other : ends.before_)
     ends.lose(other);
+  ends.late_.merge(ends.before_);
   ends.before_.clear();
   wake_->signal();
 }

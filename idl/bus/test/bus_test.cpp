@@ -186,6 +186,34 @@ TEST_P(Bus, WriterThatEndsIsLostByItsName) {
   EXPECT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
 }
 
+TEST(MemoryBus, AProgramThatIsSilentForAWhileIsLostAndReturns) {
+  const auto bus = make_memory_bus();
+  Node a(node_options("a", "one"), bus);
+  Node b(node_options("b", "one"), bus);
+  auto reader = b.reader(topics::kGoals);
+  auto writer = a.writer(topics::kGoals);
+  writer.write(goal(1));
+  const auto samples = reader.take();
+  ASSERT_EQ(samples.size(), 1U);
+  const std::vector<WriterId> id{samples[0].info.writer};
+  set_silent(*bus, "a", true);
+  EXPECT_EQ(reader.matched(), 0U);
+  EXPECT_EQ(reader.take_lost(), id);
+  EXPECT_TRUE(reader.take_returned().empty());
+  set_silent(*bus, "a", false);
+  EXPECT_EQ(reader.matched(), 1U);
+  EXPECT_TRUE(reader.take_lost().empty());
+  EXPECT_EQ(reader.take_returned(), id);
+  EXPECT_TRUE(reader.take().empty()) << "its goal does not come again";
+  // Lost once more, and ended then: that is one loss.
+  set_silent(*bus, "a", true);
+  set_silent(*bus, "a", false);
+  set_silent(*bus, "a", true);
+  { const auto ended = std::move(writer); }
+  EXPECT_EQ(reader.take_lost().size(), 2U);
+  EXPECT_TRUE(reader.take_returned().empty());
+}
+
 TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
   const std::string one = robot("one");
   const std::string two = robot("two");
@@ -253,6 +281,30 @@ TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {
       << text_b;
   b->publish_status();
   EXPECT_EQ(b->status().incompatible(), 1U);
+}
+
+TEST(Mismatch, NamesTheProgramAndTheRemedyAndIsNoneBetweenTwoRobots) {
+  EndpointEntry stops;
+  stops.topic = "drive/estop";
+  stops.type = "saphira::v1::MotorCommand";
+  stops.writer = true;
+  stops.robot = "one";
+  stops.durability = "volatile";
+  stops.ownership = "shared";
+  stops.liveliness = "automatic";
+  EndpointEntry bridge = stops;
+  bridge.writer = false;
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge"), std::nullopt);
+  bridge.reliable = true;
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge at karen"),
+            "topic drive/estop: the reader of bridge at karen does not match, reliability: offered "
+            "best effort, requested reliable; run both programs with --lockstep, or neither");
+  EXPECT_EQ(internal::mismatch_text(bridge, stops, "panel"),
+            "topic drive/estop: the writer of panel does not match, reliability: offered best "
+            "effort, requested reliable; run both programs with --lockstep, or neither");
+  EXPECT_EQ(internal::mismatch_text(stops, stops, "panel"), std::nullopt);
+  bridge.robot = "two";
+  EXPECT_EQ(internal::mismatch_text(stops, bridge, "bridge"), "");
 }
 
 TEST_P(Bus, OtherTypeOnATopicOfOursIsReported) {

@@ -141,6 +141,44 @@ TEST_F(PeersTest, MatchOfAnAbsentProgramCountsWhenItIsHeard) {
   EXPECT_EQ(ends_.present(), 4U);
 }
 
+TEST_F(PeersTest, ProgramThatIsHeardAgainReturnsWithTheEndsThatWereLost) {
+  const std::vector<WriterId> both{end_of(1, 1), end_of(1, 2)};
+  EXPECT_TRUE(peers_.take_returned(ends_).empty());
+  silence(Peers::kSilent);
+  EXPECT_TRUE(peers_.take_returned(ends_).empty());
+  peers_.tick({program(1)});
+  // Both are named to a reader that was slow.
+  EXPECT_EQ(peers_.take_lost(ends_), both);
+  EXPECT_EQ(peers_.take_returned(ends_), both);
+  EXPECT_TRUE(peers_.take_returned(ends_).empty());
+  // Of an end that is lost once more the return counts for nothing.
+  silence(Peers::kSilent);
+  peers_.tick({program(1)});
+  silence(Peers::kSilent);
+  EXPECT_TRUE(peers_.take_returned(ends_).empty());
+}
+
+TEST_F(PeersTest, WhatIsMatchedLateAfterARestartReturns) {
+  peers_.restart(ends_);
+  peers_.match(ends_, end_of(1, 2));
+  for (int i = 0; i < Peers::kRestart; ++i)
+    peers_.tick({program(1)});
+  EXPECT_EQ(peers_.take_lost(ends_), (std::vector<WriterId>{end_of(1, 1), end_of(2, 1)}));
+  EXPECT_TRUE(peers_.take_returned(ends_).empty());
+  peers_.match(ends_, end_of(1, 1));
+  EXPECT_EQ(peers_.take_returned(ends_), std::vector<WriterId>{end_of(1, 1)});
+}
+
+TEST_F(PeersTest, WhatWasAbsentBeforeARestartReturnsWhenItIsHeard) {
+  silence(Peers::kSilent);
+  EXPECT_EQ(peers_.take_lost(ends_).size(), 2U);
+  peers_.restart(ends_);
+  peers_.expect(program(1));
+  peers_.match(ends_, end_of(1, 1));
+  peers_.tick({program(1)});
+  EXPECT_EQ(peers_.take_returned(ends_), std::vector<WriterId>{end_of(1, 1)});
+}
+
 TEST_F(PeersTest, AfterARestartWhatIsNotMatchedAgainIsLost) {
   peers_.restart(ends_);
   EXPECT_EQ(ends_.present(), 0U);

@@ -88,7 +88,9 @@ TEST_F(Processes, WriterThatNappedIsThereAgainWithoutAnotherMatch) {
   ASSERT_EQ(take_at_least(*node_, goals, 1).size(), 1U);
   const auto before = take_at_least(*node_, states, 1);
   writer.signal(SIGSTOP);
-  ASSERT_TRUE(eventually(*node_, [&] { return !goals.take_lost().empty(); }));
+  std::vector<WriterId> lost;
+  ASSERT_TRUE(eventually(*node_, [&] { return !(lost = goals.take_lost()).empty(); }));
+  EXPECT_TRUE(goals.take_returned().empty());
   EXPECT_EQ(goals.matched(), 0U);
   states.take();
   writer.signal(SIGCONT);
@@ -96,6 +98,8 @@ TEST_F(Processes, WriterThatNappedIsThereAgainWithoutAnotherMatch) {
   EXPECT_EQ(after.at(0).info.writer, before.at(0).info.writer);
   EXPECT_TRUE(eventually(*node_, [&] { return goals.matched() == 1; }));
   EXPECT_TRUE(goals.take_lost().empty());
+  EXPECT_EQ(goals.take_returned(), lost);
+  EXPECT_TRUE(goals.take().empty()) << "its goal does not come again";
 }
 
 TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {

@@ -209,6 +209,7 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
     if (topology_ == nullptr || !maps::same_places(*map_, *news.map)) {
       topology_ = std::make_shared<const maps::Topology>(*news.map);
       places_revision_ = news.revision;
+      executor_.know_places(topology_);
     }
     map_ = std::move(news.map);
     map_revision_ = news.revision;

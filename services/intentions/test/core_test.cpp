@@ -489,6 +489,34 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
   EXPECT_FALSE(statuses_.empty());
 }
 
+TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
+  const auto refusal = [&](std::uint64_t number, const std::string& functor) {
+    Core::Heard::Goal goal = written(number, kKaren);
+    goal.event.goal.functor = functor;
+    goal.event.goal.arguments.clear();
+    ask({goal});
+    EXPECT_EQ(state(number), GoalState::kRefused);
+    return statuses_.at({5, number}).reason;
+  };
+  const std::string unknown = "there is no activity \"EJ-241\": saphira goal activities lists";
+  Schema schema;
+  schema.name = "go-to-place";
+  core_.executor().add(schema);
+  EXPECT_EQ(refusal(1, "EJ-241").find(unknown), 0U) << "there is no map yet";
+  maps::Map map;
+  map.features.emplace_back();
+  map.features[0].id = 7;
+  map.features[0].type = lps::PointType::office;
+  map.features[0].name = "EJ-241";
+  core_.know_map({1, std::make_shared<const maps::Map>(map)});
+  step();
+  EXPECT_EQ(refusal(2, "EJ-241"),
+            "there is no activity \"EJ-241\", but a place of that name: did you mean go EJ-241?");
+  EXPECT_EQ(refusal(3, "7").find("there is no activity \"7\": saphira goal activities"), 0U);
+  core_.executor().remove("go-to-place");
+  EXPECT_EQ(refusal(4, "EJ-241").find(unknown), 0U) << "no activity goes there";
+}
+
 class InLockstep : public CoreTest {
  protected:
   InLockstep() : CoreTest(true) {}

@@ -4,7 +4,7 @@ export const keyless = 'needs the key: open the address that the console has pri
 export function forPage(text: string): string {
   return text.replace(/saphira estop reset/g, 'Reset').replace(/saphira drive hand-back/g, 'Hand back')
     .replace(/saphira status/g, 'Programs').replace(/saphira goal list/g, 'Goals')
-    .replace(/saphira goal activities/g, 'the field in Goals lists them').replace(/saphira map show/g, 'the map shows them');
+    .replace(/saphira goal activities/g, 'the field in Goals').replace(/saphira map show/g, 'the map shows them');
 }
 export const percent = (value: number) => `${Math.round(100 * Math.min(1, Math.max(0, value)))}%`;
 const two = (n: number) => String(n).padStart(2, '0');

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "forest_node.hpp"
+#include "saphira/base/numbers.hpp"
+#include "saphira/maps/topology.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -324,12 +326,20 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
   entry.status.reason = "changed by " + (by.empty() ? "its requester" : by);
 }
 
+/// A number alone is nobody's name for a place.
+bool Executor::is_place(const std::string& functor) const {
+  return places_ && registry_->find("go-to-place") != nullptr && !number_in<double>(functor) &&
+         places_->place(functor);
+}
+
 std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
   const Schema* const schema = registry_->find(goal.functor);
   if (schema == nullptr) {
     code = GoalCode::kUnknownFunctor;
-    return "there is no activity " + quoted(goal.functor) + ": " +
-           registry_->instead_of(goal.functor);
+    return "there is no activity " + quoted(goal.functor) +
+           (is_place(goal.functor)
+                ? ", but a place of that name: did you mean go " + goal.functor + "?"
+                : ": " + registry_->instead_of(goal.functor));
   }
   code = GoalCode::kBadArgument;
   if (goal.id == GoalId{})

@@ -40,6 +40,7 @@ class Board {
     std::size_t most_unseen = 12;       ///< frames in all
     double queue = 0.2;                 ///< [s] a link that delays by this much more is full
     double silence = 0.5;               ///< [s] until an empty frame as a sign of life
+    double hidden = 100.0;              ///< [s] for which a hidden item is kept
   };
 
   Board() = default;
@@ -50,8 +51,13 @@ class Board {
   /// The topics so far are urgent: an operator needs each cycle, however long the link delays.
   void urgent_so_far() { urgent_ = static_cast<int>(topics_.size()); }
 
-  void put(int topic, const std::string& key, std::string json, double now);
+  void put(int topic, const std::string& key, std::string json, double now,
+           const std::string& owner = {});
   void withdraw(int topic, const std::string& key);
+  /// The owner is lost: for viewers its items are withdrawn.
+  void hide(int topic, const std::string& owner, double now);
+  /// It is there again: so are its items, as far as nobody has put or withdrawn them since.
+  void show(int topic, const std::string& owner);
   std::size_t size() const { return items_.size(); }
 
   /// The news for a viewer, as one JSON text:
@@ -64,17 +70,25 @@ class Board {
   static void seen(Viewer& viewer, std::uint64_t frame, double now);
 
  private:
+  struct Item {
+    std::string json;
+    std::string owner;
+    std::uint64_t version = 0;
+    double came = 0.0;  ///< [s]
+  };
+  struct Hidden {
+    double since = 0.0;  ///< [s]
+    std::map<std::string, Item> items;
+  };
   struct Topic {
     std::string name;
     std::size_t most = 1;
     std::size_t count = 0;
-  };
-  struct Item {
-    std::string json;
-    std::uint64_t version = 0;
-    double came = 0.0;  ///< [s]
+    std::map<std::string, Hidden> hidden = {};  ///< by owner
   };
 
+  Topic& entry(int topic) { return topics_.at(static_cast<std::size_t>(topic)); }
+  void forget_hidden(int topic, const std::string& key);
   void forget_oldest(int topic);
 
   Settings settings_;

@@ -54,11 +54,16 @@ struct Situation {
   std::vector<v1::GoalStatus> statuses;          ///< at that time
   bool statuses_known = false;                   ///< no status means no goal
   std::optional<v1::Registration> registration;  ///< at present: the robot's place on the map
-  std::vector<v1::Belief> beliefs;               ///< at present: the activities' beliefs
-  std::vector<v1::BehaviorSchema> schemas;       ///< for the rules in their written form
-  std::vector<Program> programs;                 ///< at present
-  std::vector<v1::ProcessSet> processes;         ///< at present, of programs that are heard
+  /// The cycle in which that place became doubtful [0: it is not, or nobody saw the change].
+  std::uint64_t doubtful_since = 0;
+  std::vector<v1::Belief> beliefs;          ///< at present: the activities' beliefs
+  std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
+  std::vector<Program> programs;            ///< at present
+  std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
 };
+
+/// The robot has a place on the map that its readings hardly fit: it may have been carried away.
+bool is_doubtful(const v1::Registration& registration);
 
 /// The health of a program.
 enum class Health {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -35,9 +36,26 @@ class EchoMap {
   /// second (a Pioneer's sonars fire every third cycle). At first no sonar has had its turn.
   bool sees(std::uint64_t cycle, bool ahead) const;
 
+  /// The newest firing whose arc passes through a spot.
+  struct Heard {
+    int sonar = 0;
+    std::uint64_t ago = 0;  ///< [cycles] before the last update
+  };
+  std::optional<Heard> heard(const Vec2& spot) const;
+
  private:
+  struct Echo {
+    int sonar = 0;
+    Pose sonar_in_odom;
+    double range = 0.0;       ///< [m]
+    std::uint64_t cycle = 0;  ///< of the update
+  };
+
   double range_;
   lps::ObstacleMemory memory_;
+  Pose robot_in_odom_;
+  std::uint64_t cycle_ = 0;
+  std::deque<Echo> echoes_;        ///< oldest first
   std::uint64_t fired_ahead_ = 0;  ///< the newest cycle in which such a sonar fired
   std::uint64_t fired_behind_ = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,8 @@ struct Guarded {
   double rotation_velocity = 0.0;  ///< [rad/s]
   GuardAction action = GuardAction::none;
   std::string reason;
+  /// The echo that is the reason, in the robot's frame; none: it is another one.
+  std::optional<Vec2> obstacle = std::nullopt;
 };
 
 /// Free distance [m] of the hull along its straight path (forward, or backward) until the first of

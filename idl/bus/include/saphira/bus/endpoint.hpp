@@ -81,6 +81,8 @@ class RawReader {
   virtual void take(const std::function<void(const void* sample, const SampleInfo&)>& each) = 0;
   /// Writers whose match has ended since the last call.
   virtual std::vector<WriterId> take_lost() = 0;
+  /// Lost writers that are heard again, since the last call. To be called after take_lost().
+  virtual std::vector<WriterId> take_returned() = 0;
   virtual std::size_t matched() const = 0;
 };
 
@@ -134,6 +136,9 @@ class Reader {
   }
 
   std::vector<WriterId> take_lost() { return raw_->take_lost(); }
+  /// Lost writers that go on: their program stood still, or was cut off. What they wrote before
+  /// does not come again. Valid after take_lost(), which may name the same writers.
+  std::vector<WriterId> take_returned() { return raw_->take_returned(); }
   std::size_t matched() const { return raw_->matched(); }
 
  private:

@@ -55,6 +55,8 @@ Transport& transport_of(Node& node);
 Wake& wake_of(Node& node);
 }  // namespace internal
 std::shared_ptr<MemoryBus> make_memory_bus();
+/// As if the program stood still, or were cut off: its endpoints count as gone until it is heard.
+void set_silent(MemoryBus& bus, const std::string& program, bool silent);
 
 /// The counts that a node publishes about itself.
 struct NodeHealth {

@@ -105,6 +105,8 @@ class Executor {
   void add(Schema schema);
   void remove(std::string_view name);
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
+  /// The places of the map: a hint for a person who asks for one in place of an activity.
+  void know_places(std::shared_ptr<const maps::Topology> places) { places_ = std::move(places); }
   const Registry& registry() const { return *registry_; }
   const Beliefs& beliefs() const { return *beliefs_; }
 
@@ -147,6 +149,7 @@ class Executor {
   static bool depends_on_odom(const Entry& entry, bool placed);
   void change(Entry& entry, const Goal& goal, const std::string& by);
   std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
+  bool is_place(const std::string& functor) const;
   static void become(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void remember(const Ending& ending);
@@ -179,6 +182,7 @@ class Executor {
 
   ExecutorOptions options_;
   std::shared_ptr<Registry> registry_;
+  std::shared_ptr<const maps::Topology> places_;  ///< none: no map
   std::shared_ptr<Beliefs> beliefs_;
   Forest forest_;
   Entries entries_;
