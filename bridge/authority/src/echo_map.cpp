@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTowards = radians(60.0);
 constexpr std::uint64_t kTurnCycles = 10;
-constexpr double kMatters = 2.5;  // [m] no echo from farther away
+constexpr double kMatters = 2.5;            // [m] no echo from farther away
 constexpr std::uint64_t kRemembered = 150;  // [cycles] the memory has forgotten older echoes
 constexpr double kCone = lps::MemorySettings{}.beam + radians(1.0);  // [rad] half angle
 constexpr double kThickness = 0.1;  // [m] of the arc, with half a cell of the memory
