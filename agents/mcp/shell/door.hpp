@@ -77,8 +77,8 @@ class Robot {
 };
 
 /// Carries out the calls of one client on the bus: goals, requests, words, and the emergency stop.
-/// Its goals and actions end with the client, and also when this program is killed: their writer is
-/// lost then.
+/// Its goals and actions, and the tasks that its words began, end with the client, and also when
+/// this program is killed: their writer is lost then.
 class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
@@ -86,10 +86,12 @@ class Door {
   /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
   /// least ten times a second. now: [s] of a clock that never goes back.
   void turn(double now);
-  /// The client sends no more: its goals and actions are withdrawn. True where calls are still
-  /// unanswered; each is answered within its own limit.
+  /// A goal or an action of this client, or a task that its words began, has not ended.
+  bool is_busy() const;
+  /// The client sends no more: its goals, actions and words are withdrawn. True where calls are
+  /// still unanswered; each is answered within its own limit.
   bool leave();
-  /// Withdraws every goal and action of this client.
+  /// Withdraws every goal and action of this client, and its words.
   void close();
   /// Waits until that is acknowledged, for a second at most.
   void close_and_wait();
@@ -110,10 +112,12 @@ class Door {
     std::optional<Result> result = std::nullopt;         ///< of the request or event
     std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
     bool is_task = false;
-    double still = 0.0;  ///< [s] until then a withdrawn task goes on while the robot moves
+    bool had_any = true;  ///< to cancel
+    double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
   };
 
   void hear();
+  void hear_reply(const v1::Utterance& reply);
   void begin(const Call& call);
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
@@ -121,6 +125,9 @@ class Door {
   bool has_room(const Call& call);
   void follow(const Call& call, const v1::GoalId& id);
   bool is_own(const v1::GoalId& id) const;
+  bool has_ended(const v1::GoalId& id) const;
+  bool has_words_underway() const;
+  void take_back_words();
   void withdraw(const v1::GoalId& id);
   void write_due();
   void say(const Call& call);
@@ -148,6 +155,12 @@ class Door {
   bool left_ = false;                         ///< the client sends no more
   Actions actions_;
   std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
+  /// The words that the robot may still act on.
+  struct Words {
+    double since = 0.0;  ///< [s]
+    bool acts = false;   ///< the robot has answered, and more answers follow
+  };
+  std::map<std::uint64_t, Words> words_;  ///< by the utterance
   double now_ = 0.0;
   double noted_since_ = 0.0;  ///< [s]
   std::size_t noted_ = 0;     ///< lines of the log in that second

@@ -150,13 +150,16 @@ std::vector<Tool> fixed_tools() {
       {"goal", "The outcome of one goal or of one action of yours; waits for its end",
        object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
       {"cancel",
-       "Withdraws a goal or an action of yours, or all of them, and says whether the robot stands",
+       "Withdraws a goal or an action of yours, or all of them and what you began with say, and "
+       "says "
+       "whether the robot stands",
        object(
            {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
        false},
       {"say",
        "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "
-       "the robot's keyword, such as Flakey. Answers what the robot says",
+       "the robot's keyword, such as Flakey. Answers what the robot says. What it begins ends with "
+       "this client, and by cancel",
        object({{"text", {{"type", "string"}}}}, {"text"}), false},
       {"wait_for",
        "Waits until an agent or a person reports an event, such as pointed_out, or until a belief "
