@@ -25,8 +25,8 @@ class Robot {
   /// now: [s] of a clock that never goes back.
   void poll(double now);
   const std::vector<Tool>& tools() const { return tools_; }
-  /// The activities were heard, or have been awaited for long enough.
-  bool knows_tools() const { return heard_schemas_ || has_listened(); }
+  /// The activities and the agents were heard, or have been awaited for long enough.
+  bool knows_tools() const;
   /// The facts of this call may still come: this program has just begun to listen.
   bool is_early(const Call& call) const;
   /// The activity or capability behind the tool of this name; null: another kind of tool.
@@ -69,6 +69,7 @@ class Robot {
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
   bool heard_schemas_ = false;
+  double changed_ = 0.0;  ///< [s] the newest change of the tools
   std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "door.hpp"
 #include "http_door.hpp"
@@ -15,6 +16,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/mcp/lines.hpp"
 
 namespace {
 
@@ -56,7 +58,7 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
   mcp::Session session("saphira", bus::version(), kInstructions);
   mcp::Robot robot(node);
   mcp::Door door(node, robot, session, who);
-  std::string input;
+  mcp::Lines lines;
   bool open = true;
   // Calls that were read are answered after the end of the input too, while somebody reads that.
   while ((open || door.leave()) && !stop.requested()) {
@@ -71,18 +73,10 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
       std::array<char, 4096> buffer{};
       const ssize_t n = read(STDIN_FILENO, buffer.data(), buffer.size());
       open = n > 0;
-      if (open)
-        input.append(buffer.data(), static_cast<std::size_t>(n));
-      else
-        input += '\n';  // of the last line
-      for (std::size_t end = input.find('\n'); end != std::string::npos; end = input.find('\n')) {
-        session.take(std::string_view(input).substr(0, end));
-        input.erase(0, end + 1);
-      }
-      if (input.size() > mcp::Session::kLongestLine) {
-        session.take(input);
-        input.clear();
-      }
+      // The end of the input ends the last line.
+      for (const std::string& line :
+           lines.take(open ? std::string_view(buffer.data(), static_cast<std::size_t>(n)) : "\n"))
+        session.take(line);
     }
     node.clear_wake();
     robot.poll(BootClock::seconds());

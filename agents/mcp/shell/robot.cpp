@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "door.hpp"
 #include "saphira/mcp/results.hpp"
@@ -16,7 +17,7 @@ constexpr double kLongestStart = 3.0;  // [s] for the activities and the first f
 constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;        // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
-constexpr std::size_t kLongestText = 300;  // of another agent
+constexpr double kRest = 0.5;  // [s] without a new announcement: all have come
 
 Json object(Json properties, const std::vector<std::string>& required = {}) {
   return {{"type", "object"},
@@ -102,7 +103,7 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
     case v1::ARGUMENT_UNBOUND:
       break;
   }
-  json["description"] = parameter.meaning().substr(0, kLongestText) +
+  json["description"] = "the agent says: " + quotation(parameter.meaning()) +
                         (parameter.required() ? "" : "; left out, the answer says it");
   return json;
 }
@@ -221,7 +222,7 @@ void Robot::poll(double now) {
 
 /// The permanent tools come first, then activities, then capabilities of the same name.
 void Robot::make_tools() {
-  tools_ = fixed_tools();
+  const std::vector<Tool> before = std::exchange(tools_, fixed_tools());
   for (Tool& tool : tools_)
     tool.output = form_of(tool.name);
   activities_.clear();
@@ -257,14 +258,27 @@ void Robot::make_tools() {
       if (capability.acts())
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
-                        .description = capability.summary().substr(0, kLongestText) + " (agent " +
-                                       agent.data.name().substr(0, kLongestText) + ")",
+                        .description = "An agent " + quotation(agent.data.name()) +
+                                       " says: " + quotation(capability.summary()),
                         .input = std::move(input),
                         .reads = !capability.acts(),
                         .output = form_of(capability),
                         .lasts = capability.acts()});
       capabilities_[name] = capability;
     }
+  if (tools_ != before)
+    changed_ = now_;
+}
+
+/// The announcements of activities and agents come one by one, in any order.
+bool Robot::knows_tools() const {
+  if (has_listened())
+    return true;
+  std::set<bus::WriterId> announced;
+  for (const auto& [id, agent] : agents_)
+    announced.insert(agent.info.writer);
+  return heard_schemas_ && announced.size() >= agent_reader_.matched() &&
+         now_ - std::max(changed_, *began_) >= kRest;
 }
 
 bool Robot::has_listened() const {
