@@ -19,7 +19,8 @@ constexpr double kWait = 20.0;  ///< [s] longest wait of a call for the end of i
 /// The robot's state for all clients of this program, and the tools. For one thread.
 class Robot {
  public:
-  explicit Robot(bus::Node& node);
+  /// described: the names of the agents whose descriptions the model gets.
+  explicit Robot(bus::Node& node, std::vector<std::string> described = {});
 
   /// Takes the newest samples.
   /// now: [s] of a clock that never goes back.
@@ -51,6 +52,7 @@ class Robot {
   bool has_listened() const;
 
   bus::Node& node_;
+  const std::vector<std::string> described_;
   cli::Mind mind_;
   bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);

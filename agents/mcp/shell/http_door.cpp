@@ -21,7 +21,7 @@ HttpDoor::HttpDoor(bus::Node& node, HttpDoorOptions options)
     : node_(node),
       options_(std::move(options)),
       access_{options_.token, {}},
-      robot_(node),
+      robot_(node, options_.described),
       server_(options_.port, events()) {
   server_.watch(node.wake_fd());
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "door.hpp"
 #include "http.hpp"
@@ -16,6 +17,7 @@ struct HttpDoorOptions {
   std::string who;    ///< the asker, as shown to others
   std::string version;
   std::string instructions;
+  std::vector<std::string> described;  ///< agents, as of Robot
 };
 
 /// Streamable HTTP: up to 8 clients, each with a door of its own. A client without a request or a

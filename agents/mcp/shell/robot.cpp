@@ -103,8 +103,10 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
     case v1::ARGUMENT_UNBOUND:
       break;
   }
-  json["description"] = "the agent says: " + quotation(parameter.meaning()) +
-                        (parameter.required() ? "" : "; left out, the answer says it");
+  std::string text = parameter.required() ? "" : "left out, the answer says it";
+  if (!parameter.meaning().empty())
+    text = "the agent says: " + quotation(parameter.meaning()) + (text.empty() ? "" : "; ") + text;
+  json["description"] = text;
   return json;
 }
 
@@ -180,7 +182,8 @@ std::vector<Tool> fixed_tools() {
 
 }  // namespace
 
-Robot::Robot(bus::Node& node) : node_(node), mind_(node, false) {
+Robot::Robot(bus::Node& node, std::vector<std::string> described)
+    : node_(node), described_(std::move(described)), mind_(node, false) {
   make_tools();
 }
 
@@ -248,24 +251,32 @@ void Robot::make_tools() {
                       .lasts = true});
     activities_[name] = schema;
   }
-  for (const auto& [id, agent] : agents_)
-    for (const v1::Capability& capability : agent.data.capabilities()) {
+  for (const auto& [id, agent] : agents_) {
+    // A description steers the model: it is shown where a person has allowed the agent.
+    const bool is_shown =
+        std::find(described_.begin(), described_.end(), agent.data.name()) != described_.end();
+    for (v1::Capability capability : agent.data.capabilities()) {
       const std::string name = tool_name(capability.functor());
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
         continue;
+      capabilities_[name] = capability;
+      if (!is_shown)
+        for (v1::CapabilityParameter& parameter : capability.parameters())
+          parameter.meaning("");
       Json input = input_of(capability.parameters());
       if (capability.acts())
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
                         .description = "An agent " + quotation(agent.data.name()) +
-                                       " says: " + quotation(capability.summary()),
+                                       (is_shown ? " says: " + quotation(capability.summary())
+                                                 : " offers this; nobody has allowed its words"),
                         .input = std::move(input),
                         .reads = !capability.acts(),
                         .output = form_of(capability),
                         .lasts = capability.acts()});
-      capabilities_[name] = capability;
     }
+  }
   if (tools_ != before)
     changed_ = now_;
 }
