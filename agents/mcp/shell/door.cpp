@@ -20,6 +20,7 @@ constexpr std::size_t kLongestNote = 160;
 constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
 constexpr double kGrace = 15.0;  // [s] after the deadline, for the last word about a task
 constexpr double kStop = 5.0;    // [s] for a robot to stand
+constexpr double kOld = 60.0;    // [s] after which the dialogue does not act on words
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -65,18 +66,34 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
   session_.set_tools(robot_.tools());
 }
 
+void Door::hear_reply(const v1::Utterance& reply) {
+  const std::uint64_t answers = reply.answers().number();
+  for (auto& [number, waiting] : waiting_)
+    if (waiting.what == Waiting::For::words && waiting.number == answers) {
+      waiting.said += (waiting.said.empty() ? "" : "\n") + reply.text();
+      if (reply.end())
+        waiting.until = now_;
+    }
+  if (reply.end())
+    words_.erase(answers);
+  else if (const auto words = words_.find(answers);
+           words != words_.end() && !std::exchange(words->second.acts, true) && left_)
+    take_back_words();
+}
+
 /// Takes sentences of the robot, and events and answers of agents.
 void Door::hear() {
   goals_.poll();
   for (const auto& sample : said_reader_.take())
-    for (auto& [number, waiting] : waiting_)
-      if (waiting.what == Waiting::For::words &&
-          sample.data.answers().writer() == node_.instance() &&
-          sample.data.answers().number() == waiting.number) {
-        waiting.said += (waiting.said.empty() ? "" : "\n") + sample.data.text();
-        if (sample.data.end())
-          waiting.until = now_;
-      }
+    if (sample.data.answers().writer() == node_.instance())
+      hear_reply(sample.data);
+  if (!said_reader_.take_lost().empty() && has_words_underway()) {
+    take_back_words();  // the tasks of a program end with the dialogue
+    words_.clear();
+  }
+  std::erase_if(words_, [this](const auto& each) {
+    return !each.second.acts && now_ - each.second.since > kOld;
+  });
   for (const auto& sample : event_reader_.take())
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::event && !waiting.result &&
@@ -112,6 +129,8 @@ void Door::turn(double now) {
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
       if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
         withdraw(*found->second.goal);
+      if (found->second.what == Waiting::For::words)
+        take_back_words();
       found->second.still = now_ + kStop;
       if (!found->second.is_task)
         waiting_.erase(found);
@@ -198,10 +217,11 @@ void Door::begin(const Call& call) {
 }
 
 void Door::say(const Call& call) {
-  const v1::Utterance utterance =
-      situation::typed(node_.instance(), bus::next_request_number(), who_,
-                       call.arguments.value("text", ""), unix_time());
+  v1::Utterance utterance = situation::typed(node_.instance(), bus::next_request_number(), who_,
+                                             call.arguments.value("text", ""), unix_time());
+  utterance.means(v1::UTTERANCE_PROGRAM);
   heard_writer_.write(utterance);
+  words_[utterance.id().number()] = {now_};
   waiting_[call.number] = {
       .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
 }
@@ -264,10 +284,7 @@ void Door::follow(const Call& call, const v1::GoalId& id) {
 
 /// False: the client has too much underway, and the call is answered.
 bool Door::has_room(const Call& call) {
-  std::erase_if(own_, [this](const v1::GoalId& id) {
-    const auto known = status(id);
-    return known && bus::ended(known->state());
-  });
+  std::erase_if(own_, [this](const v1::GoalId& id) { return has_ended(id); });
   if (own_.size() < kMostGoals)
     return true;
   session_.answer(call.number, {"not done: " + std::to_string(own_.size()) +
@@ -293,6 +310,30 @@ bool Door::is_own(const v1::GoalId& id) const {
   return std::find(own_.begin(), own_.end(), id) != own_.end();
 }
 
+bool Door::has_ended(const v1::GoalId& id) const {
+  const auto known = status(id);
+  return known && bus::ended(known->state());
+}
+
+bool Door::has_words_underway() const {
+  return std::any_of(words_.begin(), words_.end(),
+                     [](const auto& each) { return each.second.acts; });
+}
+
+bool Door::is_busy() const {
+  return has_words_underway() ||
+         !std::all_of(own_.begin(), own_.end(),
+                      [this](const v1::GoalId& id) { return has_ended(id); });
+}
+
+/// The dialogue ends what a writer's words began when that writer is gone.
+void Door::take_back_words() {
+  if (words_.empty())
+    return;
+  heard_writer_ = node_.writer(bus::topics::kHeard);
+  std::erase_if(words_, [](const auto& each) { return !each.second.acts; });
+}
+
 void Door::withdraw(const v1::GoalId& id) {
   if (actions_.find(id) != nullptr)
     actions_.withdraw(id);
@@ -305,13 +346,19 @@ void Door::cancel(const Call& call) {
   if (call.arguments.contains("goal")) {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !is_own(*id))
-      return session_.answer(
-          call.number, {"not done: this is no goal of yours that is underway", nullptr, true});
+      return session_.answer(call.number,
+                             {"not done: this is no goal of yours that is underway; without a goal "
+                              "the tool cancel ends all of yours, and what you began with say",
+                              nullptr, true});
     waiting.goal = id;
     withdraw(*id);
   } else {
+    waiting.had_any = is_busy();
     for (const v1::GoalId& id : own_)
       withdraw(id);
+    take_back_words();
+    if (!waiting.had_any)
+      waiting.until = now_;
   }
   waiting_[call.number] = waiting;
 }
@@ -339,21 +386,17 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       return true;
     }
     case Waiting::For::cancel: {
-      const bool ended = std::all_of(own_.begin(), own_.end(), [&](const v1::GoalId& id) {
-        const bool meant = !waiting.goal || waiting.goal->number() == id.number();
-        const auto known = status(id);
-        return !meant || (known && bus::ended(known->state()));
-      });
+      const bool ended = waiting.goal ? has_ended(*waiting.goal) : !is_busy();
       if (!late && (!ended || robot_.moves()))
         return false;
       const std::string robot =
           robot_.moves() ? "the robot still moves: somebody else may drive it, or it is stopping"
                          : "the robot stands";
-      session_.answer(
-          number,
-          {std::string(ended ? "withdrawn; " : "withdrawn, and not heard to have ended; ") + robot,
-           {{"ended", ended}, {"moves", robot_.moves()}},
-           !ended});
+      const std::string done = !waiting.had_any ? "nothing of yours is underway; "
+                               : ended          ? "withdrawn; "
+                                                : "withdrawn, and not heard to have ended; ";
+      session_.answer(number,
+                      {done + robot, {{"ended", ended}, {"moves", robot_.moves()}}, !ended});
       return true;
     }
     case Waiting::For::request:
@@ -475,6 +518,8 @@ void Door::close() {
   for (const v1::GoalId& id : own_)
     withdraw(id);
   write_due();
+  if (has_words_underway())
+    take_back_words();
 }
 
 void Door::close_and_wait() {

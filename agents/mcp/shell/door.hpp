@@ -19,14 +19,15 @@ constexpr double kWait = 20.0;  ///< [s] longest wait of a call for the end of i
 /// The robot's state for all clients of this program, and the tools. For one thread.
 class Robot {
  public:
-  explicit Robot(bus::Node& node);
+  /// described: the names of the agents whose descriptions the model gets.
+  explicit Robot(bus::Node& node, std::vector<std::string> described = {});
 
   /// Takes the newest samples.
   /// now: [s] of a clock that never goes back.
   void poll(double now);
   const std::vector<Tool>& tools() const { return tools_; }
-  /// The activities were heard, or have been awaited for long enough.
-  bool knows_tools() const { return heard_schemas_ || has_listened(); }
+  /// The activities and the agents were heard, or have been awaited for long enough.
+  bool knows_tools() const;
   /// The facts of this call may still come: this program has just begun to listen.
   bool is_early(const Call& call) const;
   /// The activity or capability behind the tool of this name; null: another kind of tool.
@@ -51,6 +52,7 @@ class Robot {
   bool has_listened() const;
 
   bus::Node& node_;
+  const std::vector<std::string> described_;
   cli::Mind mind_;
   bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
@@ -69,6 +71,7 @@ class Robot {
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
   bool heard_schemas_ = false;
+  double changed_ = 0.0;  ///< [s] the newest change of the tools
   std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
@@ -77,8 +80,8 @@ class Robot {
 };
 
 /// Carries out the calls of one client on the bus: goals, requests, words, and the emergency stop.
-/// Its goals and actions end with the client, and also when this program is killed: their writer is
-/// lost then.
+/// Its goals and actions, and the tasks that its words began, end with the client, and also when
+/// this program is killed: their writer is lost then.
 class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
@@ -86,10 +89,12 @@ class Door {
   /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
   /// least ten times a second. now: [s] of a clock that never goes back.
   void turn(double now);
-  /// The client sends no more: its goals and actions are withdrawn. True where calls are still
-  /// unanswered; each is answered within its own limit.
+  /// A goal or an action of this client, or a task that its words began, has not ended.
+  bool is_busy() const;
+  /// The client sends no more: its goals, actions and words are withdrawn. True where calls are
+  /// still unanswered; each is answered within its own limit.
   bool leave();
-  /// Withdraws every goal and action of this client.
+  /// Withdraws every goal and action of this client, and its words.
   void close();
   /// Waits until that is acknowledged, for a second at most.
   void close_and_wait();
@@ -110,10 +115,12 @@ class Door {
     std::optional<Result> result = std::nullopt;         ///< of the request or event
     std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
     bool is_task = false;
-    double still = 0.0;  ///< [s] until then a withdrawn task goes on while the robot moves
+    bool had_any = true;  ///< to cancel
+    double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
   };
 
   void hear();
+  void hear_reply(const v1::Utterance& reply);
   void begin(const Call& call);
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
@@ -121,6 +128,9 @@ class Door {
   bool has_room(const Call& call);
   void follow(const Call& call, const v1::GoalId& id);
   bool is_own(const v1::GoalId& id) const;
+  bool has_ended(const v1::GoalId& id) const;
+  bool has_words_underway() const;
+  void take_back_words();
   void withdraw(const v1::GoalId& id);
   void write_due();
   void say(const Call& call);
@@ -148,6 +158,12 @@ class Door {
   bool left_ = false;                         ///< the client sends no more
   Actions actions_;
   std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
+  /// The words that the robot may still act on.
+  struct Words {
+    double since = 0.0;  ///< [s]
+    bool acts = false;   ///< the robot has answered, and more answers follow
+  };
+  std::map<std::uint64_t, Words> words_;  ///< by the utterance
   double now_ = 0.0;
   double noted_since_ = 0.0;  ///< [s]
   std::size_t noted_ = 0;     ///< lines of the log in that second

@@ -7,8 +7,6 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr double kLeave = 30.0;  // [s]
-constexpr double kBroken = 2.0;  // [s] the same for a client that may have been killed
 constexpr std::size_t kMostClients = 8;
 constexpr const char* kPath = "/mcp";
 constexpr const char* kJson = "application/json";
@@ -23,7 +21,7 @@ HttpDoor::HttpDoor(bus::Node& node, HttpDoorOptions options)
     : node_(node),
       options_(std::move(options)),
       access_{options_.token, {}},
-      robot_(node),
+      robot_(node, options_.described),
       server_(options_.port, events()) {
   server_.watch(node.wake_fd());
 }
@@ -64,7 +62,7 @@ HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& requ
     return nullptr;
   }
   auto& client = clients_[id];
-  client = std::make_unique<Client>(node_, robot_, options_);
+  client = std::make_unique<Client>(node_, robot_, options_, now());
   client->is_new = begins;
   return client.get();
 }
@@ -95,8 +93,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   Client* const client = client_of(exchange, request, id);
   if (client == nullptr)
     return;
-  client->heard = now();
-  client->broken = false;
+  client->lease.came(now());
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;
   if (request.method == "GET")
@@ -141,10 +138,8 @@ void HttpDoor::tell(const std::string& id, Client& client) {
 void HttpDoor::lost(Exchange exchange) {
   for (const auto& [id, client] : clients_)
     if (client->waits.erase(exchange) > 0) {
-      client->broken =
-          client->broken || (exchange != client->stream && !client->session.listens(exchange));
       client->session.close(exchange);
-      client->heard = now();
+      client->lease.broke(now());
     }
 }
 
@@ -160,9 +155,7 @@ void HttpDoor::tick() {
   turn();
   for (auto each = clients_.begin(); each != clients_.end();) {
     Client& client = *each->second;
-    if (!client.waits.empty())
-      client.heard = now();
-    if (now() - client.heard < (client.broken ? kBroken : kLeave)) {
+    if (!client.lease.is_over(now(), !client.waits.empty(), client.door.is_busy())) {
       ++each;
       continue;
     }

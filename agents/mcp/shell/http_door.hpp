@@ -3,9 +3,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "door.hpp"
 #include "http.hpp"
+#include "saphira/mcp/lease.hpp"
 
 namespace saphira::mcp {
 
@@ -15,11 +17,12 @@ struct HttpDoorOptions {
   std::string who;    ///< the asker, as shown to others
   std::string version;
   std::string instructions;
+  std::vector<std::string> described;  ///< agents, as of Robot
 };
 
 /// Streamable HTTP: up to 8 clients, each with a door of its own. A client without a request or a
-/// pending answer for 30 s has left, and its goals end; likewise a client that breaks the
-/// connection of a pending call, and sends no request for 2 s.
+/// pending answer for 30 s has left, and its goals end; with a goal underway likewise a client that
+/// closes a connection or stream, and sends no request for 1.5 s.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);
@@ -31,15 +34,14 @@ class HttpDoor {
   using Exchange = HttpServer::Exchange;
 
   struct Client {
-    Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options)
+    Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options, double now)
         : session("saphira", options.version, options.instructions),
-          door(node, robot, session, options.who) {}
+          door(node, robot, session, options.who),
+          lease(now) {}
     Session session;
     Door door;
-    bool broken = false;  ///< the connection of a call ended before its answer, since its last
-                          ///< request
-    double heard = 0.0;   ///< [s] of its last request
-    bool is_new = false;  ///< its first answer will contain its session
+    Lease lease;
+    bool is_new = false;             ///< its first answer will contain its session
     std::map<Exchange, bool> waits;  ///< requests without an answer; true: it streams
     Exchange stream = 0;             ///< the one for messages outside of an answer [0: none]
   };

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "door.hpp"
 #include "http_door.hpp"
@@ -15,6 +17,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/mcp/lines.hpp"
 
 namespace {
 
@@ -33,12 +36,13 @@ struct Options {
   std::string who = "language model";
   std::optional<int> port;
   std::string token_file;
+  std::vector<std::string> described{"dialogue"};
 };
 
 int serve_http(const bus::NodeOptions& options, const Options& own, const bus::Stop& stop) {
   bus::Node node(options);
-  mcp::HttpDoor door(
-      node, {*own.port, console::keep(own.token_file).key, own.who, bus::version(), kInstructions});
+  mcp::HttpDoor door(node, {*own.port, console::keep(own.token_file).key, own.who, bus::version(),
+                            kInstructions, own.described});
   std::fprintf(stderr, "http://127.0.0.1:%d/mcp, with the token in %s\n", door.port(),
                own.token_file.c_str());
   door.run(stop);
@@ -51,12 +55,12 @@ bool write_lines(mcp::Session& session) {
   return std::fflush(stdout) == 0;
 }
 
-int serve(const bus::NodeOptions& options, const std::string& who, const bus::Stop& stop) {
+int serve(const bus::NodeOptions& options, const Options& own, const bus::Stop& stop) {
   bus::Node node(options);
   mcp::Session session("saphira", bus::version(), kInstructions);
-  mcp::Robot robot(node);
-  mcp::Door door(node, robot, session, who);
-  std::string input;
+  mcp::Robot robot(node, own.described);
+  mcp::Door door(node, robot, session, own.who);
+  mcp::Lines lines;
   bool open = true;
   // Calls that were read are answered after the end of the input too, while somebody reads that.
   while ((open || door.leave()) && !stop.requested()) {
@@ -71,18 +75,10 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
       std::array<char, 4096> buffer{};
       const ssize_t n = read(STDIN_FILENO, buffer.data(), buffer.size());
       open = n > 0;
-      if (open)
-        input.append(buffer.data(), static_cast<std::size_t>(n));
-      else
-        input += '\n';  // of the last line
-      for (std::size_t end = input.find('\n'); end != std::string::npos; end = input.find('\n')) {
-        session.take(std::string_view(input).substr(0, end));
-        input.erase(0, end + 1);
-      }
-      if (input.size() > mcp::Session::kLongestLine) {
-        session.take(input);
-        input.clear();
-      }
+      // The end of the input ends the last line.
+      for (const std::string& line :
+           lines.take(open ? std::string_view(buffer.data(), static_cast<std::size_t>(n)) : "\n"))
+        session.take(line);
     }
     node.clear_wake();
     robot.poll(BootClock::seconds());
@@ -106,6 +102,9 @@ int main(int argc, char** argv) {
       "HTTP",
       [&](CommandLine& app) {
         app.add_option("--who", own.who, "Name of the asker, as others see it");
+        app.add_option("--describe", own.described,
+                       "agents whose own descriptions the model gets, as quotations (dialogue, "
+                       "where the option is not given)");
         const Option token =
             app.add_option("--token-file", own.token_file,
                            "with --http: keeps what a client has to send as its bearer token; "
@@ -116,6 +115,6 @@ int main(int argc, char** argv) {
             .needs(token);
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
-        return own.port ? serve_http(options, own, stop) : serve(options, own.who, stop);
+        return own.port ? serve_http(options, own, stop) : serve(options, own, stop);
       });
 }

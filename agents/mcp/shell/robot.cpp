@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "door.hpp"
 #include "saphira/mcp/results.hpp"
@@ -16,7 +17,7 @@ constexpr double kLongestStart = 3.0;  // [s] for the activities and the first f
 constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;        // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
-constexpr std::size_t kLongestText = 300;  // of another agent
+constexpr double kRest = 0.5;  // [s] without a new announcement: all have come
 
 Json object(Json properties, const std::vector<std::string>& required = {}) {
   return {{"type", "object"},
@@ -102,8 +103,10 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
     case v1::ARGUMENT_UNBOUND:
       break;
   }
-  json["description"] = parameter.meaning().substr(0, kLongestText) +
-                        (parameter.required() ? "" : "; left out, the answer says it");
+  std::string text = parameter.required() ? "" : "left out, the answer says it";
+  if (!parameter.meaning().empty())
+    text = "the agent says: " + quotation(parameter.meaning()) + (text.empty() ? "" : "; ") + text;
+  json["description"] = text;
   return json;
 }
 
@@ -150,13 +153,16 @@ std::vector<Tool> fixed_tools() {
       {"goal", "The outcome of one goal or of one action of yours; waits for its end",
        object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
       {"cancel",
-       "Withdraws a goal or an action of yours, or all of them, and says whether the robot stands",
+       "Withdraws a goal or an action of yours, or all of them and what you began with say, and "
+       "says "
+       "whether the robot stands",
        object(
            {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
        false},
       {"say",
        "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "
-       "the robot's keyword, such as Flakey. Answers what the robot says",
+       "the robot's keyword, such as Flakey. Answers what the robot says. What it begins ends with "
+       "this client, and by cancel",
        object({{"text", {{"type", "string"}}}}, {"text"}), false},
       {"wait_for",
        "Waits until an agent or a person reports an event, such as pointed_out, or until a belief "
@@ -176,7 +182,8 @@ std::vector<Tool> fixed_tools() {
 
 }  // namespace
 
-Robot::Robot(bus::Node& node) : node_(node), mind_(node, false) {
+Robot::Robot(bus::Node& node, std::vector<std::string> described)
+    : node_(node), described_(std::move(described)), mind_(node, false) {
   make_tools();
 }
 
@@ -218,7 +225,7 @@ void Robot::poll(double now) {
 
 /// The permanent tools come first, then activities, then capabilities of the same name.
 void Robot::make_tools() {
-  tools_ = fixed_tools();
+  const std::vector<Tool> before = std::exchange(tools_, fixed_tools());
   for (Tool& tool : tools_)
     tool.output = form_of(tool.name);
   activities_.clear();
@@ -244,24 +251,45 @@ void Robot::make_tools() {
                       .lasts = true});
     activities_[name] = schema;
   }
-  for (const auto& [id, agent] : agents_)
-    for (const v1::Capability& capability : agent.data.capabilities()) {
+  for (const auto& [id, agent] : agents_) {
+    // A description steers the model: it is shown where a person has allowed the agent.
+    const bool is_shown =
+        std::find(described_.begin(), described_.end(), agent.data.name()) != described_.end();
+    for (v1::Capability capability : agent.data.capabilities()) {
       const std::string name = tool_name(capability.functor());
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
         continue;
+      capabilities_[name] = capability;
+      if (!is_shown)
+        for (v1::CapabilityParameter& parameter : capability.parameters())
+          parameter.meaning("");
       Json input = input_of(capability.parameters());
       if (capability.acts())
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
-                        .description = capability.summary().substr(0, kLongestText) + " (agent " +
-                                       agent.data.name().substr(0, kLongestText) + ")",
+                        .description = "An agent " + quotation(agent.data.name()) +
+                                       (is_shown ? " says: " + quotation(capability.summary())
+                                                 : " offers this; nobody has allowed its words"),
                         .input = std::move(input),
                         .reads = !capability.acts(),
                         .output = form_of(capability),
                         .lasts = capability.acts()});
-      capabilities_[name] = capability;
     }
+  }
+  if (tools_ != before)
+    changed_ = now_;
+}
+
+/// The announcements of activities and agents come one by one, in any order.
+bool Robot::knows_tools() const {
+  if (has_listened())
+    return true;
+  std::set<bus::WriterId> announced;
+  for (const auto& [id, agent] : agents_)
+    announced.insert(agent.info.writer);
+  return heard_schemas_ && announced.size() >= agent_reader_.matched() &&
+         now_ - std::max(changed_, *began_) >= kRest;
 }
 
 bool Robot::has_listened() const {

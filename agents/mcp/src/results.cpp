@@ -1,7 +1,11 @@
 #include "saphira/mcp/results.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
+#include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 
 namespace saphira::mcp {
@@ -104,6 +108,52 @@ Json json_of(const v1::Argument& argument) {
 }
 
 }  // namespace
+
+std::string for_model(std::string text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords{
+      {{"(saphira map show)", "(the tool map lists them)"},
+       {"(saphira device motors on)", "(a person turns them on)"},
+       {"(saphira drive hand-back)", "(by a person)"},
+       {": saphira drive hand-back", " by a person"},
+       {"until saphira estop reset", "until a person releases it"},
+       {"saphira map place X Y TH", "a person has to place it on the map"},
+       {"saphira map place X Y HEADING, or saphira map find",
+        "a person has to place me on the map"},
+       {"saphira status shows", "the tool robot_status shows"},
+       {"saphira knows lists", "the tool knows lists"}}};
+  for (const auto& [command, words] : kWords)
+    for (std::size_t at = text.find(command); at != std::string::npos;
+         at = text.find(command, at + words.size()))
+      text.replace(at, command.size(), words);
+  // No tool takes a priority.
+  constexpr std::string_view kBegin = "; with a priority of ";
+  constexpr std::string_view kEnd = " it would go first";
+  if (const std::size_t begin = text.find(kBegin); begin != std::string::npos)
+    if (const std::size_t end = text.find(kEnd, begin); end != std::string::npos)
+      text.erase(begin, end + kEnd.size() - begin);
+  return text;
+}
+
+Json for_model(Json value) {
+  if (value.is_string())
+    return for_model(value.get<std::string>());
+  if (value.is_structured())
+    for (Json& each : value)
+      each = for_model(std::move(each));
+  return value;
+}
+
+std::string quotation(const std::string& text) {
+  constexpr std::size_t kLongest = 200;
+  std::string line(first_letters(text, kLongest));
+  if (line.size() < text.size())
+    line += "...";
+  std::replace_if(
+      line.begin(), line.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+  std::replace(line.begin(), line.end(), '"', '\'');
+  return '"' + line + '"';
+}
 
 Json json_of(const v1::GoalStatus& status) {
   Json json{{"goal", bus::describe(status.id())},

@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "protocol.hpp"
+#include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::mcp {
 
@@ -24,6 +26,15 @@ bool has_type(const Json& value, const Json& type) {
   if (type == "array")
     return value.is_array();
   return type != "null" || value.is_null();
+}
+
+/// The known arguments, for one that is not.
+std::string others_than(const std::string& name, const Json& properties) {
+  std::vector<std::string> names;
+  for (const auto& [known, schema] : properties.items())
+    names.push_back(known);
+  return (names.empty() ? " (the tool takes none)" : " (known: " + joined(names) + ")") +
+         did_you_mean(name, names);
 }
 
 std::string misfit_at(const std::string& where, const Json& value, const Json& schema) {
@@ -65,7 +76,8 @@ std::string misfit_at(const std::string& where, const Json& value, const Json& s
     const Json of = properties.is_object() ? member(properties, name.c_str()) : Json();
     if (of.is_null()) {
       if (member(schema, "additionalProperties") == false)
-        return "there is no argument \"" + name.substr(0, 60) + "\"";
+        return (where.empty() ? "" : who + ": ") + "there is no argument \"" + name.substr(0, 60) +
+               '"' + others_than(name, properties);
       continue;
     }
     if (std::string why = misfit_at(where.empty() ? name : where + "." + name, inner, of);

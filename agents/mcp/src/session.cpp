@@ -5,6 +5,7 @@
 
 #include "protocol.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/mcp/results.hpp"
 
 namespace saphira::mcp {
 
@@ -135,7 +136,9 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
       false);
   if (message.is_discarded() || deep)
     return wrong(kParseError,
-                 deep ? "nested too deeply" : "this is no JSON: one message is expected");
+                 deep ? "nested too deeply"
+                      : "this is no JSON: one message is expected, and numbers must be finite "
+                        "(no NaN, Infinity or 1e400)");
   const Json method = message.is_object() ? member(message, "method") : Json();
   if (const Json id = message.is_object() ? member(message, "id") : Json(); is_id(id))
     request.id = id;
@@ -418,10 +421,11 @@ void Session::close(std::uint64_t exchange) {
     erase(number);
 }
 
-void Session::answer(std::uint64_t call, const Result& result) {
+void Session::answer(std::uint64_t call, const Result& told) {
   const auto found = open_.find(call);
   if (found == open_.end())
     return;
+  const Result result{for_model(told.text), for_model(told.value), told.is_error};
   const Open open = std::move(found->second);
   open_.erase(found);
   if (open.watches)
@@ -444,13 +448,15 @@ void Session::answer(std::uint64_t call, const Result& result) {
 void Session::progress(std::uint64_t call, double value, const std::string& text) {
   const auto found = open_.find(call);
   if (found != open_.end() && !found->second.task.empty())
-    return change_task(found->second.task, "working", text);
+    return change_task(found->second.task, "working", for_model(text));
   if (found == open_.end() || found->second.token.is_null())
     return;
   send({{"jsonrpc", "2.0"},
         {"method", "notifications/progress"},
         {"params",
-         {{"progressToken", found->second.token}, {"progress", value}, {"message", text}}}},
+         {{"progressToken", found->second.token},
+          {"progress", value},
+          {"message", for_model(text)}}}},
        found->second.request.exchange);
 }
 

@@ -133,12 +133,6 @@ void Session::listen(const Request& request, const Json& parameters) {
   listeners_.push_back(std::move(listener));
 }
 
-bool Session::listens(std::uint64_t exchange) const {
-  return std::any_of(listeners_.begin(), listeners_.end(), [&](const Listener& each) {
-    return each.request.modern && each.request.exchange == exchange;
-  });
-}
-
 void Session::end() {
   for (const Listener& listener : std::exchange(listeners_, {})) {
     if (!listener.request.modern)

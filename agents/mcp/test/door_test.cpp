@@ -244,11 +244,15 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
              json{{"id", 3}, {"method", "tools/call"}, {"params", parameters}}.dump()))["result"];
   };
   // A stream carries what no request asks for.
-  const int stream = connected(port);
-  std::string get = session;
-  get.replace(0, 4, "GET") += "\r\nHost: localhost\r\n\r\n";
-  EXPECT_EQ(write(stream, get.data(), get.size()), static_cast<ssize_t>(get.size()));
-  EXPECT_TRUE(comes(stream, "text/event-stream"));
+  const auto listen = [&] {
+    const int fd = connected(port);
+    std::string get = session;
+    get.replace(0, 4, "GET") += "\r\nHost: localhost\r\n\r\n";
+    EXPECT_EQ(write(fd, get.data(), get.size()), static_cast<ssize_t>(get.size()));
+    EXPECT_TRUE(comes(fd, "text/event-stream"));
+    return fd;
+  };
+  const int stream = listen();
   http(port, session,
        R"({"id":3,"method":"resources/subscribe","params":{"uri":"saphira://robot/goals"}})");
   EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
@@ -296,6 +300,15 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
                       "Mcp-Name: go_to",
                   modern);
   drive_and_break(session, go(5.0, 20));
+  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
+
+  // A client is killed between its calls: its stream closes.
+  session = begin();
+  const int held = listen();
+  call(go(5.0, 0));
+  EXPECT_TRUE(system.wait_moving());
+  close(held);
+  EXPECT_TRUE(system.wait_still());
   EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
 
   // A goal that outlasts its call ends with its session.

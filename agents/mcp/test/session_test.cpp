@@ -88,7 +88,8 @@ TEST(McpSession, ArgumentsThatDoNotFitAreNamedAndNotCalled) {
            {R"({"x":"far"})", "\"x\": expected number"},
            {R"({"x":1e12})", "from -100 up to 100"},
            {R"({"x":1,"frame":"moon"})", "expected one of"},
-           {R"({"x":1,"speed":2})", "there is no argument \"speed\""},
+           {R"({"x":1,"speed":2})", "there is no argument \"speed\" (known: frame, x)"},
+           {R"({"x":1,"fram":2})", "(known: frame, x): did you mean frame?"},
            {R"([1])", "the arguments: expected object"}}) {
     Client client;
     const Json answer = client.one(
@@ -111,6 +112,38 @@ TEST(McpSession, ACallThatIsGivenUpIsNotAnswered) {
   EXPECT_EQ(client.session.take_given_up(), std::vector<std::uint64_t>{calls.at(0).number});
   client.session.answer(calls[0].number, {"late", nullptr, false});
   EXPECT_TRUE(client.heard().empty());
+}
+
+TEST(McpSession, NumbersThatAreNotFiniteAreNamed) {
+  for (const char* const number : {"NaN", "Infinity", "1e400"}) {
+    Client client;
+    const Json error = client.one(
+        R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"go_to","arguments":{"x":)" +
+        std::string(number) + "}}}")["error"];
+    EXPECT_EQ(error["code"], -32700) << number;
+    EXPECT_NE(error["message"].get<std::string>().find("numbers must be finite"), std::string::npos)
+        << error.dump();
+  }
+}
+
+// A model has tools, and no commands.
+TEST(McpSession, AdviceAboutCommandsBecomesAdviceAboutTools) {
+  Client client;
+  client.say(
+      R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1},"_meta":{"progressToken":"p"}}})");
+  const std::uint64_t call = client.session.take_calls().at(0).number;
+  client.session.progress(call, 0.1,
+                          "waits for the way to EJ-231, which came first; with a priority of 1 it "
+                          "would go first");
+  EXPECT_EQ(client.heard().at(0)["params"]["message"],
+            "waits for the way to EJ-231, which came first");
+  const std::string told = "the map has no place \"x\": it has a, b and 9 more (saphira map show)";
+  client.session.answer(call, {told, {{"goals", {{{"reason", told}}}}}, true});
+  const Json result = client.heard().at(0)["result"];
+  const std::string words =
+      "the map has no place \"x\": it has a, b and 9 more (the tool map lists them)";
+  EXPECT_EQ(result["content"][0]["text"], words);
+  EXPECT_EQ(result["structuredContent"]["goals"][0]["reason"], words);
 }
 
 TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {

@@ -272,6 +272,8 @@ std::vector<KnownGoal> DialogueShell::known_goals() const {
 }
 
 void DialogueShell::take_utterances() {
+  // Before the utterances: then none of a lost writer comes after its loss.
+  const std::vector<bus::WriterId> lost = heard_.take_lost();
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
       continue;
@@ -281,9 +283,13 @@ void DialogueShell::take_utterances() {
     utterance.text = sample.data.text();
     utterance.confidence = sample.data.confidence();
     utterance.time = sample.data.time();
+    if (sample.data.means() == v1::UTTERANCE_PROGRAM)
+      utterance.program = sample.info.writer;
     situation_.goals = known_goals();
     perform(dialogue_.hear(utterance, situation_));
   }
+  for (const bus::WriterId& writer : lost)
+    perform(dialogue_.left(writer));
 }
 
 void DialogueShell::step(double seconds, double now) {

@@ -169,6 +169,7 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
   Utterance again = question.raised_by;
   again.id = utterance.id;
   again.time = utterance.time;
+  again.program = utterance.program;
   Grammar::Understood next;
   const bool bare = understood.meanings.empty();
   const std::vector<Meaning>& heard = bare ? understood.bare : understood.meanings;

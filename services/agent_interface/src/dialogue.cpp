@@ -81,7 +81,8 @@ void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const st
     return std::find(functors.begin(), functors.end(), functor) != functors.end();
   };
   Task task;
-  task.goal = {0, functor, std::move(arguments), deadline, is_in(kLasting), utterance.speaker};
+  const bool lasts = is_in(kLasting) && utterance.program == ProgramId{};
+  task.goal = {0, functor, std::move(arguments), deadline, lasts, utterance.speaker};
   task.brief = is_in(kBrief);
   task.what = grammar_.paraphrase(meaning);
   task.doing = grammar_.paraphrase(meaning, Grammar::Form::doing);
@@ -412,6 +413,14 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
     act_on_all(understood, utterance, situation, out);
     note_name(std::move(understood), utterance, out);
   }
+}
+
+Dialogue::Outputs Dialogue::left(const ProgramId& program) {
+  Outputs out;
+  std::erase_if(questions_, [&](const Question& one) { return one.raised_by.program == program; });
+  add(tasks_.left(program), out);
+  out.changed = !out.canceled.empty();
+  return out;
 }
 
 void Dialogue::end(const Outcome& outcome, Outputs& out) {

@@ -23,6 +23,15 @@ std::string whole_text(const Task& task) {
   return text;
 }
 
+/// Cancels a task, and tells its owner. by: the person for whom it ends.
+void cancel(const Task& task, const std::string& by, const std::string& why, Tasks::Outputs& out) {
+  out.canceled.push_back(task.goal.tag);
+  out.said.push_back({task.answers, task.goal.speaker,
+                      "I drop " + named_task(task, by) +
+                          (task.then.empty() ? "" : ", and what was to follow") + why,
+                      true});
+}
+
 }  // namespace
 
 const Task* Tasks::task() const {
@@ -61,15 +70,27 @@ void Tasks::drop(bool brief, const std::string& by, const std::string& text, Out
       ++one;
       continue;
     }
-    const std::string& owner = one->goal.speaker;
-    out.canceled.push_back(one->goal.tag);
-    out.said.push_back(
-        {one->answers, owner,
-         "I drop " + named_task(*one, by) + (one->then.empty() ? "" : ", and what was to follow") +
-             (same_person(owner, by) ? "" : ": " + named_person(by) + " said \"" + text + "\""),
-         true});
+    cancel(*one, by,
+           same_person(one->goal.speaker, by) ? ""
+                                              : ": " + named_person(by) + " said \"" + text + "\"",
+           out);
     one = open_.erase(one);
   }
+}
+
+Tasks::Outputs Tasks::left(const ProgramId& program) {
+  Outputs out;
+  for (auto one = open_.begin(); one != open_.end();) {
+    if (one->program != program || is_stop(*one)) {
+      ++one;
+      continue;
+    }
+    if (one->brief)
+      release(out);
+    cancel(*one, one->goal.speaker, ": the program that wanted it has left or taken it back", out);
+    one = open_.erase(one);
+  }
+  return out;
 }
 
 Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, bool drops) {
@@ -80,6 +101,7 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
       std::all_of(steps.begin(), steps.end(), [](const Task& step) { return step.brief; });
   for (Task& step : steps) {
     step.answers = utterance.id;
+    step.program = utterance.program;
     step.brief = all_brief;
   }
   const bool stop = is_stop(steps.front());

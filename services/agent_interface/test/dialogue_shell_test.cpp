@@ -241,6 +241,58 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   }));
 }
 
+TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsProgram) {
+  const auto says = [&](v1::UtteranceMeans means, const std::string& text) {
+    v1::Utterance utterance;
+    utterance.id().writer(6);
+    utterance.id().number(++number);
+    utterance.speaker("model");
+    utterance.text(text);
+    utterance.means(means);
+    utterance.confidence(1.0);
+    auto writer = std::make_unique<bus::Writer<v1::Utterance>>(person.writer(bus::topics::kHeard));
+    writer->write(utterance);
+    dialogue->step();
+    answers();
+    return writer;
+  };
+  auto writer = says(v1::UTTERANCE_TYPED, "Flakey, take the mail from EJ-231 to EJ-233");
+  auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].data.writer_lost(), v1::WRITER_LOST_KEEP);
+  writer.reset();
+  dialogue->step();
+  EXPECT_TRUE(goals.take().empty());
+
+  writer = says(v1::UTTERANCE_PROGRAM, "Flakey, take the mail from EJ-233 to EJ-231");
+  asked = goals.take();
+  ASSERT_EQ(asked.size(), 2u) << "the task before is dropped";
+  EXPECT_EQ(asked[1].data.writer_lost(), v1::WRITER_LOST_CANCEL);
+  writer.reset();
+  dialogue->step();
+  EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
+  const auto ended = goals.take();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_TRUE(ended[0].info.disposed);
+  EXPECT_EQ(ended[0].data.id(), asked[1].data.id());
+}
+
+// The words of a program may come in the same moment as the news of its end.
+TEST_F(DialogueOnTheBus, WordsOfAProgramThatHasEndedBeginNothingThatStays) {
+  {
+    v1::Utterance utterance;
+    utterance.id().writer(6);
+    utterance.id().number(1);
+    utterance.text("Flakey, go forward");
+    utterance.means(v1::UTTERANCE_PROGRAM);
+    utterance.confidence(1.0);
+    person.writer(bus::topics::kHeard).write(utterance);
+  }
+  dialogue->step();
+  const auto seen = goals.take();
+  EXPECT_TRUE(seen.empty() || seen.back().info.disposed);
+}
+
 TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBeforeADrop) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
   auto asked = goals.take();

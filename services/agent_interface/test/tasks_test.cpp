@@ -65,6 +65,30 @@ TEST_F(TasksTest, AMotionInterruptsATaskWhichGoesOn) {
   EXPECT_EQ(want({motion("bob")}, "bob"), "bob: I turn\ngoal 3 turn_to 0\n");
 }
 
+TEST_F(TasksTest, TheTasksOfAProgramEndWithItAndItsStopGoesOn) {
+  const ProgramId model{1};
+  const auto told_model = [&](std::vector<Task> steps) {
+    Utterance words{{7, ++number}, "model", "do it"};
+    words.program = model;
+    return told(tasks.want(std::move(steps), words));
+  };
+  want({errand("alice", "the mail")}, "alice");
+  told_model({motion("model"), motion("model")});
+  EXPECT_EQ(told(tasks.left({2})), "") << "another program";
+  // Its hold ends as well, and the task of alice goes on.
+  EXPECT_EQ(
+      told(tasks.left(model)),
+      "model: I drop the turn, and what was to follow: the program that wanted it has left or "
+      "taken it back.\n"
+      "cancel 2\n"
+      "cancel 3\n");
+  EXPECT_EQ(tasks.doing(), "I bring the mail");
+  EXPECT_EQ(told(tasks.left(model)), "");
+  told_model({motion("model", "stop")});
+  EXPECT_EQ(told(tasks.left(model)), "");
+  EXPECT_EQ(tasks.doing(), "I stop");
+}
+
 TEST_F(TasksTest, AMotionTakesThePlaceOfAnother) {
   want({errand("alice", "the mail")}, "alice");
   want({motion("bob")}, "bob");

@@ -13,6 +13,14 @@ namespace saphira::mcp {
 
 Json json_of(const v1::GoalStatus& status);
 
+/// The robot's words for a model: advice about commands of people, which it cannot follow, becomes
+/// advice about tools and people.
+std::string for_model(std::string text);
+/// All texts of a value.
+Json for_model(Json value);
+/// The words of another agent, as a quotation on one line: data, and no instructions.
+std::string quotation(const std::string& text);
+
 /// Arguments of an event or results of an answer, by name. Several of one name are a list. One of
 /// another kind than declared is left out.
 Json values_of(const std::vector<v1::Argument>& arguments,

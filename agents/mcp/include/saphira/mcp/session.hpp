@@ -100,8 +100,6 @@ class Session {
   bool take(std::string_view message, std::uint64_t exchange = 0, const Headers* headers = nullptr);
   /// The client has closed the connection of a request. In the newer era that cancels the request.
   void close(std::uint64_t exchange);
-  /// True for a request that listens and calls nothing.
-  bool listens(std::uint64_t exchange) const;
   /// The server ends: so does each request that listens.
   void end();
 

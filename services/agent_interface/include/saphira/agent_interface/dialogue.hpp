@@ -108,6 +108,8 @@ class Dialogue {
     Answer answer{};  ///< of forget()
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
+  /// A program that has spoken has ended or has withdrawn its words: its tasks end.
+  Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
   /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.

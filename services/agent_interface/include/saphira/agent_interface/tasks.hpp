@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -11,6 +12,9 @@ namespace saphira::agent_interface {
 
 using UtteranceId = std::pair<std::uint64_t, std::uint64_t>;
 
+/// A program that speaks to the robot; zeros: none, a person spoke.
+using ProgramId = std::array<std::uint8_t, 16>;
+
 /// An utterance to the robot.
 struct Utterance {
   UtteranceId id{};
@@ -18,6 +22,7 @@ struct Utterance {
   std::string text;
   double confidence = 1.0;  ///< [0..1] of the recognizer
   double time = 0.0;        ///< [s] since 1970; 0: unknown
+  ProgramId program{};      ///< the task ends with this program
 };
 
 /// An utterance of the robot.
@@ -66,6 +71,7 @@ struct Task {
   std::string name;        ///< "the way to the library"; empty: unknown
   UtteranceId answers{};   ///< the utterance that asked for it
   GoalRef ref{};           ///< of a lasting goal on the bus
+  ProgramId program{};     ///< the task ends with this program
   bool brief = false;      ///< a motion or a look: a task goes on after it
   std::vector<Task> then;  ///< the later steps of a sequence
 };
@@ -86,6 +92,8 @@ class Tasks {
   /// drops: also ends the task of somebody else, without a question.
   Outputs want(std::vector<Task> steps, const Utterance& utterance, bool drops = false);
   Outputs ended(const Outcome& outcome);
+  /// A program has ended or has withdrawn its words: its tasks end. A stop of it goes on.
+  Outputs left(const ProgramId& program);
   /// ": I go on with the mail for alice"; empty: with nothing.
   std::string going_on(const std::string& listener) const;
 
