@@ -229,6 +229,11 @@ void Core::packet(const protocol::Bytes& body, double now) {
   if (!in_session())
     return;
   protocol::ServerPacket any = protocol::decode_packet(body);
+  if (const auto* in = std::get_if<protocol::InformationPacket>(&any);
+      in != nullptr && reflector_.recognize(*in))
+    warn(reflector_.parameters().file +
+         " gives no Protocol, and the robot's packets have fields that ARCOS alone sends: it is "
+         "driven as arcos. The line \"Protocol arcos\" in the file prevents this warning");
   if (const auto impossible = protocol::take_out_impossible(any, reflector_.parameters())) {
     session_.doubts.add(*impossible, now);
     if (const auto words = session_.doubts.take_words(now))

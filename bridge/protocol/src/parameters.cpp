@@ -16,9 +16,11 @@ namespace saphira::protocol {
 
 namespace {
 
-/// True where a subclass of the class Pioneer is one of its first generation.
+/// True where a subclass of the class Pioneer is one of its first generation. "pioneer-..." may be
+/// any.
 bool is_of_the_first(std::string_view subclass) {
-  return subclass.starts_with("psos") || subclass.starts_with("pion");
+  return subclass.starts_with("psos") ||
+         (subclass.starts_with("pion") && !subclass.starts_with("pioneer-"));
 }
 
 constexpr double kMillimetre = 0.001;
@@ -300,8 +302,10 @@ class Parser {
 
   // Missing parameters follow from the generation of the server.
   void finish_protocol() {
-    if (aria_ && !seen_.contains("protocol"))
+    if (aria_ && !seen_.contains("protocol")) {
       parameters_.protocol = protocol_of_subclass();
+      parameters_.protocol_is_assumed = parameters_.protocol == Protocol::kP2os;
+    }
     const bool later = parameters_.protocol != Protocol::kPsos;
     for (const auto& [name, field] : {std::pair{"hasmovecommand", &P::move_command},
                                       std::pair{"settablevelmaxes", &P::settable_velocities},
@@ -466,18 +470,20 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
     if (plain && std::find(names.begin(), names.end(), name + ".p") == names.end())
       names.push_back(name + ".p");
   };
-  std::string name = lowered(subclass);
+  const std::string of_class = lowered(robot_class);
+  const std::string whole = lowered(subclass);
+  std::string name = whole;
   add(name);
   // The part behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
   // Without -sh it is another generation.
   for (std::size_t hyphen = name.rfind('-');
        hyphen != std::string::npos && name.substr(hyphen) != "-sh"; hyphen = name.rfind('-')) {
     name.resize(hyphen);
-    add(name);
+    if (name != of_class)
+      add(name);
   }
   // The file of the class Pioneer is one of the manual's time, with its units.
-  const std::string of_class = lowered(robot_class);
-  if (of_class != "pioneer" || is_of_the_first(name) || name.empty())
+  if (of_class != "pioneer" || is_of_the_first(whole) || whole.empty())
     add(of_class);
   return names;
 }

@@ -62,7 +62,16 @@ TEST(RobotsOfOthers, AreTaken) {
     EXPECT_EQ(robot.sonars.size(), 1U);
   }
   EXPECT_EQ(parse_parameters(aria_form("p3dx-sh-lms1xx"), "mine.p").protocol, Protocol::kArcos);
+  EXPECT_FALSE(parse_parameters(aria_form("p3dx-sh-lms1xx"), "mine.p").protocol_is_assumed);
   EXPECT_EQ(parse_parameters(aria_form("p2at8"), "mine.p").protocol, Protocol::kP2os);
+  // Its name shows no generation; its packets do (Reflector::recognize).
+  const RobotParameters outdoors = parse_parameters(aria_form("mt400"), "mine.p");
+  EXPECT_EQ(outdoors.protocol, Protocol::kP2os);
+  EXPECT_TRUE(outdoors.protocol_is_assumed);
+  const RobotParameters told =
+      parse_parameters(aria_form("mt400", "Section General settings\nProtocol arcos\n"), "mine.p");
+  EXPECT_EQ(told.protocol, Protocol::kArcos);
+  EXPECT_FALSE(told.protocol_is_assumed);
   // Written on Windows.
   std::string windows;
   for (const char c : saphira_form())
