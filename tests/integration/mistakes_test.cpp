@@ -297,6 +297,26 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
   EXPECT_EQ(mine, "mine");
 }
 
+TEST(EachProgram, SaysInADryRunOfWhatItWouldWarn) {
+  const test::TempDir folder;
+  std::ofstream(folder.path("zero.wld"))
+      << "width 9000\nheight 9000\n1000 1000 1000 1000\nposition 4000 4000 0\n";
+  const test::Outcome sim =
+      test::run({"saphira-sim", "--world", folder.path("zero.wld"), "--dry-run"}, {});
+  EXPECT_EQ(sim.code, 0) << sim.text;
+  EXPECT_TRUE(test::has(sim.text, "zero.wld:3: a segment between a point and itself is left out"))
+      << sim.text;
+  std::ofstream(folder.path("mine.p"))
+      << "AngleConvFactor 0.006\nDistConvFactor 1\nVelConvFactor 1\nRangeConvFactor 1\n"
+         "RobotRadius 220\nSonarNum 0\nSonarUnit 0 100 0 0\n";
+  const test::Outcome bridge =
+      test::run({"saphira-bridge", "--robot-file", folder.path("mine.p"), "--dry-run"},
+                {{"SAPHIRA_ROBOT", test::unique_robot()}});
+  EXPECT_EQ(bridge.code, 0) << bridge.text;
+  EXPECT_TRUE(test::has(bridge.text, "mine.p:7: SonarUnit 0 is left out: SonarNum is 0"))
+      << bridge.text;
+}
+
 TEST(EachCommand, NamesAMistakeInAVariable) {
   const auto said = [](const std::string& variable, const std::string& value) {
     const test::Outcome outcome = test::run({"saphira", "status"}, {{variable, value}});
