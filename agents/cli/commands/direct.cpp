@@ -34,6 +34,8 @@ void DirectDriver::drive(v1::MotorCommand command) {
   if (command.source().empty())
     command.source(source_);
   source_ = command.source();
+  if (number_ == 0)
+    drove_ = Clock::now();
   command.number(++number_);
   // Unique over restarts too, or the bridge would take the first for an old one.
   command.move(node_.instance() + command.move());
@@ -59,8 +61,10 @@ void DirectDriver::poll() {
       if (refusal.source() == source_)
         refusal_ = refusal.reason();
   }
-  if (drives())
+  if (drives()) {
     refusal_.clear();
+    drove_ = Clock::now();
+  }
 }
 
 bool DirectDriver::drives() const {
@@ -75,7 +79,7 @@ std::string DirectDriver::trouble() const {
   if (!refusal_.empty())
     return "refused: " + refusal_;
   if (!drives())
-    return seconds_since(began_) < kUnanswered ? "" : describe(*grant_);
+    return seconds_since(drove_) < kUnanswered ? "" : describe(*grant_);
   if (grant_->guard() != v1::GUARD_NONE)
     return "the guard beside the robot " + std::string(name_of(grant_->guard())) +
            " it: " + grant_->guard_reason();
