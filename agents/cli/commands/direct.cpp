@@ -202,7 +202,8 @@ void add_direct(CLI::App& app, Chosen& chosen) {
       ->check(above_zero())
       ->transform(number_in_unit("m/s"));
   options = std::make_shared<DirectOptions>();
-  add(app, chosen, Move::Kind::turn, "turn", "Turn on the spot, and say when it is done",
+  add(app, chosen, Move::Kind::turn, "turn",
+      "Turn on the spot by an angle, and say when it is done",
       "DEGREES to the left, below 0: to the right", "deg", options);
   options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::speed, "speed", "Drive at a speed, until Ctrl-C", "METERS a second",
