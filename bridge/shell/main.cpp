@@ -20,14 +20,18 @@ int check(const saphira::bridge::BridgeOptions& given) {
       saphira::transport::line_trouble(saphira::transport::parse_address(options.robot_port));
   if (!trouble.empty())
     std::fprintf(stderr, "%s\n", trouble.c_str());
+  const auto load = [](const std::string& path) {
+    for (const std::string& warning : saphira::protocol::load_parameters(path).warnings)
+      std::fprintf(stderr, "%s\n", warning.c_str());
+  };
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
     if (file.path().extension() == ".p")
-      saphira::protocol::load_parameters(file.path());
+      load(file.path());
   const saphira::bridge::PositionFile position(options.state_file, saphira::Files::kStay);
   if (!position.trouble().empty())
     std::fprintf(stderr, "%s\n", position.trouble().c_str());
   if (!options.parameter_file.empty())
-    saphira::protocol::load_parameters(options.parameter_file);
+    load(options.parameter_file);
   return saphira::bus::kExitOk;
 }
 

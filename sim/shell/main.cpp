@@ -152,14 +152,18 @@ int main(int argc, char** argv) {
       plot(plot_files, options);
       return saphira::kExitOk;
     }
-    if (dry_run) {
-      saphira::sim::check(options);
-      return saphira::kExitOk;
-    }
     options.log = [](std::string_view level, const std::string& text) {
       const std::string line = saphira::log_line(saphira::unix_time(), level, "sim", text);
       std::fprintf(stderr, "%s\n", line.c_str());
     };
+    if (dry_run) {
+      options.log = [](std::string_view level, const std::string& text) {
+        if (level == "warning")
+          std::fprintf(stderr, "%s\n", text.c_str());
+      };
+      saphira::sim::check(options);
+      return saphira::kExitOk;
+    }
     saphira::sim::run(options, saphira::stop_on_signals());
     return saphira::kExitOk;
   });

@@ -427,6 +427,17 @@ TEST(People, WhatIsHandedOverHereIsBrought) {
   EXPECT_EQ(whole.trouble(), "");
 }
 
+TEST(People, NobodyIsAskedForWhatCannotBeBrought) {
+  Whole whole(office_with_zones("OFFICE (901) 60000, 10000, 0, 3000, 3000 \"N3\""));
+  People people({{"Please give me the report", "given", kYes}});
+  const auto goal = whole.ask("deliver", {text("object", "the report"), text("to", "N3")});
+  const GoalStatus status = among(whole, people, goal, 100);
+  EXPECT_EQ(status.state, GoalState::kFailed) << status.reason;
+  EXPECT_TRUE(status.reason.starts_with("the report cannot be brought: no way from "))
+      << status.reason;
+  EXPECT_TRUE(whole.said().empty());
+}
+
 TEST(People, AMessageWithoutAnAnswerOrAPlaceToReportAtIsTold) {
   Whole whole(office());
   whole.claim("place-of-karen", "EJ-247");

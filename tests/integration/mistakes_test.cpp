@@ -62,8 +62,13 @@ const std::vector<Mistake>& mistakes() {
       {{"goal", "go", "3", "x"}, {"expected go X Y", "found \"x\""}},
       {{"goal", "drive"}, {"expected drive SPEED [m/s], found 0 words after drive"}},
       {{"goal", "drive", "fast"}, {"expected drive SPEED [m/s], found \"fast\""}},
-      {{"goal", "turn"}, {"expected turn DEGREES, found 0 words after turn"}},
-      {{"goal", "turn", "left"}, {"expected turn DEGREES, found \"left\""}},
+      {{"goal", "turn"}, {"expected turn to DEGREES (a heading in odom), found 0 words"}},
+      {{"goal", "turn", "left"}, {"expected turn to DEGREES", "found \"left\""}},
+      {{"goal", "turn", "90"}, {"found turn 90; saphira turn 90 turns by an angle"}},
+      {{"goal", "activitis"}, {"did you mean activities?"}},
+      {{"goal", "list"}, {"no goals; no program is on the bus"}, 1},
+      {{"agents"}, {"no agents; no program is on the bus"}, 1},
+      {{"echo", "robot/state", "--once"}, {"no program is on the bus", "saphira: given up"}, 1},
       {{"goal", "go_to", "position"}, {"expected name=value, found \"position\""}},
       {{"goal", "go_to", "position=3,x"}, {"expected a point x,y", "\"x\" is not a number"}},
       {{"goal", "go_to", "position=3,1@moon"}, {"\"moon\" is not a frame (odom, robot or map)"}},
@@ -167,6 +172,9 @@ const std::vector<Mistake>& mistakes() {
       {{"beliefs", "set", "door-open"}, {"expected beliefs set NAME VALUE"}},
       {{"device", "servo"}, {"expected a pulse width [us]"}},
       {{"device", "gripper", "oepn"}, {"oepn"}},
+      {{"device", "motor"}, {"found \"motor\": did you mean motors?"}},
+      {{"map", "sho"}, {"found \"sho\": did you mean show?"}},
+      {{"processes", "interupt"}, {"found interupt: did you mean interrupt?"}},
   };
   return all;
 }
@@ -295,6 +303,26 @@ TEST(EachProgram, RefusesAFileThatItCannotUseWithOneCode) {
   std::string mine;
   std::getline(std::ifstream(folder.path("notes")), mine);
   EXPECT_EQ(mine, "mine");
+}
+
+TEST(EachProgram, SaysInADryRunOfWhatItWouldWarn) {
+  const test::TempDir folder;
+  std::ofstream(folder.path("zero.wld"))
+      << "width 9000\nheight 9000\n1000 1000 1000 1000\nposition 4000 4000 0\n";
+  const test::Outcome sim =
+      test::run({"saphira-sim", "--world", folder.path("zero.wld"), "--dry-run"}, {});
+  EXPECT_EQ(sim.code, 0) << sim.text;
+  EXPECT_TRUE(test::has(sim.text, "zero.wld:3: a segment between a point and itself is left out"))
+      << sim.text;
+  std::ofstream(folder.path("mine.p"))
+      << "AngleConvFactor 0.006\nDistConvFactor 1\nVelConvFactor 1\nRangeConvFactor 1\n"
+         "RobotRadius 220\nSonarNum 0\nSonarUnit 0 100 0 0\n";
+  const test::Outcome bridge =
+      test::run({"saphira-bridge", "--robot-file", folder.path("mine.p"), "--dry-run"},
+                {{"SAPHIRA_ROBOT", test::unique_robot()}});
+  EXPECT_EQ(bridge.code, 0) << bridge.text;
+  EXPECT_TRUE(test::has(bridge.text, "mine.p:7: SonarUnit 0 is left out: SonarNum is 0"))
+      << bridge.text;
 }
 
 TEST(EachCommand, NamesAMistakeInAVariable) {

@@ -114,12 +114,13 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
     std::printf("%s%s\n", describe(trigger.data, bus::describe(trigger.data.id())).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
-  if (known.empty()) {
-    const std::string absent = absence(node, processes, kFacilitator);
-    std::printf("no agents; %s\n",
-                (absent.empty() ? who_is_there(options, processes) : absent).c_str());
-  }
-  return bus::kExitOk;
+  if (!known.empty())
+    return bus::kExitOk;
+  const bool alone = processes.all().empty();
+  const std::string absent = absence(node, processes, kFacilitator);
+  (alone ? std::cerr << "saphira: " : std::cout)
+      << "no agents; " << (absent.empty() ? who_is_there(options, processes) : absent) << '\n';
+  return alone ? bus::kExitFailed : bus::kExitOk;
 }
 
 }  // namespace

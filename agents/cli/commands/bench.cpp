@@ -39,7 +39,10 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     std::cerr << "saphira: no benchmark \"" << name << '"' << did_you_mean(name, names, ":")
-              << " expected one of " << joined(names, " ") << '\n';
+              << (names.empty()
+                      ? " none is built here (./saphira bench, in the source tree, builds them)"
+                      : " expected one of " + joined(names, " "))
+              << '\n';
     return bus::kExitUsage;
   }
   std::vector<std::string> words{bin + "/" + kPrefix + name};

@@ -34,6 +34,8 @@ void DirectDriver::drive(v1::MotorCommand command) {
   if (command.source().empty())
     command.source(source_);
   source_ = command.source();
+  if (number_ == 0)
+    drove_ = Clock::now();
   command.number(++number_);
   // Unique over restarts too, or the bridge would take the first for an old one.
   command.move(node_.instance() + command.move());
@@ -59,8 +61,10 @@ void DirectDriver::poll() {
       if (refusal.source() == source_)
         refusal_ = refusal.reason();
   }
-  if (drives())
+  if (drives()) {
     refusal_.clear();
+    drove_ = Clock::now();
+  }
 }
 
 bool DirectDriver::drives() const {
@@ -75,7 +79,7 @@ std::string DirectDriver::trouble() const {
   if (!refusal_.empty())
     return "refused: " + refusal_;
   if (!drives())
-    return seconds_since(began_) < kUnanswered ? "" : describe(*grant_);
+    return seconds_since(drove_) < kUnanswered ? "" : describe(*grant_);
   if (grant_->guard() != v1::GUARD_NONE)
     return "the guard beside the robot " + std::string(name_of(grant_->guard())) +
            " it: " + grant_->guard_reason();
@@ -198,7 +202,8 @@ void add_direct(CLI::App& app, Chosen& chosen) {
       ->check(above_zero())
       ->transform(number_in_unit("m/s"));
   options = std::make_shared<DirectOptions>();
-  add(app, chosen, Move::Kind::turn, "turn", "Turn on the spot, and say when it is done",
+  add(app, chosen, Move::Kind::turn, "turn",
+      "Turn on the spot by an angle, and say when it is done",
       "DEGREES to the left, below 0: to the right", "deg", options);
   options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::speed, "speed", "Drive at a speed, until Ctrl-C", "METERS a second",

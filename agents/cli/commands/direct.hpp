@@ -47,6 +47,7 @@ class DirectDriver {
   std::optional<v1::Grant> grant_;
   std::string refusal_;
   Clock::time_point began_ = Clock::now();
+  Clock::time_point drove_ = began_;  ///< last, or the time of the first command
   std::string told_;
 };
 

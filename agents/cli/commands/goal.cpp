@@ -18,7 +18,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kUnanswered = 15.0;  ///< [s] until a goal without any answer is given up
-constexpr double kEmptyBus = 5.0;     ///< [s] the same where no program is heard
 
 struct GoalOptions {
   std::vector<std::string> words;
@@ -221,9 +220,12 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),
                 status.functor().c_str(), status.requester().c_str(),
                 bus::describe(status).c_str());
-  if (goals.statuses().empty())
-    std::cout << "no goals; " << who_is_there(node_options, processes) << '\n';
-  return bus::kExitOk;
+  if (!goals.statuses().empty())
+    return bus::kExitOk;
+  const bool alone = processes.all().empty();
+  (alone ? std::cerr << "saphira: " : std::cout)
+      << "no goals; " << who_is_there(node_options, processes) << '\n';
+  return alone ? bus::kExitFailed : bus::kExitOk;
 }
 
 const char* kind_word(v1::ParameterKind kind) {
@@ -294,7 +296,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
   command->add_option("words", options->words,
-                      "go X Y [m, in odom] | go PLACE | drive SPEED | turn DEGREES | stop | "
+                      "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "
                       "ACTIVITY name=value... | list | cancel ID | activities [ACTIVITY]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")

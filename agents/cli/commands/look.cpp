@@ -71,7 +71,8 @@ int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
   return mismatches.empty() ? bus::kExitOk : bus::kExitFailed;
 }
 
-int echo(const std::string& topic, std::uint64_t count, double timeout,
+/// `once`: without a timeout, an empty bus is given up.
+int echo(const std::string& topic, std::uint64_t count, bool once, double timeout,
          const bus::NodeOptions& options, const bus::Stop& stop) {
   if (const auto unknown = unknown_topic(topic)) {
     std::cerr << "saphira: " << *unknown << '\n';
@@ -79,6 +80,7 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
   }
   bus::Node node(options);
   bus::Echo reader(node, topic);
+  Processes processes(node);
   std::uint64_t shown = 0;
   const auto began = Clock::now();
   bool warned = false;
@@ -104,6 +106,13 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
                  static_cast<unsigned long long>(shown), static_cast<unsigned long long>(count),
                  topic.c_str(), timeout);
       return count > 0 || shown == 0 ? bus::kExitFailed : bus::kExitOk;
+    }
+    processes.poll();
+    if (once && timeout == 0.0 && reader.matched() == 0 && processes.all().empty() &&
+        seconds_since(began) > kEmptyBus) {
+      complain("saphira: no answer yet: %s\nsaphira: given up\n",
+               who_is_there(options, processes).c_str());
+      return bus::kExitFailed;
     }
     // A short wait: the remaining time is checked again.
     node.wait(milliseconds(timeout > 0.0 ? 50 : 500), &stop);
@@ -137,7 +146,8 @@ void add_echo(CLI::App& app, Chosen& chosen) {
       ->check(above_zero())
       ->transform(number_in_unit("s"));
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return echo(options->topic, options->once ? 1 : options->count, options->timeout, node, stop);
+    return echo(options->topic, options->once ? 1 : options->count, options->once, options->timeout,
+                node, stop);
   });
 }
 

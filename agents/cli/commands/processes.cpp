@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "mind.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/displays.hpp"
 
@@ -72,7 +73,11 @@ int processes(const ProcessesOptions& asked, const bus::NodeOptions& options,
   const bool action = words[0] == "interrupt" || words[0] == "resume" || words[0] == "suspend";
   if (!action || words.size() != 3) {
     std::cerr << "saphira: expected processes, or processes interrupt | resume | suspend SERVICE "
-                 "PROCESS\n";
+                 "PROCESS"
+              << (action ? ""
+                         : ", found " + words[0] +
+                               did_you_mean(words[0], {"interrupt", "resume", "suspend"}))
+              << '\n';
     return bus::kExitUsage;
   }
   return ask(asked, options, stop);

@@ -129,10 +129,10 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
                        {"lost", share(run.lost)},
                        {"unplaced", share(run.unplaced)},
                        {"matches", run.accepted}};
-    // Without a pose the error is null, not 0.
+    // Without a pose, or with one of dead reckoning alone, the error is null.
     const logs::Accuracy& at = result.localized;
     const auto known = [&](double value) {
-      return at.compared < 2 ? nlohmann::json() : nlohmann::json(value);
+      return at.compared < 2 || run.accepted == 0 ? nlohmann::json() : nlohmann::json(value);
     };
     out["ate_m"] = known(at.ate);
     out["within_half_a_metre"] = known(at.within);
@@ -143,6 +143,11 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
   }
   std::printf("against where the laser says that the robot was:\n");
   tell("dead reckoning", result.dead_reckoning);
+  if (run.accepted == 0) {
+    std::printf("%-16s no reading was matched with the map: its pose is that of dead reckoning\n",
+                "by sonars");
+    return bus::kExitOk;
+  }
   tell("by sonars", result.localized);
   std::printf(
       "%-16s %.1f %% of the steps, takes itself for lost in %.1f %%, has no pose in %.1f %%; "

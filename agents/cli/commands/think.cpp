@@ -401,9 +401,8 @@ void add_intentions(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("intentions", "Intentions of the robot, as a tree down to the behaviors");
   add_watch_options(*command, *watch);
   command->footer(
-      "* waits for what is below it, o goes on beside it; then the schema, (the instance), and "
-      "the\n"
-      "state that comes next, or B for a behavior.");
+      "* waits for what is below it, o goes on beside it; then the schema, (the instance), "
+      "and B for a behavior.");
   chosen.when(command, watch, intentions);
 }
 

@@ -87,6 +87,8 @@ const char* name_of(bus::Profile profile);
 /// `since`, also the time of this call: "(pts/3, since 14:02)".
 std::string person(const std::string& program, bool since = false);
 
+constexpr double kEmptyBus = 5.0;  ///< [s] until a question is given up where no program is heard
+
 /// The missing or troubled programs, in words, for requests without an answer.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 

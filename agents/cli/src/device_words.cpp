@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "saphira/base/format.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::cli {
@@ -218,11 +220,12 @@ DeviceCommand parse(const std::string& device, Words& words) {
     return {&kServer, {"set_origin"}};
   if (device == "bumpers")
     return {&kServer, {"bump_stall", {whole_of("value", words.next("0..3"), 3, "which bumpers")}}};
-  fail(
-      "a device (servo, look, gripper, output, analog, timer, sonar, sound, motors, origin, "
-      "bumpers, "
-      "report, serial, vision)",
-      device);
+  const std::vector<std::string> devices{"servo",   "look",   "gripper", "output", "analog",
+                                         "timer",   "sonar",  "sound",   "motors", "origin",
+                                         "bumpers", "report", "serial",  "vision"};
+  throw std::invalid_argument("expected a device (" + joined(devices) + ")" +
+                              (device.empty() ? "" : ", found \"" + device + "\"") +
+                              did_you_mean(device, devices));
 }
 
 std::string bits(unsigned value) {

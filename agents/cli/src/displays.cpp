@@ -105,8 +105,7 @@ TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node
   TreeLine line{
       indent + (node.blocking() ? "* " : "o ") +
           with_instance(node.schema(),
-                        node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) +
-          (node.label().empty() ? "" : " then " + node.label()),
+                        node.name().empty() ? "I" + std::to_string(node.id()) : node.name()),
       node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
           node.step()};
   if (node.state() == v1::INTENTION_INIT || node.state() == v1::INTENTION_RUNNING)

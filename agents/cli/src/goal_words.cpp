@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
@@ -175,10 +176,22 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     expect(1, "drive SPEED [m/s]", "m/s");
     return parse_goal("drive", with("speed=" + rest[0]));
   }
+  // To a heading; `saphira turn` turns by an angle.
   if (words[0] == "turn") {
-    expect(1, "turn DEGREES", "deg");
+    const std::string form = "turn to DEGREES (a heading in odom)";
+    if (bare == 1 && measured(rest[0], "deg"))
+      throw std::invalid_argument("expected " + form + ", found turn " + rest[0] +
+                                  "; saphira turn " + rest[0] + " turns by an angle");
+    if (bare > 0 && rest[0] == "to") {
+      rest.erase(rest.begin());
+      --bare;
+    }
+    expect(1, form, "deg");
     return parse_goal("turn_to", with("heading=" + rest[0] + "deg"));
   }
+  if (rest.empty() && words[0].size() > 5 && guess(words[0], {"activities"}) == "activities")
+    throw std::invalid_argument("expected an activity, found \"" + words[0] +
+                                "\": did you mean activities?");
   return parse_goal(words[0], rest);
 }
 

@@ -10,6 +10,7 @@
 #include "lps/shell/convert.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
@@ -46,14 +47,18 @@ constexpr std::array<Form, 16> kForms{
 
 [[noreturn]] void complain(const std::vector<std::string>& words) {
   std::string verbs;
+  std::vector<std::string> all;
   for (const Form& form : kForms) {
     if (!words.empty() && form.verb == words.front())
       throw std::invalid_argument("expected " + std::string(form.verb) + std::string(form.rest) +
                                   ", found " + counted(words.size() - 1, "word") + " after it");
+    all.emplace_back(form.verb);
     verbs.append(verbs.empty() ? "" : &form == &kForms.back() ? " or " : ", ").append(form.verb);
   }
-  throw std::invalid_argument("expected " + verbs +
-                              (words.empty() ? "" : ", found \"" + words.front() + "\""));
+  throw std::invalid_argument(
+      "expected " + verbs +
+      (words.empty() ? ""
+                     : ", found \"" + words.front() + "\"" + did_you_mean(words.front(), all)));
 }
 
 double number(const std::string& word, const std::string& what, const char* unit) {

@@ -101,12 +101,14 @@ std::string to_json(const Summary& summary) {
 
 std::string to_text(const Summary& summary) {
   return format(
-      "time                %.1f s (%.2f x real time)\n"
+      "time                %.1f s%s\n"
       "path                %.2f m\n"
       "smallest clearance  %.2f m\n"
       "contacts            %llu\n"
       "cycles              %llu, %llu late\n",
-      summary.time, summary.speed_factor, summary.track.path, summary.track.min_clearance,
+      summary.time,
+      summary.speed_factor > 0.0 ? format(" (%.2f x real time)", summary.speed_factor).c_str() : "",
+      summary.track.path, summary.track.min_clearance,
       static_cast<unsigned long long>(summary.track.contacts),
       static_cast<unsigned long long>(summary.track.cycles),
       static_cast<unsigned long long>(summary.late_cycles));

@@ -32,7 +32,7 @@ v1::IntendedBehavior behavior(std::uint32_t intention, bool blocking, const std:
   return result;
 }
 
-// The snapshot in the paper.
+// The snapshot in the paper, without the next state: that may be the one for trouble.
 TEST(IntentionsDisplay, IsFigure10) {
   v1::Intentions all;
   all.behavior_control(true);
@@ -47,14 +47,14 @@ TEST(IntentionsDisplay, IsFigure10) {
                  behavior(3678, false, "Follow", "Follow-To-Target"),
                  behavior(3678, false, "Orient", "Orient-To-Target"),
                  behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")});
-  EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1) then END
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1)
   * Avoid-Collision (Collide) B
-* Deliver-Object (I3674) then S171
-  * Plan-And-Execute (I3675) then S146
-    o Monitor-Planex (I3676) then CLEANUP
-    * Follow-Path (Follow-It) then S138
-      * Corridor-To-Junction (I3677) then END
-        * Follow-To-Target (I3678) then END
+* Deliver-Object (I3674)
+  * Plan-And-Execute (I3675)
+    o Monitor-Planex (I3676)
+    * Follow-Path (Follow-It)
+      * Corridor-To-Junction (I3677)
+        * Follow-To-Target (I3678)
           o Follow (Follow-To-Target) B
           o Orient (Orient-To-Target) B
           * Keep-Off-With-Target (Keep-Off) B
@@ -72,7 +72,7 @@ TEST(Displays, TheInstanceIsInWords) {
   all.behavior_control(true);
   all.nodes({node(1, 0, true, "go_to", "go_to1", "S1")});
   all.behaviors({behavior(1, true, "Stop", "rest#32"), behavior(1, false, "GoToPos", "GoToPos#7")});
-  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) then S1
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
   * Stop (rest, instance 32) B
   o GoToPos (instance 7) B
 )");
@@ -102,9 +102,9 @@ TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
   state.speed_activity(1.0);
   state.goal(0.25);
   behaviors.behaviors({state});
-  EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1) then S1     driving to (3, 1)
-  o watch (w) then MONITOR   suspended; waits for *failed*
-  * GoToPos (GoToPos) B      activity 1.00, goal 0.25
+  EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1)          driving to (3, 1)
+  o watch (w)             suspended; waits for *failed*
+  * GoToPos (GoToPos) B   activity 1.00, goal 0.25
 behavior control is off
 )");
   EXPECT_EQ(intentions_display({}, nullptr), "nothing is intended\n");
@@ -118,9 +118,9 @@ TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
              node(3, 1, false, "Stop", "end", "B")});
   all.nodes()[2].state(v1::INTENTION_SUSPENDED);
   all.behaviors({behavior(2, true, "GoToPos", "GoToPos")});
-  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) then S1
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
   * GoToPos (GoToPos) B
-  o Stop (end) B           suspended
+  o Stop (end) B          suspended
 )");
 }
 

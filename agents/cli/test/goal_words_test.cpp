@@ -83,7 +83,7 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"go", "300cm", "-1500mm"}), "go_to(position=(3, -1.5) in odom)");
   EXPECT_EQ(said({"drive", "0.3m/s"}), said({"drive", "0.3"}));
   EXPECT_EQ(said({"drive", "30cm/s"}), said({"drive", "0.3"}));
-  EXPECT_EQ(said({"turn", "90deg"}), said({"turn", "90"}));
+  EXPECT_EQ(said({"turn", "to", "90deg"}), said({"turn", "to", "90"}));
   EXPECT_EQ(said({"go", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"go", "to", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"go", "meeting", "room"}), "go-to-place(place=\"meeting room\")");
@@ -93,8 +93,8 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"go-to-place", "place=meeting room"}), "go-to-place(place=\"meeting room\")");
   EXPECT_EQ(said({"drive", "0.3"}), "drive(speed=0.3)");
   EXPECT_EQ(said({"drive", "speed=0.3"}), "drive(speed=0.3)");
-  EXPECT_EQ(said({"turn", "180"}), "turn_to(heading=3.14159)");
-  EXPECT_EQ(said({"turn", "180deg"}), "turn_to(heading=3.14159)");
+  EXPECT_EQ(said({"turn", "to", "180"}), "turn_to(heading=3.14159)");
+  EXPECT_EQ(said({"turn", "to", "180deg"}), "turn_to(heading=3.14159)");
   EXPECT_EQ(said({"stop"}), "stop()");
   EXPECT_EQ(said({"follow", "who=ann"}), "follow(who=\"ann\")");
 }
@@ -117,10 +117,12 @@ TEST(GoalWords, WrongShortFormsAreRefused) {
                                                     {"drive", "fast"},
                                                     {"drive", "90deg"},
                                                     {"drive", "0.3m"},
-                                                    {"turn", "1m"},
+                                                    {"turn", "90"},
+                                                    {"turn", "to", "1m"},
+                                                    {"activitis"},
                                                     {"go", "3", "1deg"},
                                                     {"turn"},
-                                                    {"turn", "left"},
+                                                    {"turn", "to", "left"},
                                                     {"stop", "now"},
                                                     {"go_to", "3", "1"}};
   for (const auto& words : wrong)

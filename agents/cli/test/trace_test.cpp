@@ -115,6 +115,14 @@ TEST(Summary, HasTheKeys) {
   EXPECT_DOUBLE_EQ(json.at("speed_factor"), 300.25);
 }
 
+TEST(Summary, AnUnknownSpeedIsNotSaid) {
+  Summary summary;
+  summary.speed_factor = 2.5;
+  EXPECT_NE(to_text(summary).find("(2.50 x real time)"), std::string::npos);
+  summary.speed_factor = 0.0;  // it was interrupted
+  EXPECT_EQ(to_text(summary).find("real time"), std::string::npos);
+}
+
 TEST(Summary, WithoutATraceIsStillJson) {
   EXPECT_TRUE(nlohmann::json::parse(to_json({})).contains("min_clearance_m"));
   Summary summary;

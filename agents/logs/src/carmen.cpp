@@ -121,15 +121,18 @@ constexpr double kFields[] = {100.0, 180.0, 240.0, 270.0, 360.0};
 // Sets the beams of a laser by their number, if the log does not give them: as CARMEN and others
 // configure a SICK LMS, a SICK LMS 1xx or Hokuyo UTM, a Hokuyo URG. An even number is the odd one
 // without the last beam. Any other number spans 180 degrees. A usual laser overrides a `resolution`
-// [degrees] of the log that gives an unusual field of view; false then.
-bool lay_beams(LaserScan& scan, double resolution) {
+// or `field` of view [degrees; 0: not given] of the log that gives an unusual field of view.
+// Returns the words where header and number of beams leave a doubt.
+std::string lay_beams(LaserScan& scan, double resolution, double field) {
   const std::size_t n = scan.ranges.size();
   const auto spans = [&](double first, double step) {
     scan.first_angle = radians(first);
     scan.step = radians(step);
   };
   const auto beams = static_cast<double>(n);
-  const double all = resolution * (beams - static_cast<double>(n % 2));
+  const double steps = beams - static_cast<double>(n % 2);
+  const double each = resolution > 0.0 || n < 2 ? resolution : field / steps;
+  const double all = each * steps;
   bool usual = true;
   if (n == 401)
     spans(-50.0, 0.25);
@@ -154,15 +157,55 @@ bool lay_beams(LaserScan& scan, double resolution) {
     if (n > 1)
       spans(-90.0, 180.0 / (beams - 1.0));
   }
-  if (resolution <= 0.0 || n < 2)
-    return true;
-  const auto spans_usual = [&](double field) { return std::abs(all - field) < 0.02 * field; };
-  const bool said = usual ? std::abs(radians(resolution) - scan.step) < 1e-6 ||
-                                std::any_of(std::begin(kFields), std::end(kFields), spans_usual)
-                          : all > 30.0 && all <= 360.0;
+  if (each <= 0.0 || n < 2)
+    return {};
+  const double step = degrees(scan.step);
+  const auto spans_field = [&](double other) { return std::abs(all - other) < 0.02 * other; };
+  const bool spans_usual = std::any_of(std::begin(kFields), std::end(kFields), spans_field);
+  const bool as_usual = std::abs(each - step) < 1e-4;
+  const bool both = resolution > 0.0 && field > 0.0;
+  const bool agree = both && spans_field(field);
+  const bool said = agree || (usual ? as_usual || spans_usual : all > 30.0 && all <= 360.0);
   if (said)
-    spans(-0.5 * all, resolution);
-  return said;
+    spans(-0.5 * all, each);
+  if (agree || (said && !both && (as_usual || (!usual && spans_usual && n % 2 == 1))))
+    return {};
+  std::string header;
+  if (resolution > 0.0)
+    header = format("laser_front_laser_resolution %g", resolution);
+  if (field > 0.0)
+    header += format("%slaser_front_laser_fov %g", header.empty() ? "" : " and ", field);
+  return header +
+         format(said ? " may not fit %zu beams, which usual lasers have %g degrees apart: taken as "
+                       "%g degrees apart, over %.0f degrees"
+                     : " does not fit %zu beams, which usual lasers have %g degrees apart: taken "
+                       "as that, %g degrees apart, over %.0f degrees",
+                n, step, degrees(scan.step), degrees(scan.step) * steps);
+}
+
+// The step between the beams where the header contradicts itself: its field of view and the number
+// of beams give it, unless the first angle fits the step. Returns the words; empty: all fits.
+std::string mend_step(LaserScan& scan, double field) {
+  const auto beams = static_cast<double>(scan.ranges.size());
+  if (beams < 2.0)
+    return {};
+  const double given = scan.step;
+  const double by_field = std::copysign(field / (beams - 1.0), given);
+  if (given == 0.0)
+    scan.step = field / (beams - 1.0);
+  // The last beam may be left out.
+  const auto fits = [&](double step, double all) {
+    return std::abs(step) * beams > 0.98 * all && std::abs(step) * (beams - 1.0) < 1.02 * all;
+  };
+  if (given == 0.0 || field <= 0.0 || fits(given, field))
+    return {};
+  if (!fits(given, 2.0 * std::abs(scan.first_angle)))
+    scan.step = fits(radians(given), field) ? radians(given) : by_field;
+  return format(
+      "the header's field of view of %g rad does not fit %zu beams %g rad apart: taken as %g "
+      "degrees apart, over %.0f degrees",
+      field, scan.ranges.size(), given, degrees(scan.step),
+      std::abs(degrees(scan.step)) * (beams - 1.0));
 }
 
 // Stamp, host, and the logger's stamp, as far as present.
@@ -178,9 +221,16 @@ Stamps stamps(Words& words) {
 
 struct Parameters {
   double resolution = 0.0;  // [degrees]
+  double field = 0.0;       // [degrees]
   std::optional<Pose> front;
   double longest = 0.0;
-  bool contradicted = false;  // the resolution, by the number of beams
+  // Where header and number of beams do not fit each other: the words, by the first such scan.
+  std::map<Laser, std::string> doubts;
+
+  void doubt(Laser laser, std::string words) {
+    if (!words.empty())
+      doubts.emplace(laser, std::move(words));
+  }
 };
 
 void ranges_of(Words& words, LaserScan& scan) {
@@ -194,8 +244,9 @@ LaserScan old_laser(Words& words, Laser laser, Parameters& parameters) {
   LaserScan scan;
   scan.laser = laser;
   ranges_of(words, scan);
-  if (!lay_beams(scan, laser == Laser::flaser ? parameters.resolution : 0.0))
-    parameters.contradicted = true;
+  const bool front = laser == Laser::flaser;
+  parameters.doubt(
+      laser, lay_beams(scan, front ? parameters.resolution : 0.0, front ? parameters.field : 0.0));
   const Pose in_log = words.pose();
   scan.pose = words.pose();
   scan.laser_in_robot = relative(scan.pose, in_log);
@@ -204,7 +255,7 @@ LaserScan old_laser(Words& words, Laser laser, Parameters& parameters) {
   return scan;
 }
 
-LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
+LaserScan new_laser(Words& words, Laser laser, bool with_robot, Parameters& parameters) {
   LaserScan scan;
   scan.laser = laser;
   words.number("the laser's type");
@@ -216,8 +267,7 @@ LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
   words.number("the accuracy");
   words.number("the remission mode");
   ranges_of(words, scan);
-  if (scan.step == 0.0 && scan.ranges.size() > 1)
-    scan.step = field / static_cast<double>(scan.ranges.size() - 1);
+  parameters.doubt(laser, mend_step(scan, field));
   // CARMEN's documents have no remissions there, its programs do. Then come two poses and five
   // numbers, a stamp, a name and a stamp.
   const auto [left, host] = words.rest();
@@ -423,8 +473,9 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
       if (laser != std::end(kLasers)) {
         const bool old =
             name.starts_with("FLASER") || name.starts_with("RLASER") || name.starts_with("LASER");
-        LaserScan scan = old ? old_laser(words, laser->laser, parameters)
-                             : new_laser(words, laser->laser, name.starts_with("ROBOT"));
+        LaserScan scan =
+            old ? old_laser(words, laser->laser, parameters)
+                : new_laser(words, laser->laser, name.starts_with("ROBOT"), parameters);
         scans[laser->laser].push_back(std::move(scan));
         before[laser->laser].push_back(log.odometry.size());
       } else if (name == "ODOM") {
@@ -438,6 +489,8 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
         const std::string_view what = words.word("a parameter's name");
         if (what == "laser_front_laser_resolution") {
           parameters.resolution = words.number("degrees");
+        } else if (what == "laser_front_laser_fov") {
+          parameters.field = words.number("degrees");
         } else if (what.starts_with("robot_frontlaser_")) {
           Pose front = parameters.front.value_or(Pose{});
           if (what == "robot_frontlaser_offset")
@@ -487,14 +540,9 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
                     scans.empty() ? "expected a line FLASER, ROBOTLASER1 or RAWLASER1"
                                   : "expected lines ODOM: scans without a pose need them");
   }
-  if (parameters.contradicted && log.scans.front().laser == Laser::flaser) {
-    const LaserScan& scan = log.scans.front();
-    log.notes.push_back(
-        format("laser_front_laser_resolution %g does not fit %zu beams, which usual lasers have "
-               "%g degrees apart: taken as that, over %.0f degrees",
-               parameters.resolution, scan.ranges.size(), degrees(scan.step),
-               degrees(scan.step) * static_cast<double>(scan.ranges.size())));
-  }
+  if (const auto doubt = parameters.doubts.find(log.scans.front().laser);
+      doubt != parameters.doubts.end())
+    log.notes.push_back(doubt->second);
   mount(log, parameters);
   const std::optional<double> no_return = find_no_return(log.scans);
   for (LaserScan& scan : log.scans) {

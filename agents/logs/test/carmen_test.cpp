@@ -130,6 +130,66 @@ TEST(Carmen, AResolutionThatDoesNotFitTheBeamsIsNotBelieved) {
       << log.notes[0];
 }
 
+TEST(Carmen, AHeaderThatMayContradictTheBeamsIsTold) {
+  struct Case {
+    const char* header;
+    int beams;
+    double step;  // [degrees]
+    const char* note;
+  };
+  for (const Case& each : {
+           Case{"resolution 2", 180, 2.0, "taken as 2 degrees apart, over 360 degrees"},
+           Case{"resolution 1", 361, 1.0, "taken as 1 degrees apart, over 360 degrees"},
+           Case{"resolution 0.5", 200, 0.5, "taken as 0.5 degrees apart, over 100 degrees"},
+           Case{"fov 90", 180, 1.0, "laser_front_laser_fov 90 does not fit 180 beams"},
+           Case{"fov 180", 180, 1.0, ""},
+           Case{"fov 270", 541, 0.5, ""},
+           Case{"resolution 1", 181, 1.0, ""},
+       }) {
+    const CarmenLog log = parse("PARAM laser_front_laser_" + std::string(each.header) +
+                                " nohost 0\n" + flaser("FLASER", each.beams, 0, 50.0, " 1 h 1"));
+    EXPECT_NEAR(degrees(log.scans[0].step), each.step, 1e-9) << each.header;
+    ASSERT_EQ(log.notes.size(), *each.note == 0 ? 0U : 1U) << each.header << " " << each.beams;
+    if (!log.notes.empty()) {
+      EXPECT_NE(log.notes[0].find(each.note), std::string::npos) << log.notes[0];
+    }
+  }
+  // Two values that fit each other are believed; others are told.
+  const auto with_both = [](const char* resolution) {
+    return parse("PARAM laser_front_laser_fov 90 nohost 0\nPARAM laser_front_laser_resolution " +
+                 std::string(resolution) + " nohost 0\n" +
+                 flaser("FLASER", 180, 0, 50.0, " 1 h 1"));
+  };
+  EXPECT_NEAR(degrees(with_both("0.5").scans[0].step), 0.5, 1e-9);
+  EXPECT_TRUE(with_both("0.5").notes.empty());
+  EXPECT_NEAR(degrees(with_both("1").scans[0].step), 1.0, 1e-9);
+  EXPECT_EQ(with_both("1").notes.size(), 1U);
+}
+
+TEST(Carmen, ARobotLaserWhoseStepDoesNotFitItsFieldIsTold) {
+  struct Case {
+    const char* head;  // first angle, field of view, step
+    double step;       // [degrees]
+    bool told;
+  };
+  for (const Case& each : {
+           Case{"-1.570796 3.141593 0.008727", 180.0 / 179.0, true},
+           Case{"-1.570796 3.141593 0.034907", 180.0 / 179.0, true},
+           Case{"-1.570796 3.141593 1", 1.0, true},
+           Case{"-1.570796 1.570796 0.017453293", 1.0, true},
+           Case{"-1.570796 3.141593 0.017453293", 1.0, false},
+           Case{"-1.570796 3.141593 0", 180.0 / 179.0, false},
+       }) {
+    std::string line = "ROBOTLASER1 0 " + std::string(each.head) + " 50 0.01 0 180";
+    for (int i = 0; i < 180; ++i)
+      line += " 1";
+    const CarmenLog log = parse(line + " 0 0 0 0 0 0 0 0 0 0 0 0 10.5 host 10.6\n");
+    ASSERT_EQ(log.scans.size(), 1U) << each.head;
+    EXPECT_NEAR(degrees(log.scans[0].step), each.step, 1e-3) << each.head;
+    EXPECT_EQ(log.notes.size(), each.told ? 1U : 0U) << each.head;
+  }
+}
+
 TEST(Carmen, ARobotLaserWithOrWithoutACountOfRemissions) {
   const std::string head = "ROBOTLASER1 0 -1.570796 3.141593 0.785398 50 0.01 0 5 1 2 3 4 5";
   const std::string tail = " 1.1 2 0 1 2 0 0.1 0 1 1 0 10.5 host 10.6\n";

@@ -107,7 +107,7 @@ Explanation Reason::why_not(Wish wish) {
         consider(not_true, 0.0, who + ", but finds no cause" + (text.empty() ? "" : ": " + text),
                  std::move(detail));
       } else if (turning && rule.strength() * rule.value() < kNoTurn) {
-        consider(too_little, rule.value(), who + ", but that is as good as straight on",
+        consider(too_little, rule.value(), who + ", but that turn is too small to matter",
                  std::move(detail));
       } else if (activity_of(behavior, channel) < kNoSay) {
         consider(no_activity, rule.strength(), who + ", but says itself that it does not count now",
@@ -120,8 +120,8 @@ Explanation Reason::why_not(Wish wish) {
             above.push_back(name_of(other));
         consider(suppressed, rule.strength(),
                  who + ", but " + (above.empty() ? "others of higher priority" : listed(above)) +
-                     (above.size() == 1 ? " is above it and leaves it no say"
-                                        : " are above it and leave it no say"),
+                     (above.size() == 1 ? " has a higher priority and decides alone"
+                                        : " have a higher priority and decide alone"),
                  std::move(detail));
       } else {
         const Say* against = nullptr;

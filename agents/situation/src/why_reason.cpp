@@ -403,7 +403,7 @@ Cause Reason::behavior_cause(const Say& say, Channel channel) {
   const v1::BehaviorState& behavior = *say.behavior;
   Cause cause{"behavior",
               name_of(behavior) + format(", priority %d, ", behavior.priority()) +
-                  (say.weight < kNoSay ? "has no say: "
+                  (say.weight < kNoSay ? "does not count: "
                                        : format("%.0f %% of the say: ", 100.0 * say.share)) +
                   wish_of(behavior, channel),
               {}};

@@ -160,7 +160,7 @@ Situation driving() {
   grant.stamp().cycle(kCycle + 1);
   grant.role(v1::ROLE_BEHAVIORS);
   grant.source("behaviors");
-  grant.reason("behaviors is the strongest role with a live command");
+  grant.reason("no stronger driver sends commands");
   grant.guard(v1::GUARD_NONE);
   grant.asked_velocity(0.3);
   grant.velocity(0.3);
@@ -222,7 +222,7 @@ void by_keyboard(Situation& situation, double velocity, double rotation) {
   v1::Grant& grant = *situation.grant;
   grant.role(v1::ROLE_TELEOP);
   grant.source("keyboard of ann");
-  grant.reason("teleop is the strongest role with a live command");
+  grant.reason("no stronger driver sends commands");
   grant.velocity(velocity);
   grant.asked_velocity(velocity);
   grant.rotation(v1::ROTATION_VELOCITY);

@@ -47,7 +47,7 @@ TEST_F(WhyTest, DrawsTheTreeFromTheWheelsToTheGoal) {
   EXPECT_EQ(
       text.substr(text.find("\n\n") + 2),
       R"(cycle 1000: The robot is told to drive ahead at 0.30 m/s and to turn 11 degrees to the left
-|- behaviors drives as behaviors: behaviors is the strongest role with a live command
+|- behaviors drives as behaviors: no stronger driver sends commands
 |- the behaviors' blend of speeds: 0.30 m/s
 |  `- GoToPos, priority 3, 100 % of the say: 0.30 m/s
 |     |- rule Fast holds to 1.00: 0.30 m/s
@@ -241,7 +241,7 @@ TEST_F(WhyTest, NotSinceTheHigherPriorityLeavesNoSay) {
   go().turn_weight(0.0);
   EXPECT_EQ(sentence(Wish::turn_right),
             "It does not turn right: GoToPos would (rule Right, 10 degrees to the right), but "
-            "KeepOff is above it and leaves it no say.");
+            "KeepOff has a higher priority and decides alone.");
 }
 
 TEST_F(WhyTest, NotSinceItDoesNotCountItself) {
@@ -257,7 +257,7 @@ TEST_F(WhyTest, NotSinceItIsSoLittle) {
   EXPECT_EQ(
       sentence(Wish::turn_right),
       "It does not turn right: GoToPos would (rule Right, 0.3 degrees to the right), but that "
-      "is as good as straight on.");
+      "turn is too small to matter.");
 }
 
 // A setpoint for a case that does not hold is no wish.

@@ -359,7 +359,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
     if (epoch_ == 0)
       grant.reason = "no robot is connected";
     else if (grant.reason.empty())
-      grant.reason = "nobody asks to drive";
+      grant.reason = "no goal and no person wants the robot to move";
     return grant;
   }
 
@@ -372,7 +372,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   grant.number = p.newest.number;
   grant.command_age = p.newest.cycle == 0 ? now - p.newest.received : age_of(p.newest, cycle);
   grant.expires_in = settings_.lease - (now - p.moved_on);
-  grant.reason = std::string(name(role)) + " is the strongest role with a live command";
+  grant.reason = "no stronger driver sends commands";
   for (const Role other : kDriving) {
     if (other > role && live(player(other), now, cycle))
       refuse(other, player(other).newest.source,

@@ -230,6 +230,11 @@ void Core::packet(const protocol::Bytes& body, double now) {
   if (!in_session())
     return;
   protocol::ServerPacket any = protocol::decode_packet(body);
+  if (const auto* in = std::get_if<protocol::InformationPacket>(&any);
+      in != nullptr && reflector_.recognize(*in))
+    warn(reflector_.parameters().file +
+         " gives no Protocol, and the robot's packets have fields that ARCOS alone sends: it is "
+         "driven as arcos. The line \"Protocol arcos\" in the file prevents this warning");
   if (const auto impossible = protocol::take_out_impossible(any, reflector_.parameters())) {
     session_.doubts.add(*impossible, now);
     if (const auto words = session_.doubts.take_words(now))
@@ -262,9 +267,8 @@ std::uint64_t Core::bad_packets() const {
 
 /// The reported deceleration counts, not the one that was asked for.
 void Core::heed(const protocol::ConfigPacket& set, double now) {
-  if (const double asked = std::exchange(session_.delay_asked, now);
-      session_.delay > 0.0 && asked > 0.0)
-    set_delay(std::min(session_.delay, now - asked));
+  if (std::exchange(session_.measures, false) && session_.delay > 0.0)
+    set_delay(std::min(session_.delay, now - session_.config_asked));
   const bool first = !std::exchange(session_.configured, true);
   const double asked = reflector_.parameters().deceleration;
   const double brakes = set.deceleration * 0.001;
@@ -308,13 +312,15 @@ std::string Core::delay_words() const {
 }
 
 /// A machine that was busy when the session began makes a line look slow. So the delay is measured
-/// again where the robot answers such a question.
+/// again where the robot answers such a question, when no answer to an earlier question can be on
+/// its way: that one would come too soon.
 void Core::mind_delay(double now) {
   if (session_.delay == 0.0 || session_.stamp.cycle == 0 ||
       reflector_.parameters().protocol == protocol::Protocol::kPsos ||
-      now - session_.delay_asked < kMeasureDelay)
+      now - session_.config_asked < kMeasureDelay + session_.delay)
     return;
-  session_.delay_asked = now;
+  session_.config_asked = now;
+  session_.measures = true;
   send(protocol::encode(protocol::ConfigRequest{1}));
 }
 

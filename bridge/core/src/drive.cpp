@@ -181,6 +181,11 @@ void Core::flush(double now) {
   flush_at_ = 0.0;
   protocol::Bytes bytes;
   for (const protocol::Command& command : reflector_.due(time(now), room_)) {
+    const auto* const question = std::get_if<protocol::Integer>(&command);
+    if (question != nullptr && question->number == protocol::Number::kConfigRequest) {
+      session_.config_asked = now;
+      session_.measures = false;
+    }
     const protocol::Bytes packet = protocol::encode(command, reflector_.parameters());
     bytes.insert(bytes.end(), packet.begin(), packet.end());
   }

@@ -37,16 +37,53 @@ TEST(Session, BeginsWithZeroSetpointsAndADescription) {
   EXPECT_EQ(cycles[0].stamp, (Stamp{1000, 1}));
 }
 
-TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
-  Scene scene;
+// Its robot answers after that time [s].
+void connect_slowly(Scene& scene, double delay) {
   scene.mute = true;
   scene.around.link_open = true;
   for (const protocol::Bytes& answer : {protocol::encode_sync(0), protocol::encode_sync(1),
                                         protocol::encode_sync2_reply({"r", "Pioneer", "p3dx"})}) {
-    scene.pass_slowly(0.8);
+    scene.pass_slowly(delay);
     scene.say(answer);
     scene.pass(0.01);
   }
+}
+
+TEST(Session, AnAnswerToAnEarlierQuestionDoesNotMakeALineFast) {
+  for (const int delay : {3, 4, 8}) {  // in cycles
+    Scene scene;
+    connect_slowly(scene, 0.1 * delay);
+    ASSERT_TRUE(scene.core.in_session());
+    protocol::ConfigPacket set;
+    set.deceleration = 600;
+    std::vector<int> answers;  // cycles in which one comes
+    bool measured = false;
+    for (int i = 0; i < 100; ++i) {
+      const auto asked =
+          std::count_if(scene.sent.begin(), scene.sent.end(), [](const protocol::Command& command) {
+            const auto* const question = std::get_if<protocol::Integer>(&command);
+            return question != nullptr && question->number == protocol::Number::kConfigRequest;
+          });
+      answers.insert(answers.end(), static_cast<std::size_t>(asked), i + delay);
+      measured = measured || (i > 10 && asked > 0);
+      scene.sent.clear();
+      while (!answers.empty() && answers.front() <= i) {
+        answers.erase(answers.begin());
+        scene.say(protocol::encode(set));
+      }
+      scene.cycles(1, Role::behaviors, 0.9);
+      if (i > 10) {
+        EXPECT_NE(scene.condition().reason.find("is slow"), std::string::npos)
+            << "cycle " << i << " of a line of " << delay << ": " << scene.condition().reason;
+      }
+    }
+    EXPECT_TRUE(measured) << "it is measured again";
+  }
+}
+
+TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
+  Scene scene;
+  connect_slowly(scene, 0.8);
   ASSERT_TRUE(scene.core.in_session());
   EXPECT_TRUE(scene.noted("the line to the robot is slow: an answer takes 0.8 s"));
   scene.forget();
@@ -67,7 +104,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
   // The machine was busy: the next answer comes at once.
   protocol::ConfigPacket set;
   set.deceleration = 600;
-  for (int i = 0; i < 25; ++i) {
+  for (int i = 0; i < 35; ++i) {
     scene.cycles(1, Role::behaviors, 0.4);
     if (scene.was_sent(protocol::ConfigRequest{1}))
       scene.say(protocol::encode(set));

@@ -26,6 +26,33 @@ TEST(Status, ARobotThatIsServedIsRunning) {
   EXPECT_EQ(scene.all<StatusReport>().back().steps, 14U);
 }
 
+TEST(Status, ARobotOfAnAssumedGenerationIsTakenForWhatItsPacketsShow) {
+  Scene scene;
+  scene.robot.protocol_is_assumed = true;
+  scene.robot.file = "mt400.p";
+  scene.connect();
+  scene.cycle();
+  EXPECT_EQ(scene.core.parameters().protocol, protocol::Protocol::kP2os);
+  EXPECT_FALSE(scene.noted("Protocol arcos"));
+  scene.shown.trailing.battery = 245;
+  scene.shown.ptu = 0;  // the motors are off
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.core.parameters().protocol, protocol::Protocol::kArcos);
+  EXPECT_TRUE(
+      scene.noted("mt400.p gives no Protocol, and the robot's packets have fields that "
+                  "ARCOS alone sends: it is driven as arcos"));
+  const std::vector<CycleBegan> cycles = scene.all<CycleBegan>();
+  EXPECT_EQ(cycles.back().state.information.motors_on, std::optional(false));
+  EXPECT_NEAR(cycles.back().state.information.battery, 24.5, 1e-9);
+  const auto warnings = [&] {
+    return std::count_if(scene.said.begin(), scene.said.end(), [](const Output& output) {
+      const auto* const note = std::get_if<Note>(&output);
+      return note != nullptr && note->text.find("Protocol arcos") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(warnings(), 1);
+}
+
 TEST(Status, SaysWhatIsWaitedFor) {
   Scene scene;
   scene.around.link_trouble = "no such file";

@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <utility>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/command.hpp"
@@ -16,9 +19,11 @@ namespace saphira::protocol {
 
 namespace {
 
-/// True where a subclass of the class Pioneer is one of its first generation.
+/// True where a subclass of the class Pioneer is one of its first generation. "pioneer-..." may be
+/// any.
 bool is_of_the_first(std::string_view subclass) {
-  return subclass.starts_with("psos") || subclass.starts_with("pion");
+  return subclass.starts_with("psos") ||
+         (subclass.starts_with("pion") && !subclass.starts_with("pioneer-"));
 }
 
 constexpr double kMillimetre = 0.001;
@@ -45,15 +50,16 @@ constexpr double kMaxRotAcceleration = 300.0 * kDegree;   // [rad/s2]
 constexpr double kStopRotDeceleration = 200.0 * kDegree;  // [rad/s2]
 // The later names of the same parameters are accepted too, so that the files of later robots load.
 constexpr std::array kNumbers{
-    NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1e-6, 0.0246,
-                  "in radians a tick, of which a turn has 256 at least"},
+    NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1.9e-4, 0.0246,
+                  "in radians a tick, of which a turn has 256 at least and 32768 at most"},
     NumberKeyword{"DistConvFactor", &P::distance_unit, kMillimetre, 1e-3, 50.0, "in mm a tick"},
     NumberKeyword{"VelConvFactor", &P::velocity_unit, kMillimetre, 0.01, 100.0, "in mm/s"},
-    NumberKeyword{"RangeConvFactor", &P::range_unit, kMillimetre, 0.08, 1000.0},
-    NumberKeyword{"DiffConvFactor", &P::rotation_per_difference, 1.0 / kMillimetre, 1e-6, 1.0},
-    NumberKeyword{"Vel2Divisor", &P::vel2_unit, kMillimetre, 0.01, 1000.0},
+    NumberKeyword{"RangeConvFactor", &P::range_unit, kMillimetre, 0.08, 1000.0, "in mm a tick"},
+    NumberKeyword{"DiffConvFactor", &P::rotation_per_difference, 1.0 / kMillimetre, 1e-6, 1.0,
+                  "in radians a mm"},
+    NumberKeyword{"Vel2Divisor", &P::vel2_unit, kMillimetre, 0.01, 1000.0, "in mm/s"},
     NumberKeyword{"RobotRadius", &P::radius, kMillimetre, 10.0, 10000.0, "in mm"},
-    NumberKeyword{"RobotDiagonal", &P::diagonal, kMillimetre, 0.0, 10000.0},
+    NumberKeyword{"RobotDiagonal", &P::diagonal, kMillimetre, 0.0, 10000.0, "in mm"},
     NumberKeyword{"MaxVelocity", &P::max_velocity, kMillimetre, 20.0, 10000.0, "in mm/s"},
     NumberKeyword{"MaxRVelocity", &P::max_rotation_velocity, kDegree, 10.0, 1000.0, "in degrees/s"},
     NumberKeyword{"Acceleration", &P::acceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
@@ -79,8 +85,8 @@ constexpr std::array kNumbers{
     NumberKeyword{"AngleJitter", &P::angle_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleDrift", &P::angle_drift, 1.0, 0.0, 1.0},
     NumberKeyword{"Battery", &P::battery, 1.0, 0.0, 100.0},
-    NumberKeyword{"RobotLength", &P::length, kMillimetre, 1.0, 10000.0},
-    NumberKeyword{"RobotWidth", &P::width, kMillimetre, 1.0, 10000.0},
+    NumberKeyword{"RobotLength", &P::length, kMillimetre, 1.0, 10000.0, "in mm"},
+    NumberKeyword{"RobotWidth", &P::width, kMillimetre, 1.0, 10000.0, "in mm"},
     NumberKeyword{"Watchdog", &P::watchdog, kMillimetre, 0.0, 60000.0},
     NumberKeyword{"LowBattery", &P::low_battery, 1.0, 0.0, 100.0},
     NumberKeyword{"ShutdownVolts", &P::shutdown_voltage, 1.0, 0.0, 100.0},
@@ -183,10 +189,20 @@ class Parser {
     finish_protocol();
     expect_needed();
     expect_head();
+    doubt_unlikely();
     return std::move(parameters_);
   }
 
  private:
+  static const std::vector<std::string>& sections() {
+    static const std::vector<std::string> all(kAriaSections.begin(), kAriaSections.end());
+    return all;
+  }
+  static std::string section_of(const Line& line) {
+    return joined(std::span(line.words).subspan(1), " ",
+                  [](const Word& word) { return lowered(word.text); });
+  }
+
   // ARIA's files have sections, keywords and columns beyond ours, and comments that are broken over
   // two lines. An acceleration of 0 there means the robot's own.
   bool is_passed_over(const Line& line) {
@@ -195,11 +211,12 @@ class Parser {
       aria_ = true;
     if (name == "section") {
       aria_ = true;
-      std::string section;
-      for (std::size_t i = 1; i < line.words.size(); ++i)
-        section += (i > 1 ? " " : "") + lowered(line.words[i].text);
-      aria_section_ =
-          std::find(kAriaSections.begin(), kAriaSections.end(), section) != kAriaSections.end();
+      const std::string section = section_of(line);
+      aria_section_ = std::find(sections().begin(), sections().end(), section) != sections().end();
+      if (aria_section_)
+        read_sections_.insert(section);
+      else if (!section.empty())
+        unread_sections_.push_back(&line);
     }
     if (!aria_)
       return false;
@@ -301,8 +318,10 @@ class Parser {
 
   // Missing parameters follow from the generation of the server.
   void finish_protocol() {
-    if (aria_ && !seen_.contains("protocol"))
+    if (aria_ && !seen_.contains("protocol")) {
       parameters_.protocol = protocol_of_subclass();
+      parameters_.protocol_is_assumed = parameters_.protocol == Protocol::kP2os;
+    }
     const bool later = parameters_.protocol != Protocol::kPsos;
     for (const auto& [name, field] : {std::pair{"hasmovecommand", &P::move_command},
                                       std::pair{"settablevelmaxes", &P::settable_velocities},
@@ -387,6 +406,15 @@ class Parser {
         missing += (missing.empty() ? "" : ", ") + std::string(k.name);
     if (missing.empty())
       return;
+    for (const Line* const line : unread_sections_) {
+      const std::string near = guess(section_of(*line), sections());
+      if (near.empty() || near[0] != section_of(*line)[0] || read_sections_.contains(near))
+        continue;
+      throw FileError(parameters_.file, line->number, line->words[1].column,
+                      "expected a section of ARIA: did you mean " + near +
+                          "? Its lines are not read; missing: " + missing,
+                      line->text);
+    }
     const std::string message =
         "expected also " + missing + ": no robot can do without (has the file been cut off?)";
     if (lines_.empty())
@@ -394,6 +422,34 @@ class Parser {
     const Word& last = lines_.back().words.back();
     throw FileError(parameters_.file, lines_.back().number,
                     last.column + static_cast<int>(last.text.size()), message, lines_.back().text);
+  }
+
+  /// Warns of values that are in no range of their own, and do not fit each other.
+  void doubt_unlikely() {
+    P& p = parameters_;
+    const auto doubt = [&](const std::string& keyword, const std::string& words) {
+      const auto line = seen_.find(lowered(keyword));
+      p.warnings.push_back(p.file + ":" +
+                           (line == seen_.end() ? "" : std::to_string(line->second) + ":") + " " +
+                           keyword + words);
+    };
+    if (p.radius < 0.45 * p.width)
+      doubt("RobotRadius", format(" of %.0f mm is less than half of RobotWidth, %.0f mm: the robot "
+                                  "would touch what it passes",
+                                  p.radius / kMillimetre, p.width / kMillimetre));
+    // VEL2 has a signed byte for each wheel.
+    if (127.0 * p.vel2_unit < 0.2 * p.max_velocity)
+      doubt("Vel2Divisor", format(" of %g mm/s gives wheels %.0f mm/s at the most, where "
+                                  "MaxVelocity is %.0f mm/s: is it 20?",
+                                  p.vel2_unit / kMillimetre, 127.0 * p.vel2_unit / kMillimetre,
+                                  p.max_velocity / kMillimetre));
+    double farthest = 0.0;  // [m]
+    for (const SonarUnit& unit : p.sonars)
+      farthest = std::max(farthest, unit.pose_in_robot.position().norm());
+    if (farthest > 0.0 && farthest < 2.0 * kMillimetre)
+      p.warnings.push_back(p.file + ":" + std::to_string(unit_lines_.begin()->second) +
+                           ": SonarUnit: all sonars are within 2 mm of the robot's middle; their "
+                           "places are in mm and their bearings in degrees");
   }
 
   void expect_head() const {
@@ -423,6 +479,8 @@ class Parser {
   std::size_t next_ = 0;
   bool aria_ = false;          // the form of ARIA's files, with sections
   bool aria_section_ = false;  // a section that is read
+  std::set<std::string> read_sections_;
+  std::vector<const Line*> unread_sections_;
   RobotParameters parameters_;
   std::map<std::string, int> seen_;        // keyword, line
   std::map<int, int> unit_lines_;          // sonar, line
@@ -467,18 +525,20 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
     if (plain && std::find(names.begin(), names.end(), name + ".p") == names.end())
       names.push_back(name + ".p");
   };
-  std::string name = lowered(subclass);
+  const std::string of_class = lowered(robot_class);
+  const std::string whole = lowered(subclass);
+  std::string name = whole;
   add(name);
   // The part behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
   // Without -sh it is another generation.
   for (std::size_t hyphen = name.rfind('-');
        hyphen != std::string::npos && name.substr(hyphen) != "-sh"; hyphen = name.rfind('-')) {
     name.resize(hyphen);
-    add(name);
+    if (name != of_class)
+      add(name);
   }
   // The file of the class Pioneer is one of the manual's time, with its units.
-  const std::string of_class = lowered(robot_class);
-  if (of_class != "pioneer" || is_of_the_first(name) || name.empty())
+  if (of_class != "pioneer" || is_of_the_first(whole) || whole.empty())
     add(of_class);
   return names;
 }

@@ -406,6 +406,8 @@ TEST(ParameterFileNames, LowerCaseSubclassElseClass) {
             (Names{"p3at-sh-laser-2.p", "p3at-sh-laser.p", "p3at-sh.p"}));
   EXPECT_EQ(parameter_file_names("Pioneer", "wheelchair"), (Names{"wheelchair.p"}))
       << "not the file of the first generation";
+  EXPECT_EQ(parameter_file_names("Pioneer", "pioneer-unknown"), (Names{"pioneer-unknown.p"}))
+      << "nor this one";
   EXPECT_EQ(parameter_file_names("Pioneer", ""), (Names{"pioneer.p"}));
   EXPECT_EQ(parameter_file_names("B21", "b21r-laser"), (Names{"b21r-laser.p", "b21r.p", "b21.p"}));
   EXPECT_EQ(parameter_file_names("../../etc/passwd", ".."), Names{});

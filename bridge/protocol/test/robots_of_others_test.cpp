@@ -62,7 +62,16 @@ TEST(RobotsOfOthers, AreTaken) {
     EXPECT_EQ(robot.sonars.size(), 1U);
   }
   EXPECT_EQ(parse_parameters(aria_form("p3dx-sh-lms1xx"), "mine.p").protocol, Protocol::kArcos);
+  EXPECT_FALSE(parse_parameters(aria_form("p3dx-sh-lms1xx"), "mine.p").protocol_is_assumed);
   EXPECT_EQ(parse_parameters(aria_form("p2at8"), "mine.p").protocol, Protocol::kP2os);
+  // Its name shows no generation; its packets do (Reflector::recognize).
+  const RobotParameters outdoors = parse_parameters(aria_form("mt400"), "mine.p");
+  EXPECT_EQ(outdoors.protocol, Protocol::kP2os);
+  EXPECT_TRUE(outdoors.protocol_is_assumed);
+  const RobotParameters told =
+      parse_parameters(aria_form("mt400", "Section General settings\nProtocol arcos\n"), "mine.p");
+  EXPECT_EQ(told.protocol, Protocol::kArcos);
+  EXPECT_FALSE(told.protocol_is_assumed);
   // Written on Windows.
   std::string windows;
   for (const char c : saphira_form())
@@ -85,6 +94,12 @@ const Refused kRefused[] = {
      "expected each keyword once"},
     {"AngleConvFactor 0.0879\n", "AngleConvFactor in radians a tick, of which a turn has 256",
      "AngleConvFactor in radians a tick, of which a turn has 256 at least"},
+    {"AngleConvFactor 0.0001534\n", "AngleConvFactor in radians a tick, of which a turn has 256",
+     "and 32768 at most"},
+    {"RobotLength 0.5\n", "RobotLength in mm", "RobotRadius in mm"},
+    {"RobotWidth 0.4\n", "RobotWidth in mm", "RobotRadius in mm"},
+    {"DiffConvFactor 5.6\n", "DiffConvFactor in radians a mm", "RobotRadius in mm"},
+    {"RangeConvFactor 0.001\n", "RangeConvFactor in mm a tick", "DistConvFactor in mm a tick"},
     {"DistConvFactor 485\n", "DistConvFactor in mm a tick", "DistConvFactor in mm a tick"},
     {"MaxVelocity 0.75\n", "MaxVelocity in mm/s", "MaxVelocity in mm/s"},
     {"TransAccel 0.3\n", "TransAccel in mm/s2", "TransAccel in mm/s2"},
@@ -93,6 +108,32 @@ const Refused kRefused[] = {
      "SonarUnit 3 is missing (has the file been cut off?)"},
     {"MaxRVelocity 1", "expected a line break", "has the file been cut off?"},
 };
+
+TEST(RobotsOfOthers, UnlikelyValuesAreTold) {
+  const auto warning = [](const std::string& text) {
+    const RobotParameters robot = parse_parameters(text, "mine.p");
+    EXPECT_EQ(robot.warnings.size(), 1U) << text;
+    return robot.warnings.empty() ? "" : robot.warnings[0];
+  };
+  EXPECT_EQ(warning(saphira_form("RobotRadius 25\nRobotWidth 425\n")),
+            "mine.p:14: RobotRadius of 25 mm is less than half of RobotWidth, 425 mm: the robot "
+            "would touch what it passes");
+  EXPECT_EQ(
+      warning(saphira_form("Vel2Divisor 0.02\n")),
+      "mine.p:14: Vel2Divisor of 0.02 mm/s gives wheels 3 mm/s at the most, where MaxVelocity "
+      "is 1000 mm/s: is it 20?");
+  std::string metres = aria_form("p3dx");
+  metres.replace(metres.find("69 136 90"), 9, "0.069 0.136 1.57");
+  EXPECT_NE(warning(metres).find("their places are in mm and their bearings in degrees"),
+            std::string::npos);
+  std::string misspelt = aria_form("p3dx");
+  misspelt.replace(misspelt.find("General"), 7, "Genral");
+  const std::string said = trouble(misspelt);
+  EXPECT_EQ(said.find("mine.p:2:9: expected a section of ARIA: did you mean general settings? Its "
+                      "lines are not read; missing: RobotRadius"),
+            0U)
+      << said;
+}
 
 TEST(RobotsOfOthers, AreRefusedAsThePageSays) {
   const std::string text = page();

@@ -103,7 +103,8 @@ bool Connection::is_hopeless(double now) const {
 
 std::string Connection::waiting_for() const {
   if (echoes_ && !open())
-    return "a robot: the line sends back what it is sent, so there is none behind it (an echo in a "
+    return "a robot: the line sends back what it is sent, so no robot is connected to it (an echo "
+           "in a "
            "modem or terminal server, or a plug with its pins joined?)";
   switch (state_) {
     case State::closed:

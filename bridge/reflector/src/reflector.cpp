@@ -29,6 +29,14 @@ void Reflector::configure(const protocol::RobotParameters& parameters) {
                      std::min(kGentle, parameters.deceleration)});
 }
 
+bool Reflector::recognize(const protocol::InformationPacket& packet) {
+  if (!parameters_.protocol_is_assumed || !packet.trailing.battery)
+    return false;
+  parameters_.protocol = protocol::Protocol::kArcos;
+  parameters_.protocol_is_assumed = false;
+  return true;
+}
+
 Slack Reflector::slack() const {
   const double time = parameters_.watchdog + kBraking;
   return {std::abs(state_.information.velocity) * time,

@@ -294,6 +294,24 @@ Map parse_map(std::string_view text, const std::string& file) {
 
 namespace {
 
+/// [m] The distance of an artifact to the next, if that is more than the size of the map without
+/// it; 0 otherwise.
+double distance_off(const Map& map, const Feature& one) {
+  double next = 1e9;
+  Vec2 low(1e9, 1e9);
+  Vec2 high(-1e9, -1e9);
+  for (const Feature& other : map.features) {
+    if (&other == &one)
+      continue;
+    const Vec2 place = other.pose_in_map.position();
+    next = std::min(next, (place - one.pose_in_map.position()).norm() -
+                              (one.length + one.width + other.length + other.width) / 2.0);
+    low = low.cwiseMin(place);
+    high = high.cwiseMax(place);
+  }
+  return next > (high - low).norm() ? next : 0.0;
+}
+
 /// FileError where the artifacts of a file that a person wrote are unlikely.
 void check_likely(const Map& map, std::string_view text, const std::string& file) {
   const std::vector<Line> lines = split_lines(text);  // one for each artifact
@@ -310,6 +328,15 @@ void check_likely(const Map& map, std::string_view text, const std::string& file
                     "the whole map is smaller than a robot: is it in metres? The unit of this file "
                     "is mm",
                     lines.front().text);
+  constexpr double kFarOff = 50.0;  // [m]
+  for (std::size_t i = 0; i < std::min(lines.size(), map.features.size()); ++i) {
+    const double off = distance_off(map, map.features[i]);
+    if (off > kFarOff && map.features.size() > kFew)
+      throw FileError(file, lines[i].number, 1,
+                      "expected a place near the other artifacts of the map, found one " +
+                          std::to_string(std::lround(off)) + " m off (a digit too many?)",
+                      lines[i].text);
+  }
   std::map<std::string_view, int> lines_of_places;
   for (std::size_t i = 0; i < std::min(lines.size(), map.features.size()); ++i) {
     const Feature& one = map.features[i];

@@ -243,6 +243,15 @@ TEST(MapFile, ThatIsUnlikelyIsRefused) {
             ":2:1: the whole map is smaller than a robot: is it in metres? The unit of this file "
             "is mm");
   EXPECT_EQ(loading(metres + "WALL 0, 0, 0, 400\n"), "");
+  const std::string room = "WALL 0, 0, 0, 9000\nWALL 0, 0, 90, 9000\nWALL 9000, 0, 90, 9000\n";
+  EXPECT_EQ(loading(room + "DOOR (1) 99000, 0, 90, 1000\n"),
+            ":4:1: expected a place near the other artifacts of the map, found one 85 m off (a "
+            "digit too many?)");
+  EXPECT_EQ(loading(room + "DOOR (1) 20000, 0, 90, 1000\n"), "");
+  EXPECT_EQ(loading("POS (1) 0, 0, 0\nPOS (2) 90000, 0, 0\nPOS (3) 180000, 0, 0\n"
+                    "POS (4) 270000, 0, 0\n"),
+            "")
+      << "a large place";
   EXPECT_EQ(loading("POS (1) 0, 0, 0 \"home\"\n"), "");
   EXPECT_EQ(loading("POS (1) 0, 0, 0 \"a b\"\n\n; next\nPOS (2) 900, 0, 0 \"a b\"\n"),
             ":4:19: expected a name of its own: the POS of line 1 is \"a b\", too");

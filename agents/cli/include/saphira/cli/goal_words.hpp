@@ -28,10 +28,10 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
 
 /// A goal as a person types it: a functor and its arguments, or in short
 ///
-///   go X Y        go_to position=X,Y       [m] in odom
-///   go PLACE      go-to-place place=PLACE  one or more words
-///   drive SPEED   drive speed=SPEED        [m/s]
-///   turn DEGREES  turn_to heading=DEGREESdeg
+///   go X Y           go_to position=X,Y          [m] in odom
+///   go PLACE         go-to-place place=PLACE     one or more words
+///   drive SPEED      drive speed=SPEED           [m/s]
+///   turn to DEGREES  turn_to heading=DEGREESdeg  in odom
 ///
 /// The numbers may have a unit behind them (30cm, 0.3m/s, 1.57rad). Each with further name=value
 /// words behind it. std::invalid_argument as above.

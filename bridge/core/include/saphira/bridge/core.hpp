@@ -67,9 +67,10 @@ class Core {
   /// Does the next piece of work that is waiting: the rest of a cycle, or the next packet. False
   /// where there is none.
   bool work(double now);
-  /// The parameters of the robot that Identified named. `epoch`: the least number of the session.
+  /// The parameters of the robot named in the event Identified. `epoch`: the least number of the
+  /// session.
   void open(const protocol::RobotParameters& parameters, std::uint64_t epoch, double now);
-  /// The robot that Identified named cannot be served.
+  /// The robot named in the event Identified cannot be served.
   void refuse_robot(const std::string& why, double now);
   /// The time at which the packets before the last Answered were sent.
   void answered(double now);
@@ -123,7 +124,8 @@ class Core {
     Doubts doubts;
     std::uint64_t bad_before = 0;  ///< the parser's count at the start of the session
     double delay = 0.0;            ///< [s] round trip of a slow line; 0: the line is not slow
-    double delay_asked = 0.0;      ///< [s] time of the newest measurement; 0: no answer is awaited
+    double config_asked = 0.0;     ///< [s] the newest question for its configuration
+    bool measures = false;         ///< that question measures the delay, and has no answer yet
     double last_packet = 0.0;      ///< [s]
     double last_heard = 0.0;       ///< [s] an information packet, also an impossible one
     bool silent = false;           ///< the link: nobody may drive unseen

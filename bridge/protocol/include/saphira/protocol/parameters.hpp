@@ -53,6 +53,8 @@ struct RobotParameters {
 
   // Abilities of the server's generation.
   Protocol protocol = Protocol::kPsos;  ///< Protocol: psos, p2os or arcos
+  /// The file gives no Protocol, and the subclass none but p2os: the packets may show arcos.
+  bool protocol_is_assumed = false;
   bool move_command = false;            ///< HasMoveCommand; true by itself from p2os on
   bool settable_velocities = false;     ///< SettableVelMaxes; likewise
   bool settable_accelerations = false;  ///< SettableAccsDecs; likewise

@@ -45,6 +45,9 @@ class Reflector {
  public:
   void configure(const protocol::RobotParameters& parameters);
   const protocol::RobotParameters& parameters() const { return parameters_; }
+  /// Takes a robot whose generation is assumed for one of ARCOS where its packet has fields that
+  /// ARCOS alone sends. True where it did so now.
+  bool recognize(const protocol::InformationPacket& packet);
 
   /// The server was opened. `memory`: of the odom frame before, if any; `fresh`: the number of a
   /// new frame. Zero setpoints are due at once.
