@@ -55,6 +55,9 @@ class Control {
   std::string take(OperatorId id, bool force, double now);
   /// Asks the holder for control. Returns the reason of a failure, in words.
   std::string ask(OperatorId id);
+  /// The holder's control passes to somebody who asked for it. Returns the reason of a failure, in
+  /// words.
+  std::string give(OperatorId id, OperatorId to, double now);
   void release(OperatorId id);
   /// The reason for refusing the sample, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
@@ -63,11 +66,13 @@ class Control {
   Order order(double now);
 
   OperatorId holder() const { return holder_; }
-  /// The present state for the pages, as JSON: holder, name, asked (names), note, driving.
+  /// The present state for the pages, as JSON: holder, name, asked (id and name of each), note,
+  /// let_go (why the stick must be let go first; empty: it need not).
   std::string json() const;
 
  private:
   void drop(const std::string& note);
+  void hand_to(OperatorId id, const std::string& note, double now);
   void lose_silent(double now);
   std::string name_of(OperatorId id) const;
 
@@ -77,10 +82,10 @@ class Control {
   std::vector<OperatorId> asked_;
   std::string note_;
   Sample newest_;
-  double came_ = 0.0;          ///< [s] of the newest sample
-  double quickest_ = 0.0;      ///< [s] the smallest difference of the two clocks
-  bool any_ = false;           ///< a sample has come since control was taken
-  bool let_go_first_ = false;  ///< after a gap
+  double came_ = 0.0;      ///< [s] of the newest sample
+  double quickest_ = 0.0;  ///< [s] the smallest difference of the two clocks
+  bool any_ = false;       ///< a sample has come since control was taken
+  std::string let_go_;     ///< why the stick must be let go first [empty: it need not]
 };
 
 }  // namespace saphira::console
