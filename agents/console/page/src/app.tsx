@@ -133,10 +133,12 @@ const driverWords: {[role: string]: string} = {
 };
 
 // The information area (manual 2.3.3), and above it in one sentence what goes on.
-function sentence(drive: Drive, grant?: Grant, why?: Why): string {
+function sentence(drive: Drive, robot: RobotState, grant?: Grant, why?: Why): string {
   if (grant?.estopped) return 'Emergency stop: the robot stands until Reset, and then until it gets a new goal.';
   if (grant?.waits_for_hand_back) return drive.letGoFirst() || (drive.mine() ? 'You have control: the robot waits until you drive it, or hand it back.' : 'A person drove last: autonomy waits for Hand back.');
-  return forPage(why?.sentence ?? grant?.reason ?? '');
+  // Of the cycle that it tells of: a program that hangs leaves an old one.
+  const age = why && why.epoch === robot.stamp.epoch ? cycle * (robot.stamp.cycle - why.cycle) : 0;
+  return (age >= old ? `${seconds(age)} ago: ` : '') + forPage(why?.sentence ?? grant?.reason ?? '');
 }
 function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: Grant; seen: Seen}) {
   const robot = link.data<RobotState>('robot/state');
@@ -148,11 +150,9 @@ function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: G
   const pose = tracking || lost ? registration!.pose_in_map : robot.pose_in_odom;
   const doubtful = registration && (lost || tracking && registration.confidence <= doubt);
   const sure = tracking || lost ? `, ${percent(registration!.confidence)} sure` : '';
-  // Of what the sentence tells: the cycle may be older than the sentence.
-  const told = why && why.epoch === robot.stamp.epoch ? cycle * (robot.stamp.cycle - why.cycle) : 0;
   const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
   return <div class={`now ${s.state}`}>
-    <p class="sentence" title={why?.sentence}>{s.state === 'gone' ? 'Last heard: ' : told >= old && `${seconds(told)} ago: `}{sentence(drive, grant, why)}</p>
+    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{sentence(drive, robot, grant, why)}</p>
     {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {forPage(grant.guard_reason)}</p>}
     <dl>
       <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
