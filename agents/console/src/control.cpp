@@ -30,6 +30,7 @@ void Control::drop(const std::string& note) {
   holder_ = 0;
   newest_ = {};
   any_ = false;
+  driven_ = false;
   note_ = note;
 }
 
@@ -128,9 +129,16 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
     let_go_ = kGap;
   came_ = now;
   newest_ = sample;
-  if (!sample.active)
+  if (!sample.active) {
     let_go_.clear();
+    driven_ = false;
+  }
   return let_go_;
+}
+
+void Control::stopped() {
+  if (driven_)
+    let_go_ = kGap;
 }
 
 Control::Order Control::order(double now) {

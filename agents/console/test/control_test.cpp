@@ -164,6 +164,25 @@ TEST_F(ControlTest, OneHasControlAndTheOtherAsksOrTakes) {
   EXPECT_NE(control.json().find(R"("asked":[])"), std::string::npos);
 }
 
+// The bridge's lease is shorter than the validity of a sample, and it sees when the pictures stop.
+TEST_F(ControlTest, ARobotThatTheBridgeStoppedStandsUntilTheStickWasLetGo) {
+  take_and_drive();
+  control.stopped();  // it has not begun to drive yet
+  EXPECT_TRUE(samples(true, 0.1));
+  control.driven(true);
+  control.stopped();
+  EXPECT_FALSE(samples(true, 1.0));
+  EXPECT_EQ(refused, "the picture came too late, so the robot stopped");
+  samples(false, 0.1);
+  EXPECT_TRUE(samples(true, 0.1));
+  control.stopped();  // before the stick was held again
+  EXPECT_TRUE(samples(true, 0.1));
+  control.driven(true);
+  control.driven(false);  // an emergency stop, which has words of its own
+  control.stopped();
+  EXPECT_TRUE(samples(true, 0.1));
+}
+
 TEST_F(ControlTest, ControlIsGivenToWhoAskedAndNothingMovesUntilThen) {
   take_and_drive();
   EXPECT_EQ(control.give(kAnn, kBob, now), "bob does not ask for control any more");

@@ -62,6 +62,12 @@ class Control {
   /// The reason for refusing the sample, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
 
+  /// Somebody drives the robot: the stick that is held now, or not.
+  void driven(bool by_the_stick) { driven_ = by_the_stick && holder_ != 0 && newest_.active; }
+  /// Nobody drives the robot, and it stands. One that was driven until then was stopped, as the
+  /// bridge does after a gap that is too short for this class: the stick must be let go first.
+  void stopped();
+
   /// The present order. Call it at least ten times a second: it detects missing samples.
   Order order(double now);
 
@@ -85,6 +91,7 @@ class Control {
   double came_ = 0.0;      ///< [s] of the newest sample
   double quickest_ = 0.0;  ///< [s] the smallest difference of the two clocks
   bool any_ = false;       ///< a sample has come since control was taken
+  bool driven_ = false;    ///< by the stick that is held now
   std::string let_go_;     ///< why the stick must be let go first [empty: it need not]
 };
 
