@@ -33,6 +33,8 @@ export async function end(child) {
   await ended(child);
 }
 
+const stands = row => Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02;
+
 // The simulator's trace (--trace): what is true, a row for each cycle of 0.1 s.
 export function trace(file) {
   const rows = () => readFileSync(file, 'utf8').split('\n').slice(1, -1)
@@ -42,8 +44,14 @@ export function trace(file) {
     speed: () => Math.abs(rows().at(-1)?.velocity ?? 0),
     // [s] from a cycle on; undefined while it moves.
     stood: from => {
-      const found = rows().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
+      const found = rows().find(row => row.cycle >= from && stands(row));
       return found && (found.cycle - from) / 10;
+    },
+    // It moves after it has stood in two rows, from a cycle on.
+    drivesOn: from => {
+      const moving = rows().filter(row => row.cycle >= from).map(row => !stands(row));
+      const first = moving.findIndex((moves, i) => !moves && moving[i + 1] === false);
+      return first >= 0 && moving.slice(first).includes(true);
     },
   };
 }
