@@ -591,7 +591,7 @@ test('a micro-task is held and let go on; drawings and messages of a program, an
   await page.locator('summary', {hasText: 'interpretation'}).click();
   const task = page.locator('.processes li', {hasText: 'occgrid'});
   await task.getByRole('button', {name: 'Interrupt occgrid'}).click();
-  await task.locator('.chip', {hasText: 'interrupted'}).waitFor();
+  await task.locator('.chip', {hasText: 'suspended'}).waitFor();
   await task.getByRole('button', {name: 'Resume occgrid'}).click();
   await task.locator('.chip', {hasText: 'running'}).waitFor();
   await leave(page);
