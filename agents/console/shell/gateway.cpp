@@ -215,7 +215,7 @@ void Gateway::watch_grant() {
   const v1::RobotState* const robot = mind_.robot();
   if (robot != nullptr && std::abs(robot->velocity()) < kStands &&
       std::abs(robot->rotation_velocity()) < kStands)
-    control_.stopped();
+    control_.stopped(now());
 }
 
 void Gateway::look_at_simulator() {

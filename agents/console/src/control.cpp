@@ -30,7 +30,7 @@ void Control::drop(const std::string& note) {
   holder_ = 0;
   newest_ = {};
   any_ = false;
-  driven_ = false;
+  driven(false);
   note_ = note;
 }
 
@@ -131,13 +131,22 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
   newest_ = sample;
   if (!sample.active) {
     let_go_.clear();
-    driven_ = false;
+    driven(false);
   }
   return let_go_;
 }
 
-void Control::stopped() {
-  if (driven_)
+void Control::driven(bool by_the_stick) {
+  driven_ = by_the_stick && holder_ != 0 && newest_.active;
+  stands_since_.reset();
+}
+
+void Control::stopped(double now) {
+  if (!driven_)
+    return;
+  if (!stands_since_)
+    stands_since_ = now;
+  if (now - *stands_since_ >= settings_.stand)
     let_go_ = kGap;
 }
 

@@ -167,20 +167,28 @@ TEST_F(ControlTest, OneHasControlAndTheOtherAsksOrTakes) {
 // The bridge's lease is shorter than the validity of a sample, and it sees when the pictures stop.
 TEST_F(ControlTest, ARobotThatTheBridgeStoppedStandsUntilTheStickWasLetGo) {
   take_and_drive();
-  control.stopped();  // it has not begun to drive yet
-  EXPECT_TRUE(samples(true, 0.1));
+  // The robot stands for that time, though the stick is held, and moves by the order then.
+  const auto stopped = [this](double duration) {
+    for (const double end = now + duration; now < end;) {
+      control.stopped(now);
+      samples(true, 0.1);
+    }
+    return !control.order(now).active;
+  };
+  EXPECT_FALSE(stopped(1.0));  // it has not begun to drive yet
   control.driven(true);
-  control.stopped();
+  EXPECT_FALSE(stopped(0.25));  // as long as a lost packet costs
+  control.driven(true);
+  EXPECT_FALSE(stopped(0.25));
+  EXPECT_TRUE(stopped(0.25));
   EXPECT_FALSE(samples(true, 1.0));
   EXPECT_EQ(refused, "the picture came too late, so the robot stopped");
   samples(false, 0.1);
   EXPECT_TRUE(samples(true, 0.1));
-  control.stopped();  // before the stick was held again
-  EXPECT_TRUE(samples(true, 0.1));
+  EXPECT_FALSE(stopped(1.0));  // before the stick was held again
   control.driven(true);
   control.driven(false);  // an emergency stop, which has words of its own
-  control.stopped();
-  EXPECT_TRUE(samples(true, 0.1));
+  EXPECT_FALSE(stopped(1.0));
 }
 
 TEST_F(ControlTest, ControlIsGivenToWhoAskedAndNothingMovesUntilThen) {

@@ -47,11 +47,7 @@ export function trace(file) {
       const found = rows().find(row => row.cycle >= from && stands(row));
       return found && (found.cycle - from) / 10;
     },
-    // It moves after it has stood in two rows, from a cycle on.
-    drivesOn: from => {
-      const moving = rows().filter(row => row.cycle >= from).map(row => !stands(row));
-      const first = moving.findIndex((moves, i) => !moves && moving[i + 1] === false);
-      return first >= 0 && moving.slice(first).includes(true);
-    },
+    // It moves after it has stood for 0.5 s, from a cycle on.
+    drivesOn: from => /00000+.*1/.test(rows().filter(row => row.cycle >= from).map(row => stands(row) ? '0' : '1').join('')),
   };
 }

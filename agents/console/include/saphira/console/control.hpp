@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ namespace saphira::console {
 class Control {
  public:
   struct Settings {
-    double hold = 0.4;  ///< [s] validity of the newest sample after its arrival
-    double lose = 1.0;  ///< [s] after this silence control is lost
-    double late = 0.4;  ///< [s] a sample with this delay over the quickest is refused
+    double hold = 0.4;   ///< [s] validity of the newest sample after its arrival
+    double lose = 1.0;   ///< [s] after this silence control is lost
+    double late = 0.4;   ///< [s] a sample with this delay over the quickest is refused
+    double stand = 0.3;  ///< [s] a robot that the bridge stopped for so long waits for let go
   };
 
   /// One sample of the operator's page.
@@ -63,10 +65,11 @@ class Control {
   std::string drive(OperatorId id, const Sample& sample, double now);
 
   /// Somebody drives the robot: the stick that is held now, or not.
-  void driven(bool by_the_stick) { driven_ = by_the_stick && holder_ != 0 && newest_.active; }
-  /// Nobody drives the robot, and it stands. One that was driven until then was stopped, as the
-  /// bridge does after a gap that is too short for this class: the stick must be let go first.
-  void stopped();
+  void driven(bool by_the_stick);
+  /// Nobody drives the robot, and it stands. The bridge stops a robot after a gap that is too short
+  /// for this class. Where it stands for longer than one lost packet costs, the stick must be let
+  /// go first.
+  void stopped(double now);
 
   /// The present order. Call it at least ten times a second: it detects missing samples.
   Order order(double now);
@@ -88,11 +91,12 @@ class Control {
   std::vector<OperatorId> asked_;
   std::string note_;
   Sample newest_;
-  double came_ = 0.0;      ///< [s] of the newest sample
-  double quickest_ = 0.0;  ///< [s] the smallest difference of the two clocks
-  bool any_ = false;       ///< a sample has come since control was taken
-  bool driven_ = false;    ///< by the stick that is held now
-  std::string let_go_;     ///< why the stick must be let go first [empty: it need not]
+  double came_ = 0.0;                   ///< [s] of the newest sample
+  double quickest_ = 0.0;               ///< [s] the smallest difference of the two clocks
+  bool any_ = false;                    ///< a sample has come since control was taken
+  bool driven_ = false;                 ///< by the stick that is held now
+  std::optional<double> stands_since_;  ///< [s] although that stick is held
+  std::string let_go_;                  ///< why the stick must be let go first [empty: it need not]
 };
 
 }  // namespace saphira::console
