@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "key.hpp"
@@ -21,6 +22,7 @@ namespace topics = bus::topics;
 constexpr double kGreeting = 5.0;     // [s] limit for a page's hello
 constexpr double kStillThere = 60.0;  // [s] after driving in which the bridge gets releases
 constexpr double kExplain = 0.5;      // [s]
+constexpr double kStands = 0.01;      // [m/s, rad/s] below this speed
 constexpr std::size_t kLines = 200;   // of a log
 constexpr std::size_t kMany = 2000;   // instances of a topic
 
@@ -196,12 +198,26 @@ void Gateway::poll() {
   goals_.poll();
   for (bus::RequestClient* client : {&resets_, &registration_, &processes_})
     take_answers(*client);
-  if (auto grant = grants_.take_newest())
-    grant_ = std::move(grant);
   if (const v1::RobotState* const robot = mind_.robot())
     stamp_ = robot->stamp();
+  if (auto grant = grants_.take_newest()) {
+    grant_ = std::move(grant);
+    watch_grant();
+  }
   if (any)
     server_.want_all_soon();
+}
+
+/// A grant for a command before the stick was held says nothing of it.
+void Gateway::watch_grant() {
+  if (grant_->role() != v1::ROLE_NONE) {
+    return control_.driven(grant_->role() == v1::ROLE_TELEOP && grant_->source() == last_source_ &&
+                           held_since_ != 0 && grant_->number() >= held_since_);
+  }
+  const v1::RobotState* const robot = mind_.robot();
+  if (robot != nullptr && std::abs(robot->velocity()) < kStands &&
+      std::abs(robot->rotation_velocity()) < kStands)
+    control_.stopped(now());
 }
 
 void Gateway::look_at_simulator() {
@@ -249,6 +265,7 @@ void Gateway::drive() {
     command.stamp().cycle(std::min(order.cycle, stamp_.cycle()));
   command.source(last_source_);
   command.number(++command_);
+  held_since_ = !order.active ? 0 : held_since_ == 0 ? command_ : held_since_;
   command.active(order.active);
   command.hand_back(!order.active && hand_backs_left_ > 0);
   hand_backs_left_ = order.active ? 0 : std::max(0, hand_backs_left_ - 1);

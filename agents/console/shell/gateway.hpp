@@ -85,6 +85,7 @@ class Gateway {
   void press_estop();
   void explain();
   void show_control();
+  void watch_grant();
   void look_at_simulator();
   void ask_simulator(Connection connection, const Page& page, std::string text);
 
@@ -136,6 +137,7 @@ class Gateway {
   v1::Stamp stamp_;  ///< of the newest robot state
   std::optional<v1::Grant> grant_;
   std::uint64_t command_ = 0;
+  std::uint64_t held_since_ = 0;  ///< the first command of the stick that is held [0: none is]
   std::uint64_t utterances_ = 0;
   double drove_ = -1e9;      ///< [s] when an operator last had control
   int hand_backs_left_ = 0;  ///< the topic is best effort

@@ -201,6 +201,8 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     note(control_.take(connection, take->force, now()));
   else if (std::holds_alternative<AskForControl>(message))
     note(control_.ask(connection));
+  else if (const auto* give = std::get_if<GiveControl>(&message))
+    note(control_.give(connection, give->to, now()));
   else if (std::holds_alternative<ReleaseControl>(message))
     control_.release(connection);
   else if (std::holds_alternative<HandBack>(message))

@@ -12,6 +12,8 @@ namespace saphira::console {
 namespace {
 
 constexpr double kClockDrift = 1e-3;  // more than the drift of two clocks
+constexpr const char* kGap = "the picture came too late, so the robot stopped";
+constexpr const char* kHeldBefore = "it was held already when control came";
 
 std::string seconds(double value) {
   return format("%.1f s", value);
@@ -28,6 +30,7 @@ void Control::drop(const std::string& note) {
   holder_ = 0;
   newest_ = {};
   any_ = false;
+  driven(false);
   note_ = note;
 }
 
@@ -59,13 +62,16 @@ std::string Control::take(OperatorId id, bool force, double now) {
   if (holder_ != 0 && !force)
     return name_of(holder_) + " has control: ask for it, or take it";
   const std::string from = holder_ == 0 ? std::string() : " from " + name_of(holder_);
-  drop({});
-  note_ = name_of(id) + " took control" + from;
+  hand_to(id, name_of(id) + " took control" + from, now);
+  return {};
+}
+
+void Control::hand_to(OperatorId id, const std::string& note, double now) {
+  drop(note);
   holder_ = id;
   std::erase(asked_, id);
   came_ = now;
-  let_go_first_ = true;
-  return {};
+  let_go_ = kHeldBefore;
 }
 
 std::string Control::ask(OperatorId id) {
@@ -77,6 +83,15 @@ std::string Control::ask(OperatorId id) {
     return "you have control";
   if (std::find(asked_.begin(), asked_.end(), id) == asked_.end())
     asked_.push_back(id);
+  return {};
+}
+
+std::string Control::give(OperatorId id, OperatorId to, double now) {
+  if (holder_ != id || holder_ == 0)
+    return "you do not have control";
+  if (std::find(asked_.begin(), asked_.end(), to) == asked_.end())
+    return name_of(to) + " does not ask for control any more";
+  hand_to(to, name_of(id) + " gave control to " + name_of(to), now);
   return {};
 }
 
@@ -111,12 +126,28 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
   if (late > settings_.late)
     return "came " + seconds(late) + " late";
   if (now - came_ > settings_.hold)
-    let_go_first_ = true;
+    let_go_ = kGap;
   came_ = now;
   newest_ = sample;
-  if (!sample.active)
-    let_go_first_ = false;
-  return let_go_first_ && sample.active ? "let the stick go first" : "";
+  if (!sample.active) {
+    let_go_.clear();
+    driven(false);
+  }
+  return let_go_;
+}
+
+void Control::driven(bool by_the_stick) {
+  driven_ = by_the_stick && holder_ != 0 && newest_.active;
+  stands_since_.reset();
+}
+
+void Control::stopped(double now) {
+  if (!driven_)
+    return;
+  if (!stands_since_)
+    stands_since_ = now;
+  if (now - *stands_since_ >= settings_.stand)
+    let_go_ = kGap;
 }
 
 Control::Order Control::order(double now) {
@@ -126,8 +157,8 @@ Control::Order Control::order(double now) {
     return order;
   order.source = name_of(holder_);
   if (now - came_ > settings_.hold)
-    let_go_first_ = true;
-  if (!any_ || let_go_first_ || !newest_.active)
+    let_go_ = kGap;
+  if (!any_ || !let_go_.empty() || !newest_.active)
     return order;
   order.active = true;
   order.velocity = newest_.velocity;
@@ -139,11 +170,11 @@ Control::Order Control::order(double now) {
 std::string Control::json() const {
   std::string asked;
   for (const OperatorId id : asked_)
-    asked += (asked.empty() ? "" : ",") + quoted(name_of(id));
+    asked += (asked.empty() ? "{\"id\":" : ",{\"id\":") + std::to_string(id) +
+             ",\"name\":" + quoted(name_of(id)) + "}";
   return "{\"holder\":" + std::to_string(holder_) +
          ",\"name\":" + quoted(holder_ == 0 ? "" : name_of(holder_)) + ",\"asked\":[" + asked +
-         "],\"note\":" + quoted(note_) +
-         ",\"let_go\":" + (holder_ != 0 && let_go_first_ ? "true" : "false") + "}";
+         "],\"note\":" + quoted(note_) + ",\"let_go\":" + quoted(holder_ == 0 ? "" : let_go_) + "}";
 }
 
 }  // namespace saphira::console

@@ -69,6 +69,8 @@ Message read(const Json& json) {
     return TakeControl{truth(json, "force")};
   if (type == "ask")
     return AskForControl{};
+  if (type == "give")
+    return GiveControl{count(json, "to")};
   if (type == "release")
     return ReleaseControl{};
   if (type == "hand_back")

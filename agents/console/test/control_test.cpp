@@ -64,8 +64,10 @@ TEST_F(ControlTest, DrivesWhatTheHolderHolds) {
 TEST_F(ControlTest, AStickThatIsHeldWhenControlIsTakenMovesNothing) {
   EXPECT_EQ(control.take(kAnn, false, now), "");
   EXPECT_FALSE(samples(true, 1.0));
-  EXPECT_EQ(refused, "let the stick go first");
+  EXPECT_EQ(refused, "it was held already when control came");
+  EXPECT_NE(control.json().find("\"let_go\":\"" + refused), std::string::npos);
   samples(false, 0.1);
+  EXPECT_NE(control.json().find(R"("let_go":"")"), std::string::npos);
   EXPECT_TRUE(samples(true, 0.1));
 }
 
@@ -74,6 +76,8 @@ TEST_F(ControlTest, SilenceStopsWithinHalfASecondAndTheStickMustBeLetGo) {
   EXPECT_LE(silence(0.6), 0.5);
   EXPECT_EQ(control.holder(), kAnn);
   EXPECT_FALSE(samples(true, 0.5));
+  EXPECT_EQ(refused, "the picture came too late, so the robot stopped");
+  EXPECT_NE(control.json().find("\"let_go\":\"" + refused), std::string::npos);
   samples(false, 0.1);
   EXPECT_TRUE(samples(true, 0.1));
 }
@@ -151,13 +155,58 @@ TEST_F(ControlTest, OneHasControlAndTheOtherAsksOrTakes) {
   take_and_drive();
   EXPECT_NE(control.take(kBob, false, now), "");
   EXPECT_EQ(control.ask(kBob), "");
-  EXPECT_NE(control.json().find(R"("asked":["bob"])"), std::string::npos);
+  EXPECT_NE(control.json().find(R"("asked":[{"id":2,"name":"bob"}])"), std::string::npos);
   EXPECT_EQ(control.holder(), kAnn);
   EXPECT_EQ(control.take(kBob, true, now), "");
   EXPECT_EQ(control.holder(), kBob);
   EXPECT_FALSE(control.order(now).active);
   EXPECT_EQ(control.drive(kAnn, sample(true), now), "you do not have control");
   EXPECT_NE(control.json().find(R"("asked":[])"), std::string::npos);
+}
+
+// The bridge's lease is shorter than the validity of a sample, and it sees when the pictures stop.
+TEST_F(ControlTest, ARobotThatTheBridgeStoppedStandsUntilTheStickWasLetGo) {
+  take_and_drive();
+  // The robot stands for that time, though the stick is held, and moves by the order then.
+  const auto stopped = [this](double duration) {
+    for (const double end = now + duration; now < end;) {
+      control.stopped(now);
+      samples(true, 0.1);
+    }
+    return !control.order(now).active;
+  };
+  EXPECT_FALSE(stopped(1.0));  // it has not begun to drive yet
+  control.driven(true);
+  EXPECT_FALSE(stopped(0.25));  // as long as a lost packet costs
+  control.driven(true);
+  EXPECT_FALSE(stopped(0.25));
+  EXPECT_TRUE(stopped(0.25));
+  EXPECT_FALSE(samples(true, 1.0));
+  EXPECT_EQ(refused, "the picture came too late, so the robot stopped");
+  samples(false, 0.1);
+  EXPECT_TRUE(samples(true, 0.1));
+  EXPECT_FALSE(stopped(1.0));  // before the stick was held again
+  control.driven(true);
+  control.driven(false);  // an emergency stop, which has words of its own
+  EXPECT_FALSE(stopped(1.0));
+}
+
+TEST_F(ControlTest, ControlIsGivenToWhoAskedAndNothingMovesUntilThen) {
+  take_and_drive();
+  EXPECT_EQ(control.give(kAnn, kBob, now), "bob does not ask for control any more");
+  EXPECT_EQ(control.ask(kBob), "");
+  EXPECT_EQ(control.give(kBob, kBob, now), "you do not have control");
+  EXPECT_EQ(control.holder(), kAnn);
+  EXPECT_EQ(control.give(kAnn, kBob, now), "");
+  EXPECT_EQ(control.holder(), kBob);
+  EXPECT_NE(control.json().find(R"("asked":[],"note":"ann gave control to bob")"),
+            std::string::npos);
+  // A stick that bob held all along moves nothing.
+  EXPECT_EQ(control.drive(kBob, sample(true), now), "it was held already when control came");
+  EXPECT_FALSE(control.order(now).active);
+  EXPECT_EQ(control.drive(kBob, sample(false), now), "");
+  EXPECT_EQ(control.drive(kBob, sample(true), now), "");
+  EXPECT_TRUE(control.order(now).active);
 }
 
 TEST_F(ControlTest, ReleasingAndLeavingStop) {

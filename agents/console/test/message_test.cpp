@@ -36,6 +36,8 @@ TEST(Message, EachKindIsRead) {
   EXPECT_EQ(std::get<Rename>(parse_message(R"({"type":"rename","name":"ann"})")).name, "ann");
   EXPECT_EQ(std::get<Say>(parse_message(R"({"type":"say","text":"hello"})")).text, "hello");
   EXPECT_TRUE(std::holds_alternative<AskForControl>(parse_message(R"({"type":"ask"})")));
+  EXPECT_EQ(std::get<GiveControl>(parse_message(R"({"type":"give","to":7})")).to, 7U);
+  EXPECT_TRUE(std::holds_alternative<Wrong>(parse_message(R"({"type":"give"})")));
   EXPECT_TRUE(std::holds_alternative<ReleaseControl>(parse_message(R"({"type":"release"})")));
   EXPECT_TRUE(std::holds_alternative<HandBack>(parse_message(R"({"type":"hand_back"})")));
   EXPECT_TRUE(std::holds_alternative<EmergencyStop>(parse_message(R"({"type":"estop"})")));

@@ -7,21 +7,20 @@ import {ahead, askInstead, nameOf, quoted} from './goals';
 import {Legend} from './legend';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
-import type {ConsoleInfo, Grant, Registration, RobotState, Why} from './types';
-import {type Layers, type Target, View} from './view';
-import {forPage, keyless} from './words';
+import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why} from './types';
+import {doubt, type Layers, type Target, View} from './view';
+import {forPage, keyless, old, percent, seconds} from './words';
 
 const tabs = ['Goals', 'Why', 'Behaviors', 'Intentions', 'Programs', 'Messages'] as const;
 type Tab = typeof tabs[number];
-const old = 1000;            // [ms] an older picture is marked as such
+const cycle = 100;           // [ms] of the robot
 const wordsPeriod = 100;     // [ms] between two looks at the words
 const noteTime = 8000;       // [ms]
 const longNoteTime = 20_000; // [ms] of bad news
 const aside = 30;            // [pixels] of a card from the place that it is about
 const beside: {[side: string]: number} = {top: 75, bottom: 60};
 
-interface Seen { state: 'live' | 'old' | 'silent' | 'gone' | 'locked'; age: number }
-function seen(link: Link, now: number): Seen {
+function look(link: Link, now: number): Seen {
   const robot = link.get<RobotState>('robot/state');
   const age = robot ? now - robot.at : Infinity;
   if (!link.mayWatch) return {state: 'locked', age};
@@ -76,23 +75,23 @@ export function App() {
     });
   }, []);
 
-  const state = seen(link, now);
+  const state = look(link, now);
   const grant = link.data<Grant>('drive/grant');
   return <>
-    <Header link={link} seen={state} grant={grant} />
+    <Header link={link} seen={state} />
     <main>
       <section class="picture" aria-label="Map">
         <Picture link={link} drive={drive} seen={state} />
       </section>
       <section class="side" aria-label="Goals, reasons and programs">
         {grant?.estopped && <Estopped link={link} grant={grant} />}
-        <Now link={link} grant={grant} seen={state} />
-        <DrivePanel link={link} drive={drive} grant={grant} />
+        <Now link={link} drive={drive} grant={grant} seen={state} />
+        <DrivePanel link={link} drive={drive} grant={grant} seen={state} />
         {note && <p class={note.well ? 'note' : 'note bad'} role="status">{forPage(note.text)}
           <button class="plain" aria-label="Close this message" onClick={() => setNote(undefined)}>×</button></p>}
         <Tabs tab={tab} choose={setTab} />
         <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
-          {tab === 'Goals' && <Goals link={link} />}
+          {tab === 'Goals' && <Goals link={link} now={now} />}
           {tab === 'Why' && <WhyTree link={link} />}
           {tab === 'Behaviors' && <BehaviorList link={link} now={now} />}
           {tab === 'Intentions' && <IntentionTree link={link} now={now} />}
@@ -106,17 +105,8 @@ export function App() {
 
 const linkWords = {live: 'live', old: 'old', silent: 'no robot', gone: 'link gone', locked: 'locked'};
 
-function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant}) {
+function Header({link, seen: s}: {link: Link; seen: Seen}) {
   const info = link.data<ConsoleInfo>('console');
-  const [pressed, setPressed] = useState(false);
-  useEffect(() => {
-    if (grant?.estopped) setPressed(false);
-  }, [grant?.estopped]);
-  const press = () => {
-    const sent = link.send({type: 'estop'});
-    setPressed(sent);
-    if (!sent) link.note('NOT SENT: there is no connection. Stop the robot by its own switch.', false);
-  };
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
     <span class={`chip link ${s.state}`} title="age of the picture; round trip of a command">
@@ -125,8 +115,8 @@ function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant})
     </span>
     <span class="grow" />
     {info?.simulator && <a class="wide" href="/simulator.html">the simulator's own view</a>}
-    <button class="estop" onClick={press}
-            aria-label="Emergency stop">{pressed && !grant?.estopped ? 'STOP …' : 'STOP'}</button>
+    <button class="estop" onClick={() => link.estop()}
+            aria-label="Emergency stop">{link.stopping ? 'STOP …' : 'STOP'}</button>
   </header>;
 }
 
@@ -143,27 +133,39 @@ const driverWords: {[role: string]: string} = {
 };
 
 // The information area (manual 2.3.3), and above it in one sentence what goes on.
-function Now({link, grant, seen: s}: {link: Link; grant?: Grant; seen: Seen}) {
+function sentence(drive: Drive, robot: RobotState, grant?: Grant, why?: Why): string {
+  if (grant?.estopped) return 'Emergency stop: the robot stands until Reset, and then until it gets a new goal.';
+  if (grant?.waits_for_hand_back) return drive.letGoFirst() || (drive.mine() ? 'You have control: hold something to drive, or hand the robot back.' : 'A person drove last: autonomy waits for Hand back.');
+  // Of the cycle that it tells of: a program that hangs leaves an old one.
+  const age = why && why.epoch === robot.stamp.epoch ? cycle * (robot.stamp.cycle - why.cycle) : 0;
+  return (age >= old ? `${seconds(age)} ago: ` : '') + forPage(why?.sentence ?? grant?.reason ?? '');
+}
+function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: Grant; seen: Seen}) {
   const robot = link.data<RobotState>('robot/state');
   const registration = link.data<Registration>('registration');
   const why = link.data<Why>('why');
   if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Its bridge may be missing, or its power off.' : 'Nothing is known of the robot yet.')}</div>;
   const tracking = registration?.state === 'REGISTRATION_TRACKING';
-  const pose = tracking ? registration!.pose_in_map : robot.pose_in_odom;
+  const lost = registration?.state === 'REGISTRATION_LOST';
+  const pose = tracking || lost ? registration!.pose_in_map : robot.pose_in_odom;
+  const doubtful = registration && (lost || tracking && registration.confidence <= doubt);
+  const sure = tracking || lost ? `, ${percent(registration!.confidence)} sure` : '';
   const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
   return <div class={`now ${s.state}`}>
-    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{grant?.estopped ? 'Emergency stop: the robot stands until Reset, and then until it gets a new goal.' : grant?.waits_for_hand_back ? 'A person drove last: autonomy waits for Hand back.' : forPage(why?.sentence ?? grant?.reason ?? '')}</p>
+    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{sentence(drive, robot, grant, why)}</p>
     {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {forPage(grant.guard_reason)}</p>}
     <dl>
       <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
       <div><dt>Driver</dt><dd>{driverWords[grant?.role ?? ''] ?? '?'}</dd></div>
       <div><dt>Speed</dt><dd>{robot.velocity.toFixed(2)} m/s</dd></div>
       <div><dt>Turning</dt><dd>{degrees(robot.rotation_velocity).toFixed(0)} °/s</dd></div>
-      <div class="place"><dt>{tracking ? 'On the map' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th).toFixed(0)}°{' '}
-        {tracking ? `± ${sigma < 0.1 ? (100 * sigma).toFixed(0) + ' cm' : sigma.toFixed(1) + ' m'}` : `(${(registration?.state ?? 'no registration').replace('REGISTRATION_', '').toLowerCase()})`}</dd></div>
+      <div class="place"><dt>{tracking ? 'On the map' : lost ? 'Lost, at a guess' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th).toFixed(0)}°
+        {tracking ? ` ± ${sigma < 0.1 ? (100 * sigma).toFixed(0) + ' cm' : sigma.toFixed(1) + ' m'}` : lost ? '' : ` (${(registration?.state ?? 'no registration').replace('REGISTRATION_', '').toLowerCase()})`}{sure}</dd></div>
       <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V</dd></div>
       <div class="place"><dt>Packets a second</dt><dd>motors {robot.motor_packets_per_s}, sonars {robot.sonar_readings_per_s}, vision {robot.vision_packets_per_s}</dd></div>
     </dl>
+    {doubtful && <p class="guard">{lost ? 'The robot does not know where it is' : 'The place is not confirmed'} ({forPage(registration.reason)}).
+      {lost && ' Click where it is on the map: The robot is here …'}</p>}
   </div>;
 }
 
@@ -271,7 +273,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="/simulator.html">the simulator's own view</a></p>}
       </details>}
     </div>
-    {driving && <Stick drive={drive} />}
+    {driving && s.state !== 'gone' && <Stick drive={drive} />}
     {target && <TargetCard card={card} corner={corner} link={link} target={target} close={close} />}
   </>;
 }
@@ -293,9 +295,9 @@ function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
   return corners.find(free) ?? corners[0];
 }
 const layerWords: {[name in keyof Layers]: string} =
-  {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', percepts: 'percepts', areas: 'sensitive areas of behaviors', wake: 'wake (10 s)'};
+  {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', route: 'the route', drawings: 'drawings of programs', percepts: 'percepts', areas: 'sensitive areas of behaviors', wake: 'wake (10 s)'};
 function bannerText(s: Seen): string {
-  const age = Number.isFinite(s.age) ? `The picture is ${(s.age / 1000).toFixed(s.age < 10_000 ? 1 : 0)} s old. ` : '';
+  const age = Number.isFinite(s.age) ? `The picture is ${seconds(s.age)} old. ` : '';
   switch (s.state) {
     case 'locked': return 'The key is needed to watch from here: open the address that the console has printed.';
     case 'gone': return `${age}There is no connection to the console, so STOP does not work from here: use the robot's own switch. Trying again …`;

@@ -1,7 +1,7 @@
 // From hands to samples: an on-screen stick, the keys of manual Table 2-1, a gamepad. Each sample says
 // whether somebody holds something (the dead-man); 20 a second, also of nothing.
 import type {Link} from './link';
-import type {ControlState, RobotDescription, RobotState} from './types';
+import type {ControlState, Grant, RobotDescription, RobotState} from './types';
 
 const period = 50;           // [ms]
 const firstStep = 0.05;      // [m/s] of one key
@@ -20,6 +20,8 @@ export class Drive {
   velocity = 0;              // [m/s] of the newest sample
   rotation = 0;              // [rad/s]
   active = false;
+  by: '' | 'stick' | 'key' | 'gamepad' = '';   // which is held
+  since = 0;                 // [ms] active
   pad = '';                  // the gamepad's name
   padHint = '';
 
@@ -50,6 +52,13 @@ export class Drive {
     const control = this.link.data<ControlState>('console/control');
     return this.link.id !== 0 && control?.holder === this.link.id;
   }
+  // The reason why nothing that is held moves the robot until it was let go, and what to do; empty: there is none.
+  letGoFirst(): string {
+    const why = this.mine() && this.by ? this.link.data<ControlState>('console/control')!.let_go : '';
+    if (!why) return '';
+    const again = {stick: 'the stick, then hold it', key: 'the key, then press it', gamepad: "the gamepad's shoulder button, then press it", '': ''};
+    return `${why[0].toUpperCase()}${why.slice(1)}: let go of ${again[this.by]} again.`;
+  }
   // Nothing is held any more; the robot is told at once.
   letGo() {
     this.held.clear();
@@ -73,10 +82,12 @@ export class Drive {
     const target = event.target as HTMLElement;
     if (target.closest('input, select, textarea, summary, [role=tab]') || event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === ' ' && target.closest('button')) return;
-    if (!this.mine()) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (key === 'k' || key === ' ') {
-      if (down) this.stop();
+      if (down && this.mine()) this.stop();
+      else if (down && !event.repeat) this.stopForAll(key === 'k' ? 'k' : 'space');
+    } else if (!this.mine()) {
+      return;
     } else if (key === 'g') {
       if (down && !event.repeat) this.constant();
     } else if (key === 'c') {
@@ -96,6 +107,12 @@ export class Drive {
       return;
     }
     event.preventDefault();
+  }
+
+  // Without control these keys are the emergency stop, as the button STOP is.
+  private stopForAll(key: string) {
+    if (!this.link.data<Grant>('drive/grant')?.estopped && this.link.estop())
+      this.link.note(`Emergency stop by the key ${key}. It stops the robot for everybody; a stop of 2 s needs control: Drive.`, false);
   }
 
   private fromKeys(): boolean {
@@ -132,13 +149,18 @@ export class Drive {
   private sample() {
     const before = `${this.active} ${this.pad} ${this.padHint}`;
     this.velocity = this.rotation = 0;
-    this.active = false;
+    this.by = '';
     if (this.stick) {
       this.fromStick(this.stick.x, this.stick.y);
-      this.active = true;
-    } else {
-      this.active = this.fromKeys() || this.fromPad() || performance.now() < this.stoppedUntil;
+      this.by = 'stick';
+    } else if (this.fromKeys()) {
+      this.by = 'key';
+    } else if (this.fromPad()) {
+      this.by = 'gamepad';
     }
+    const now = performance.now(), was = this.active;
+    this.active = this.by !== '' || now < this.stoppedUntil;
+    if (this.active && !was) this.since = now;
     if (this.mine())
       this.link.sendSample({type: 'drive', number: ++this.number, at: performance.now() / 1000, active: this.active,
                       velocity: this.velocity, rotation: this.rotation,

@@ -2,23 +2,26 @@
 import {useState} from 'preact/hooks';
 import type {Drive} from './drive';
 import type {Link} from './link';
-import type {ControlState, Grant, RobotDescription} from './types';
+import type {ControlState, Grant, RobotDescription, Seen} from './types';
 import {forPage} from './words';
 
 const slow = 300;            // [ms] of a round trip, from which on it is said
+const patience = 500;        // [ms] until the reason is told why what is held moves nothing
 const noteTime = 12_000;     // [ms] of a note on control
 
-export function DrivePanel({link, drive, grant}: {link: Link; drive: Drive; grant?: Grant}) {
+export function DrivePanel({link, drive, grant, seen}: {link: Link; drive: Drive; grant?: Grant; seen: Seen}) {
   const control = link.data<ControlState>('console/control');
   if (!link.commanding) return <div class="drive"><p class="small">Driving needs a connection.</p></div>;
   if (!link.mayDrive)
     return <div class="drive"><p class="small">You watch. To drive or to give goals, open the address with the key
       that <code>saphira console</code> prints. The STOP button works for everybody.</p></div>;
-  if (drive.mine()) return <Mine link={link} drive={drive} grant={grant} control={control!} />;
-  return <Other link={link} control={control} grant={grant} />;
+  if (drive.mine()) return <Mine link={link} drive={drive} grant={grant} seen={seen} control={control!} />;
+  return <Other link={link} control={control} grant={grant} gone={seen.state === 'gone'} />;
 }
 
-function Other({link, control, grant}: {link: Link; control?: ControlState; grant?: Grant}) {
+const goneWords = 'The link to the console is gone: nothing from here reaches the robot, and a robot that was driven from here stands.';
+
+function Other({link, control, grant, gone}: {link: Link; control?: ControlState; grant?: Grant; gone: boolean}) {
   const [name, setName] = useState(link.operator);
   const held = !!control && control.holder !== 0;
   const fresh = performance.now() - (link.get<ControlState>('console/control')?.at ?? -1e9) < noteTime;
@@ -31,39 +34,43 @@ function Other({link, control, grant}: {link: Link; control?: ControlState; gran
     <div class="row">
       {held ? <>
         <span class="grow"><strong>{control.name}</strong> has control.</span>
-        <button onClick={() => link.send({type: 'ask'}) && link.note(`${control.name} is asked for control.`, true)}>Ask for it</button>
-        <button onClick={() => take(true)}>Take it</button>
+        <button disabled={gone} onClick={() => link.send({type: 'ask'}) && link.note(`${control.name} is asked for control.`, true)}>Ask for it</button>
+        <button disabled={gone} onClick={() => take(true)}>Take it</button>
       </> : <>
         <label for="operator" class="small">I am</label>
         <input id="operator" class="name" value={name} maxLength={20} placeholder="your name" autocomplete="off"
                onInput={e => setName((e.target as HTMLInputElement).value)}
                onChange={() => name.trim() !== link.operator && link.rename(name)} />
         <span class="grow" />
-        <button class="main" onClick={() => take(false)}>Drive</button>
+        <button class="main" disabled={gone} onClick={() => take(false)}>Drive</button>
       </>}
-      {grant?.waits_for_hand_back && !held && <button onClick={() => link.send({type: 'hand_back'})}>Hand back</button>}
+      {grant?.waits_for_hand_back && !held && <button disabled={gone} onClick={() => link.send({type: 'hand_back'})}>Hand back</button>}
     </div>
+    {gone && <p class="told bad">{goneWords}</p>}
     {control?.note && !held && fresh && <p class="small faint">{control.note}</p>}
   </div>;
 }
 
-function Mine({link, drive, grant, control}: {link: Link; drive: Drive; grant?: Grant; control: ControlState}) {
+function Mine({link, drive, grant, seen, control}: {link: Link; drive: Drive; grant?: Grant; seen: Seen; control: ControlState}) {
   const most = link.data<RobotDescription>('robot/description')?.max_velocity ?? 0.4;
   const autonomous = grant?.role === 'ROLE_BEHAVIORS' || grant?.role === 'ROLE_DIRECT';
-  const state = control.let_go && drive.active ? 'let go first'
+  const gone = seen.state === 'gone', letGo = drive.letGoFirst();
+  const state = gone ? 'the link is gone' : seen.state !== 'live' ? 'no news of the robot'
+    : letGo ? 'let go first'
     : drive.active ? `asked ${drive.velocity.toFixed(2)} m/s, ${(drive.rotation * 180 / Math.PI).toFixed(0)} °/s`
     : autonomous ? 'it drives by itself until you hold something' : 'you hold nothing: the robot stands';
   const speed = (event: Event) => { drive.maxVelocity = Number((event.target as HTMLInputElement).value); };
   return <div class="drive mine">
-    <div class="row"><strong>You drive</strong><span class={!drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span></div>
+    <div class="row"><strong>{gone ? 'You drove' : 'You drive'}</strong><span class={letGo || seen.state !== 'live' || !drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span></div>
     <div class="row">
-      <button title="gives up control; autonomy waits until somebody hands the robot back" onClick={() => drive.release()}>Release</button>
-      <button class="main" title="gives up control; autonomy drives again" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
-    {control.asked.map(name => <div class="row asked" role="alert" key={name}><span class="grow"><strong>{name}</strong> asks for control.</span>
-      <button onClick={() => drive.release()}>Give it</button></div>)}
-    {drive.active && grant && grant.role !== 'ROLE_TELEOP' && <p class="told bad">{forPage(grant.reason)}</p>}
-    {drive.active && link.refused && <p class="told bad">{link.refused}</p>}
-    {link.roundTrip > slow && <p class="told bad">Commands take {Math.round(link.roundTrip)} ms there and back: the robot is slowed down.</p>}
+      <button disabled={gone} title="gives up control; autonomy waits until somebody hands the robot back" onClick={() => drive.release()}>Release</button>
+      <button class="main" disabled={gone} title="gives up control; autonomy drives again" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
+    {control.asked.map(({id, name}) => <div class="row asked" role="alert" key={id}><span class="grow"><strong>{name}</strong> asks for control.</span>
+      <button disabled={gone} onClick={() => { drive.letGo(); link.send({type: 'give', to: id}); }}>Give it</button></div>)}
+    {gone ? <p class="told bad">{goneWords}</p> : letGo ? <p class="told bad" role="status">{letGo}</p>
+      : drive.active && performance.now() - drive.since > patience && grant && grant.role !== 'ROLE_TELEOP'
+        && <p class="told bad">{link.refused ? `The newest command ${link.refused}.` : forPage(grant.reason)}</p>}
+    {!gone && link.roundTrip > slow && <p class="told bad">Commands take {Math.round(link.roundTrip)} ms there and back: the robot is slowed down.</p>}
     <div class="row"><label for="speed" class="small">Fastest {drive.maxVelocity.toFixed(2)} m/s</label>
       <input id="speed" class="grow" type="range" min="0.05" max={most} step="0.05" value={drive.maxVelocity} onInput={speed} /></div>
     <p class="small faint">Keys, held down: <kbd>i</kbd> faster <kbd>m</kbd> slower, back <kbd>j</kbd> left <kbd>l</kbd> right <kbd>.</kbd> go on; <kbd>k</kbd> stop

@@ -16,10 +16,13 @@ const signs: [string, [ComponentChildren, string][]][] = [
   ['Robot', [
     [<g fill={ink('robot')}><circle cx="15" cy="8" r="6" /><path d="M18 3 25 8 18 13Z" /></g>, 'the robot and its nose'],
     [<ellipse cx="17" cy="8" rx="13" ry="6" fill={ink('uncertain')} fill-opacity=".18" stroke={ink('uncertain')} stroke-opacity=".7" />, 'where it may be on the map (two sigma)'],
+    [<ellipse cx="17" cy="8" rx="13" ry="6" fill="none" stroke={ink('uncertain')} stroke-width="1.5" stroke-dasharray="4 4" />, 'interrupted: not confirmed yet'],
+    [<g stroke={ink('muted')} stroke-dasharray="4 3"><circle cx="17" cy="8" r="6" fill="none" stroke-width="1.5" /></g>, 'lost: the robot at a guess'],
     [<path d="M2 8H24" stroke={ink('goal')} stroke-width="2.5" />, 'its speed; to the side: its turn'],
     [<rect x="11" y="5" width="12" height="6" fill="none" stroke={ink('goal')} stroke-width="1.5" />, 'the heading that it turns to'],
     [line(ink('person'), 1.5, '5 4'), 'the direction of its cameras'],
     [<g fill={ink('wake')}><circle cx="7" cy="8" r="2" /><circle cx="17" cy="8" r="2" /><circle cx="27" cy="8" r="2" /></g>, 'its wake of 10 s'],
+    [line('rgb(70,130,180)', 2), 'the route'],
     [cross(ink('goal')), 'a goal'],
     [cross(ink('text')), 'the place that you have chosen'],
   ]],

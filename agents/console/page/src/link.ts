@@ -1,5 +1,5 @@
 // The two connections to the gateway, and what has come by them.
-import type {ControlState, Goal, ServiceStatus} from './types';
+import type {ControlState, Goal, Grant, ServiceStatus} from './types';
 
 export interface Item<T> {
   data: T;
@@ -43,6 +43,7 @@ export class Link {
   roundTrip = 0;             // [ms] [0: not known]
   refused = '';              // why the newest sample of driving did not count
   heard = -1e9;              // [ms] when the newest frame came
+  stopping = false;          // an emergency stop was sent, and is not confirmed yet
   delays: number[] = [];     // [ms] from the gateway to the pixels, of the newest robot states
 
   private topics = new Map<string, Map<string, Item<unknown>>>();
@@ -106,6 +107,14 @@ export class Link {
     if (this.commands.bufferedAmount > 2000 && message.type !== 'estop') return false;
     this.commands.send(JSON.stringify(message));
     return true;
+  }
+
+  // Everybody's emergency stop.
+  estop(): boolean {
+    this.stopping = this.send({type: 'estop'});
+    if (!this.stopping) this.note("NOT SENT: there is no connection. Stop the robot by its own switch.", false);
+    this.tell();
+    return this.stopping;
   }
 
   // A sample of driving, by several connections in turn: where one waits for what was lost on its way, the
@@ -174,6 +183,7 @@ export class Link {
       this.ticket = '';
       for (const lane of this.lanes.splice(0)) lane.close();
       this.roundTrip = 0;
+      this.stopping = false;
       this.tell();
       setTimeout(() => this.openCommands(), retry);
     };
@@ -199,6 +209,7 @@ export class Link {
       if (!items) this.topics.set(t, items = new Map());
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
+      if (t === 'drive/grant' && (d as Grant | null)?.estopped) this.stopping = false;
       if (t === 'goals' && d !== null && !(d as Goal).withdrawn) this.remember(k, d as Goal);
     }
     this.tell();

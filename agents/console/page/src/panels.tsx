@@ -5,8 +5,9 @@ import {degrees} from './geometry';
 import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
-import {clock, forPage, instanceWords, keyless, percent} from './words';
+import {clock, forPage, instanceWords, keyless, percent, seconds} from './words';
 
+const stale = 2000;          // [ms] the status of an open goal comes each second
 const word = (name: string) => name.replace(/^[A-Z]+_/, '').toLowerCase().replace(/_/g, ' ');
 export const nothing = (text: string) => <p class="nothing">{text}</p>;
 
@@ -39,7 +40,7 @@ function Speed({says, speed, weight}: {says: boolean; speed: number; weight?: nu
 }
 const share = (weight?: number) => weight === undefined ? '' : `, ${percent(weight)}`;
 
-export function Goals({link}: {link: Link}) {
+export function Goals({link, now}: {link: Link; now: number}) {
   const [words, setWords] = useState('');
   const [told, setTold] = useState<{text: string; well: boolean}>();
   const send = async (event: Event) => {
@@ -68,9 +69,9 @@ export function Goals({link}: {link: Link}) {
     </form>
     {open.length + over.length === 0 && nothing('No goal is underway. Click on the map to send the robot somewhere.')}
     {many && <h2>One goal after the other, in this order</h2>}
-    <ol class="cards" aria-label="Goals">{open.map(g => <GoalCard key={g.id} pursued={g} many={many} link={link} />)}</ol>
+    <ol class="cards" aria-label="Goals">{open.map(g => <GoalCard key={g.id} pursued={g} many={many} link={link} now={now} />)}</ol>
     {over.length > 0 && <h2>Ended</h2>}
-    <ul class="cards" aria-label="Ended goals">{over.map(g => <GoalCard key={g.id} pursued={g} many={false} link={link} />)}</ul>
+    <ul class="cards" aria-label="Ended goals">{over.map(g => <GoalCard key={g.id} pursued={g} many={false} link={link} now={now} />)}</ul>
   </>;
 }
 const orderWords = ['', 'in front', 'next'];
@@ -80,13 +81,14 @@ function argumentsOf(goal?: Goal): string {
     return `${a.name} ${a.kind === 'ARGUMENT_TEXT' ? a.text : +a.number.toFixed(2)}`;
   }).join(', ');
 }
-function GoalCard({pursued: self, many, link}: {pursued: Pursued; many: boolean; link: Link}) {
+function GoalCard({pursued: self, many, link, now}: {pursued: Pursued; many: boolean; link: Link; now: number}) {
   const {id, status, goal, place} = self;
   const [told, setTold] = useState('');
   const over = ended(status);
   const grant = link.data<Grant>('drive/grant');
   const held = over || status.state !== 'GOAL_UNDERWAY' ? '' : grant?.role === 'ROLE_TELEOP' ? 'a person drives'
     : grant?.waits_for_hand_back ? 'waits for Hand back' : '';
+  const age = over ? 0 : now - (link.get('goals/status', id)?.at ?? now);
   const words = over && link.mayDrive ? wordsOf(goal) : '';
   const name = nameOf({status, goal});
   const again = () => link.ask({type: 'goal', words}).then(answer => setTold(answer.well ? '' : answer.text));
@@ -95,7 +97,8 @@ function GoalCard({pursued: self, many, link}: {pursued: Pursued; many: boolean;
       <div class="row grow"><strong class={many ? 'line' : ''}>{many && place > 0 && `${place}. `}{name}</strong>
         {many && place > 0 && <span class="chip">{orderWords[place] ?? `place ${place}`}</span>}
         <span class={`chip ${status.state.toLowerCase()}`}>{word(status.state)}</span>
-        {held && <span class="chip warn">{held}</span>}</div>
+        {held && <span class="chip warn">{held}</span>}
+        {age > stale && <span class="chip warn">{seconds(age)} ago</span>}</div>
       {!over && link.mayDrive && <button onClick={() => link.ask({type: 'cancel', id})} aria-label={`Cancel ${name}`}>Cancel</button>}
       {words && <button title="the same goal once more" aria-label={`Ask again: ${name}`} onClick={again}>Ask again</button>}
     </div>

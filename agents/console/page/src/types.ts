@@ -150,7 +150,7 @@ export interface ActivityParameter { name: string; kind: string; unit: string; r
 export interface ActivitySchemas { schemas: {name: string; summary: string; parameters: ActivityParameter[]}[]; trouble: string }
 export interface ProgramMind { source: string; behaviors: Behaviors; intended: Intentions }
 export interface Cause { kind: string; text: string; because: Cause[] }
-export interface Why { cycle: number; sentence: string; tree: Cause }
+export interface Why { epoch: number; cycle: number; sentence: string; tree: Cause }
 export interface ServiceStatus {
   name: string;
   host: string;
@@ -179,5 +179,7 @@ export interface Drawing {
   width: number;
   lifetime: number;
 }
-export interface ControlState { holder: number; name: string; asked: string[]; note: string; let_go: boolean }
+export interface ControlState { holder: number; name: string; asked: {id: number; name: string}[]; note: string; let_go: string }   // let_go: why it must be let go first [empty: it need not]
 export interface ConsoleInfo { robot: string; host: string; simulator: boolean }
+// How old the picture is [ms]; gone: the link, silent: no robot was ever heard.
+export interface Seen { state: 'live' | 'old' | 'silent' | 'gone' | 'locked'; age: number }

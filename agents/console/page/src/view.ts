@@ -18,9 +18,11 @@ const apart = 4;             // [pixels] between two labels
 const rankOf: {[type: string]: number} = {ARTIFACT_OFFICE: 0, ARTIFACT_CORRIDOR: 1, ARTIFACT_DOOR: 2};
 const otherRank = 3;
 export const zoneColor: {[rule: string]: string} = {ZONE_KEEP_OUT: '#d32f2f', ZONE_SLOW: '#e69f00', ZONE_ONE_WAY: '#1976d2', ZONE_PREFERRED: '#2e9d55'};
+export const doubt = 0.5;    // of the confidence of a pose: a higher one is confirmed by what was heard
+const guessed = 0.35;        // opacity of what was heard, where the place is a guess
 const regionTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'ARTIFACT_JUNCTION'];
 
-export interface Layers { grid: boolean; sonar: boolean; map: boolean; percepts: boolean; areas: boolean; wake: boolean }
+export interface Layers { grid: boolean; sonar: boolean; map: boolean; route: boolean; drawings: boolean; percepts: boolean; areas: boolean; wake: boolean }
 export interface Target { x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact; routed: boolean }   // routed: in a region of the map
 interface Echo { x: number; y: number; at: number }
 interface Colors { [name: string]: string }
@@ -38,7 +40,7 @@ export class View {
   local = false;
   follow = true;
   scale = 45;                // [pixels/m]
-  layers: Layers = {grid: true, sonar: true, map: true, percepts: true, areas: true, wake: true};
+  layers: Layers = {grid: true, sonar: true, map: true, route: true, drawings: true, percepts: true, areas: true, wake: true};
   target?: Target;           // that was clicked
   whole = false;             // all of the map is in the picture, and is to stay so
   bottom = 0;                // [pixels] of the picture that something lies over
@@ -93,6 +95,8 @@ export class View {
     return !!registration && !!map && map.artifacts.length > 0 &&
         registration.state !== 'REGISTRATION_UNPLACED';
   }
+
+  private lost(): boolean { return this.link.data<Registration>('registration')?.state === 'REGISTRATION_LOST'; }
 
   // The robot in the world, a little ahead of what was heard last, so that it moves evenly.
   robotInWorld(): Pose | undefined {
@@ -241,6 +245,7 @@ export class View {
         this.drawRobot(robot, odom);
       });
       this.drawCoveredLabels(robot);
+      if (this.onMap() && this.lost()) this.label('lost', robot.x, robot.y - this.robotRadius() - this.px(10), colors.text, 13);
     }
     if (this.target) this.drawTarget(this.target);
     this.drawScale();
@@ -289,6 +294,7 @@ export class View {
   private drawGrid(odom: Pose) {
     const seen = new Set<string>();
     this.context.imageSmoothingEnabled = false;
+    this.context.globalAlpha = this.onMap() && this.lost() ? guessed : 1;
     for (const [key, {data}] of this.link.all<GridTile>('perception/grid')) {
       if (this.odom !== -1 && data.odom !== this.odom) continue;
       seen.add(key);
@@ -300,6 +306,7 @@ export class View {
       const edge = data.side * data.resolution;
       this.within(odom, () => this.context.drawImage(tile!.image, data.column * edge, data.row * edge, edge, edge));
     }
+    this.context.globalAlpha = 1;
     for (const key of this.tiles.keys())
       if (!seen.has(key)) this.tiles.delete(key);
   }
@@ -621,6 +628,7 @@ export class View {
   private drawDrawings(odom: Pose) {
     const now = performance.now();
     for (const [, {data: d, at}] of this.link.all<Drawing>('drawings')) {
+      if (!(d.source === 'intentions' ? this.layers.route : this.layers.drawings)) continue;
       const frame = this.frameIn(d.frame, odom);
       if (!frame || (d.lifetime > 0 && now - at > 1000 * d.lifetime)) continue;
       if (d.frame === 'FRAME_ODOM' && d.odom !== 0 && d.odom !== this.odom) continue;
@@ -646,11 +654,13 @@ export class View {
     c.rotate(0.5 * Math.atan2(2 * xy, xx - yy));
     c.beginPath();
     c.ellipse(0, 0, 2 * Math.sqrt(Math.max(0, mean + d)), 2 * Math.sqrt(Math.max(0, mean - d)), 0, 0, 7);
-    c.fillStyle = c.strokeStyle = this.colors.uncertain;
-    c.lineWidth = this.px(1);
+    const lost = this.lost(), guess = lost || registration.confidence <= doubt;
+    c.fillStyle = c.strokeStyle = lost ? this.colors.muted : this.colors.uncertain;
+    c.lineWidth = this.px(guess ? 1.5 : 1);
     c.globalAlpha = 0.18;
-    c.fill();
+    if (!guess) c.fill();
     c.globalAlpha = 0.7;
+    if (guess) c.setLineDash([this.px(4), this.px(4)]);
     c.stroke();
     c.restore();
   }
@@ -677,18 +687,21 @@ export class View {
     c.arc(0, 0, radius, nose, -nose);
     c.lineTo(radius / Math.cos(nose), 0);
     c.closePath();
+    const lost = this.onMap() && this.lost();
     c.fillStyle = colors.robot;
-    c.fill();
-    c.strokeStyle = colors['robot-edge'];
+    if (!lost) c.fill();
+    c.strokeStyle = lost ? colors.muted : colors['robot-edge'];
     c.lineWidth = this.px(1.5);
+    if (lost) c.setLineDash([this.px(4), this.px(3)]);
     c.stroke();
+    c.setLineDash([]);
     c.beginPath();
     c.moveTo(radius * 1.2, 0);
     c.lineTo(-radius * 0.65, radius * 0.42);
     c.lineTo(-radius * 0.35, 0);
     c.lineTo(-radius * 0.65, -radius * 0.42);
     c.closePath();
-    c.fillStyle = colors['robot-edge'];
+    c.fillStyle = lost ? colors.muted : colors['robot-edge'];
     c.fill();
     // The direction of cameras that turn.
     if (description && description.head_reach > 0)

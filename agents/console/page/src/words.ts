@@ -4,8 +4,11 @@ export const keyless = 'needs the key: open the address that the console has pri
 export function forPage(text: string): string {
   return text.replace(/saphira estop reset/g, 'Reset').replace(/saphira drive hand-back/g, 'Hand back')
     .replace(/saphira status/g, 'Programs').replace(/saphira goal list/g, 'Goals')
-    .replace(/saphira goal activities/g, 'the field in Goals').replace(/saphira map show/g, 'the map shows them');
+    .replace(/saphira goal activities/g, 'the field in Goals').replace(/saphira map show/g, 'the map shows them')
+    .replace(/saphira map place X Y (TH|HEADING)(, or saphira map find)?/g, 'click where it is: The robot is here …');
 }
+export const old = 1000;     // [ms] of a picture or a sentence: from then on its age is said
+export const seconds = (ms: number) => `${(ms / 1000).toFixed(ms < 10_000 ? 1 : 0)} s`;
 export const percent = (value: number) => `${Math.round(100 * Math.min(1, Math.max(0, value)))}%`;
 const two = (n: number) => String(n).padStart(2, '0');
 // [ms since 1970] as HH:MM:SS, here.

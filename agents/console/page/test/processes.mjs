@@ -33,6 +33,8 @@ export async function end(child) {
   await ended(child);
 }
 
+const stands = row => Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02;
+
 // The simulator's trace (--trace): what is true, a row for each cycle of 0.1 s.
 export function trace(file) {
   const rows = () => readFileSync(file, 'utf8').split('\n').slice(1, -1)
@@ -42,8 +44,10 @@ export function trace(file) {
     speed: () => Math.abs(rows().at(-1)?.velocity ?? 0),
     // [s] from a cycle on; undefined while it moves.
     stood: from => {
-      const found = rows().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
+      const found = rows().find(row => row.cycle >= from && stands(row));
       return found && (found.cycle - from) / 10;
     },
+    // It moves after it has stood for 0.5 s, from a cycle on.
+    drivesOn: from => /00000+.*1/.test(rows().filter(row => row.cycle >= from).map(row => stands(row) ? '0' : '1').join('')),
   };
 }

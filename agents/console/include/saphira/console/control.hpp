@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ namespace saphira::console {
 class Control {
  public:
   struct Settings {
-    double hold = 0.4;  ///< [s] validity of the newest sample after its arrival
-    double lose = 1.0;  ///< [s] after this silence control is lost
-    double late = 0.4;  ///< [s] a sample with this delay over the quickest is refused
+    double hold = 0.4;   ///< [s] validity of the newest sample after its arrival
+    double lose = 1.0;   ///< [s] after this silence control is lost
+    double late = 0.4;   ///< [s] a sample with this delay over the quickest is refused
+    double stand = 0.3;  ///< [s] a robot that the bridge stopped for so long waits for let go
   };
 
   /// One sample of the operator's page.
@@ -55,19 +57,31 @@ class Control {
   std::string take(OperatorId id, bool force, double now);
   /// Asks the holder for control. Returns the reason of a failure, in words.
   std::string ask(OperatorId id);
+  /// The holder's control passes to somebody who asked for it. Returns the reason of a failure, in
+  /// words.
+  std::string give(OperatorId id, OperatorId to, double now);
   void release(OperatorId id);
   /// The reason for refusing the sample, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
+
+  /// Somebody drives the robot: the stick that is held now, or not.
+  void driven(bool by_the_stick);
+  /// Nobody drives the robot, and it stands. The bridge stops a robot after a gap that is too short
+  /// for this class. Where it stands for longer than one lost packet costs, the stick must be let
+  /// go first.
+  void stopped(double now);
 
   /// The present order. Call it at least ten times a second: it detects missing samples.
   Order order(double now);
 
   OperatorId holder() const { return holder_; }
-  /// The present state for the pages, as JSON: holder, name, asked (names), note, driving.
+  /// The present state for the pages, as JSON: holder, name, asked (id and name of each), note,
+  /// let_go (why the stick must be let go first; empty: it need not).
   std::string json() const;
 
  private:
   void drop(const std::string& note);
+  void hand_to(OperatorId id, const std::string& note, double now);
   void lose_silent(double now);
   std::string name_of(OperatorId id) const;
 
@@ -77,10 +91,12 @@ class Control {
   std::vector<OperatorId> asked_;
   std::string note_;
   Sample newest_;
-  double came_ = 0.0;          ///< [s] of the newest sample
-  double quickest_ = 0.0;      ///< [s] the smallest difference of the two clocks
-  bool any_ = false;           ///< a sample has come since control was taken
-  bool let_go_first_ = false;  ///< after a gap
+  double came_ = 0.0;                   ///< [s] of the newest sample
+  double quickest_ = 0.0;               ///< [s] the smallest difference of the two clocks
+  bool any_ = false;                    ///< a sample has come since control was taken
+  bool driven_ = false;                 ///< by the stick that is held now
+  std::optional<double> stands_since_;  ///< [s] although that stick is held
+  std::string let_go_;                  ///< why the stick must be let go first [empty: it need not]
 };
 
 }  // namespace saphira::console

@@ -31,6 +31,9 @@ struct TakeControl {
   bool force = false;
 };
 struct AskForControl {};
+struct GiveControl {
+  std::uint64_t to = 0;  ///< an operator who asked
+};
 struct ReleaseControl {};
 struct HandBack {};
 struct EmergencyStop {};
@@ -69,9 +72,10 @@ struct Wrong {
   std::string why;
 };
 
-using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, ReleaseControl,
-                             Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal,
-                             Say, CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
+using Message =
+    std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, GiveControl, ReleaseControl,
+                 Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal, Say,
+                 CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
