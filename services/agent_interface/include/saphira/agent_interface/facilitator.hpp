@@ -42,6 +42,11 @@ struct Trigger {
   bool operator==(const Trigger&) const = default;
 };
 
+/// The argument that begins the next part of a conjunction: its text is the functor, and the
+/// arguments after it are of that part. An unbound argument with a text is a variable of that name:
+/// the first part that answers it gives its value to the parts after it.
+inline constexpr const char* kAnd = "and";
+
 /// An answer on its way to the asker, with the agent that gave it.
 struct Solved {
   std::uint64_t asker = 0;
@@ -53,6 +58,11 @@ struct Solved {
 /// Matches requests with the agents that can answer them, collects the answers, and requests the
 /// actions of triggers (manual 2.2.8). A value without clock or bus: `now` is seconds of any clock
 /// that never goes back. Nothing is done twice, also over a restart with its memory.
+///
+/// The parts of a conjunction are asked from left to right, each of one agent at a time. Where a
+/// part has no answer, the newest part before it with a further answer goes on with that one (after
+/// Prolog). Only the last part may be an action; it is asked again with other values only where it
+/// was refused.
 class Facilitator {
  public:
   /// self: the asker in requests of triggers. known: the time until which agents may be there that
@@ -109,6 +119,19 @@ class Facilitator {
     double again = 0.0;  ///< time of the next repetition without an answer
     bool heard = false;
   };
+  struct Part {
+    std::string functor;
+    Arguments arguments{};
+    std::vector<Arguments> rows{};      ///< the variables' values by its answer that are untried
+    std::vector<std::uint64_t> rest{};  ///< agents that may have a further answer
+    Arguments bound{};                  ///< the variables' values for the parts after it
+  };
+  struct Reply {  ///< the end of a part
+    std::string service;
+    Answer answer;
+    std::vector<std::uint64_t> rest;
+    bool begun = false;  ///< an action that is done, or may be
+  };
   struct Open {
     Request request;
     std::size_t wanted = 1;  ///< 0: of each
@@ -121,6 +144,14 @@ class Facilitator {
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
     bool unmatched = false;       ///< waits for an agent that can answer it
     bool withdrawn = false;
+    std::optional<Id> whole{};     ///< the conjunction whose part it is
+    bool acts = false;             ///< an agent was asked for an action
+    std::vector<Part> parts{};     ///< of a conjunction
+    std::size_t at = 0;            ///< the part at work
+    std::size_t tries = 0;         ///< requests for its parts
+    Id part{};                     ///< the newest of them
+    std::size_t failed = 0;        ///< the part of `trouble`: the last one that was reached
+    std::optional<Reply> reply{};  ///< of the part at work: step() goes on by it
   };
   struct Armed {
     Trigger trigger;
@@ -131,6 +162,10 @@ class Facilitator {
 
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
+  std::optional<Answer> take_apart(Open& open) const;
+  void pose(const Id& id, double now);
+  void go_on(const Id& id, double now);
+  bool go_back(Open& open) const;
   void match(const Id& id, double now);
   void advance(const Id& id, double now);
   void send(Open& open, std::uint64_t agent, double now);
