@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "commands.hpp"
@@ -31,11 +32,24 @@ struct AskOptions {
 // Without a deadline: until an agent says that it is at work, and then until it says so again.
 constexpr double kSilence = 11.0;  // [s]
 
-int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop) {
-  v1::Request request;
-  for (const std::string& word : ask_options.arguments)
-    request.arguments().push_back(parse_slot(word));
-  request.functor(ask_options.functor);
+/// The robots with a facilitator.
+std::set<std::string> robots_with_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  const bus::Census census(node);
+  poll_for(node, listening_time(node), stop, [] {});
+  std::set<std::string> robots;
+  for (const bus::EndpointEntry& entry : census.endpoints())
+    if (!entry.writer && entry.topic == bus::topics::kSolve.name && entry.program == kFacilitator)
+      robots.insert(entry.robot);
+  return robots;
+}
+
+/// robot: for people; empty: it need not be said.
+int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop,
+        const std::string& robot = {}) {
+  std::vector<std::string> words{ask_options.functor};
+  words.insert(words.end(), ask_options.arguments.begin(), ask_options.arguments.end());
+  v1::Request request = parse_question(words);
   request.service(ask_options.agent);
   request.deadline(ask_options.deadline);
   if (ask_options.answers != 1)
@@ -45,11 +59,13 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   Processes processes(node);
   bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
   auto answers = node.reader(bus::topics::kSolved);
-  std::string told;
+  const std::string in_front = robot.empty() ? "" : robot + ": ";
+  v1::Answer told;
   const auto tell = [&](const v1::Answer& answer) {
-    const std::string text = ask_options.json ? to_json(answer) : line_of(answer);
-    if (text != std::exchange(told, text))
-      std::printf("%s\n", text.c_str());
+    if (repeats(answer, std::exchange(told, answer)))
+      return;
+    const std::string text = ask_options.json ? to_json(answer, robot) : in_front + line_of(answer);
+    std::printf("%s\n", text.c_str());
   };
   const auto show = [&] {
     for (const auto& sample : answers.take())
@@ -58,21 +74,39 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
           !(sample.data.text().empty() && sample.data.results().empty()))
         tell(sample.data);
   };
-  const v1::Answer end = ask_program(
-      kFacilitator, node, client, request,
-      ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence, stop, processes, show);
+  v1::Answer end = ask_program(kFacilitator, node, client, request,
+                               ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence,
+                               stop, processes, show);
+  show();
+  // The request ends with its writer.
+  if (stop.requested() && end.code() == v1::ANSWER_TOO_LATE)
+    end.text("withdrawn, as this command was ended: an agent at work on it is told to stop");
   if (end.service().empty()) {
     if (ask_options.json)
       tell(end);
-    std::cerr << "saphira: " << end.text();
-    if (absence(node, processes, kFacilitator).empty())
+    std::cerr << "saphira: " << in_front << end.text();
+    if (!stop.requested() && absence(node, processes, kFacilitator).empty())
       std::cerr << "; " << who_is_there(options, processes);
     std::cerr << '\n';
     return bus::kExitFailed;
   }
-  show();
   tell(end);
   return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
+}
+
+/// Each robot's agents, one robot after another. Success: one of them has answered.
+int ask_any(const AskOptions& ask_options, bus::NodeOptions options, const bus::Stop& stop) {
+  const std::set<std::string> robots = robots_with_agents(options, stop);
+  if (robots.empty())
+    std::cerr << "saphira: no saphira-facilitator is heard in domain " << options.domain
+              << ": saphira up office has it\n";
+  int code = bus::kExitFailed;
+  for (const std::string& robot : robots) {
+    options.robot = robot;
+    if (!stop.requested() && ask(ask_options, options, stop, robot) == bus::kExitOk)
+      code = bus::kExitOk;
+  }
+  return code;
 }
 
 /// The program that holds a trigger, for people; empty: unknown.
@@ -127,7 +161,8 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
 void add_ask(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<AskOptions>();
   CLI::App* command = app.add_subcommand("ask", "Ask whichever agent can answer");
-  command->add_option("functor", options->functor, "what is asked for");
+  command->add_option("functor", options->functor,
+                      "what is asked for; or FUNCTOR(name=value, ...), perhaps several");
   command->add_flag("--list", options->list, "what can be asked for, as saphira agents");
   command->add_option("arguments", options->arguments,
                       "name=value, or name=? for what the answer is to fill");
@@ -142,12 +177,25 @@ void add_ask(CLI::App& app, Chosen& chosen) {
       ->transform(number_in_unit("s"));
   command->add_flag("--json", options->json,
                     "one JSON object for each answer: agent, code, text, values");
-  command->footer("Exit code 0: it was answered; 1: it was refused or not answered, and why.");
+  command->footer(
+      "Several are asked in turn, and share their variables: "
+      "'place_of(person=karen, place=?P)' 'go-to-place(place=?P)'.\n"
+      "Where one has no answer, a further answer of the one before is tried. Only the last may be "
+      "an action.\n"
+      "--robot '*': the agents of each robot, with the robot's name; several robots may act then.\n"
+      "Exit code 0: it was answered; 1: it was refused or not answered, and why.");
   command->callback([options, &chosen] {
     if (options->functor.empty() != options->list)
       throw CLI::ValidationError("ask", "expected a functor, or --list");
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return options->list ? list_agents(node, stop) : ask(*options, node, stop);
+      if (options->list) {
+        const int code = list_agents(node, stop);
+        std::printf(
+            "other requests have commands of their own: saphira goal activities, saphira device "
+            "list, saphira map --help\n");
+        return code;
+      }
+      return node.robot == "*" ? ask_any(*options, node, stop) : ask(*options, node, stop);
     };
   });
 }
