@@ -446,6 +446,8 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
 void Facilitator::tell(const Open& open, std::uint64_t agent) {
   Request request = open.request;
   request.service = agents_.at(agent).address;
+  if (request.deadline > 0.0)
+    request.deadline = open.end - now_;  // the rest of it
   if (open.withdrawn) {
     request.functor = kWithdraw;
     request.arguments.clear();

@@ -237,15 +237,42 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
   }
 }
 
-TEST_F(FacilitatorInMemory, AGoalOfTheRobotEndsWithItsAsker) {
-  v1::ActivitySchema schema;
-  schema.name("explore");
-  v1::ActivitySchemas schemas;
-  schemas.schemas({schema});
-  auto activities = person.writer(bus::topics::kActivitySchemas);
-  activities.write(schemas);
-  auto goals = person.reader(bus::topics::kGoals);
+/// With an activity that the robot can do.
+struct TheRobotInMemory : FacilitatorInMemory {
+  TheRobotInMemory() {
+    v1::ActivitySchema schema;
+    schema.name("explore");
+    v1::ActivitySchemas schemas;
+    schemas.schemas({schema});
+    activities.write(schemas);
+    turn();
+  }
+  bus::Writer<v1::ActivitySchemas> activities = person.writer(bus::topics::kActivitySchemas);
+  bus::Reader<v1::Goal> goals = person.reader(bus::topics::kGoals);
+};
+
+TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
+  auto statuses = person.writer(bus::topics::kGoalStatus);
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  v1::Request request;
+  request.functor("explore");
+  request.deadline(1.5);
+  asker.send(request);
   turn();
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_NEAR(asked[0].data.deadline(), 1.0, 1e-9);
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
+  status.state(v1::GOAL_SUCCEEDED);
+  status.reason("drove 0.10 m until the deadline");
+  now += 1.2;  // its deadline, and the way of the status
+  statuses.write(status);
+  turn();
+  EXPECT_EQ(asker.poll().back().text(), "drove 0.10 m until the deadline");
+}
+
+TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   auto asker = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   v1::Request request;
   request.functor("explore");

@@ -662,6 +662,7 @@ TEST_F(Conjunctions, TheDeadlineIsOfTheWhole) {
   sent(ask(request));
   now += 2.0;
   EXPECT_EQ(sent(answer(at("library"))), "robot: go place=\"library\"");
+  EXPECT_EQ(newest.deadline, 1.0) << "the rest of it";
   answer({AnswerCode::underway, ""});
   now += 1.0;
   EXPECT_EQ(facilitator.due(), now);
