@@ -2,10 +2,12 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "commands.hpp"
+#include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -31,6 +33,7 @@ struct AskOptions {
 
 // Without a deadline: until an agent says that it is at work, and then until it says so again.
 constexpr double kSilence = 11.0;  // [s]
+constexpr double kTold = 1.0;      // [s] for the list of live triggers
 
 /// The robots with a facilitator.
 std::set<std::string> robots_with_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -119,6 +122,49 @@ std::string holder(const bus::Census& census, const bus::WriterId& writer) {
   return {};
 }
 
+int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptions& options,
+                     const bus::Stop& stop) {
+  const auto id =
+      words.size() == 2 && words[0] == "withdraw" ? bus::parse_goal_id(words[1]) : std::nullopt;
+  if (!id) {
+    std::cerr << "saphira: expected agents, or agents withdraw ID, such as 1f3a:2 (saphira agents "
+                 "lists the triggers)\n";
+    return bus::kExitUsage;
+  }
+  const std::string name = bus::describe(*id);
+  bus::Node node(options);
+  Processes processes(node);
+  bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
+  auto triggers = node.writer(bus::topics::kTriggers);
+  const auto live = [&] {
+    return ask_program(kFacilitator, node, client, bus::request(agent_interface::kLiveTriggers),
+                       5.0, stop, processes);
+  };
+  v1::Answer answer = live();
+  if (answer.code() != v1::ANSWER_DONE) {
+    std::cerr << "saphira: " << answer.text() << '\n';
+    return bus::kExitFailed;
+  }
+  if (!is_among(name, bus::text_of(answer.results(), "live"))) {
+    std::cerr << "saphira: no trigger " << name << " can fire: saphira agents lists them\n";
+    return bus::kExitFailed;
+  }
+  v1::Trigger withdrawn;
+  withdrawn.id(*id);
+  const auto begin = Clock::now();
+  while (is_among(name, bus::text_of(answer.results(), "live"))) {
+    if (stop.requested() || seconds_since(begin) > 5.0) {
+      std::cerr << "saphira: the facilitator has not taken the withdrawal\n";
+      return bus::kExitFailed;
+    }
+    triggers.dispose(withdrawn);
+    node.wait(milliseconds(50), &stop);
+    answer = live();
+  }
+  std::printf("withdrawn: it fires no more\n");
+  return bus::kExitOk;
+}
+
 int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Processes processes(node);
@@ -143,9 +189,18 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   for (const auto& [id, agent] : known)
     all.push_back(agent);
   std::fputs(describe(all).c_str(), stdout);
+  std::optional<std::string> live;  // unknown without a facilitator
+  if (!set.empty()) {
+    bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
+    const v1::Answer answer =
+        client.ask(bus::request(agent_interface::kLiveTriggers), kTold, &stop);
+    if (answer.code() == v1::ANSWER_DONE)
+      live = bus::text_of(answer.results(), "live");
+  }
   for (const auto& [id, trigger] : set) {
+    const std::string name = bus::describe(trigger.data.id());
     const std::string held_by = holder(census, trigger.info.writer);
-    std::printf("%s%s\n", describe(trigger.data, bus::describe(trigger.data.id())).c_str(),
+    std::printf("%s%s\n", describe(trigger.data, name, !live || is_among(name, *live)).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
   if (known.empty()) {
@@ -201,12 +256,14 @@ void add_ask(CLI::App& app, Chosen& chosen) {
 }
 
 void add_agents(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command =
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
+  command->add_option("words", *words, "withdraw ID: that trigger fires no more");
   command->footer(
       "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");
-  chosen.when(command, [](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return list_agents(node, stop);
+  chosen.when(command, [words](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return words->empty() ? list_agents(node, stop) : withdraw_trigger(*words, node, stop);
   });
 }
 

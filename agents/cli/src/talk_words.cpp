@@ -207,14 +207,21 @@ std::string describe(const std::vector<v1::Agent>& agents) {
   return text + robot;
 }
 
-std::string describe(const v1::Trigger& trigger, const std::string& id) {
+bool is_among(const std::string& id, const std::string& ids) {
+  return (" " + ids + " ").find(" " + id + " ") != std::string::npos;
+}
+
+std::string describe(const v1::Trigger& trigger, const std::string& id, bool live) {
   std::string when = "every " + plain(trigger.period()) + " s";
   if (trigger.kind() == v1::TRIGGER_DATA)
     when = "when the answer to " + trigger.condition() + " changes";
   else if (trigger.kind() == v1::TRIGGER_EVENT)
     when = "when " + trigger.condition() + " happens";
   return "trigger " + id + " of " + (trigger.source().empty() ? "somebody" : trigger.source()) +
-         ": " + when + ": " + trigger.action();
+         ": " + when + ": " + trigger.action() +
+         (live ? ""
+               : "; it fires no more: it has fired its times, was withdrawn, or its period is "
+                 "below 0.1 s");
 }
 
 std::string knowledge_table(const v1::Knowledge& knowledge) {

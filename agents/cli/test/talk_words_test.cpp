@@ -129,6 +129,12 @@ TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
   trigger.kind(v1::TRIGGER_EVENT);
   trigger.condition("door_opened");
   EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of ann: when door_opened happens: note");
+  EXPECT_EQ(describe(trigger, "1f3a:2", false),
+            "trigger 1f3a:2 of ann: when door_opened happens: note; it fires no more: it has fired "
+            "its times, was withdrawn, or its period is below 0.1 s");
+  EXPECT_TRUE(is_among("1f3a:2", "1:4 1f3a:2"));
+  EXPECT_FALSE(is_among("1f3a:2", "1:4 1f3a:22"));
+  EXPECT_FALSE(is_among("1f3a:2", ""));
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "saphira/agent_interface/facilitator.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <tuple>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
@@ -18,6 +20,8 @@ constexpr std::size_t kBegun = 256;      // actions that are remembered, besides
 constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
 constexpr std::size_t kParts = 8;        // of a conjunction
 constexpr std::size_t kTries = 1000;     // requests for the parts of a conjunction
+constexpr double kShortestPeriod = 0.1;  // [s] of a trigger
+constexpr std::uint64_t kCalledOff = std::numeric_limits<std::uint64_t>::max();  // firings: no more
 constexpr const char* kName = "facilitator";
 
 Arguments without(Arguments arguments, const std::string& name) {
@@ -221,8 +225,19 @@ void Facilitator::ask(const Request& request, double now) {
       out_.solved.push_back(solved);
       return;
     }
+  if (request.functor == kLiveTriggers)
+    return list_triggers(request);
   if (!withdraws || begun(id))
     begin(request, std::nullopt, now);
+}
+
+void Facilitator::list_triggers(const Request& request) {
+  std::ostringstream live;
+  for (const auto& [id, armed] : triggers_)
+    if (!is_spent(armed.trigger))
+      live << (live.tellp() > 0 ? " " : "") << std::hex << id.first << ':' << std::dec << id.second;
+  out_.solved.push_back(
+      {request.asker, request.number, kName, {AnswerCode::done, "", {text("live", live.str())}}});
 }
 
 void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
@@ -549,25 +564,50 @@ void Facilitator::end(const Id& id, const std::string& service, const Answer& an
 }
 
 void Facilitator::set(const Trigger& trigger, double now) {
-  Armed armed{trigger};
-  armed.trigger.period = std::max(trigger.period, 0.1);
-  armed.next = now + (trigger.kind == TriggerKind::time ? armed.trigger.period : 0.0);
   if (const auto known = triggers_.find(trigger.id); known != triggers_.end()) {
-    if (known->second.trigger == armed.trigger)
+    if (known->second.trigger == trigger)
       return;
     take_back(trigger.id);
   }
-  triggers_[trigger.id] = armed;
+  if (trigger.kind != TriggerKind::event && !(trigger.period >= kShortestPeriod)) {
+    out_.notes.push_back("a trigger of " + trigger.source + " for " + quoted(trigger.action) +
+                         " is not set: period: expected 0.1 s or more, found " +
+                         plain(trigger.period));
+    return;
+  }
+  const double first = trigger.kind == TriggerKind::time ? trigger.period : 0.0;
+  triggers_[trigger.id] = {trigger, now + first};
 }
 
 void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  triggers_.erase(trigger);
+  miss(trigger);
   out_.changed = fired_.erase(trigger) > 0 || out_.changed;
+}
+
+void Facilitator::miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+  triggers_.erase(trigger);
+  stop_action(trigger);
+}
+
+void Facilitator::call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+  stop_action(trigger);
+  fired_[trigger] = kCalledOff;
+  out_.changed = true;
+}
+
+void Facilitator::stop_action(const Id& trigger) {
+  std::vector<Id> caused;
+  for (const auto& [id, open] : open_)
+    if (open.cause == trigger)
+      caused.push_back(id);
+  for (const Id& id : caused)
+    withdraw(id.first, id.second);
 }
 
 bool Facilitator::is_spent(const Trigger& trigger) const {
   const auto fired = fired_.find(trigger.id);
-  return trigger.times != 0 && fired != fired_.end() && fired->second >= trigger.times;
+  return fired != fired_.end() &&
+         (fired->second == kCalledOff || (trigger.times != 0 && fired->second >= trigger.times));
 }
 
 void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
@@ -610,6 +650,8 @@ void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
     request.arguments.push_back(value == nullptr ? argument : *value);
   }
   begin(request, std::nullopt, now);
+  if (const auto begun = open_.find({self_, request.number}); begun != open_.end())
+    begun->second.cause = trigger.id;
 }
 
 /// The condition of a data trigger was answered.

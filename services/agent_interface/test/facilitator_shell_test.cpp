@@ -237,6 +237,42 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
   }
 }
 
+TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
+  v1::Trigger trigger;
+  trigger.id().writer(3);
+  trigger.id().number(1);
+  trigger.kind(v1::TRIGGER_EVENT);
+  trigger.condition("dust");
+  trigger.action("sweep");
+  std::optional<bus::Writer<v1::Trigger>> first = person.writer(bus::topics::kTriggers);
+  std::optional<bus::Writer<v1::Trigger>> second = other.writer(bus::topics::kTriggers);
+  first->write(trigger);
+  turn();
+  second->write(trigger);
+  turn();
+  first->dispose(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 1u) << "the second still holds it";
+  second.reset();
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 1u);
+  first->write(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 2u) << "it is set again";
+  auto anybody = other.writer(bus::topics::kTriggers);
+  anybody.dispose(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 2u) << "anybody may withdraw it";
+}
+
 /// With an activity that the robot can do.
 struct TheRobotInMemory : FacilitatorInMemory {
   TheRobotInMemory() {

@@ -403,6 +403,80 @@ TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
   EXPECT_EQ(firings(next, now), 2u);
 }
 
+std::string live(Facilitator& facilitator, double now) {
+  Request request = place_of(77);
+  request.functor = kLiveTriggers;
+  facilitator.ask(request, now);
+  const auto out = facilitator.step(now);
+  return out.solved.empty() ? "nothing" : text_of(out.solved.back().answer.results, "live");
+}
+
+TEST_F(Facilitation, TheTriggersThatMayFireYetAreTold) {
+  facilitator.announce(agent_that_notes());
+  EXPECT_EQ(live(facilitator, now), "");
+  facilitator.set(every_five_seconds(1), now);
+  Trigger other = every_five_seconds(0);
+  other.id = {0x1f3a, 5};
+  facilitator.set(other, now);
+  EXPECT_EQ(live(facilitator, now), "1:4 1f3a:5");
+  firings(facilitator, now);
+  EXPECT_EQ(live(facilitator, now), "1f3a:5") << "the other one is spent";
+}
+
+TEST_F(Facilitation, AShortPeriodIsNotSet) {
+  facilitator.announce(agent_that_notes());
+  facilitator.step(now);
+  for (const double period : {0.0, -5.0, 0.01}) {
+    Trigger trigger = every_five_seconds(0);
+    trigger.period = period;
+    facilitator.set(trigger, now);
+    const auto out = facilitator.step(now);
+    ASSERT_EQ(out.notes.size(), 1u) << period;
+    EXPECT_NE(out.notes[0].find("period: expected 0.1 s or more, found"), std::string::npos);
+    EXPECT_EQ(firings(facilitator, now), 0u) << period;
+    facilitator.set(every_five_seconds(0), now);  // which the next one replaces
+    facilitator.step(now);
+  }
+}
+
+TEST_F(Facilitation, ATriggerThatIsCalledOffFiresNoMoreUntilItIsChanged) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(0), now);
+  facilitator.step(now);
+  facilitator.call_off({1, 4});
+  facilitator.set(every_five_seconds(0), now);  // its holder is heard again
+  EXPECT_EQ(firings(facilitator, now), 0u);
+  Facilitator next(kSelf + 1);
+  next.restore(facilitator.save());
+  next.announce(agent_that_notes());
+  next.set(every_five_seconds(0), now);
+  EXPECT_EQ(firings(next, now), 0u) << "after a restart";
+  facilitator.set(every_five_seconds(3), now);
+  EXPECT_EQ(firings(facilitator, now), 3u);
+}
+
+TEST_F(Facilitation, TheActionOfATriggerEndsWithTheTrigger) {
+  facilitator.announce(agent_that_notes());
+  for (const bool lost : {true, false}) {
+    facilitator.set(every_five_seconds(0), now);
+    now += 5.0;
+    const auto fired = facilitator.step(now);
+    ASSERT_EQ(fired.requests.size(), 1u);
+    const Request action = fired.requests[0];
+    facilitator.hear(action.service, kSelf, action.number, {AnswerCode::underway, ""}, now);
+    if (lost)
+      facilitator.miss({1, 4});
+    else
+      facilitator.take_back({1, 4});
+    const auto told = facilitator.step(now).requests;
+    ASSERT_EQ(told.size(), 1u) << lost;
+    EXPECT_EQ(told[0].functor, kWithdraw);
+    EXPECT_EQ(told[0].number, action.number);
+    facilitator.hear(action.service, kSelf, action.number, {AnswerCode::given_up, "stopped"}, now);
+    facilitator.step(now);
+  }
+}
+
 /// A facilitator that was killed after it has asked `sweeper` for an action, and is back.
 struct FacilitationAgain : Facilitation {
   FacilitationAgain() {

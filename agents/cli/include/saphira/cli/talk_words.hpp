@@ -38,7 +38,9 @@ std::string to_json(const v1::Answer& answer, const std::string& robot = {});
 /// The agents, each with a line for each capability. The robot's activities are the last line.
 std::string describe(const std::vector<v1::Agent>& agents);
 /// Such as "trigger 1f3a:2 of ann: every 5 s: note".
-std::string describe(const v1::Trigger& trigger, const std::string& id);
+std::string describe(const v1::Trigger& trigger, const std::string& id, bool live = true);
+/// ids: separated by blanks, as the facilitator tells its live triggers.
+bool is_among(const std::string& id, const std::string& ids);
 
 /// The advice to the robot, each with its number, speaker and time.
 std::string knowledge_table(const v1::Knowledge& knowledge);

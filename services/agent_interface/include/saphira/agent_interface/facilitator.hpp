@@ -42,6 +42,10 @@ struct Trigger {
   bool operator==(const Trigger&) const = default;
 };
 
+/// The functor that the facilitator answers itself: the result `live` has the ids of the triggers
+/// that may fire yet, such as "1f3a:2 1f3a:5".
+inline constexpr const char* kLiveTriggers = "live-triggers";
+
 /// The argument that begins the next part of a conjunction: its text is the functor, and the
 /// arguments after it are of that part. An unbound argument with a text is a variable of that name:
 /// the first part that answers it gives its value to the parts after it.
@@ -73,11 +77,17 @@ class Facilitator {
   /// The agent's open requests go to another agent, or are answered with the reason.
   void leave(std::uint64_t agent);
 
-  /// A known trigger is set anew where it has changed; otherwise its firings still count.
+  /// A known trigger is set anew where it has changed; otherwise its firings still count. One with
+  /// a period below 0.1 s is not set, and a note says so.
   void set(const Trigger& trigger, double now);
+  /// By its writer. Its action under way is withdrawn, as a goal ends with its client.
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
-  /// The trigger's writer is not heard any more. Its firings count when it is heard again.
-  void miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) { triggers_.erase(trigger); }
+  /// The trigger's writer is not heard any more: as take_back(). Its firings count when it is heard
+  /// again.
+  void miss(const std::pair<std::uint64_t, std::uint64_t>& trigger);
+  /// By somebody else than its writer: it fires no more, whatever is heard of it again, until its
+  /// writer changes it.
+  void call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
   /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one.
@@ -142,6 +152,7 @@ class Facilitator {
     Answer trouble{AnswerCode::nobody};  ///< the newest failure
     std::string troubler{};
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
+    std::optional<Id> cause{};    ///< the trigger whose action it is
     bool unmatched = false;       ///< waits for an agent that can answer it
     bool withdrawn = false;
     std::optional<Id> whole{};     ///< the conjunction whose part it is
@@ -162,6 +173,8 @@ class Facilitator {
 
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
+  void list_triggers(const Request& request);
+  void stop_action(const Id& trigger);
   std::optional<Answer> take_apart(Open& open) const;
   void pose(const Id& id, double now);
   void go_on(const Id& id, double now);
