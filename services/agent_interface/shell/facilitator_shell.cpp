@@ -166,6 +166,8 @@ void FacilitatorShell::step(double now) {
   }
   for (const std::string& text : out.notes)
     node_.info(text);
+  for (const std::string& text : out.warnings)
+    node_.warn(text);
 }
 
 double FacilitatorShell::seconds() {

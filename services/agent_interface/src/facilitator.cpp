@@ -20,6 +20,7 @@ constexpr std::size_t kBegun = 256;      // actions that are remembered, besides
 constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
 constexpr std::size_t kParts = 8;        // of a conjunction
 constexpr std::size_t kTries = 1000;     // requests for the parts of a conjunction
+constexpr std::size_t kStrangers = 64;   // that are warned of
 constexpr double kShortestPeriod = 0.1;  // [s] of a trigger
 constexpr std::uint64_t kCalledOff = std::numeric_limits<std::uint64_t>::max();  // firings: no more
 constexpr const char* kName = "facilitator";
@@ -500,8 +501,15 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
     const auto agent = agents_.find(one.agent);
     return agent != agents_.end() && agent->second.address == address;
   });
-  if (asked == open.asked.end())
+  if (asked == open.asked.end()) {
+    if (std::none_of(agents_.begin(), agents_.end(),
+                     [&](const auto& one) { return one.second.address == address; }) &&
+        strangers_.size() < kStrangers && strangers_.insert(address).second)
+      out_.warnings.push_back("an answer of " + quoted(address) + " to " + describe(open.request) +
+                              " does not count: no agent has that address; expected the service of "
+                              "the request, such as 1f3a/calendar");
     return;
+  }
   asked->heard = true;
   // An agent that knows no withdrawals does the action to its end.
   if (open.withdrawn && answer.code == AnswerCode::unknown_functor)

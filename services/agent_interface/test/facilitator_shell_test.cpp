@@ -168,6 +168,12 @@ TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   EXPECT_EQ(answers[1].text(), "half of the floor is clean");
 }
 
+TEST_F(FacilitatorInMemory, AnAgentIsRunningOnceItTakesRequests) {
+  EXPECT_EQ(other.status().state(), v1::SERVICE_STARTING);
+  turn();
+  EXPECT_EQ(other.status().state(), v1::SERVICE_RUNNING);
+}
+
 TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
   auto first = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   bus::RequestClient second(person, bus::topics::kSolve, "a person");  // of the same program

@@ -568,6 +568,24 @@ TEST_F(Facilitation, ARequiredArgumentIsNotLeftOpen) {
                     "place_of: argument \"person\" is missing: expected a text (a name)"}));
 }
 
+TEST_F(Facilitation, AnAnswerThatIsNobodysIsWarnedOfOnce) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(place_of(5));
+  EXPECT_TRUE(hear("b", place_of(5), library()).warnings.empty()) << "an agent that was not asked";
+  for (const std::size_t warnings : {1u, 0u}) {
+    facilitator.hear("a", kPerson, 5, library(), now);
+    const auto out = facilitator.step(now);
+    EXPECT_TRUE(out.solved.empty());
+    ASSERT_EQ(out.warnings.size(), warnings);
+    for (const std::string& warning : out.warnings) {
+      EXPECT_EQ(warning.find("an answer of \"a\" to place_of person=\"karen\" place=? does"), 0u)
+          << warning;
+    }
+  }
+  EXPECT_EQ(hear("a", place_of(5), library()).solved.size(), 1u);
+}
+
 Argument variable(const std::string& name, const std::string& variable) {
   Argument argument = open_slot(name);
   argument.text = variable;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,6 +104,7 @@ class Facilitator {
     std::vector<Request> requests;  ///< to agents, by their address
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
+    std::vector<std::string> warnings;  ///< each once
     bool changed = false;  ///< the memory has changed: it is kept before the requests are sent
   };
   /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
@@ -201,7 +203,8 @@ class Facilitator {
   std::map<Id, Open> open_;
   std::vector<std::pair<Id, Solved>> ended_;  ///< newest ends, repeated on a repeated request
   std::map<Id, Armed> triggers_;
-  std::map<Id, std::uint64_t> fired_;                  ///< how often, of triggers with `times`
+  std::map<Id, std::uint64_t> fired_;  ///< how often, of triggers with `times`
+  std::set<std::string> strangers_{};  ///< in the address of answers that no agent has
   std::vector<std::pair<Id, std::uint64_t>> begun_{};  ///< actions and their agents, oldest first
   Outputs out_;
 };
