@@ -2,9 +2,12 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "commands.hpp"
+#include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -30,12 +33,26 @@ struct AskOptions {
 
 // Without a deadline: until an agent says that it is at work, and then until it says so again.
 constexpr double kSilence = 11.0;  // [s]
+constexpr double kTold = 1.0;      // [s] for the list of live triggers
 
-int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop) {
-  v1::Request request;
-  for (const std::string& word : ask_options.arguments)
-    request.arguments().push_back(parse_slot(word));
-  request.functor(ask_options.functor);
+/// The robots with a facilitator.
+std::set<std::string> robots_with_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  const bus::Census census(node);
+  poll_for(node, listening_time(node), stop, [] {});
+  std::set<std::string> robots;
+  for (const bus::EndpointEntry& entry : census.endpoints())
+    if (!entry.writer && entry.topic == bus::topics::kSolve.name && entry.program == kFacilitator)
+      robots.insert(entry.robot);
+  return robots;
+}
+
+/// robot: for people; empty: it need not be said.
+int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop,
+        const std::string& robot = {}) {
+  std::vector<std::string> words{ask_options.functor};
+  words.insert(words.end(), ask_options.arguments.begin(), ask_options.arguments.end());
+  v1::Request request = parse_question(words);
   request.service(ask_options.agent);
   request.deadline(ask_options.deadline);
   if (ask_options.answers != 1)
@@ -45,11 +62,13 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   Processes processes(node);
   bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
   auto answers = node.reader(bus::topics::kSolved);
-  std::string told;
+  const std::string in_front = robot.empty() ? "" : robot + ": ";
+  v1::Answer told;
   const auto tell = [&](const v1::Answer& answer) {
-    const std::string text = ask_options.json ? to_json(answer) : line_of(answer);
-    if (text != std::exchange(told, text))
-      std::printf("%s\n", text.c_str());
+    if (repeats(answer, std::exchange(told, answer)))
+      return;
+    const std::string text = ask_options.json ? to_json(answer, robot) : in_front + line_of(answer);
+    std::printf("%s\n", text.c_str());
   };
   const auto show = [&] {
     for (const auto& sample : answers.take())
@@ -58,21 +77,39 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
           !(sample.data.text().empty() && sample.data.results().empty()))
         tell(sample.data);
   };
-  const v1::Answer end = ask_program(
-      kFacilitator, node, client, request,
-      ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence, stop, processes, show);
+  v1::Answer end = ask_program(kFacilitator, node, client, request,
+                               ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence,
+                               stop, processes, show);
+  show();
+  // The request ends with its writer.
+  if (stop.requested() && end.code() == v1::ANSWER_TOO_LATE)
+    end.text("withdrawn, as this command was ended: an agent at work on it is told to stop");
   if (end.service().empty()) {
     if (ask_options.json)
       tell(end);
-    std::cerr << "saphira: " << end.text();
-    if (absence(node, processes, kFacilitator).empty())
+    std::cerr << "saphira: " << in_front << end.text();
+    if (!stop.requested() && absence(node, processes, kFacilitator).empty())
       std::cerr << "; " << who_is_there(options, processes);
     std::cerr << '\n';
     return bus::kExitFailed;
   }
-  show();
   tell(end);
   return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
+}
+
+/// Each robot's agents, one robot after another. Success: one of them has answered.
+int ask_any(const AskOptions& ask_options, bus::NodeOptions options, const bus::Stop& stop) {
+  const std::set<std::string> robots = robots_with_agents(options, stop);
+  if (robots.empty())
+    std::cerr << "saphira: no saphira-facilitator is heard in domain " << options.domain
+              << ": saphira up office has it\n";
+  int code = bus::kExitFailed;
+  for (const std::string& robot : robots) {
+    options.robot = robot;
+    if (!stop.requested() && ask(ask_options, options, stop, robot) == bus::kExitOk)
+      code = bus::kExitOk;
+  }
+  return code;
 }
 
 /// The program that holds a trigger, for people; empty: unknown.
@@ -83,6 +120,49 @@ std::string holder(const bus::Census& census, const bus::WriterId& writer) {
       return entry.program + ", process " + std::to_string(entry.pid) +
              (entry.host.empty() ? "" : " at " + entry.host);
   return {};
+}
+
+int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptions& options,
+                     const bus::Stop& stop) {
+  const auto id =
+      words.size() == 2 && words[0] == "withdraw" ? bus::parse_goal_id(words[1]) : std::nullopt;
+  if (!id) {
+    std::cerr << "saphira: expected agents, or agents withdraw ID, such as 1f3a:2 (saphira agents "
+                 "lists the triggers)\n";
+    return bus::kExitUsage;
+  }
+  const std::string name = bus::describe(*id);
+  bus::Node node(options);
+  Processes processes(node);
+  bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
+  auto triggers = node.writer(bus::topics::kTriggers);
+  const auto live = [&] {
+    return ask_program(kFacilitator, node, client, bus::request(agent_interface::kLiveTriggers),
+                       5.0, stop, processes);
+  };
+  v1::Answer answer = live();
+  if (answer.code() != v1::ANSWER_DONE) {
+    std::cerr << "saphira: " << answer.text() << '\n';
+    return bus::kExitFailed;
+  }
+  if (!is_among(name, bus::text_of(answer.results(), "live"))) {
+    std::cerr << "saphira: no trigger " << name << " can fire: saphira agents lists them\n";
+    return bus::kExitFailed;
+  }
+  v1::Trigger withdrawn;
+  withdrawn.id(*id);
+  const auto begin = Clock::now();
+  while (is_among(name, bus::text_of(answer.results(), "live"))) {
+    if (stop.requested() || seconds_since(begin) > 5.0) {
+      std::cerr << "saphira: the facilitator has not taken the withdrawal\n";
+      return bus::kExitFailed;
+    }
+    triggers.dispose(withdrawn);
+    node.wait(milliseconds(50), &stop);
+    answer = live();
+  }
+  std::printf("withdrawn: it fires no more\n");
+  return bus::kExitOk;
 }
 
 int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -109,9 +189,18 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   for (const auto& [id, agent] : known)
     all.push_back(agent);
   std::fputs(describe(all).c_str(), stdout);
+  std::optional<std::string> live;  // unknown without a facilitator
+  if (!set.empty()) {
+    bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
+    const v1::Answer answer =
+        client.ask(bus::request(agent_interface::kLiveTriggers), kTold, &stop);
+    if (answer.code() == v1::ANSWER_DONE)
+      live = bus::text_of(answer.results(), "live");
+  }
   for (const auto& [id, trigger] : set) {
+    const std::string name = bus::describe(trigger.data.id());
     const std::string held_by = holder(census, trigger.info.writer);
-    std::printf("%s%s\n", describe(trigger.data, bus::describe(trigger.data.id())).c_str(),
+    std::printf("%s%s\n", describe(trigger.data, name, !live || is_among(name, *live)).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
   if (!known.empty())
@@ -128,7 +217,8 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
 void add_ask(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<AskOptions>();
   CLI::App* command = app.add_subcommand("ask", "Ask whichever agent can answer");
-  command->add_option("functor", options->functor, "what is asked for");
+  command->add_option("functor", options->functor,
+                      "what is asked for; or FUNCTOR(name=value, ...), perhaps several");
   command->add_flag("--list", options->list, "what can be asked for, as saphira agents");
   command->add_option("arguments", options->arguments,
                       "name=value, or name=? for what the answer is to fill");
@@ -143,23 +233,38 @@ void add_ask(CLI::App& app, Chosen& chosen) {
       ->transform(number_in_unit("s"));
   command->add_flag("--json", options->json,
                     "one JSON object for each answer: agent, code, text, values");
-  command->footer("Exit code 0: it was answered; 1: it was refused or not answered, and why.");
+  command->footer(
+      "Several are asked in turn, and share their variables: "
+      "'place_of(person=karen, place=?P)' 'go-to-place(place=?P)'.\n"
+      "Where one has no answer, a further answer of the one before is tried. Only the last may be "
+      "an action.\n"
+      "--robot '*': the agents of each robot, with the robot's name; several robots may act then.\n"
+      "Exit code 0: it was answered; 1: it was refused or not answered, and why.");
   command->callback([options, &chosen] {
     if (options->functor.empty() != options->list)
       throw CLI::ValidationError("ask", "expected a functor, or --list");
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return options->list ? list_agents(node, stop) : ask(*options, node, stop);
+      if (options->list) {
+        const int code = list_agents(node, stop);
+        std::printf(
+            "other requests have commands of their own: saphira goal activities, saphira device "
+            "list, saphira map --help\n");
+        return code;
+      }
+      return node.robot == "*" ? ask_any(*options, node, stop) : ask(*options, node, stop);
     };
   });
 }
 
 void add_agents(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command =
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
+  command->add_option("words", *words, "withdraw ID: that trigger fires no more");
   command->footer(
       "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");
-  chosen.when(command, [](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return list_agents(node, stop);
+  chosen.when(command, [words](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return words->empty() ? list_agents(node, stop) : withdraw_trigger(*words, node, stop);
   });
 }
 

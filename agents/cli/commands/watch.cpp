@@ -133,8 +133,9 @@ std::string absence(const bus::Node& node, const Processes& processes, const std
     return {};
   if (known.programs.empty())
     return who_is_there(node.options(), processes);
-  return "no saphira-" + program + " is on the bus (robot " + node.options().robot + ", domain " +
-         std::to_string(node.options().domain) + "): saphira up office has it";
+  return "no saphira-" + program + " is heard (robot " + node.options().robot + ", domain " +
+         std::to_string(node.options().domain) +
+         "): it does not run (saphira up office has it), hangs, or is cut off";
 }
 
 v1::Answer ask_program(const std::string& program, bus::Node& node, bus::RequestClient& client,

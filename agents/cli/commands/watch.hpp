@@ -98,7 +98,7 @@ inline constexpr const char* kFacilitator = "facilitator";
 /// The time after which every living program has reported: the status comes once a second.
 std::chrono::milliseconds listening_time(const bus::Node& node);
 
-/// That this program is not on the bus, in words. Empty: it is, or may not have reported yet.
+/// That this program is not heard, in words. Empty: it is, or may not have reported yet.
 std::string absence(const bus::Node& node, const Processes& processes, const std::string& program);
 
 /// RequestClient::ask, on a topic that only this program answers. Where it is not on the bus, that

@@ -1,9 +1,13 @@
 #include "saphira/cli/talk_words.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
 
 #include "requests/shell/convert.hpp"
 #include "saphira/base/enumerators.hpp"
@@ -68,6 +72,14 @@ std::string time_of(double time) {
   return time <= 0.0 ? "-" : local_text(static_cast<std::int64_t>(time), "%a %H:%M");
 }
 
+v1::Argument text_argument(const std::string& name, const std::string& text) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_TEXT);
+  argument.text(text);
+  return argument;
+}
+
 std::string describe(const v1::Agent& agent) {
   std::string text = agent.name() + "  " + agent.summary() + "\n";
   for (const v1::Capability& capability : agent.capabilities()) {
@@ -93,13 +105,48 @@ std::string describe(const v1::Agent& agent) {
 }  // namespace
 
 v1::Argument parse_slot(const std::string& word) {
-  if (word.size() > 2 && word.ends_with("=?")) {
-    v1::Argument argument;
-    argument.name(word.substr(0, word.size() - 2));
-    argument.kind(v1::ARGUMENT_UNBOUND);
-    return argument;
+  const std::size_t open = word.find("=?");
+  if (open == std::string::npos || open == 0 || open != word.find('='))
+    return parse_argument(word);
+  v1::Argument argument;
+  argument.name(word.substr(0, open));
+  argument.kind(v1::ARGUMENT_UNBOUND);
+  argument.text(word.substr(open + 2));
+  const std::string& variable = argument.text();
+  if (!std::all_of(variable.begin(), variable.end(),
+                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }))
+    throw std::invalid_argument("expected name=? or name=?VARIABLE, found \"" + word + "\"");
+  return argument;
+}
+
+v1::Request parse_question(const std::vector<std::string>& words) {
+  v1::Request request;
+  if (words.at(0).find('(') == std::string::npos) {
+    request.functor(words[0]);
+    for (std::size_t i = 1; i < words.size(); ++i)
+      request.arguments().push_back(parse_slot(words[i]));
+    return request;
   }
-  return parse_argument(word);
+  for (const std::string& word : words) {
+    const std::size_t begin = word.find('(');
+    if (begin == std::string::npos || begin == 0 || !word.ends_with(')'))
+      throw std::invalid_argument("expected FUNCTOR(name=value, ...), found \"" + word + "\"");
+    const std::string functor = word.substr(0, begin);
+    if (&word == &words.front())
+      request.functor(functor);
+    else
+      request.arguments().push_back(text_argument("and", functor));
+    std::vector<std::string> slots;
+    std::istringstream inside(word.substr(begin + 1, word.size() - begin - 2));
+    for (std::string piece; std::getline(inside, piece, ',');)
+      if (slots.empty() || piece.find('=') != std::string::npos)
+        slots.push_back(piece.substr(std::min(piece.find_first_not_of(' '), piece.size())));
+      else
+        slots.back() += "," + piece;  // a value may have commas, as a point has
+    for (const std::string& slot : slots)
+      request.arguments().push_back(parse_slot(slot));
+  }
+  return request;
 }
 
 bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, double listened) {
@@ -123,11 +170,17 @@ std::string line_of(const v1::Answer& answer) {
   return line == answer.service() + ":" ? line + " done" : line;
 }
 
-std::string to_json(const v1::Answer& answer) {
+bool repeats(const v1::Answer& answer, const v1::Answer& before) {
+  return answer.results().empty() && answer == before;
+}
+
+std::string to_json(const v1::Answer& answer, const std::string& robot) {
   nlohmann::ordered_json json{{"agent", answer.service()},
                               {"code", words_of(answer.code()).name},
                               {"text", answer.text()},
                               {"values", nlohmann::ordered_json::object()}};
+  if (!robot.empty())
+    json["robot"] = robot;
   std::map<std::string, int> count;
   for (const v1::Argument& result : answer.results()) {
     nlohmann::ordered_json& value = json["values"][result.name()];
@@ -154,14 +207,21 @@ std::string describe(const std::vector<v1::Agent>& agents) {
   return text + robot;
 }
 
-std::string describe(const v1::Trigger& trigger, const std::string& id) {
+bool is_among(const std::string& id, const std::string& ids) {
+  return (" " + ids + " ").find(" " + id + " ") != std::string::npos;
+}
+
+std::string describe(const v1::Trigger& trigger, const std::string& id, bool live) {
   std::string when = "every " + plain(trigger.period()) + " s";
   if (trigger.kind() == v1::TRIGGER_DATA)
     when = "when the answer to " + trigger.condition() + " changes";
   else if (trigger.kind() == v1::TRIGGER_EVENT)
     when = "when " + trigger.condition() + " happens";
   return "trigger " + id + " of " + (trigger.source().empty() ? "somebody" : trigger.source()) +
-         ": " + when + ": " + trigger.action();
+         ": " + when + ": " + trigger.action() +
+         (live ? ""
+               : "; it fires no more: it has fired its times, was withdrawn, or its period is "
+                 "below 0.1 s");
 }
 
 std::string knowledge_table(const v1::Knowledge& knowledge) {

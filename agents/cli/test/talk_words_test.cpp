@@ -77,6 +77,40 @@ TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
             "robot  2 activities: saphira goal activities lists them\n");
 }
 
+TEST(TalkWords, EqualValuesOfTwoAgentsAreTwoAnswers) {
+  v1::Answer answer;
+  answer.service("calendar");
+  answer.text("on its way");
+  EXPECT_TRUE(repeats(answer, answer)) << "it says again that it is at work";
+  EXPECT_FALSE(repeats(answer, v1::Answer()));
+  answer.results({named("place", v1::ARGUMENT_TEXT)});
+  EXPECT_FALSE(repeats(answer, answer));
+}
+
+std::string told(const std::vector<std::string>& words) {
+  const v1::Request request = parse_question(words);
+  std::string text = request.functor();
+  for (const v1::Argument& argument : request.arguments())
+    text += " " + argument.name() + "=" +
+            (argument.kind() == v1::ARGUMENT_POINT    ? "point"
+             : argument.kind() == v1::ARGUMENT_NUMBER ? "number"
+             : argument.kind() == v1::ARGUMENT_TEXT   ? argument.text()
+                                                      : "?" + argument.text());
+  return text;
+}
+
+TEST(TalkWords, SeveralFunctorsAreOneRequest) {
+  EXPECT_EQ(told({"place_of", "person=karen", "place=?"}), "place_of person=karen place=?");
+  EXPECT_EQ(told({"place_of(person=karen, place=?P)", "go-to-place(dest=?P)"}),
+            "place_of person=karen place=?P and=go-to-place dest=?P");
+  EXPECT_EQ(told({"where()", "tell(text=I am late, sorry, to=?Who,at=1,2,3,n=4)"}),
+            "where and=tell text=I am late, sorry to=?Who at=point n=number");
+  EXPECT_EQ(told({"say", "text=how?"}), "say text=how?");
+  EXPECT_THROW(told({"place_of(person=karen)", "go-to-place"}), std::invalid_argument);
+  EXPECT_THROW(told({"place_of(person)"}), std::invalid_argument);
+  EXPECT_THROW(told({"place_of(person=?two words)"}), std::invalid_argument);
+}
+
 TEST(TalkWords, SentencesOfBeforeAreNotForAListener) {
   v1::Utterance said;
   said.answers().writer(7);
@@ -95,6 +129,12 @@ TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
   trigger.kind(v1::TRIGGER_EVENT);
   trigger.condition("door_opened");
   EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of ann: when door_opened happens: note");
+  EXPECT_EQ(describe(trigger, "1f3a:2", false),
+            "trigger 1f3a:2 of ann: when door_opened happens: note; it fires no more: it has fired "
+            "its times, was withdrawn, or its period is below 0.1 s");
+  EXPECT_TRUE(is_among("1f3a:2", "1:4 1f3a:2"));
+  EXPECT_FALSE(is_among("1f3a:2", "1:4 1f3a:22"));
+  EXPECT_FALSE(is_among("1f3a:2", ""));
 }
 
 }  // namespace

@@ -65,6 +65,8 @@ void Agent::can(const v1::Capability& capability, Answerer answerer) {
 void Agent::poll() {
   if (answering_)
     return;
+  if (node_.status().state() == v1::SERVICE_STARTING)
+    node_.status().state(v1::SERVICE_RUNNING);
   answering_ = true;
   for (const auto& sample : requests_.take())
     if (!sample.info.disposed && sample.data.service() == address_)

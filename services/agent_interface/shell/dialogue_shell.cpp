@@ -96,9 +96,8 @@ void DialogueShell::announce() {
   agent_.can(bus::action("forget", "takes back what the robot was told",
                          {bus::number_slot("number", "of the advice (saphira knows)", true)}),
              [this](const v1::Request& request) {
-               const auto number =
-                   static_cast<std::uint64_t>(bus::number_of(request.arguments(), "number"));
-               const Dialogue::Outputs out = dialogue_.forget(number);
+               const Dialogue::Outputs out =
+                   dialogue_.forget(bus::number_of(request.arguments(), "number"));
                perform(out);
                return to_bus(out.answer);
              });

@@ -69,21 +69,42 @@ void FacilitatorShell::take_agents() {
   }
 }
 
+/// Several programs may hold a trigger: it lasts as long as one of them, in the form of the newest.
 void FacilitatorShell::take_triggers(double now) {
+  const auto release = [&](const bus::WriterId& writer, const Trigger& trigger, bool lost) {
+    auto& holders = holders_[trigger.id];
+    const bool unknown = holders.empty();
+    const bool held =
+        std::erase_if(holders, [&](const auto& one) { return one.first == writer; }) > 0;
+    if (!holders.empty() && held)
+      return facilitator_.set(holders.back().second, now);
+    holders_.erase(trigger.id);
+    if (lost)
+      facilitator_.miss(trigger.id);
+    else if (held || unknown)
+      facilitator_.take_back(trigger.id);
+    else
+      facilitator_.call_off(trigger.id);
+  };
   for (const auto& sample : triggers_.take()) {
     const Trigger trigger = from_bus(sample.data);
     if (sample.info.disposed) {
-      facilitator_.take_back(trigger.id);
+      release(sample.info.writer, trigger, false);
       continue;
     }
-    note(triggers_of_, sample.info.writer, trigger.id);
+    auto& holders = holders_[trigger.id];
+    std::erase_if(holders, [&](const auto& one) { return one.first == sample.info.writer; });
+    holders.emplace_back(sample.info.writer, trigger);
     facilitator_.set(trigger, now);
   }
   for (const bus::WriterId& writer : triggers_.take_lost()) {
-    const auto [begin, end] = triggers_of_.equal_range(writer);
-    for (auto one = begin; one != end; ++one)
-      facilitator_.miss(one->second);
-    triggers_of_.erase(writer);
+    std::vector<Trigger> held;
+    for (const auto& [id, holders] : holders_)
+      for (const auto& [holder, trigger] : holders)
+        if (holder == writer)
+          held.push_back(trigger);
+    for (const Trigger& trigger : held)
+      release(writer, trigger, true);
   }
 }
 
@@ -145,6 +166,8 @@ void FacilitatorShell::step(double now) {
   }
   for (const std::string& text : out.notes)
     node_.info(text);
+  for (const std::string& text : out.warnings)
+    node_.warn(text);
 }
 
 double FacilitatorShell::seconds() {

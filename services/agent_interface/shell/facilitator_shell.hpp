@@ -1,6 +1,8 @@
 #pragma once
 
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "agent_interface/shell/robot_agent.hpp"
 #include "saphira/agent_interface/facilitator.hpp"
@@ -42,7 +44,9 @@ class FacilitatorShell {
   bool awaits_ = false;  ///< the last step has sent a request to an agent
   /// The writer of each agent: an agent ends with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
-  std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
+  /// Of each trigger the writers that hold it, with what each has written, the newest last.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::vector<std::pair<bus::WriterId, Trigger>>>
+      holders_;
   /// Open requests: they end with their writer.
   std::multimap<bus::WriterId, RequestId> requests_of_;
 };

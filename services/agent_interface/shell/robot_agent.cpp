@@ -69,7 +69,7 @@ Answer RobotAgent::begin(const Request& request, double now) {
   goal.functor(request.functor);
   goal.arguments(to_bus(request.arguments));
   goal.requester(request.source);
-  goal.deadline(request.deadline);
+  goal.deadline(goal_deadline(request.deadline));
   goal.writer_lost(v1::WRITER_LOST_CANCEL);
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
   return {AnswerCode::underway, ""};

@@ -1,10 +1,12 @@
 #include "saphira/agent_interface/facilitator.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <tuple>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
@@ -16,6 +18,11 @@ constexpr std::size_t kOpenOfOne = 64;   // requests of one asker at a time
 constexpr std::size_t kEnded = 256;      // ends that are remembered
 constexpr std::size_t kBegun = 256;      // actions that are remembered, besides open ones
 constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
+constexpr std::size_t kParts = 8;        // of a conjunction
+constexpr std::size_t kTries = 1000;     // requests for the parts of a conjunction
+constexpr std::size_t kStrangers = 64;   // that are warned of
+constexpr double kShortestPeriod = 0.1;  // [s] of a trigger
+constexpr std::uint64_t kCalledOff = std::numeric_limits<std::uint64_t>::max();  // firings: no more
 constexpr const char* kName = "facilitator";
 
 Arguments without(Arguments arguments, const std::string& name) {
@@ -23,20 +30,70 @@ Arguments without(Arguments arguments, const std::string& name) {
   return arguments;
 }
 
-/// The error in the arguments, from complete(). An open slot fits.
+/// The error in the arguments, from complete(). An open slot fits where the answer may fill it.
 std::string misfit(const Functor& functor, const Arguments& arguments) {
-  Functor asked = functor;
   Arguments bound;
-  for (const Argument& argument : arguments) {
-    const auto parameter =
-        std::find_if(asked.parameters.begin(), asked.parameters.end(),
-                     [&](const Parameter& one) { return one.name == argument.name; });
-    if (argument.kind == ArgumentKind::unbound && parameter != asked.parameters.end())
-      parameter->required = false;
-    else
+  for (const Argument& argument : arguments)
+    if (argument.kind != ArgumentKind::unbound ||
+        std::none_of(functor.parameters.begin(), functor.parameters.end(),
+                     [&](const Parameter& one) { return one.name == argument.name; }))
       bound.push_back(argument);
+  return complete(functor, bound);
+}
+
+bool is_variable(const Argument& argument) {
+  return argument.kind == ArgumentKind::unbound && !argument.text.empty();
+}
+
+/// The arguments of a part, with the values of its variables.
+Arguments with_values(Arguments arguments, const Arguments& bound) {
+  for (Argument& argument : arguments) {
+    if (!is_variable(argument))
+      continue;
+    const Argument* const value = find(bound, argument.text);
+    std::string name = std::move(argument.name);
+    argument = Argument{};
+    argument.kind = ArgumentKind::unbound;
+    if (value != nullptr)
+      argument = *value;
+    argument.name = std::move(name);
   }
-  return complete(asked, bound);
+  return arguments;
+}
+
+/// The values of all variables after an answer to a part: one row for each value of a slot.
+std::vector<Arguments> rows_of(const Arguments& part, const Arguments& bound,
+                               const Arguments& results) {
+  std::size_t count = 1;
+  std::vector<std::pair<std::string, Arguments>> values;  // of each new variable
+  for (const Argument& slot : part) {
+    if (!is_variable(slot) || find(bound, slot.text) != nullptr)
+      continue;
+    Arguments of_slot;
+    for (const Argument& result : results)
+      if (result.name == slot.name && result.kind != ArgumentKind::unbound) {
+        of_slot.push_back(result);
+        of_slot.back().name = slot.text;
+      }
+    count = std::max(count, of_slot.size());
+    if (!of_slot.empty())
+      values.emplace_back(slot.text, std::move(of_slot));
+  }
+  std::vector<Arguments> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    Arguments row = bound;
+    bool agrees = true;  // two slots of one variable have one value
+    for (const auto& [name, of_slot] : values) {
+      const Argument& value = of_slot[std::min(i, of_slot.size() - 1)];
+      if (const Argument* const known = find(row, name); known != nullptr)
+        agrees = agrees && *known == value;
+      else
+        row.push_back(value);
+    }
+    if (agrees)
+      rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 /// Nothing was done: another agent may get the same request.
@@ -116,6 +173,11 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
   std::string wrong;
   std::vector<std::string> known;
   bool named = request.service.empty();
+  bool may_act = true;
+  if (open.whole) {
+    const Open& whole = open_.at(*open.whole);
+    may_act = whole.at + 1 == whole.parts.size() && whole.wanted == 1;
+  }
   std::vector<std::tuple<double, std::string, std::uint64_t>> fit;
   for (const auto& [id, agent] : agents_) {
     if (!request.service.empty() && request.service != agent.name &&
@@ -128,6 +190,9 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
         continue;
       if (const std::string bad = misfit(one.functor, request.arguments); !bad.empty())
         wrong = bad;
+      else if (one.acts && !may_act)
+        wrong = request.functor +
+                " is an action: only the last part of a conjunction may be one, and is done once";
       else
         fit.emplace_back(one.cost, agent.name, id);
     }
@@ -148,6 +213,7 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
 }
 
 void Facilitator::ask(const Request& request, double now) {
+  now_ = now;
   const Id id{request.asker, request.number};
   const bool withdraws = request.functor == kWithdraw;
   if (open_.contains(id)) {
@@ -160,8 +226,19 @@ void Facilitator::ask(const Request& request, double now) {
       out_.solved.push_back(solved);
       return;
     }
+  if (request.functor == kLiveTriggers)
+    return list_triggers(request);
   if (!withdraws || begun(id))
     begin(request, std::nullopt, now);
+}
+
+void Facilitator::list_triggers(const Request& request) {
+  std::ostringstream live;
+  for (const auto& [id, armed] : triggers_)
+    if (!is_spent(armed.trigger))
+      live << (live.tellp() > 0 ? " " : "") << std::hex << id.first << ':' << std::dec << id.second;
+  out_.solved.push_back(
+      {request.asker, request.number, kName, {AnswerCode::done, "", {text("live", live.str())}}});
 }
 
 void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
@@ -171,6 +248,11 @@ void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
     return;
   Open& open = found->second;
   open.withdrawn = true;
+  if (!open.parts.empty()) {
+    if (!open.reply)
+      withdraw(open.part.first, open.part.second);
+    return;
+  }
   open.left.clear();
   std::erase_if(open.asked, [](const Asked& one) { return !one.acts; });
   if (open.asked.empty() && begun(id))
@@ -200,11 +282,151 @@ void Facilitator::begin(const Request& request, std::optional<Id> trigger, doubl
   if (static_cast<std::size_t>(same) >= kOpenOfOne)
     none = Answer{AnswerCode::refused, request.source + " has " + std::to_string(same) +
                                            " requests open: ask again when one has ended"};
+  // An action that may have been begun before a restart is not begun anew.
+  if (!none && !open.withdrawn && !begun(id))
+    none = take_apart(open);
+  const bool whole = !open.parts.empty();
   open_[id] = std::move(open);
   if (none)
     end(id, kName, *none);
+  else if (whole)
+    pose(id, now);
   else
     match(id, now);
+}
+
+/// Finds the parts of a conjunction. The answer: the mistake in it.
+std::optional<Answer> Facilitator::take_apart(Open& open) const {
+  Request& request = open.request;
+  if (find(request.arguments, kAnd) == nullptr)
+    return std::nullopt;
+  std::vector<Part> parts{{request.functor}};
+  for (const Argument& argument : request.arguments) {
+    if (argument.name != kAnd)
+      parts.back().arguments.push_back(argument);
+    else if (argument.kind == ArgumentKind::text && !argument.text.empty())
+      parts.push_back({argument.text});
+    else
+      return Answer{AnswerCode::bad_argument,
+                    "argument \"and\": expected the functor of the next part, as a text"};
+  }
+  if (parts.size() > kParts)
+    return Answer{AnswerCode::refused,
+                  "a conjunction has " + std::to_string(kParts) + " parts at most"};
+  open.parts = std::move(parts);
+  return std::nullopt;
+}
+
+/// Asks for the part at work of a conjunction.
+void Facilitator::pose(const Id& id, double now) {
+  Open& open = open_.at(id);
+  const Part& part = open.parts[open.at];
+  Open one{open.request};
+  one.request.functor = part.functor;
+  one.request.arguments =
+      with_values(part.arguments, open.at == 0 ? Arguments{} : open.parts[open.at - 1].bound);
+  one.request.asker = self_;
+  one.request.number = ++number_;
+  one.whole = id;
+  one.left = part.rest;
+  const bool limited = open.request.deadline > 0.0;
+  one.end = limited ? open.end : now + kUsualDeadline;
+  open.part = {self_, number_};
+  if (++open.tries > kTries || (limited && now >= open.end)) {
+    const bool late = open.tries <= kTries;
+    open.reply = Reply{kName,
+                       {late ? AnswerCode::too_late : AnswerCode::given_up,
+                        late ? "no time is left" : "too many answers of the parts before it"},
+                       {},
+                       true};
+    return;
+  }
+  const Id part_id = open.part;
+  const bool known = !one.left.empty();
+  open_[part_id] = std::move(one);
+  if (known)
+    advance(part_id, now);
+  else
+    match(part_id, now);
+}
+
+/// Finds the newest part with a further answer. False: there is none.
+bool Facilitator::go_back(Open& open) const {
+  while (true) {
+    Part& part = open.parts[open.at];
+    std::erase_if(part.rest, [this](std::uint64_t agent) { return !agents_.contains(agent); });
+    if (!part.rows.empty() || !part.rest.empty())
+      return true;
+    if (open.at == 0)
+      return false;
+    --open.at;
+  }
+}
+
+/// The part at work of a conjunction has ended.
+void Facilitator::go_on(const Id& id, double now) {
+  Open& open = open_.at(id);
+  const Reply reply = *std::exchange(open.reply, std::nullopt);
+  Part& part = open.parts[open.at];
+  const bool last = open.at + 1 == open.parts.size();
+  const Arguments before = open.at == 0 ? Arguments{} : open.parts[open.at - 1].bound;
+  part.rest = reply.rest;
+  part.rows.clear();
+  std::string failed;
+  if (well(reply.answer.code)) {
+    part.rows = rows_of(part.arguments, before, reply.answer.results);
+    if (part.rows.empty())
+      failed = "the values of a variable differ";
+  } else {
+    failed = reply.answer.text.empty() ? "it was not answered" : reply.answer.text;
+  }
+  if (!failed.empty() && open.at >= open.failed) {
+    Request asked;
+    asked.functor = part.functor;
+    asked.arguments = with_values(part.arguments, before);
+    open.failed = open.at;
+    open.troubler = reply.service;
+    open.trouble = {well(reply.answer.code) ? AnswerCode::refused : reply.answer.code,
+                    "part " + std::to_string(open.at + 1) + " of " +
+                        std::to_string(open.parts.size()) + ", " + describe(asked) + ": " + failed};
+  }
+  if (last) {
+    for (const Arguments& row : std::exchange(part.rows, {})) {
+      Answer answer = reply.answer;
+      answer.results = row;
+      for (const Argument& result : reply.answer.results)
+        if (std::none_of(part.arguments.begin(), part.arguments.end(), [&](const Argument& slot) {
+              return is_variable(slot) && slot.name == result.name;
+            }))
+          answer.results.push_back(result);
+      ++open.got;
+      if (open.wanted == 1)
+        return end(id, reply.service, answer);
+      answer.code = AnswerCode::underway;
+      give(id, reply.service, answer);
+      if (open.got == open.wanted)
+        return end(id, kName, {AnswerCode::done, counted(open.got)});
+    }
+  }
+  const bool over = reply.begun || open.withdrawn;
+  if (!over)
+    forget_begun(id);
+  if (over || !go_back(open)) {
+    if (open.got > 0)
+      end(id, kName, {AnswerCode::done, counted(open.got) + (open.withdrawn ? "; withdrawn" : "")});
+    else if (open.withdrawn && !reply.begun)
+      end(id, kName, {AnswerCode::refused, "withdrawn; nothing was done"});
+    else
+      end(id, std::string(open.troubler), Answer(open.trouble));
+    return;
+  }
+  Part& next = open.parts[open.at];
+  if (!next.rows.empty()) {
+    next.bound = std::move(next.rows.front());
+    next.rows.erase(next.rows.begin());
+    open.parts[++open.at].rest.clear();
+  }
+  pose(id, now);
 }
 
 /// Finds the agents of a request, and asks the first ones.
@@ -226,9 +448,13 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   const Capability* const can = capability(agent, open.request.functor);
   const bool acts = begun(id) || (can != nullptr && can->acts);
   open.asked.push_back({agent, acts, now + kAgain});
-  // Requests of triggers are of one run of this program.
+  open.acts = open.acts || acts;
+  // Requests of triggers and for parts are of one run of this program. So its agent does not know
+  // the action of a conjunction again after a restart: agent 0, which is none, was asked.
   if (acts && open.wanted == 1 && id.first != self_)
     note_begun(id, agent);
+  else if (acts && open.whole && open.whole->first != self_)
+    note_begun(*open.whole, 0);
   tell(open, agent);
 }
 
@@ -236,6 +462,8 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
 void Facilitator::tell(const Open& open, std::uint64_t agent) {
   Request request = open.request;
   request.service = agents_.at(agent).address;
+  if (request.deadline > 0.0)
+    request.deadline = open.end - now_;  // the rest of it
   if (open.withdrawn) {
     request.functor = kWithdraw;
     request.arguments.clear();
@@ -263,6 +491,7 @@ void Facilitator::advance(const Id& id, double now) {
 
 void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
                        const Answer& answer, double now) {
+  now_ = now;
   const Id id{asker, number};
   const auto found = open_.find(id);
   if (found == open_.end())
@@ -272,8 +501,15 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
     const auto agent = agents_.find(one.agent);
     return agent != agents_.end() && agent->second.address == address;
   });
-  if (asked == open.asked.end())
+  if (asked == open.asked.end()) {
+    if (std::none_of(agents_.begin(), agents_.end(),
+                     [&](const auto& one) { return one.second.address == address; }) &&
+        strangers_.size() < kStrangers && strangers_.insert(address).second)
+      out_.warnings.push_back("an answer of " + quoted(address) + " to " + describe(open.request) +
+                              " does not count: no agent has that address; expected the service of "
+                              "the request, such as 1f3a/calendar");
     return;
+  }
   asked->heard = true;
   // An agent that knows no withdrawals does the action to its end.
   if (open.withdrawn && answer.code == AnswerCode::unknown_functor)
@@ -307,6 +543,8 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
 }
 
 void Facilitator::give(const Id& id, const std::string& service, const Answer& answer) {
+  if (const auto whole = open_.at(id).whole)
+    return give(*whole, service, answer);
   if (!open_.at(id).trigger && id.first != self_)
     out_.solved.push_back({id.first, id.second, service, answer});
 }
@@ -314,6 +552,11 @@ void Facilitator::give(const Id& id, const std::string& service, const Answer& a
 void Facilitator::end(const Id& id, const std::string& service, const Answer& answer) {
   const Open open = std::move(open_.at(id));
   open_.erase(id);
+  if (open.whole) {
+    open_.at(*open.whole).reply =
+        Reply{service, answer, open.left, open.acts && !untouched(answer.code)};
+    return;
+  }
   if (open.trigger)
     return looked(*open.trigger, answer);
   if (id.first == self_) {
@@ -329,25 +572,50 @@ void Facilitator::end(const Id& id, const std::string& service, const Answer& an
 }
 
 void Facilitator::set(const Trigger& trigger, double now) {
-  Armed armed{trigger};
-  armed.trigger.period = std::max(trigger.period, 0.1);
-  armed.next = now + (trigger.kind == TriggerKind::time ? armed.trigger.period : 0.0);
   if (const auto known = triggers_.find(trigger.id); known != triggers_.end()) {
-    if (known->second.trigger == armed.trigger)
+    if (known->second.trigger == trigger)
       return;
     take_back(trigger.id);
   }
-  triggers_[trigger.id] = armed;
+  if (trigger.kind != TriggerKind::event && !(trigger.period >= kShortestPeriod)) {
+    out_.notes.push_back("a trigger of " + trigger.source + " for " + quoted(trigger.action) +
+                         " is not set: period: expected 0.1 s or more, found " +
+                         plain(trigger.period));
+    return;
+  }
+  const double first = trigger.kind == TriggerKind::time ? trigger.period : 0.0;
+  triggers_[trigger.id] = {trigger, now + first};
 }
 
 void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  triggers_.erase(trigger);
+  miss(trigger);
   out_.changed = fired_.erase(trigger) > 0 || out_.changed;
+}
+
+void Facilitator::miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+  triggers_.erase(trigger);
+  stop_action(trigger);
+}
+
+void Facilitator::call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+  stop_action(trigger);
+  fired_[trigger] = kCalledOff;
+  out_.changed = true;
+}
+
+void Facilitator::stop_action(const Id& trigger) {
+  std::vector<Id> caused;
+  for (const auto& [id, open] : open_)
+    if (open.cause == trigger)
+      caused.push_back(id);
+  for (const Id& id : caused)
+    withdraw(id.first, id.second);
 }
 
 bool Facilitator::is_spent(const Trigger& trigger) const {
   const auto fired = fired_.find(trigger.id);
-  return trigger.times != 0 && fired != fired_.end() && fired->second >= trigger.times;
+  return fired != fired_.end() &&
+         (fired->second == kCalledOff || (trigger.times != 0 && fired->second >= trigger.times));
 }
 
 void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
@@ -390,6 +658,8 @@ void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
     request.arguments.push_back(value == nullptr ? argument : *value);
   }
   begin(request, std::nullopt, now);
+  if (const auto begun = open_.find({self_, request.number}); begun != open_.end())
+    begun->second.cause = trigger.id;
 }
 
 /// The condition of a data trigger was answered.
@@ -435,6 +705,8 @@ Facilitator::Outputs Facilitator::step(double now) {
       waiting.push_back(id);
       continue;
     }
+    if (!open.parts.empty())
+      continue;  // its part at work has the same end
     if (now >= open.end) {
       late.push_back(id);
       continue;
@@ -460,6 +732,13 @@ Facilitator::Outputs Facilitator::step(double now) {
       answer = {AnswerCode::too_late, names + " did not answer in time"};
     end(id, kName, answer);
   }
+  while (true) {
+    const auto next =
+        std::find_if(open_.begin(), open_.end(), [](const auto& one) { return one.second.reply; });
+    if (next == open_.end())
+      break;
+    go_on(Id(next->first), now);
+  }
   return std::exchange(out_, {});
 }
 
@@ -470,6 +749,8 @@ std::optional<double> Facilitator::due() const {
       soonest = when;
   };
   for (const auto& [id, open] : open_) {
+    if (!open.parts.empty())
+      continue;
     consider(open.unmatched ? std::min(open.end, known_) : open.end);
     for (const Asked& asked : open.asked)
       if (!asked.heard)

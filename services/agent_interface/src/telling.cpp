@@ -1,8 +1,10 @@
 // The part of the dialogue for what people tell the robot and take back, and the claims that
 // follow.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/zones.hpp"
 #include "words.hpp"
@@ -281,8 +283,17 @@ Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
   return out;
 }
 
-Dialogue::Outputs Dialogue::forget(std::uint64_t number) {
+Dialogue::Outputs Dialogue::forget(double wanted) {
   Outputs out;
+  constexpr double most = 4294967295.0;  // of Advice.number on the bus
+  if (!(wanted >= 1.0 && wanted <= most) || wanted != std::floor(wanted)) {
+    out.answer = {AnswerCode::bad_argument,
+                  "argument \"number\": expected a whole number from 1 on "
+                  "(saphira knows lists them), found " +
+                      plain(wanted)};
+    return out;
+  }
+  const auto number = static_cast<std::uint64_t>(wanted);
   withdraw(number, out);
   out.answer =
       out.changed ? Answer{AnswerCode::done, "forgotten"}

@@ -1,4 +1,6 @@
 // The dialogue: advice, and questions about it.
+#include <cmath>
+
 #include "dialogue_fixture.hpp"
 
 namespace saphira::agent_interface {
@@ -17,6 +19,19 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   EXPECT_EQ(dialogue.forget(2).answer,
             (Answer{AnswerCode::refused, "nothing is known under 2: saphira knows lists what is"}));
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
+}
+
+TEST_F(DialogueTest, OnlyAWholeNumberForgetsAdvice) {
+  hear("Flakey, EJ-231 is Karen's office");
+  for (const double wrong : {1.7, 0.0, -1.0, 0.5, 1e18, std::nan(""), -HUGE_VAL}) {
+    const Dialogue::Outputs out = dialogue.forget(wrong);
+    EXPECT_FALSE(out.changed) << wrong;
+    EXPECT_EQ(out.answer.code, AnswerCode::bad_argument) << wrong;
+  }
+  EXPECT_EQ(dialogue.forget(1.7).answer.text,
+            "argument \"number\": expected a whole number from 1 on (saphira knows lists them), "
+            "found 1.7");
+  EXPECT_EQ(dialogue.forget(1.0).answer, (Answer{AnswerCode::done, "forgotten"}));
 }
 
 TEST_F(DialogueTest, SeveralMayKnowWhereSomebodyIs) {

@@ -168,6 +168,12 @@ TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   EXPECT_EQ(answers[1].text(), "half of the floor is clean");
 }
 
+TEST_F(FacilitatorInMemory, AnAgentIsRunningOnceItTakesRequests) {
+  EXPECT_EQ(other.status().state(), v1::SERVICE_STARTING);
+  turn();
+  EXPECT_EQ(other.status().state(), v1::SERVICE_RUNNING);
+}
+
 TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
   auto first = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   bus::RequestClient second(person, bus::topics::kSolve, "a person");  // of the same program
@@ -237,15 +243,78 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
   }
 }
 
-TEST_F(FacilitatorInMemory, AGoalOfTheRobotEndsWithItsAsker) {
-  v1::ActivitySchema schema;
-  schema.name("explore");
-  v1::ActivitySchemas schemas;
-  schemas.schemas({schema});
-  auto activities = person.writer(bus::topics::kActivitySchemas);
-  activities.write(schemas);
-  auto goals = person.reader(bus::topics::kGoals);
+TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
+  v1::Trigger trigger;
+  trigger.id().writer(3);
+  trigger.id().number(1);
+  trigger.kind(v1::TRIGGER_EVENT);
+  trigger.condition("dust");
+  trigger.action("sweep");
+  std::optional<bus::Writer<v1::Trigger>> first = person.writer(bus::topics::kTriggers);
+  std::optional<bus::Writer<v1::Trigger>> second = other.writer(bus::topics::kTriggers);
+  first->write(trigger);
   turn();
+  second->write(trigger);
+  turn();
+  first->dispose(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 1u) << "the second still holds it";
+  second.reset();
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 1u);
+  first->write(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 2u) << "it is set again";
+  auto anybody = other.writer(bus::topics::kTriggers);
+  anybody.dispose(trigger);
+  turn();
+  worker.tell("dust", {});
+  turn();
+  EXPECT_EQ(begun.size(), 2u) << "anybody may withdraw it";
+}
+
+/// With an activity that the robot can do.
+struct TheRobotInMemory : FacilitatorInMemory {
+  TheRobotInMemory() {
+    v1::ActivitySchema schema;
+    schema.name("explore");
+    v1::ActivitySchemas schemas;
+    schemas.schemas({schema});
+    activities.write(schemas);
+    turn();
+  }
+  bus::Writer<v1::ActivitySchemas> activities = person.writer(bus::topics::kActivitySchemas);
+  bus::Reader<v1::Goal> goals = person.reader(bus::topics::kGoals);
+};
+
+TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
+  auto statuses = person.writer(bus::topics::kGoalStatus);
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  v1::Request request;
+  request.functor("explore");
+  request.deadline(1.5);
+  asker.send(request);
+  turn();
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_NEAR(asked[0].data.deadline(), 1.0, 1e-9);
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
+  status.state(v1::GOAL_SUCCEEDED);
+  status.reason("drove 0.10 m until the deadline");
+  now += 1.2;  // its deadline, and the way of the status
+  statuses.write(status);
+  turn();
+  EXPECT_EQ(asker.poll().back().text(), "drove 0.10 m until the deadline");
+}
+
+TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   auto asker = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   v1::Request request;
   request.functor("explore");

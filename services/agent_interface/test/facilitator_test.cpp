@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 #include "saphira/base/random.hpp"
 
@@ -404,6 +403,80 @@ TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
   EXPECT_EQ(firings(next, now), 2u);
 }
 
+std::string live(Facilitator& facilitator, double now) {
+  Request request = place_of(77);
+  request.functor = kLiveTriggers;
+  facilitator.ask(request, now);
+  const auto out = facilitator.step(now);
+  return out.solved.empty() ? "nothing" : text_of(out.solved.back().answer.results, "live");
+}
+
+TEST_F(Facilitation, TheTriggersThatMayFireYetAreTold) {
+  facilitator.announce(agent_that_notes());
+  EXPECT_EQ(live(facilitator, now), "");
+  facilitator.set(every_five_seconds(1), now);
+  Trigger other = every_five_seconds(0);
+  other.id = {0x1f3a, 5};
+  facilitator.set(other, now);
+  EXPECT_EQ(live(facilitator, now), "1:4 1f3a:5");
+  firings(facilitator, now);
+  EXPECT_EQ(live(facilitator, now), "1f3a:5") << "the other one is spent";
+}
+
+TEST_F(Facilitation, AShortPeriodIsNotSet) {
+  facilitator.announce(agent_that_notes());
+  facilitator.step(now);
+  for (const double period : {0.0, -5.0, 0.01}) {
+    Trigger trigger = every_five_seconds(0);
+    trigger.period = period;
+    facilitator.set(trigger, now);
+    const auto out = facilitator.step(now);
+    ASSERT_EQ(out.notes.size(), 1u) << period;
+    EXPECT_NE(out.notes[0].find("period: expected 0.1 s or more, found"), std::string::npos);
+    EXPECT_EQ(firings(facilitator, now), 0u) << period;
+    facilitator.set(every_five_seconds(0), now);  // which the next one replaces
+    facilitator.step(now);
+  }
+}
+
+TEST_F(Facilitation, ATriggerThatIsCalledOffFiresNoMoreUntilItIsChanged) {
+  facilitator.announce(agent_that_notes());
+  facilitator.set(every_five_seconds(0), now);
+  facilitator.step(now);
+  facilitator.call_off({1, 4});
+  facilitator.set(every_five_seconds(0), now);  // its holder is heard again
+  EXPECT_EQ(firings(facilitator, now), 0u);
+  Facilitator next(kSelf + 1);
+  next.restore(facilitator.save());
+  next.announce(agent_that_notes());
+  next.set(every_five_seconds(0), now);
+  EXPECT_EQ(firings(next, now), 0u) << "after a restart";
+  facilitator.set(every_five_seconds(3), now);
+  EXPECT_EQ(firings(facilitator, now), 3u);
+}
+
+TEST_F(Facilitation, TheActionOfATriggerEndsWithTheTrigger) {
+  facilitator.announce(agent_that_notes());
+  for (const bool lost : {true, false}) {
+    facilitator.set(every_five_seconds(0), now);
+    now += 5.0;
+    const auto fired = facilitator.step(now);
+    ASSERT_EQ(fired.requests.size(), 1u);
+    const Request action = fired.requests[0];
+    facilitator.hear(action.service, kSelf, action.number, {AnswerCode::underway, ""}, now);
+    if (lost)
+      facilitator.miss({1, 4});
+    else
+      facilitator.take_back({1, 4});
+    const auto told = facilitator.step(now).requests;
+    ASSERT_EQ(told.size(), 1u) << lost;
+    EXPECT_EQ(told[0].functor, kWithdraw);
+    EXPECT_EQ(told[0].number, action.number);
+    facilitator.hear(action.service, kSelf, action.number, {AnswerCode::given_up, "stopped"}, now);
+    facilitator.step(now);
+  }
+}
+
 /// A facilitator that was killed after it has asked `sweeper` for an action, and is back.
 struct FacilitationAgain : Facilitation {
   FacilitationAgain() {
@@ -483,6 +556,249 @@ TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
   EXPECT_EQ(solved[0].answer, library());
 }
 
+TEST_F(Facilitation, ARequiredArgumentIsNotLeftOpen) {
+  facilitator.announce(agent(1, "a"));
+  Request request = place_of(5);
+  request.arguments[0] = open_slot("person");
+  const auto out = ask(request);
+  EXPECT_TRUE(out.requests.empty());
+  ASSERT_EQ(out.solved.size(), 1u);
+  EXPECT_EQ(out.solved[0].answer,
+            (Answer{AnswerCode::bad_argument,
+                    "place_of: argument \"person\" is missing: expected a text (a name)"}));
+}
+
+TEST_F(Facilitation, AnAnswerThatIsNobodysIsWarnedOfOnce) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(place_of(5));
+  EXPECT_TRUE(hear("b", place_of(5), library()).warnings.empty()) << "an agent that was not asked";
+  for (const std::size_t warnings : {1u, 0u}) {
+    facilitator.hear("a", kPerson, 5, library(), now);
+    const auto out = facilitator.step(now);
+    EXPECT_TRUE(out.solved.empty());
+    ASSERT_EQ(out.warnings.size(), warnings);
+    for (const std::string& warning : out.warnings) {
+      EXPECT_EQ(warning.find("an answer of \"a\" to place_of person=\"karen\" place=? does"), 0u)
+          << warning;
+    }
+  }
+  EXPECT_EQ(hear("a", place_of(5), library()).solved.size(), 1u);
+}
+
+Argument variable(const std::string& name, const std::string& variable) {
+  Argument argument = open_slot(name);
+  argument.text = variable;
+  return argument;
+}
+
+/// place_of(person=karen, place=?P), go(place=?P)
+Request go_to_karen(std::uint64_t number) {
+  Request request = place_of(number);
+  request.arguments = {text("person", "karen"), variable("place", "P"), text(kAnd, "go"),
+                       variable("place", "P")};
+  return request;
+}
+
+/// a and b know places, and robot goes there; in this order.
+struct Conjunctions : Facilitation {
+  Conjunctions() {
+    facilitator.announce(agent(1, "a"));
+    facilitator.announce(agent(2, "b"));
+    facilitator.announce({3,
+                          "robot",
+                          "address of robot",
+                          {{{"go", "goes there", {text_parameter("place", "of the map")}}, true},
+                           {{"near",
+                             "a place beside another",
+                             {text_parameter("place", "of the map"),
+                              optional(text_parameter("other", "beside it"))}}}}});
+  }
+  static Answer at(const std::string& place) {
+    return {AnswerCode::done, "", {text("place", place)}};
+  }
+  /// The one request that was sent, for people: "a: place_of person="karen" place=?".
+  std::string sent(const Facilitator::Outputs& out) {
+    EXPECT_EQ(out.requests.size(), 1u);
+    if (out.requests.empty())
+      return {};
+    newest = out.requests.back();
+    EXPECT_EQ(newest.asker, kSelf);
+    return newest.service.substr(std::string("address of ").size()) + ": " + describe(newest);
+  }
+  Facilitator::Outputs answer(const Answer& answer) {
+    facilitator.hear(newest.service, newest.asker, newest.number, answer, now);
+    return facilitator.step(now);
+  }
+  Request newest;
+};
+
+TEST_F(Conjunctions, AnAnswerOfThePartBeforeIsUsedInTheNext) {
+  EXPECT_EQ(sent(ask(go_to_karen(5))), "a: place_of person=\"karen\" place=?");
+  EXPECT_TRUE(ask(go_to_karen(5)).requests.empty()) << "the request once more";
+  EXPECT_EQ(sent(answer(at("library"))), "robot: go place=\"library\"");
+  const auto underway = answer({AnswerCode::underway, "on its way"}).solved;
+  ASSERT_EQ(underway.size(), 1u);
+  EXPECT_EQ(underway[0].number, 5u);
+  EXPECT_EQ(underway[0].answer.text, "on its way");
+  const auto end = answer({AnswerCode::done, "arrived", {number("metres", 3.0)}}).solved;
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].asker, kPerson);
+  EXPECT_EQ(end[0].number, 5u);
+  EXPECT_EQ(end[0].service, "robot");
+  EXPECT_EQ(end[0].answer,
+            (Answer{AnswerCode::done, "arrived", {text("P", "library"), number("metres", 3.0)}}));
+  EXPECT_EQ(facilitator.open(), 0u);
+  EXPECT_EQ(ask(go_to_karen(5)).solved.at(0).answer.text, "arrived") << "told again";
+}
+
+TEST_F(Conjunctions, WhereAPartHasNoAnswerTheNextAnswerOfTheOneBeforeIsTried) {
+  EXPECT_EQ(sent(ask(go_to_karen(5))), "a: place_of person=\"karen\" place=?");
+  Answer two = at("cellar");
+  two.results.push_back(text("place", "attic"));
+  EXPECT_EQ(sent(answer(two)), "robot: go place=\"cellar\"");
+  EXPECT_EQ(sent(answer({AnswerCode::refused, "no such place"})), "robot: go place=\"attic\"");
+  EXPECT_EQ(sent(answer({AnswerCode::refused, "no such place"})),
+            "b: place_of person=\"karen\" place=?");
+  EXPECT_EQ(sent(answer(at("lift"))), "robot: go place=\"lift\"");
+  const auto end = answer({AnswerCode::refused, "too narrow"}).solved;
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].service, "robot");
+  EXPECT_EQ(end[0].answer,
+            (Answer{AnswerCode::refused, "part 2 of 2, go place=\"lift\": too narrow"}));
+}
+
+TEST_F(Conjunctions, AnActionThatMayHaveBegunIsNotTriedWithOtherValues) {
+  sent(ask(go_to_karen(5)));
+  sent(answer(at("cellar")));
+  const auto end = answer({AnswerCode::given_up, "the door is closed"});
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::given_up);
+  EXPECT_EQ(end.solved[0].answer.text, "part 2 of 2, go place=\"cellar\": the door is closed");
+  sent(ask(go_to_karen(6)));
+  sent(answer(at("cellar")));
+  facilitator.leave(3);
+  EXPECT_EQ(facilitator.step(now).solved.at(0).answer.code, AnswerCode::lost);
+}
+
+TEST_F(Conjunctions, TheRefusalSaysWhichPartFailed) {
+  sent(ask(go_to_karen(5)));
+  sent(answer({AnswerCode::refused, "no idea"}));
+  const auto end = answer({AnswerCode::refused, "nor I"}).solved;
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].service, "b");
+  EXPECT_EQ(end[0].answer,
+            (Answer{AnswerCode::refused, "part 1 of 2, place_of person=\"karen\" place=?: nor I"}));
+
+  Request unknown = go_to_karen(6);
+  unknown.arguments[2] = text(kAnd, "fly");
+  sent(ask(unknown));
+  sent(answer(at("library")));  // b may know a place to which it can fly
+  const auto none = answer({AnswerCode::refused, "no idea"}).solved;
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_EQ(
+      none[0].answer,
+      (Answer{AnswerCode::nobody, "part 2 of 2, fly place=\"library\": no agent can do \"fly\""}));
+
+  Request malformed = go_to_karen(7);
+  malformed.arguments[2] = number(kAnd, 1.0);
+  EXPECT_EQ(ask(malformed).solved.at(0).answer.code, AnswerCode::bad_argument);
+  Request long_one = go_to_karen(8);
+  for (int i = 0; i < 7; ++i)
+    long_one.arguments.push_back(text(kAnd, "go"));
+  EXPECT_EQ(ask(long_one).solved.at(0).answer.text, "a conjunction has 8 parts at most");
+}
+
+TEST_F(Conjunctions, OnlyTheLastPartMayBeAnAction) {
+  Request first = place_of(5);
+  first.functor = "go";
+  first.arguments = {text("place", "library"), text(kAnd, "place_of"), text("person", "karen")};
+  const auto out = ask(first);
+  EXPECT_TRUE(out.requests.empty());
+  EXPECT_EQ(out.solved.at(0).answer.code, AnswerCode::bad_argument);
+  EXPECT_NE(out.solved.at(0).answer.text.find("go is an action"), std::string::npos);
+  sent(ask(wanting(go_to_karen(6), 0.0)));
+  sent(answer(at("library")));
+  const auto end = answer({AnswerCode::refused, "no idea"});
+  EXPECT_TRUE(end.requests.empty()) << "all answers are wanted of facts alone";
+  EXPECT_EQ(end.solved.at(0).answer.code, AnswerCode::bad_argument);
+}
+
+TEST_F(Conjunctions, AllAnswersOfAllPartsAreCollectedInAStableOrder) {
+  Request request = go_to_karen(5);
+  request.arguments[2] = text(kAnd, "near");
+  request.arguments.push_back(variable("other", "O"));
+  sent(ask(wanting(request, 0.0)));
+  std::vector<std::string> found;
+  const auto take = [&](const Facilitator::Outputs& out) {
+    for (const Solved& solved : out.solved)
+      found.push_back(solved.service + ": " + solved.answer.text + describe(solved.answer.results));
+    return out;
+  };
+  const auto beside = [](const std::string& other) {
+    return Answer{AnswerCode::done, "", {text("other", other)}};
+  };
+  EXPECT_EQ(sent(take(answer(at("library")))), "robot: near place=\"library\" other=?");
+  EXPECT_EQ(sent(take(answer(beside("stairs")))), "b: place_of person=\"karen\" place=?");
+  EXPECT_EQ(sent(take(answer(at("kitchen")))), "robot: near place=\"kitchen\" other=?");
+  take(answer(beside("lift")));
+  EXPECT_EQ(found, (std::vector<std::string>{"robot: P=\"library\" O=\"stairs\"",
+                                             "robot: P=\"kitchen\" O=\"lift\"",
+                                             "facilitator: 2 answers"}));
+}
+
+TEST_F(Conjunctions, TheDeadlineIsOfTheWhole) {
+  Request request = go_to_karen(5);
+  request.deadline = 3.0;
+  sent(ask(request));
+  now += 2.0;
+  EXPECT_EQ(sent(answer(at("library"))), "robot: go place=\"library\"");
+  EXPECT_EQ(newest.deadline, 1.0) << "the rest of it";
+  answer({AnswerCode::underway, ""});
+  now += 1.0;
+  EXPECT_EQ(facilitator.due(), now);
+  const auto end = facilitator.step(now).solved;
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].answer,
+            (Answer{AnswerCode::too_late,
+                    "part 2 of 2, go place=\"library\": robot did not answer in time"}));
+}
+
+TEST_F(Conjunctions, AWithdrawalReachesThePartAtWork) {
+  sent(ask(go_to_karen(5)));
+  sent(answer(at("library")));
+  answer({AnswerCode::underway, ""});
+  Request withdrawal = place_of(5);
+  withdrawal.functor = kWithdraw;
+  EXPECT_EQ(sent(ask(withdrawal)), "robot: withdraw");
+  const auto stopped = answer({AnswerCode::given_up, "stopped"}).solved;
+  ASSERT_EQ(stopped.size(), 1u);
+  EXPECT_EQ(stopped[0].answer.code, AnswerCode::given_up);
+  sent(ask(go_to_karen(6)));
+  withdrawal.number = 6;
+  EXPECT_EQ(ask(withdrawal).solved.at(0).answer,
+            (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
+  EXPECT_EQ(facilitator.open(), 0u);
+}
+
+TEST_F(Conjunctions, AnActionIsNotBegunAgainAfterARestart) {
+  sent(ask(go_to_karen(5)));
+  const auto asked = answer(at("library"));
+  EXPECT_TRUE(asked.changed) << "it is kept before the request is sent";
+  Facilitator next(kSelf + 1, now + 2.0);
+  next.restore(facilitator.save());
+  next.announce(agent(1, "a"));
+  next.ask(go_to_karen(5), now);
+  EXPECT_TRUE(next.step(now).requests.empty());
+  const auto end = next.step(now + 2.0);
+  EXPECT_TRUE(end.requests.empty());
+  EXPECT_EQ(end.solved.at(0).answer.code, AnswerCode::lost);
+  sent(asked);
+  answer({AnswerCode::refused, "no such place"});
+  EXPECT_EQ(facilitator.save(), "") << "nothing was done: it may be asked anew";
+}
+
 TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
@@ -492,20 +808,18 @@ TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
     Facilitator facilitator(kSelf);
     std::vector<Request> sent;
     std::map<std::uint64_t, int> ends;
-    std::map<std::uint64_t, std::set<std::string>> asked;
     double now = 0.0;
     std::uint64_t made = 0;
     const auto take = [&](const Facilitator::Outputs& out) {
       for (const Request& request : out.requests) {
         sent.push_back(request);
-        asked[request.number].insert(request.service);
       }
       for (const Solved& solved : out.solved)
         ends[solved.number] += ended(solved.answer.code) ? 1 : 0;
     };
     for (int step = 0; step < 300; ++step) {
       now += 0.1;
-      switch (pick(5)) {
+      switch (pick(6)) {
         case 0:
           facilitator.announce(agent(1 + pick(5), "a" + std::to_string(pick(5)), pick(2) == 0));
           break;
@@ -515,16 +829,25 @@ TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
         case 2:
           facilitator.ask(wanting(place_of(++made), static_cast<double>(pick(4))), now);
           break;
+        case 3: {
+          Request both = go_to_karen(++made);
+          both.arguments[2] = text(kAnd, "place_of");
+          both.arguments[3] = variable("person", "P");
+          facilitator.ask(wanting(both, static_cast<double>(pick(4))), now);
+          break;
+        }
         default:
           if (!sent.empty()) {
             const Request& request = sent[pick(sent.size())];
             facilitator.hear(request.service, request.asker, request.number,
-                             {static_cast<AnswerCode>(pick(10)), "", {}}, now);
+                             {static_cast<AnswerCode>(pick(10)), "", {text("place", "library")}},
+                             now);
           }
       }
       take(facilitator.step(now));
     }
-    take(facilitator.step(now + 20.0));
+    for (int i = 0; i < 40; ++i)  // each silent part has 10 s
+      take(facilitator.step(now += 10.0));
     EXPECT_EQ(facilitator.open(), 0u);
     for (std::uint64_t request = 1; request <= made; ++request)
       EXPECT_EQ(ends[request], 1) << "seed " << seed << ", request " << request;

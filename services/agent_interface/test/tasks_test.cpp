@@ -52,6 +52,12 @@ struct TasksTest : testing::Test {
   std::uint64_t number = 0;
 };
 
+TEST(GoalDeadline, LeavesTimeForTheAnswer) {
+  EXPECT_DOUBLE_EQ(goal_deadline(1.5), 1.0);
+  EXPECT_DOUBLE_EQ(goal_deadline(0.4), 0.2);
+  EXPECT_EQ(goal_deadline(0.0), 0.0) << "without one";
+}
+
 TEST_F(TasksTest, AMotionInterruptsATaskWhichGoesOn) {
   EXPECT_EQ(want({errand("alice", "the mail")}, "alice"),
             "alice: I bring the mail\n"

@@ -63,6 +63,8 @@ Argument from_bus(const v1::Argument& argument) {
   Argument unbound;
   unbound.name = argument.name();
   unbound.kind = ArgumentKind::unbound;
+  if (argument.kind() == v1::ARGUMENT_UNBOUND)
+    unbound.text = argument.text();
   return unbound;
 }
 

@@ -35,7 +35,8 @@ class Agent {
 
   /// Announces one more capability.
   void can(const v1::Capability& capability, Answerer answerer);
-  /// Answers the requests that have come. Call after each Node::wait. Not from an Answerer.
+  /// Answers the requests that have come. Call after each Node::wait. Not from an Answerer. The
+  /// first call ends SERVICE_STARTING of the node's status.
   void poll();
   /// Ends a request that was underway.
   void answer(const v1::Request& request, v1::Answer answer);

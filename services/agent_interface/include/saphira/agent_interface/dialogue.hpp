@@ -121,8 +121,8 @@ class Dialogue {
   /// An activity's message to people. Messages from before a restart, and those of activities while
   /// this dialogue has no goal, are not said.
   Outputs says(const std::string& text, const CycleRef& when);
-  /// Withdraws advice by its number.
-  Outputs forget(std::uint64_t number);
+  /// Withdraws advice by its number. Its `answer` refuses one that is not whole and positive.
+  Outputs forget(double number);
   /// All present finds of activities; those that are new are learned. The first ones may be from
   /// before this dialogue began: what it knows of those people already counts instead.
   Outputs found(const std::vector<Find>& finds, double now);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +43,15 @@ struct Trigger {
   bool operator==(const Trigger&) const = default;
 };
 
+/// The functor that the facilitator answers itself: the result `live` has the ids of the triggers
+/// that may fire yet, such as "1f3a:2 1f3a:5".
+inline constexpr const char* kLiveTriggers = "live-triggers";
+
+/// The argument that begins the next part of a conjunction: its text is the functor, and the
+/// arguments after it are of that part. An unbound argument with a text is a variable of that name:
+/// the first part that answers it gives its value to the parts after it.
+inline constexpr const char* kAnd = "and";
+
 /// An answer on its way to the asker, with the agent that gave it.
 struct Solved {
   std::uint64_t asker = 0;
@@ -53,6 +63,11 @@ struct Solved {
 /// Matches requests with the agents that can answer them, collects the answers, and requests the
 /// actions of triggers (manual 2.2.8). A value without clock or bus: `now` is seconds of any clock
 /// that never goes back. Nothing is done twice, also over a restart with its memory.
+///
+/// The parts of a conjunction are asked from left to right, each of one agent at a time. Where a
+/// part has no answer, the newest part before it with a further answer goes on with that one (after
+/// Prolog). Only the last part may be an action; it is asked again with other values only where it
+/// was refused.
 class Facilitator {
  public:
   /// self: the asker in requests of triggers. known: the time until which agents may be there that
@@ -63,11 +78,17 @@ class Facilitator {
   /// The agent's open requests go to another agent, or are answered with the reason.
   void leave(std::uint64_t agent);
 
-  /// A known trigger is set anew where it has changed; otherwise its firings still count.
+  /// A known trigger is set anew where it has changed; otherwise its firings still count. One with
+  /// a period below 0.1 s is not set, and a note says so.
   void set(const Trigger& trigger, double now);
+  /// By its writer. Its action under way is withdrawn, as a goal ends with its client.
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
-  /// The trigger's writer is not heard any more. Its firings count when it is heard again.
-  void miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) { triggers_.erase(trigger); }
+  /// The trigger's writer is not heard any more: as take_back(). Its firings count when it is heard
+  /// again.
+  void miss(const std::pair<std::uint64_t, std::uint64_t>& trigger);
+  /// By somebody else than its writer: it fires no more, whatever is heard of it again, until its
+  /// writer changes it.
+  void call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
   /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one.
@@ -83,6 +104,7 @@ class Facilitator {
     std::vector<Request> requests;  ///< to agents, by their address
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
+    std::vector<std::string> warnings;  ///< each once
     bool changed = false;  ///< the memory has changed: it is kept before the requests are sent
   };
   /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
@@ -109,6 +131,19 @@ class Facilitator {
     double again = 0.0;  ///< time of the next repetition without an answer
     bool heard = false;
   };
+  struct Part {
+    std::string functor;
+    Arguments arguments{};
+    std::vector<Arguments> rows{};      ///< the variables' values by its answer that are untried
+    std::vector<std::uint64_t> rest{};  ///< agents that may have a further answer
+    Arguments bound{};                  ///< the variables' values for the parts after it
+  };
+  struct Reply {  ///< the end of a part
+    std::string service;
+    Answer answer;
+    std::vector<std::uint64_t> rest;
+    bool begun = false;  ///< an action that is done, or may be
+  };
   struct Open {
     Request request;
     std::size_t wanted = 1;  ///< 0: of each
@@ -119,8 +154,17 @@ class Facilitator {
     Answer trouble{AnswerCode::nobody};  ///< the newest failure
     std::string troubler{};
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
+    std::optional<Id> cause{};    ///< the trigger whose action it is
     bool unmatched = false;       ///< waits for an agent that can answer it
     bool withdrawn = false;
+    std::optional<Id> whole{};     ///< the conjunction whose part it is
+    bool acts = false;             ///< an agent was asked for an action
+    std::vector<Part> parts{};     ///< of a conjunction
+    std::size_t at = 0;            ///< the part at work
+    std::size_t tries = 0;         ///< requests for its parts
+    Id part{};                     ///< the newest of them
+    std::size_t failed = 0;        ///< the part of `trouble`: the last one that was reached
+    std::optional<Reply> reply{};  ///< of the part at work: step() goes on by it
   };
   struct Armed {
     Trigger trigger;
@@ -131,6 +175,12 @@ class Facilitator {
 
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
+  void list_triggers(const Request& request);
+  void stop_action(const Id& trigger);
+  std::optional<Answer> take_apart(Open& open) const;
+  void pose(const Id& id, double now);
+  void go_on(const Id& id, double now);
+  bool go_back(Open& open) const;
   void match(const Id& id, double now);
   void advance(const Id& id, double now);
   void send(Open& open, std::uint64_t agent, double now);
@@ -153,7 +203,8 @@ class Facilitator {
   std::map<Id, Open> open_;
   std::vector<std::pair<Id, Solved>> ended_;  ///< newest ends, repeated on a repeated request
   std::map<Id, Armed> triggers_;
-  std::map<Id, std::uint64_t> fired_;                  ///< how often, of triggers with `times`
+  std::map<Id, std::uint64_t> fired_;  ///< how often, of triggers with `times`
+  std::set<std::string> strangers_{};  ///< in the address of answers that no agent has
   std::vector<std::pair<Id, std::uint64_t>> begun_{};  ///< actions and their agents, oldest first
   Outputs out_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -41,6 +42,13 @@ using GoalRef = std::pair<std::uint64_t, std::uint64_t>;
 inline constexpr double kTakenUp = 5.0;  // [s]
 inline constexpr const char* kNotTakenUp =
     "no program has taken up the goal: saphira status shows whether intentions runs";
+
+/// The deadline [s] of the goal for a request with this one, so that its end is known and answered
+/// before the request is too late; 0: none. A `drive` lasts until the deadline of its goal.
+inline double goal_deadline(double of_request) {
+  constexpr double answering = 0.5;  // [s] some cycles, and the way of the status
+  return of_request <= 0.0 ? 0.0 : std::max(of_request - answering, 0.5 * of_request);
+}
 
 /// A goal that the dialogue wants; `tag` is its name within the dialogue.
 struct WantedGoal {
