@@ -290,7 +290,7 @@ Dialogue::Outputs Dialogue::forget(double wanted) {
     out.answer = {AnswerCode::bad_argument,
                   "argument \"number\": expected a whole number from 1 on "
                   "(saphira knows lists them), found " +
-                      plain(wanted)};
+                      saphira::plain(wanted)};
     return out;
   }
   const auto number = static_cast<std::uint64_t>(wanted);
