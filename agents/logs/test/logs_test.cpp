@@ -31,7 +31,7 @@ TEST(Carmen, ScansAndDeadReckoningAreRead) {
 
 TEST(Carmen, NewLaserMessagesSayWhatTheLaserIs) {
   const CarmenLog log = parse_carmen(
-      "ROBOTLASER1 4 -1.5707963 3.1415926 0.0087 30 0.01 0 2 1.25 nan 0 1 2 0 1 2 0 0.1 0.2 0.3 "
+      "ROBOTLASER1 4 -0.00435 0.0087 0.0087 30 0.01 0 2 1.25 nan 0 1 2 0 1 2 0 0.1 0.2 0.3 "
       "0.4 0.5 10.7 host 0.7\r\n",
       "a.log");
   ASSERT_EQ(log.scans.size(), 1U);
