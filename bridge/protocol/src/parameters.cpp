@@ -410,10 +410,9 @@ class Parser {
       const std::string near = guess(section_of(*line), sections());
       if (near.empty() || near[0] != section_of(*line)[0] || read_sections_.contains(near))
         continue;
-      throw FileError(parameters_.file, line->number, line->words[1].column,
-                      "expected a section of ARIA: did you mean " + near +
-                          "? Its lines are not read; missing: " + missing,
-                      line->text);
+      std::string wrong = "expected a section of ARIA: did you mean ";
+      wrong.append(near).append("? Its lines are not read; missing: ").append(missing);
+      throw FileError(parameters_.file, line->number, line->words[1].column, wrong, line->text);
     }
     const std::string message =
         "expected also " + missing + ": no robot can do without (has the file been cut off?)";

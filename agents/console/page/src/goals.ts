@@ -87,7 +87,7 @@ function wishesOf(map?: SaphiraMap, schemas?: ActivitySchemas): Wishes {
   const places = [...new Set(named.map(a => a.name))].map(name => ({words: goTo(name), about: 'a place of the map'}));
   const activities = (schemas?.schemas ?? []).map(({name, summary, parameters}) =>
     ({words: [name, ...parameters.filter(p => p.required).map(p => `${p.name}=`)].join(' '), about: summary}));
-  const example = `${places[0]?.words ?? 'go 3 1'}, turn 90`;   // short, as the field is
+  const example = `${places[0]?.words ?? 'go 3 1'}, turn to 90`;   // short, as the field is
   return {list: [...places, ...activities], example};
 }
 

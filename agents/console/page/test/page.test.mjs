@@ -246,7 +246,7 @@ test('says what can be asked for', async () => {
   await open(page);
   for (const words of ['go N1', 'go corridor', 'go_to position=', 'patrol'])
     await page.locator(`#goal-wishes option[value="${words}"]`).waitFor({state: 'attached'});
-  assert.equal(await page.getByLabel('Ask the robot for something').getAttribute('placeholder'), 'go lobby, turn 90');
+  assert.equal(await page.getByLabel('Ask the robot for something').getAttribute('placeholder'), 'go lobby, turn to 90');
   await leave(page);
 });
 
@@ -279,7 +279,7 @@ test('goals wait in their order, one goes instead of them, and an ended one is a
   await send(page, 'drive 0.05');
   const [first, second, third] = [0, 1, 2].map(i => openGoals(page).nth(i));
   await first.filter({hasText: 'drive'}).getByText('underway').waitFor();
-  await send(page, 'turn 90');
+  await send(page, 'turn to 90');
   await first.filter({hasText: '1. drive'}).getByText('in front').waitFor();
   await second.filter({hasText: '2. turn to'}).getByText('next').waitFor();
   await second.getByText('waits for "drive"').waitFor();
