@@ -66,11 +66,16 @@ TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
   EXPECT_TRUE(no.text.starts_with("It does ")) << no.text;
   EXPECT_EQ(run({"why", "not", "fly"}).code, 2);
 
-  // The same cycle, some time later, has the same reason.
-  const std::uint64_t cycle = json.at("cycle");
-  const Outcome again = run({"why", "--json", "--cycle", std::to_string(cycle)});
+  // The same cycle, some time later, has the same reason. (The place on the map is told of the
+  // present alone.)
+  const std::string cycle = std::to_string(json.at("cycle").get<std::uint64_t>());
+  const Outcome once = run({"why", "--json", "--cycle", cycle});
+  ASSERT_EQ(once.code, 0) << once.text;
+  const std::string reason = nlohmann::json::parse(once.text).at("sentence");
+  EXPECT_TRUE(has(reason, "for go_to(position=(6, 0) in odom) of test")) << reason;
+  const Outcome again = run({"why", "--json", "--cycle", cycle});
   ASSERT_EQ(again.code, 0) << again.text;
-  EXPECT_EQ(nlohmann::json::parse(again.text).at("sentence"), sentence);
+  EXPECT_EQ(nlohmann::json::parse(again.text).at("sentence"), reason);
   const Outcome before = run({"why", "--cycle", "-10"});
   EXPECT_EQ(before.code, 0) << before.text;
   const Outcome never = run({"why", "--cycle", "999999"});

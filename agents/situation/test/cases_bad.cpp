@@ -46,35 +46,34 @@ void intentions_gone(std::vector<Case>& all) {
   // Its goal's status is latched, and still there.
   const Situation before = driving();
   const std::vector<std::string> never{"nobody has asked", "no goal is underway"};
-  all.push_back(
-      when("intentions hangs for 2 s, a goal was underway", "why", before,
-           {stands("no goal and no person wants the robot to move"), silent("intentions", 20)},
-           {"The robot stands", "intentions has said nothing for 2.0 s"}, never));
+  all.push_back(when("intentions hangs for 2 s, a goal was underway", "why", before,
+                     {stands("nothing asks the robot to move"), silent("intentions", 20)},
+                     {"The robot stands", "intentions has said nothing for 2.0 s"}, never));
   all.push_back(when("the same", "trouble", before, {silent("intentions", 20)},
                      {"intentions has said nothing for 2.0 s"}, {"behaviors"}));
   all.push_back(
       when("intentions was killed 5 s ago", "why", before,
-           {stands("no goal and no person wants the robot to move"), silent("intentions", 50),
+           {stands("nothing asks the robot to move"), silent("intentions", 50),
             lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp().cycle(s.now - 58); }},
            {"intentions has not been heard for 5.2 s",
             "last known of go_to(position=(3, 1) in odom) of saphira goal: underway, 5.8 s ago"},
            never));
   all.push_back(
       when("the same, of a goal of before the robot's restart", "why", before,
-           {stands("no goal and no person wants the robot to move"), silent("intentions", 50),
+           {stands("nothing asks the robot to move"), silent("intentions", 50),
             lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp().epoch(6); }},
            {"intentions has not been heard for 5.2 s"}, {"underway", "ago"}));
   all.push_back(
       when("intentions is on the far side of a cut link, and behaviors says so", "why", before,
-           {stands("no goal and no person wants the robot to move"), no_intent,
-            silent("intentions", 40), lost("intentions", 4.0)},
+           {stands("nothing asks the robot to move"), no_intent, silent("intentions", 40),
+            lost("intentions", 4.0)},
            {"no newer intent has come", "intentions has not been heard for 4.0 s"}, never));
-  all.push_back(when("intentions is not heard", "why", before,
-                     {stands("no goal and no person wants the robot to move"),
-                      silent("intentions", 100), absent("intentions")},
-                     {"intentions is not heard"}, never));
+  all.push_back(when(
+      "intentions is not heard", "why", before,
+      {stands("nothing asks the robot to move"), silent("intentions", 100), absent("intentions")},
+      {"intentions is not heard"}, never));
   all.push_back(when("the same, for who came after it died", "why", before,
-                     {stands("no goal and no person wants the robot to move"), absent("intentions"),
+                     {stands("nothing asks the robot to move"), absent("intentions"),
                       [](Situation& s) {
                         s.intentions.reset();
                         s.intentions_known = {};
@@ -84,7 +83,7 @@ void intentions_gone(std::vector<Case>& all) {
                       }},
                      {"intentions is not heard"}, never));
   all.push_back(when("intentions was started again, and does not know the goal yet", "why", before,
-                     {stands("no goal and no person wants the robot to move"),
+                     {stands("nothing asks the robot to move"),
                       [](Situation& s) {
                         s.intentions->behaviors().clear();
                         s.intentions->nodes().clear();
@@ -92,7 +91,7 @@ void intentions_gone(std::vector<Case>& all) {
                       }},
                      {"go_to(position=(3, 1) in odom) of saphira goal is underway"}, never));
   all.push_back(when("the same", "why tree", before,
-                     {stands("no goal and no person wants the robot to move"),
+                     {stands("nothing asks the robot to move"),
                       [](Situation& s) {
                         s.intentions->behaviors().clear();
                         find(s, "intentions").status.uptime(0.8);
@@ -123,10 +122,10 @@ void behaviors_gone(std::vector<Case>& all) {
                      {stands("the lease of behaviors (behaviors) ran out"),
                       silent("behaviors", 100), lost("behaviors", 10.0)},
                      {"behaviors has not been heard for 10 s"}, {"does not want"}));
-  all.push_back(when("behaviors is not heard", "why", before,
-                     {stands("no goal and no person wants the robot to move"),
-                      silent("behaviors", 100), absent("behaviors")},
-                     {"behaviors is not heard"}, {"nobody has asked", "no goal"}));
+  all.push_back(when(
+      "behaviors is not heard", "why", before,
+      {stands("nothing asks the robot to move"), silent("behaviors", 100), absent("behaviors")},
+      {"behaviors is not heard"}, {"nobody has asked", "no goal"}));
   all.push_back(when("the same", "trouble", before, {silent("behaviors", 100), absent("behaviors")},
                      {"behaviors is not heard"}));
   all.push_back(when("just started again: the command is of the process before", "why", before,
@@ -271,7 +270,7 @@ void bad_line(std::vector<Case>& all) {
                      {"bridge is degraded: " + words}));
   all.push_back(
       when("the robot is not heard while it moves", "why", driving(),
-           {stands("no goal and no person wants the robot to move"),
+           {stands("nothing asks the robot to move"),
             [](Situation& s) {
               v1::Refusal refusal;
               refusal.role(v1::ROLE_BEHAVIORS);

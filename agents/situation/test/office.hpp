@@ -21,8 +21,7 @@ Situation driving();
 /// The same robot at rest: no goal was ever asked for.
 Situation resting();
 /// The robot stands without a driver: `reason` is the bridge's.
-void stand(Situation& situation,
-           const std::string& reason = "no goal and no person wants the robot to move");
+void stand(Situation& situation, const std::string& reason = "nothing asks the robot to move");
 /// A person drives by keyboard: [m/s], [rad/s].
 void by_keyboard(Situation& situation, double velocity, double rotation);
 /// The guard beside the robot lets it drive at that speed, for that reason.

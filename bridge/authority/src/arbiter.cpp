@@ -359,7 +359,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
     if (epoch_ == 0)
       grant.reason = "no robot is connected";
     else if (grant.reason.empty())
-      grant.reason = "no goal and no person wants the robot to move";
+      grant.reason = "nothing asks the robot to move";
     return grant;
   }
 

@@ -16,7 +16,7 @@ TEST(Arbiter, NobodyAskedNobodyDrives) {
   Scene s;
   const Grant grant = s.arbiter.decide(s.now, s.cycle);
   EXPECT_EQ(grant.role, Role::none);
-  EXPECT_EQ(grant.reason, "no goal and no person wants the robot to move");
+  EXPECT_EQ(grant.reason, "nothing asks the robot to move");
 }
 
 // Every set of roles that want to drive: the strongest drives, the others get the reason.
@@ -61,10 +61,10 @@ TEST(Arbiter, WhoHasLetGoIsNoReason) {
   s.offer(Role::teleop, 1);
   ASSERT_EQ(s.driver(), Role::teleop);
   s.offer(Role::teleop, 1, false);
-  EXPECT_EQ(s.grant().reason, "no goal and no person wants the robot to move");
+  EXPECT_EQ(s.grant().reason, "nothing asks the robot to move");
   s.wait(1000);
   s.offer(Role::behaviors, 2, false);
-  EXPECT_EQ(s.grant().reason, "no goal and no person wants the robot to move");
+  EXPECT_EQ(s.grant().reason, "nothing asks the robot to move");
 }
 
 TEST(Arbiter, ThreeCyclesAreWithinALeaseOfThreeCycles) {
