@@ -101,6 +101,10 @@ struct Server::Impl {
 };
 
 int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
+  // A request behind another one, which is being answered, or one with a body: see web::kAnswered.
+  if (http.file != nullptr || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 ||
+      lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0)
+    return -1;
   const std::string why = refusal(access, caller_of(wsi));
   if (!why.empty()) {
     lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why.c_str());

@@ -86,6 +86,8 @@ struct HttpServer::Impl {
 
 /// The headers of a request have come.
 int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) {
+  if (connection.exchange != 0)
+    return -1;  // a request behind another one: see web::kAnswered
   connection.exchange = ++last;
   Open& exchange = open[connection.exchange];
   exchange.wsi = wsi;
