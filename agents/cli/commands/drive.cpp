@@ -1,9 +1,11 @@
 #include <fcntl.h>
+#include <linux/joystick.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -15,10 +17,11 @@
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
-#include "saphira/cli/key_drive.hpp"
 #include "saphira/cli/printer.hpp"
-#include "saphira/cli/stick_drive.hpp"
 #include "saphira/geometry/pose.hpp"
+#include "saphira/teleop/key_drive.hpp"
+#include "saphira/teleop/pilot.hpp"
+#include "saphira/teleop/stick_drive.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -26,19 +29,21 @@ namespace saphira::cli {
 namespace {
 
 using std::chrono::milliseconds;
+using teleop::DriveKey;
+using teleop::KeyDrive;
+using teleop::Order;
+using teleop::StickDrive;
 
-constexpr milliseconds kPeriod{50};     ///< of the commands; the bridge's lease is 300 ms
-constexpr int kDriveReleases = 4;       ///< repetitions of a release: the topic is best effort
-constexpr double kHandBackLimit = 5.0;  ///< [s]
-constexpr double kRefused = 0.4;        ///< [s] for which a refusal of the bridge counts as present
-constexpr double kTellRefusal = 2.0;    ///< [s] that the reason is shown
+constexpr milliseconds kPeriod{50};        ///< of the commands; the bridge's lease is 300 ms
+constexpr double kHandBackLimit = 5.0;     ///< [s]
+constexpr double kTellRefusal = 2.0;       ///< [s] that the reason is shown
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
 constexpr const char* kKeys =
     "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
     "an all stop also stops another person, and gives you the robot\n"
     "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n"
-    "joystick: hold a shoulder button, and push the first stick\n";
+    "joystick: hold a shoulder button or the trigger, and push the first stick\n";
 
 constexpr const char* kJoystick = "/dev/input/js0";
 
@@ -97,6 +102,8 @@ class Joystick {
   void open() {
     if (fd_ < 0)
       fd_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (fd_ >= 0)
+      ask_layout();
   }
   void read(double now) {
     std::array<char, 512> bytes{};
@@ -110,6 +117,20 @@ class Joystick {
   }
 
  private:
+  /// A device that does not tell keeps the usual layout.
+  void ask_layout() {
+    std::uint8_t axes = 0;
+    std::uint8_t buttons = 0;
+    std::vector<std::uint8_t> axis_codes(ABS_CNT);
+    std::vector<std::uint16_t> button_codes(KEY_MAX - BTN_MISC + 1);
+    if (ioctl(fd_, JSIOCGAXES, &axes) < 0 || ioctl(fd_, JSIOCGBUTTONS, &buttons) < 0 ||
+        ioctl(fd_, JSIOCGAXMAP, axis_codes.data()) < 0 ||
+        ioctl(fd_, JSIOCGBTNMAP, button_codes.data()) < 0)
+      return;
+    axis_codes.resize(std::min<std::size_t>(axes, axis_codes.size()));
+    button_codes.resize(std::min<std::size_t>(buttons, button_codes.size()));
+    stick_.set_layout(axis_codes, button_codes);
+  }
   void close() {
     if (fd_ >= 0)
       ::close(fd_);
@@ -177,12 +198,13 @@ class Teleop {
         return bus::kExitOk;
       }
       waited = true;
-      if (!refusal_.empty()) {
-        complain("saphira: not handed back: %s\n", refusal_.c_str());
+      if (const std::string refusal = pilot_.refusal(now()); !refusal.empty()) {
+        complain("saphira: not handed back: %s\n", refusal.c_str());
         return bus::kExitFailed;
       }
       if (seconds_since(began) >= again) {
-        write({}, true);
+        pilot_.hand_back();
+        send();
         again = seconds_since(began) + 0.1;
       }
     }
@@ -244,8 +266,7 @@ class Teleop {
         return;
       case DriveKey::hand_back:
         keys_.release();
-        hand_backs_left_ = kDriveReleases;
-        drove_ = true;
+        pilot_.hand_back();
         note_ = "handed back: autonomy may drive";
         return;
       default:
@@ -273,8 +294,7 @@ class Teleop {
     goal.functor("drive");
     goal.arguments({bus::number("speed", kConstantVelocity)});
     constant_ = goals_.ask(goal);
-    hand_backs_left_ = kDriveReleases;
-    drove_ = true;
+    pilot_.hand_back();
     note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";
   }
 
@@ -298,14 +318,16 @@ class Teleop {
     if (!joystick_.there() && seconds_since(looked_) > 1.0) {
       joystick_.open();
       looked_ = Clock::now();
+      if (joystick_.there())
+        note_ = "a joystick: hold " + joystick_.stick().dead_man() + ", and push the first stick";
     }
     if (const auto grant = grants_.take_newest()) {
       grant_ = *grant;
-      for (const v1::Refusal& refusal : grant->refused())
-        if (refusal.role() == v1::ROLE_TELEOP && refusal.source() == source_) {
-          refusal_ = refusal.reason();
-          refused_at_ = Clock::now();
-        }
+      pilot_.heard(*grant, now());
+      if (const std::string refusal = pilot_.refusal(now()); !refusal.empty()) {
+        told_ = "refused: " + refusal;
+        told_at_ = Clock::now();
+      }
     }
     if (constant_)
       if (const auto status = goals_.status(*constant_)) {
@@ -316,56 +338,36 @@ class Teleop {
       }
   }
 
-  struct Wanted {
-    bool active = false;
-    double velocity = 0.0;  ///< [m/s]
-    double heading = 0.0;   ///< [rad] from the keys, with `move` as in KeyDrive
-    std::uint64_t move = 0;
-    bool by_stick = false;
-    double turn = 0.0;  ///< [rad/s] of the stick
-  };
   /// The keys' stop is stronger than a held stick.
-  Wanted wanted() {
+  Order wanted() {
     const KeyDrive::Setpoint keys = keys_.setpoint(now());
     const StickDrive::Setpoint stick = joystick_.stick().setpoint(now());
-    if (keys.active || !stick.active)
-      return {keys.active, keys.velocity, keys.heading, keys.move};
-    return {true, stick.velocity, 0.0, 0, true, stick.turn};
-  }
-
-  /// After driving, it reports until its end that it does not drive: so the bridge knows that it is
-  /// alive, and understands a release that got lost.
-  void send() {
-    const Wanted setpoint = wanted();
-    drove_ = drove_ || setpoint.active;
-    if (setpoint.active)
-      hand_backs_left_ = 0;
-    if (drove_)
-      write(setpoint, hand_backs_left_ > 0 && hand_backs_left_-- > 0);
-  }
-
-  void write(const Wanted& setpoint, bool hand_back = false) {
-    v1::MotorCommand command;
-    // The stamp names the robot state that the person sees: an old one is refused.
+    Order order;
     if (robot_)
-      command.stamp(robot_->stamp());
-    command.source(source_);
-    command.number(++number_);
-    command.active(setpoint.active);
-    command.hand_back(hand_back);
-    command.translation(v1::TRANSLATION_VELOCITY);
-    command.velocity(setpoint.velocity);
-    command.rotation(setpoint.by_stick ? v1::ROTATION_VELOCITY : v1::ROTATION_RELATIVE_HEADING);
-    command.heading(setpoint.heading);
-    command.rotation_velocity(setpoint.turn);
-    // Unique over restarts of this program too, or the bridge would take the first for an old one.
-    command.move(node_.instance() + setpoint.move);
-    commands_.write(command);
+      order.cycle = robot_->stamp().cycle();
+    order.active = keys.active || stick.active;
+    if (keys.active || !stick.active) {
+      order.velocity = keys.velocity;
+      // Unique over restarts of this program too, or the bridge would take the first for an old
+      // one.
+      order.turn = {keys.heading, node_.instance() + keys.move};
+    } else {
+      order.velocity = stick.velocity;
+      order.rotation = stick.turn;
+    }
+    return order;
+  }
+
+  bool send() {
+    const auto command = pilot_.drive(wanted(), robot_ ? robot_->stamp() : v1::Stamp());
+    if (command)
+      commands_.write(*command);
+    return command.has_value();
   }
 
   void show() {
-    Wanted setpoint = wanted();
-    const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
+    Order setpoint = wanted();
+    const bool refused = !pilot_.refusal(now()).empty();
     if (refused)
       setpoint.velocity = 0.0;  // a refused setpoint is not shown as wanted
     std::string line;
@@ -380,19 +382,19 @@ class Teleop {
                  robot_->left_stalled() ? "  LEFT STALLED" : "",
                  robot_->right_stalled() ? "  RIGHT STALLED" : "");
     }
-    const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0 && setpoint.turn == 0.0;
-    std::string second = !setpoint.active    ? "released"
-                         : refused           ? "NOT driving"
-                         : still             ? "holding still"
-                         : setpoint.by_stick ? "driving by joystick"
-                                             : "driving";
+    const bool still = setpoint.velocity == 0.0 && setpoint.rotation == 0.0 &&
+                       (!setpoint.turn || setpoint.turn->by == 0.0);
+    std::string second = !setpoint.active ? "released"
+                         : refused        ? "NOT driving"
+                         : still          ? "holding still"
+                         : setpoint.turn  ? "driving"
+                                          : "driving by joystick";
     if (joystick_.stick().is_silent(now()))
       note_ = "the joystick is held and says nothing: move it, or press its button again";
     if (grant_)
       second += "  |  " + describe(*grant_);
-    std::string third = note_;
-    if (!refusal_.empty() && seconds_since(refused_at_) < kTellRefusal)
-      third = "refused: " + refusal_;
+    const std::string third =
+        !told_.empty() && seconds_since(told_at_) < kTellRefusal ? told_ : note_;
     // Four lines, each cut to the terminal, so that the cursor can go back up over them.
     winsize size{};
     const std::size_t width =
@@ -413,10 +415,8 @@ class Teleop {
   void finish() {
     keys_.release();
     joystick_.stick().lost();
-    for (int i = 0; drove_ && i < kDriveReleases; ++i) {
-      send();
+    for (int i = 0; i < teleop::kReleases && send(); ++i)
       node_.wait(milliseconds(20));
-    }
     take();
     out().flush(milliseconds(100));  // the last picture comes before it
     if (grant_ && grant_->waits_for_hand_back())
@@ -439,17 +439,14 @@ class Teleop {
 
   KeyDrive keys_;
   std::string input_;
-  std::string source_ = person("keyboard", true);
-  std::uint64_t number_ = 0;
-  bool drove_ = false;
-  int hand_backs_left_ = 0;
+  teleop::Pilot pilot_{person("keyboard", true)};
   bool quit_ = false;
   std::optional<v1::GoalId> constant_;
   std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;
   std::optional<v1::Grant> grant_;
-  std::string refusal_;
-  Clock::time_point refused_at_;
+  std::string told_;  ///< the newest refusal
+  Clock::time_point told_at_;
   std::string note_;
 };
 

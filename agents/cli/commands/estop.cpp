@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/teleop/pilot.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -13,7 +14,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
 constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
 constexpr double kResetLimit = 5.0;
-constexpr int kStopReleases = 4;
 
 /// A stop button of the terminal.
 class Button {
@@ -27,16 +27,15 @@ class Button {
   /// Presses until the bridge confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
     double told = 0.0;
+    pilot_.press(source_);
     while (!stop.requested()) {
-      write(true);
+      write(false);
       node_.wait(kAgain, &stop);
       poll();
       if (grant_ && grant_->estopped()) {
-        // Latched: the bridge holds the stop without us. Let go, so that it can be reset.
-        for (int i = 0; i < kStopReleases; ++i) {
-          write(false);
+        // Latched: the bridge holds the stop without us.
+        while (write(true))
           node_.wait(milliseconds(5));
-        }
         print("robot %s: %s (confirmed by the bridge after %.2f s)\n",
               node_.options().robot.c_str(), latched(*grant_).c_str(), seconds_since(began_));
         return bus::kExitOk;
@@ -79,12 +78,12 @@ class Button {
   }
 
  private:
-  void write(bool active) {
-    v1::MotorCommand command;
-    command.source(source_);
-    command.number(++number_);
-    command.active(active);
-    stops_.write(command);
+  /// False where there is nothing more to say.
+  bool write(bool latched) {
+    const auto command = pilot_.stop(latched);
+    if (command)
+      stops_.write(*command);
+    return command.has_value();
   }
 
   void poll() {
@@ -102,7 +101,7 @@ class Button {
   Processes processes_;
   std::string source_;
   bus::RequestClient resets_;
-  std::uint64_t number_ = 0;
+  teleop::Pilot pilot_{source_};
   std::optional<v1::Grant> grant_;
 };
 

@@ -9,6 +9,7 @@
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/teleop/pilot.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -67,19 +68,18 @@ class Follower {
 /// Anybody's stop also ends a person's driving, who then has to let go before driving on. `source`
 /// names the stopping person.
 void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::Stop& stop) {
-  constexpr int kReleases = 4;  // repetitions of a release: the topic is best effort
   auto grants = node.reader(bus::topics::kGrant);
   std::optional<bus::Writer<v1::MotorCommand>> commands;  // a writer needs a right
-  v1::MotorCommand command;
-  command.source(source);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.rotation(v1::ROTATION_VELOCITY);
+  teleop::Pilot pilot(source);
   const auto say = [&](bool active) {
-    command.number(command.number() + 1);
-    command.active(active);
+    teleop::Order stand;
+    stand.active = active;
+    const auto command = pilot.drive(stand, {});
+    if (!command)
+      return;
     if (!commands)
       commands = node.writer(bus::topics::kDriveTeleop);
-    commands->write(command);
+    commands->write(*command);
   };
   std::string driver;
   for (const auto began = Clock::now(); !stop.requested() && seconds_since(began) < 1.0;) {
@@ -97,7 +97,7 @@ void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::
     if (!driver.empty())
       say(true);
   }
-  for (int i = 0; command.number() > 0 && i < kReleases; ++i) {
+  for (int i = 0; commands && i < teleop::kReleases; ++i) {
     say(false);
     node.wait(milliseconds(20));
   }

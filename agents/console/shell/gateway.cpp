@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "key.hpp"
@@ -19,12 +18,10 @@ namespace {
 
 namespace topics = bus::topics;
 
-constexpr double kGreeting = 5.0;     // [s] limit for a page's hello
-constexpr double kStillThere = 60.0;  // [s] after driving in which the bridge gets releases
-constexpr double kExplain = 0.5;      // [s]
-constexpr double kStands = 0.01;      // [m/s, rad/s] below this speed
-constexpr std::size_t kLines = 200;   // of a log
-constexpr std::size_t kMany = 2000;   // instances of a topic
+constexpr double kGreeting = 5.0;    // [s] limit for a page's hello
+constexpr double kExplain = 0.5;     // [s]
+constexpr std::size_t kLines = 200;  // of a log
+constexpr std::size_t kMany = 2000;  // instances of a topic
 
 std::string host_name() {
   char name[256] = {};
@@ -200,24 +197,10 @@ void Gateway::poll() {
     take_answers(*client);
   if (const v1::RobotState* const robot = mind_.robot())
     stamp_ = robot->stamp();
-  if (auto grant = grants_.take_newest()) {
+  if (auto grant = grants_.take_newest())
     grant_ = std::move(grant);
-    watch_grant();
-  }
   if (any)
     server_.want_all_soon();
-}
-
-/// A grant for a command before the stick was held says nothing of it.
-void Gateway::watch_grant() {
-  if (grant_->role() != v1::ROLE_NONE) {
-    return control_.driven(grant_->role() == v1::ROLE_TELEOP && grant_->source() == last_source_ &&
-                           held_since_ != 0 && grant_->number() >= held_since_);
-  }
-  const v1::RobotState* const robot = mind_.robot();
-  if (robot != nullptr && std::abs(robot->velocity()) < kStands &&
-      std::abs(robot->rotation_velocity()) < kStands)
-    control_.stopped(now());
 }
 
 void Gateway::look_at_simulator() {
@@ -247,50 +230,17 @@ void Gateway::tick() {
   node_.publish_status();
 }
 
-/// While an operator drives, and a while after that, the bridge gets a sample 20 times a second: so
-/// it knows that this program lives, and understands a release that got lost.
 void Gateway::drive() {
-  const Control::Order order = control_.order(now());
-  if (!order.source.empty()) {
-    last_source_ = operator_of(order.source);
-    drove_ = now();
-  }
-  if (now() - drove_ > kStillThere && hand_backs_left_ == 0)
-    return;
-  v1::MotorCommand command;
-  // The stamp names the robot state on the operator's screen: an old one makes the bridge slower,
-  // and a too old one is refused. A release and a hand-back are valid with any stamp.
-  command.stamp(stamp_);
-  if (order.active)
-    command.stamp().cycle(std::min(order.cycle, stamp_.cycle()));
-  command.source(last_source_);
-  command.number(++command_);
-  held_since_ = !order.active ? 0 : held_since_ == 0 ? command_ : held_since_;
-  command.active(order.active);
-  command.hand_back(!order.active && hand_backs_left_ > 0);
-  hand_backs_left_ = order.active ? 0 : std::max(0, hand_backs_left_ - 1);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(order.velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-  command.rotation_velocity(order.rotation);
-  teleop_.write(command);
+  teleop::Order order = control_.order(now());
+  if (!order.source.empty())
+    order.source = operator_of(order.source);
+  if (const auto command = pilot_.drive(order, stamp_))
+    teleop_.write(*command);
 }
 
-/// Presses until the bridge confirms the latched stop; then lets go, so that it can be reset.
 void Gateway::press_estop() {
-  if (presser_.empty() && releases_left_ == 0)
-    return;
-  if (!presser_.empty() && grant_ && grant_->estopped()) {
-    presser_.clear();
-    releases_left_ = kReleases;
-  }
-  v1::MotorCommand command;
-  command.source(presser_.empty() ? "console" : presser_);
-  command.number(++command_);
-  command.active(!presser_.empty());
-  if (presser_.empty())
-    --releases_left_;
-  estop_.write(command);
+  if (const auto command = pilot_.stop(grant_ && grant_->estopped()))
+    estop_.write(*command);
 }
 
 /// The reasons for the robot's motion, as in `saphira why`.
@@ -304,7 +254,7 @@ void Gateway::explain() {
 }
 
 void Gateway::show_control() {
-  std::string text = control_.json();
+  std::string text = to_json(control_.state());
   if (text == shown_control_)
     return;
   shown_control_ = text;

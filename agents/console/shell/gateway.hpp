@@ -14,8 +14,9 @@
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/console/board.hpp"
-#include "saphira/console/control.hpp"
 #include "saphira/console/message.hpp"
+#include "saphira/teleop/control.hpp"
+#include "saphira/teleop/pilot.hpp"
 #include "server.hpp"
 #include "simulator_link.hpp"
 
@@ -30,8 +31,6 @@ struct GatewayOptions {
   std::string dial_authority;          ///< PEM file to check its certificate
   std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
 };
-
-constexpr int kReleases = 4;  ///< repetitions of a release: the topics of driving are best effort
 
 /// [s] of the clock of these files.
 double now();
@@ -85,7 +84,6 @@ class Gateway {
   void press_estop();
   void explain();
   void show_control();
-  void watch_grant();
   void look_at_simulator();
   void ask_simulator(Connection connection, const Page& page, std::string text);
 
@@ -98,7 +96,7 @@ class Gateway {
   void name(Connection connection, Page& page, const std::string& name);
   void admit(Connection connection, Page& page, const Hello& hello);
   void obey(Connection connection, Page& page, const Message& message);
-  void take_sample(Connection connection, Page& page, const Control::Sample& sample);
+  void take_sample(Connection connection, Page& page, const teleop::Control::Sample& sample);
   void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
   void cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel);
   void hear(const Page& page, const Say& words);
@@ -114,7 +112,8 @@ class Gateway {
   std::string origin_;
   bus::Node node_;
   Board board_;
-  Control control_;
+  teleop::Control control_;
+  teleop::Pilot pilot_{"console"};
   cli::Mind mind_{node_, false};
   bus::GoalClient goals_{node_, "console"};
   bus::RequestClient resets_{node_, bus::topics::kEstopReset, "console"};
@@ -136,14 +135,7 @@ class Gateway {
 
   v1::Stamp stamp_;  ///< of the newest robot state
   std::optional<v1::Grant> grant_;
-  std::uint64_t command_ = 0;
-  std::uint64_t held_since_ = 0;  ///< the first command of the stick that is held [0: none is]
   std::uint64_t utterances_ = 0;
-  double drove_ = -1e9;      ///< [s] when an operator last had control
-  int hand_backs_left_ = 0;  ///< the topic is best effort
-  std::string last_source_ = "console";
-  std::string presser_;  ///< the person who presses the emergency stop, until it is confirmed
-  int releases_left_ = 0;
   double explained_ = -1e9;  ///< [s]
   std::string shown_control_;
   std::optional<SimulatorLink> simulator_;

@@ -179,7 +179,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   }
   // The right to watch includes the right to stop.
   if (std::holds_alternative<EmergencyStop>(message)) {
-    presser_ = operator_of(page.name);
+    pilot_.press(operator_of(page.name));
     press_estop();
     return;
   }
@@ -193,7 +193,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     if (!why.empty())
       say(connection, "{\"type\":\"note\",\"text\":" + quoted(why) + "}");
   };
-  if (const auto* sample = std::get_if<Control::Sample>(&message))
+  if (const auto* sample = std::get_if<teleop::Control::Sample>(&message))
     take_sample(connection, page, *sample);
   else if (const auto* rename = std::get_if<Rename>(&message))
     name(connection, page, rename->name);
@@ -236,10 +236,11 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   show_control();
 }
 
-void Gateway::take_sample(Connection connection, Page& page, const Control::Sample& sample) {
+void Gateway::take_sample(Connection connection, Page& page,
+                          const teleop::Control::Sample& sample) {
   const std::string why = control_.drive(page.operator_id, sample, now());
   // Of several connections one is quicker: an overtaken sample is not reported.
-  if (why == page.refused || why == Control::kRepeated)
+  if (why == page.refused || why == teleop::Control::kRepeated)
     return;
   page.refused = why;
   say(connection, "{\"type\":\"drive\",\"refused\":" + quoted(why) + "}");
@@ -253,7 +254,7 @@ void Gateway::hand_back(Connection connection) {
     return;
   }
   control_.release(connection);
-  hand_backs_left_ = kReleases;
+  pilot_.hand_back();
 }
 
 void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& ask) {

@@ -53,9 +53,9 @@ bool truth(const Json& object, const char* name) {
 Message read(const Json& json) {
   const std::string type = text(json, "type");
   if (type == "drive")
-    return Control::Sample{count(json, "number"),    number(json, "at"),
-                           truth(json, "active"),    number(json, "velocity"),
-                           number(json, "rotation"), count(json, "cycle")};
+    return teleop::Control::Sample{count(json, "number"),    number(json, "at"),
+                                   truth(json, "active"),    number(json, "velocity"),
+                                   number(json, "rotation"), count(json, "cycle")};
   if (type == "ack")
     return Ack{count(json, "frame")};
   if (type == "ping")
@@ -107,6 +107,18 @@ Message parse_message(std::string_view text) {
   } catch (const std::invalid_argument& error) {
     return Wrong{error.what()};
   }
+}
+
+std::string to_json(const teleop::Control::State& state) {
+  Json asked = Json::array();
+  for (const auto& [id, name] : state.asked)
+    asked.push_back({{"id", id}, {"name", name}});
+  return Json{{"holder", state.holder},
+              {"name", state.name},
+              {"asked", asked},
+              {"note", state.note},
+              {"let_go", state.let_go}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<std::string> words_of(std::string_view text) {

@@ -96,5 +96,11 @@ TEST(Message, TheWordsOfAGoal) {
             R"(expected a closing " behind "meeting room)");
 }
 
+TEST(Message, ThePagesGetTheStateOfControl) {
+  EXPECT_EQ(to_json({3, "ann", {{4, "\"bob\""}}, "ann took control", ""}),
+            R"({"asked":[{"id":4,"name":"\"bob\""}],"holder":3,"let_go":"","name":"ann",)"
+            R"("note":"ann took control"})");
+}
+
 }  // namespace
 }  // namespace saphira::console

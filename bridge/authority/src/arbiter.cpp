@@ -23,6 +23,7 @@ double age_of(const Command& command, std::uint64_t cycle) {
 }
 
 constexpr std::array kDriving{Role::teleop, Role::direct, Role::behaviors};
+constexpr const char* kInterrupted = "drove when the link to the robot was interrupted";
 constexpr const char* kHandBack = "saphira drive hand-back";
 
 bool is_autonomy(Role role) {
@@ -40,6 +41,9 @@ const char* name(Role role) {
 }
 
 void Arbiter::let_go() {
+  const Player& person = player(Role::teleop);
+  if (person.held && person.newest.active)
+    must_let_go_ = {person.newest.writer, kInterrupted};
   for (Player& p : players_)
     p.held = false;
   // The person's program counts as alive when it is heard again.
@@ -135,7 +139,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   }
   if (command.role == Role::teleop) {
     quiet_heard_ = kNever;
-    let_go_first_ = let_go_first_ && heard;
+    if (must_let_go_ && must_let_go_->writer != command.writer)
+      must_let_go_.reset();
   }
   if (!heard || another || command.cycle == 0 || command.cycle > p.newest.cycle)
     p.moved_on = command.received;
@@ -178,7 +183,8 @@ bool Arbiter::release(const Command& command, std::uint64_t cycle) {
   }
   if (command.role != Role::teleop)
     return true;
-  let_go_first_ = let_go_first_ && held && !holds;
+  if (must_let_go_ && must_let_go_->writer == command.writer)
+    must_let_go_.reset();
   if (command.writer == person_) {
     if (command.received - quiet_heard_ > settings_.lease + kTick)
       quiet_since_ = command.received;
@@ -226,6 +232,8 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
     quiet_heard_ = kNever;
   Player& p = player(role);
   if (p.held && p.newest.writer == writer && p.newest.active) {
+    if (role == Role::teleop)
+      must_let_go_ = {writer, kInterrupted};  // it may come back
     p.newest.active = false;
     p.newest.received = now;
   }
@@ -254,7 +262,8 @@ std::string Arbiter::reset(const std::string& source, double now) {
   if (!rests && latches_.wait == Wait::none)
     latches_.wait = Wait::reset;
   const Player& person = player(Role::teleop);
-  let_go_first_ = person.held && person.newest.active && fresh(person, now);
+  if (person.held && person.newest.active && fresh(person, now))
+    must_let_go_ = {person.newest.writer, "drove when the emergency stop was reset"};
   quiet_heard_ = kNever;
   return {};
 }
@@ -294,8 +303,8 @@ std::string Arbiter::why_to_stand(Role role) const {
   if (latches_.estopped)
     return "an emergency stop is latched, pressed by " + latches_.estop_source +
            ": saphira estop reset releases it";
-  if (role == Role::teleop && let_go_first_)
-    return "drove when the emergency stop was reset: let go first, then drive";
+  if (role == Role::teleop && must_let_go_)
+    return must_let_go_->why + ": let go first, then drive";
   if (!is_autonomy(role))
     return {};
   switch (latches_.wait) {
@@ -320,7 +329,17 @@ void Arbiter::end_wait(double now) {
     latches_.wait = Wait::none;
 }
 
+/// A short gap costs no more than its time. After a longer one the person may not look any more.
+void Arbiter::watch_person(double now, std::uint64_t cycle) {
+  const Player& p = player(Role::teleop);
+  if (!p.held || !p.newest.active || live(p, now, cycle))
+    interrupted_since_ = now;
+  else if (now - interrupted_since_ >= settings_.interruption - kTick)
+    must_let_go_ = {p.newest.writer, kInterrupted};
+}
+
 Grant Arbiter::decide(double now, std::uint64_t cycle) {
+  watch_person(now, cycle);
   const Role role = strongest(now, cycle);
   if (!latches_.estopped)
     end_wait(now);

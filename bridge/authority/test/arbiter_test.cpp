@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 
 #include "scene.hpp"
@@ -267,6 +268,69 @@ TEST(Arbiter, ADriverThatRepeatsWhatItAnsweredHasALeaseAndNoMore) {
   const Grant grant = s.arbiter.decide(s.now, s.cycle);
   EXPECT_EQ(grant.role, Role::none) << "young on the bus, but it answers what was 4 cycles ago";
   EXPECT_NE(grant.reason.find("does not hear the robot"), std::string::npos) << grant.reason;
+}
+
+/// A person drives, something happens, and the person holds on.
+Role after(const std::function<void(Scene&)>& interruption, bool lets_go = false) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::teleop);
+  interruption(s);
+  for (int i = 0; i < 5; ++i) {
+    s.wait(1);
+    if (lets_go && i == 0)
+      s.offer(Role::teleop, 1, false);
+    s.offer(Role::teleop, 1);
+    s.driver();
+  }
+  return s.driver();
+}
+void silence(Scene& s, int cycles) {
+  for (int i = 0; i < cycles; ++i) {
+    s.wait(1);
+    s.driver();
+  }
+}
+
+TEST(Arbiter, APersonWhoseDrivingWasInterruptedLetsGoFirst) {
+  const auto cut = [](Scene& s) { silence(s, 20); };
+  EXPECT_EQ(after(cut), Role::none);
+  EXPECT_EQ(after(cut, true), Role::teleop);
+  EXPECT_EQ(after([](Scene& s) { silence(s, 4); }), Role::teleop) << "a few lost packets";
+  const auto bridge_hung = [](Scene& s) { s.arbiter.forget(s.cycle, s.now); };
+  EXPECT_EQ(after(bridge_hung), Role::none);
+  EXPECT_EQ(after(bridge_hung, true), Role::teleop);
+  const auto new_connection = [](Scene& s) {
+    s.arbiter.connect(0);
+    s.arbiter.connect(1);
+  };
+  EXPECT_EQ(after(new_connection), Role::none);
+  EXPECT_EQ(after(new_connection, true), Role::teleop);
+  const auto lost_and_found = [](Scene& s) { s.arbiter.lost(Role::teleop, writer(1), s.now); };
+  EXPECT_EQ(after(lost_and_found), Role::none);
+  const auto old_pictures = [](Scene& s) {
+    const std::uint64_t seen = s.cycle;
+    for (int i = 0; i < 8; ++i) {
+      s.wait(1);
+      Command c = s.command(Role::teleop, 1);
+      c.cycle = seen;
+      s.arbiter.offer(c, s.cycle);
+      s.driver();
+    }
+  };
+  EXPECT_EQ(after(old_pictures), Role::none);
+}
+
+TEST(Arbiter, AnInterruptedPersonHoldsUpNobodyElse) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  silence(s, 20);
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.grant().reason,
+            "drove when the link to the robot was interrupted: let go first, then drive");
+  silence(s, 4);
+  s.offer(Role::teleop, 2);
+  EXPECT_EQ(s.driver(), Role::teleop);
 }
 
 TEST(Arbiter, WhatIsTooOldIsRefused) {

@@ -24,6 +24,7 @@ export class Drive {
   since = 0;                 // [ms] active
   pad = '';                  // the gamepad's name
   padHint = '';
+  private padId = '';        // of the gamepad that is held
 
   stoppedUntil = 0;          // [ms] a stop holds that long against autonomy, too
 
@@ -129,20 +130,22 @@ export class Drive {
     this.velocity = y * this.maxVelocity;
     this.rotation = -x * Math.min(1, turn);
   }
-  // A shoulder button is the dead-man: a stick alone may drift, or lie on its side.
+  // A shoulder button is the dead-man: a stick alone may drift, or lie on its side. Of several gamepads
+  // the one that is held drives; another one takes over only once nothing is held.
   private fromPad(): boolean {
-    const pad = [...(navigator.getGamepads?.() ?? [])].find(p => p?.connected);
-    if (!pad) {
-      this.pad = this.padHint = '';
-      return false;
-    }
-    this.pad = pad.id.replace(/\s*\(.*/, '').slice(0, 40);
-    const held = [4, 5, 6, 7].some(i => pad.buttons[i]?.pressed);
+    const pads = [...(navigator.getGamepads?.() ?? [])].filter(p => p?.connected) as Gamepad[];
+    const holds = (p: Gamepad) => [4, 5, 6, 7].some(i => p.buttons[i]?.pressed);
+    const some = pads.some(holds);
+    if (!some) this.padId = '';
+    const id = (p: Gamepad) => `${p.index} ${p.id}`;
+    const pad = pads.find(p => holds(p) && (this.padId === '' || this.padId === id(p)));
+    const shown = pad ?? pads.find(p => id(p) === this.padId) ?? pads[0];
+    this.pad = shown ? shown.id.replace(/\s*\(.*/, '').slice(0, 40) : '';
+    this.padHint = pad || !shown ? '' : some ? 'let go of all gamepads first' : 'hold a shoulder button to drive';
+    if (!pad) return false;
+    this.padId = id(pad);
     const dead = (v: number) => Math.abs(v) < deadZone ? 0 : v;
-    const [x, y] = [dead(pad.axes[0] ?? 0), dead(-(pad.axes[1] ?? 0))];
-    this.padHint = held ? '' : 'hold a shoulder button to drive';
-    if (!held) return false;
-    this.fromStick(x, y);
+    this.fromStick(dead(pad.axes[0] ?? 0), dead(-(pad.axes[1] ?? 0)));
     return true;
   }
 

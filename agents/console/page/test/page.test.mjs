@@ -400,23 +400,35 @@ test('the stick drives, and letting it go or losing the window stops', async () 
   await leave(page);
 });
 
-test('a gamepad drives with a shoulder button, and one that is unplugged stops', async () => {
+test('a gamepad drives with a shoulder button, one that is unplugged stops, and another takes over after that', async () => {
   const page = await person();
   await page.addInitScript(() => {
-    window.pad = {id: 'Test pad (Vendor: 1)', connected: true, axes: [0, 0], buttons: Array.from({length: 16}, () => ({pressed: false}))};
-    navigator.getGamepads = () => [window.pad];
+    const pad = (index, id) => ({index, id, connected: true, axes: [0, 0], buttons: Array.from({length: 16}, () => ({pressed: false}))});
+    window.pads = [null, pad(1, 'Test pad (Vendor: 1)'), pad(2, 'Other pad (Vendor: 2)')];
+    window.shown = [];  // a browser hides gamepads until one of their buttons was pressed
+    navigator.getGamepads = () => window.shown;
   });
   await open(page);
   await takeControl(page, 'ann');
+  await page.getByText('A gamepad shows once one of its buttons is pressed').waitFor();
+  await page.evaluate(() => { window.shown = window.pads; });
   await page.getByText('hold a shoulder button').waitFor();
-  await page.evaluate(() => { window.pad.axes[1] = 1; });  // drifts: moves nothing
-  const shoulder = pressed => page.evaluate(is => { window.pad.buttons[4].pressed = is; }, pressed);
-  await drive(page, () => shoulder(true), () => shoulder(false), false);
+  const shoulder = (pad, pressed) => page.evaluate(([n, is]) => { window.pads[n].buttons[4].pressed = is; }, [pad, pressed]);
+  await page.evaluate(() => { window.pads[1].axes[1] = 1; });  // drifts: moves nothing
+  await drive(page, () => shoulder(2, true), () => shoulder(2, false), false);
+  // While one is held the other moves nothing, also after the first is gone.
+  await page.getByText('Gamepad Test pad: hold a shoulder button').waitFor();
+  await shoulder(2, true);
+  await page.getByText('Gamepad Other pad.').waitFor();
+  await shoulder(1, true);
   await page.evaluate(() => {
-    window.pad = null;
+    window.pads[2] = null;
     dispatchEvent(new Event('gamepaddisconnected'));
   });
   await stands(page);
+  await page.getByText('let go of all gamepads first').waitFor();
+  await shoulder(1, false);
+  await page.getByText('Gamepad Test pad: hold a shoulder button').waitFor();
   await handBack(page);
   await leave(page);
 });

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "saphira/console/control.hpp"
+#include "saphira/teleop/control.hpp"
 
 namespace saphira::console {
 
@@ -74,11 +74,14 @@ struct Wrong {
 
 using Message =
     std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, GiveControl, ReleaseControl,
-                 Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal, Say,
+                 teleop::Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal, Say,
                  CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
+
+/// For the pages: holder, name, asked (id and name of each), note, let_go.
+std::string to_json(const teleop::Control::State& state);
 
 /// The words of AskGoal. Double quotes keep the spaces of a value, as in place="meeting room";
 /// there, a backslash is before a quote or a backslash of the value. std::invalid_argument for a

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct Settings {
   double quiet = std::numeric_limits<double>::infinity();
   double oldest = kOldest;  ///< [s] a command that answers an older cycle is refused
   double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for this long
+  /// [s] A person whose driving was interrupted for this long has to let go before driving on.
+  double interruption = 0.3;
 };
 
 struct Refusal {
@@ -79,6 +82,10 @@ struct Grant {
 /// Decides who drives the robot: the strongest role whose newest command is younger than its lease.
 /// Keeps the offered commands and knows no clock. Refuses, with a reason: a repeated number,
 /// another epoch, an answer to an old cycle, a second writer in a role that is held.
+///
+/// A person does not drive on after an interruption: where the lease ran out for longer than
+/// `interruption`, or the robot or the bridge was away, the same writer has to let go first. Thus a
+/// robot does not jump off when a link comes back.
 ///
 /// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
 /// from the present driver, who has to let go before driving again. The stop keeps the role for
@@ -145,6 +152,7 @@ class Arbiter {
   Role strongest(double now, std::uint64_t cycle) const;
   std::string why_to_stand(Role role) const;
   void end_wait(double now);
+  void watch_person(double now, std::uint64_t cycle);
 
   Settings settings_;
   std::uint64_t epoch_ = 0;
@@ -172,11 +180,16 @@ class Arbiter {
     double received = 0.0;
   };
   std::map<WriterId, Press> pressed_;  ///< emergency stops that have not been let go
-  bool let_go_first_ = false;          ///< the person drove when the emergency stop was reset
-  WriterId person_{};                  ///< the person's program that drove last
-  double quiet_since_ = 0.0;           ///< since then it reports that it does not drive
-  double quiet_heard_ = -1e300;        ///< its newest such report
-  WriterId stopper_{};                 ///< the person who last stopped another one
+  struct MustLetGo {
+    WriterId writer{};
+    std::string why;
+  };
+  std::optional<MustLetGo> must_let_go_;  ///< the person who may not drive before a release
+  double interrupted_since_ = 0.0;        ///< [s] newest time without an interruption
+  WriterId person_{};                     ///< the person's program that drove last
+  double quiet_since_ = 0.0;              ///< since then it reports that it does not drive
+  double quiet_heard_ = -1e300;           ///< its newest such report
+  WriterId stopper_{};                    ///< the person who last stopped another one
   std::string stopper_name_;
   double stopped_at_ = -1e300;  ///< [s] time of that stop
 

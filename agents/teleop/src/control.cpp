@@ -1,13 +1,11 @@
-#include "saphira/console/control.hpp"
+#include "saphira/teleop/control.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "saphira/base/format.hpp"
-#include "saphira/console/board.hpp"
 
-namespace saphira::console {
+namespace saphira::teleop {
 
 namespace {
 
@@ -30,7 +28,6 @@ void Control::drop(const std::string& note) {
   holder_ = 0;
   newest_ = {};
   any_ = false;
-  driven(false);
   note_ = note;
 }
 
@@ -129,28 +126,12 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
     let_go_ = kGap;
   came_ = now;
   newest_ = sample;
-  if (!sample.active) {
+  if (!sample.active)
     let_go_.clear();
-    driven(false);
-  }
   return let_go_;
 }
 
-void Control::driven(bool by_the_stick) {
-  driven_ = by_the_stick && holder_ != 0 && newest_.active;
-  stands_since_.reset();
-}
-
-void Control::stopped(double now) {
-  if (!driven_)
-    return;
-  if (!stands_since_)
-    stands_since_ = now;
-  if (now - *stands_since_ >= settings_.stand)
-    let_go_ = kGap;
-}
-
-Control::Order Control::order(double now) {
+Order Control::order(double now) {
   Order order;
   lose_silent(now);
   if (holder_ == 0)
@@ -167,14 +148,12 @@ Control::Order Control::order(double now) {
   return order;
 }
 
-std::string Control::json() const {
-  std::string asked;
+Control::State Control::state() const {
+  State state{
+      holder_, holder_ == 0 ? "" : name_of(holder_), {}, note_, holder_ == 0 ? "" : let_go_};
   for (const OperatorId id : asked_)
-    asked += (asked.empty() ? "{\"id\":" : ",{\"id\":") + std::to_string(id) +
-             ",\"name\":" + quoted(name_of(id)) + "}";
-  return "{\"holder\":" + std::to_string(holder_) +
-         ",\"name\":" + quoted(holder_ == 0 ? "" : name_of(holder_)) + ",\"asked\":[" + asked +
-         "],\"note\":" + quoted(note_) + ",\"let_go\":" + quoted(holder_ == 0 ? "" : let_go_) + "}";
+    state.asked.push_back({id, name_of(id)});
+  return state;
 }
 
-}  // namespace saphira::console
+}  // namespace saphira::teleop

@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace saphira::console {
+#include "saphira/teleop/pilot.hpp"
+
+namespace saphira::teleop {
 
 /// The operator among the people at the browsers, and the operator's commands. Times are seconds of
 /// any clock that does not jump.
@@ -18,10 +19,9 @@ namespace saphira::console {
 class Control {
  public:
   struct Settings {
-    double hold = 0.4;   ///< [s] validity of the newest sample after its arrival
-    double lose = 1.0;   ///< [s] after this silence control is lost
-    double late = 0.4;   ///< [s] a sample with this delay over the quickest is refused
-    double stand = 0.3;  ///< [s] a robot that the bridge stopped for so long waits for let go
+    double hold = 0.4;  ///< [s] validity of the newest sample after its arrival
+    double lose = 1.0;  ///< [s] after this silence control is lost
+    double late = 0.4;  ///< [s] a sample with this delay over the quickest is refused
   };
 
   /// One sample of the operator's page.
@@ -34,16 +34,18 @@ class Control {
     std::uint64_t cycle = 0;   ///< of the robot state on the operator's screen
   };
 
-  /// The command for the robot now.
-  struct Order {
-    bool active = false;
-    double velocity = 0.0;
-    double rotation = 0.0;
-    std::uint64_t cycle = 0;
-    std::string source;  ///< name of the driver, for people
-  };
-
   using OperatorId = std::uint64_t;
+  struct Operator {
+    OperatorId id = 0;
+    std::string name;
+  };
+  struct State {
+    OperatorId holder = 0;  ///< 0: nobody
+    std::string name;
+    std::vector<Operator> asked;  ///< who ask for control
+    std::string note;             ///< the newest change of control, for people
+    std::string let_go;           ///< why the stick must be let go first [empty: it need not]
+  };
   /// The reason for refusing a sample that was overtaken by a newer one, or repeated.
   static constexpr const char* kRepeated = "a repeated sample";
 
@@ -64,20 +66,11 @@ class Control {
   /// The reason for refusing the sample, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
 
-  /// Somebody drives the robot: the stick that is held now, or not.
-  void driven(bool by_the_stick);
-  /// Nobody drives the robot, and it stands. The bridge stops a robot after a gap that is too short
-  /// for this class. Where it stands for longer than one lost packet costs, the stick must be let
-  /// go first.
-  void stopped(double now);
-
   /// The present order. Call it at least ten times a second: it detects missing samples.
   Order order(double now);
 
   OperatorId holder() const { return holder_; }
-  /// The present state for the pages, as JSON: holder, name, asked (id and name of each), note,
-  /// let_go (why the stick must be let go first; empty: it need not).
-  std::string json() const;
+  State state() const;
 
  private:
   void drop(const std::string& note);
@@ -91,12 +84,10 @@ class Control {
   std::vector<OperatorId> asked_;
   std::string note_;
   Sample newest_;
-  double came_ = 0.0;                   ///< [s] of the newest sample
-  double quickest_ = 0.0;               ///< [s] the smallest difference of the two clocks
-  bool any_ = false;                    ///< a sample has come since control was taken
-  bool driven_ = false;                 ///< by the stick that is held now
-  std::optional<double> stands_since_;  ///< [s] although that stick is held
-  std::string let_go_;                  ///< why the stick must be let go first [empty: it need not]
+  double came_ = 0.0;      ///< [s] of the newest sample
+  double quickest_ = 0.0;  ///< [s] the smallest difference of the two clocks
+  bool any_ = false;       ///< a sample has come since control was taken
+  std::string let_go_;     ///< why the stick must be let go first [empty: it need not]
 };
 
-}  // namespace saphira::console
+}  // namespace saphira::teleop

@@ -1,11 +1,12 @@
-#include "saphira/cli/stick_drive.hpp"
+#include "saphira/teleop/stick_drive.hpp"
 
 #include <gtest/gtest.h>
 #include <linux/joystick.h>
 
+#include <algorithm>
 #include <cstring>
 
-namespace saphira::cli {
+namespace saphira::teleop {
 namespace {
 
 std::string event(unsigned type, unsigned number, int value) {
@@ -48,6 +49,54 @@ TEST(StickDrive, OtherButtonsDoNotDrive) {
   for (const unsigned number : {0U, 3U, 8U, 11U, 200U})
     stick.take(button(number, true), 1.0);
   EXPECT_FALSE(stick.setpoint(1.0).active);
+}
+
+struct Device {
+  const char* name;
+  std::vector<std::uint8_t> axes;
+  std::vector<std::uint16_t> buttons;
+  std::set<unsigned> hold;  ///< numbers of the buttons
+  const char* dead_man;
+};
+
+TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
+  const std::vector<Device> devices{
+      {"gamepad with analog triggers",
+       {ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ},
+       {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_TL, BTN_TR, BTN_SELECT, BTN_START, BTN_MODE},
+       {4, 5},
+       "a shoulder button"},
+      {"gamepad with four shoulder buttons, and axes the other way round",
+       {ABS_Y, ABS_X},
+       {BTN_SOUTH, BTN_C, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_Z, BTN_TL, BTN_TR, BTN_TL2, BTN_TR2},
+       {6, 7, 8, 9},
+       "a shoulder button"},
+      {"joystick",
+       {ABS_X, ABS_Y, ABS_RZ, ABS_THROTTLE},
+       {BTN_TRIGGER, BTN_THUMB, BTN_THUMB2, BTN_TOP, BTN_TOP2, BTN_PINKIE, BTN_BASE},
+       {0},
+       "the trigger"},
+      {"buttons without names", {ABS_X, ABS_Y}, {BTN_0, BTN_1, BTN_2}, {0}, "the first button"},
+  };
+  for (const Device& device : devices) {
+    const auto number_of = [&](std::uint8_t code) {
+      const auto found = std::find(device.axes.begin(), device.axes.end(), code);
+      return static_cast<unsigned>(found - device.axes.begin());
+    };
+    for (unsigned i = 0; i < device.buttons.size(); ++i) {
+      StickDrive stick;
+      stick.set_layout(device.axes, device.buttons);
+      EXPECT_EQ(stick.dead_man(), device.dead_man) << device.name;
+      stick.take(axis(number_of(ABS_Y), -32767) + axis(number_of(ABS_X), 16384), 1.0);
+      stick.take(button(i, true), 1.0);
+      const StickDrive::Setpoint setpoint = stick.setpoint(1.0);
+      EXPECT_EQ(setpoint.active, device.hold.contains(i)) << device.name << ", button " << i;
+      if (!setpoint.active)
+        continue;
+      EXPECT_GT(setpoint.velocity, 0.3) << device.name;
+      EXPECT_LT(setpoint.turn, 0.0) << device.name;
+    }
+  }
 }
 
 TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
@@ -98,4 +147,4 @@ TEST(StickDrive, EventsMayComeInPieces) {
 }
 
 }  // namespace
-}  // namespace saphira::cli
+}  // namespace saphira::teleop

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace saphira::cli {
+namespace saphira::teleop {
 
 /// The actions of the keys of manual Table 2-1, and of further keys of a terminal.
 enum class DriveKey {
@@ -75,4 +75,4 @@ class KeyDrive {
   double hold_until_ = -1e9;
 };
 
-}  // namespace saphira::cli
+}  // namespace saphira::teleop

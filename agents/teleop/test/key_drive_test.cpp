@@ -1,8 +1,8 @@
-#include "saphira/cli/key_drive.hpp"
+#include "saphira/teleop/key_drive.hpp"
 
 #include <gtest/gtest.h>
 
-namespace saphira::cli {
+namespace saphira::teleop {
 namespace {
 
 using Keys = std::vector<DriveKey>;
@@ -169,4 +169,4 @@ TEST(KeyDrive, ReleaseIsAtOnce) {
 }
 
 }  // namespace
-}  // namespace saphira::cli
+}  // namespace saphira::teleop

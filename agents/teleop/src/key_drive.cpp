@@ -1,4 +1,4 @@
-#include "saphira/cli/key_drive.hpp"
+#include "saphira/teleop/key_drive.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace saphira::cli {
+namespace saphira::teleop {
 
 namespace {
 
@@ -140,4 +140,4 @@ KeyDrive::Setpoint KeyDrive::setpoint(double now) {
   return setpoint_;
 }
 
-}  // namespace saphira::cli
+}  // namespace saphira::teleop

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira::teleop {
+
+/// From a joystick or gamepad to setpoints, with a dead-man: the robot is driven by the first stick
+/// while a button is held. That is a shoulder button; the trigger of a joystick without shoulder
+/// buttons; the first button of a device with neither. The device is the kernel's
+/// (linux/joystick.h): events of 8 bytes, time [ms], value, type and number. Times are seconds of
+/// any steady clock.
+class StickDrive {
+ public:
+  struct Settings {
+    double dead_zone = 0.1;     ///< [0..1] of the stick's way
+    double silence = 5.0;       ///< [s] a joystick silent for this long may be out of reach
+    double max_velocity = 0.4;  ///< [m/s] at full deflection
+    double max_turn = 1.0;      ///< [rad/s] likewise
+  };
+  struct Setpoint {
+    bool active = false;    ///< the dead-man is held
+    double velocity = 0.0;  ///< [m/s]
+    double turn = 0.0;      ///< [rad/s] counter-clockwise
+  };
+
+  /// The codes of the device's axes and buttons (linux/input-event-codes.h), in their order. A
+  /// device is a gamepad whose shoulder buttons are 4 to 7 until it has told them.
+  void set_layout(const std::vector<std::uint8_t>& axes, const std::vector<std::uint16_t>& buttons);
+  /// The button to hold, for people: "a shoulder button".
+  const std::string& dead_man() const { return dead_man_; }
+  void set_max_velocity(double limit) { settings_.max_velocity = limit; }
+  /// Bytes of the device, which may end within an event. A button that was held when the device was
+  /// opened counts after a new press.
+  void take(std::string_view bytes, double now);
+  /// A held button has to be pressed again.
+  void let_go() { held_.clear(); }
+  /// The device is gone: nothing is held.
+  void lost();
+  Setpoint setpoint(double now) const;
+  /// A button is held and the device is silent: the button has to be let go.
+  bool is_silent(double now) const;
+
+ private:
+  double share(double axis) const;
+
+  Settings settings_;
+  std::string rest_;
+  std::string dead_man_ = "a shoulder button";
+  std::set<unsigned> holding_{4, 5, 6, 7};  ///< numbers of the buttons that count
+  unsigned across_ = 0;                     ///< number of the axis to the right
+  unsigned along_ = 1;                      ///< number of the axis to the person
+  double ahead_ = 0.0;                      ///< [-1..1]
+  double left_ = 0.0;                       ///< [-1..1]
+  std::set<unsigned> held_;                 ///< buttons of holding_
+  double heard_ = -1e9;
+};
+
+}  // namespace saphira::teleop
