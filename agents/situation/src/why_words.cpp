@@ -124,8 +124,9 @@ bool concerns(const v1::Belief& belief, const v1::IntentionNode& node) {
         return true;
     return false;
   };
+  // Two persons may share an office: the person decides, not the place.
   return is_argument(belief.name().substr(belief.name().rfind('-') + 1)) ||
-         is_argument(belief.value());
+         (!belief.name().starts_with("place-of-") && is_argument(belief.value()));
 }
 
 std::string with_arguments(const v1::IntentionNode& node) {

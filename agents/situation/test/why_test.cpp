@@ -86,6 +86,26 @@ TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
   EXPECT_EQ(text.find("perception"), std::string::npos) << text;
 }
 
+TEST_F(WhyTest, APlaceOfTwoPersonsIsGroundedInTheOneThatWasMeant) {
+  v1::IntentionNode& node = scene.intentions->nodes()[0];
+  node.schema("go-to-place");
+  node.arguments("place=\"EJ-231\", speed=0.3, whose=karen");
+  v1::Belief told;
+  told.name("place-of-karen");
+  told.value("\"EJ-231\"");
+  told.said_by("Alice said at 10:02 \"Flakey, EJ-231 is Karen's office\"");
+  v1::Belief other = told;
+  other.name("place-of-john");
+  other.said_by("Bob said at 10:03 \"Flakey, John is in EJ-231\"");
+  scene.beliefs = {other, told};
+  std::string text = to_text(why(scene));
+  EXPECT_NE(text.find("place-of-karen"), std::string::npos) << text;
+  EXPECT_EQ(text.find("place-of-john"), std::string::npos) << text;
+  node.arguments("place=\"EJ-231\", speed=0.3, whose=");
+  text = to_text(why(scene));
+  EXPECT_EQ(text.find("place-of-"), std::string::npos) << "nobody was named: " << text;
+}
+
 // A C program's behaviors and intentions are its own, and serve no goal.
 TEST_F(WhyTest, NamesTheProgramWhoseBehaviorsDrive) {
   scene.own_mind = true;

@@ -39,6 +39,11 @@ v1::GoalId GoalClient::ask(v1::Goal goal) {
   return id;
 }
 
+void GoalClient::adopt(const v1::GoalId& id, v1::Goal goal) {
+  own_[key_of(id)];
+  change(id, std::move(goal));
+}
+
 void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
   goal.id(id);
   if (goal.requester().empty())

@@ -76,11 +76,13 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
   }
   for (const Claimed& one : dialogue_.claims())
     claim(one);
-  for (const auto& [tag, goal] : dialogue_.lasting()) {
+  for (const LastingGoal& goal : dialogue_.lasting()) {
     v1::GoalId id;
-    id.writer(goal.first);
-    id.number(goal.second);
-    asked_[tag] = id;
+    id.writer(goal.ref.first);
+    id.number(goal.ref.second);
+    asked_[goal.tag] = id;
+    if (!goal.sample.empty())
+      orphans_[goal.tag] = goal.sample;
   }
   publish();
   announce();
@@ -128,7 +130,8 @@ void DialogueShell::want(const WantedGoal& wanted) {
   const v1::GoalId id = goals_.ask(goal);
   asked_[wanted.tag] = id;
   if (lasting)
-    dialogue_.asked(wanted.tag, {id.writer(), id.number()});
+    dialogue_.asked(wanted.tag, {id.writer(), id.number()},
+                    bus::type_of<v1::Goal>().json(&goal, ""));
 }
 
 void DialogueShell::claim(const Claimed& claim) {
@@ -198,6 +201,22 @@ void DialogueShell::publish() {
   knows_.write(sample);
 }
 
+/// A goal of before a restart has no writer any more. While it is still known it gets a new one, or
+/// a restart of its service would end it without a word.
+void DialogueShell::adopt(std::uint64_t tag, const v1::GoalId& id) {
+  const auto orphan = orphans_.find(tag);
+  if (orphan == orphans_.end())
+    return;
+  try {
+    v1::Goal goal;
+    bus::from_json(orphan->second, goal);
+    goals_.adopt(id, goal);
+  } catch (const std::exception& error) {
+    node_.warn("a goal of before the restart cannot be kept: " + std::string(error.what()));
+  }
+  orphans_.erase(orphan);
+}
+
 void DialogueShell::take_goals(double seconds) {
   goals_.poll();
   std::vector<Outcome> ended;
@@ -208,6 +227,8 @@ void DialogueShell::take_goals(double seconds) {
       without_status.push_back(tag);
     else if (bus::ended(status->state()))
       ended.push_back({tag, status->state() == v1::GOAL_SUCCEEDED, status->reason()});
+    else
+      adopt(tag, id);
   }
   for (const Outcome& outcome : ended) {
     asked_.erase(outcome.tag);

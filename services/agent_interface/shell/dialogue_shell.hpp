@@ -33,6 +33,7 @@ class DialogueShell {
  private:
   void announce();
   void take_goals(double seconds);
+  void adopt(std::uint64_t tag, const v1::GoalId& id);
   void take_beliefs();
   void take_places();
   void take_utterances();
@@ -63,6 +64,7 @@ class DialogueShell {
   Situation situation_;
   v1::Vision seen_;                                 ///< the newest
   std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
+  std::map<std::uint64_t, std::string> orphans_;    ///< goals of before the restart, by tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;
 };

@@ -169,9 +169,14 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     const std::string where = referred(meaning, situation, out, artifact, wrong);
     Meaning shown = with(meaning, "place", where);
     shown.slots["owner"] = "";
-    if (!where.empty())
-      want(shown, utterance, "go-to-place", {text("place", where)});
-    else if (name.empty() || out.unknown.name != name)
+    if (!where.empty()) {
+      Arguments arguments{text("place", where)};
+      const std::string written = place(name, situation).empty() ? owner_in(name) : std::string();
+      const std::string whose = written.empty() ? slot(meaning, "owner") : written;
+      if (!whose.empty())
+        arguments.push_back(text("whose", whose));
+      want(shown, utterance, "go-to-place", arguments);
+    } else if (name.empty() || out.unknown.name != name)
       refuse(utterance, wrong, out);
     else if (!findable(name, situation))
       refuse(utterance, unknown(name, true, situation, out), out);

@@ -179,17 +179,19 @@ const Task* Tasks::find(std::uint64_t tag) const {
   return found == open_.end() ? nullptr : &*found;
 }
 
-void Tasks::asked(std::uint64_t tag, const GoalRef& goal) {
+void Tasks::asked(std::uint64_t tag, const GoalRef& goal, const std::string& sample) {
   for (Task& one : open_)
-    if (one.goal.tag == tag)
+    if (one.goal.tag == tag) {
       one.ref = goal;
+      one.sample = sample;
+    }
 }
 
-std::vector<std::pair<std::uint64_t, GoalRef>> Tasks::lasting() const {
-  std::vector<std::pair<std::uint64_t, GoalRef>> goals;
+std::vector<LastingGoal> Tasks::lasting() const {
+  std::vector<LastingGoal> goals;
   for (const Task& one : open_)
     if (one.ref != GoalRef{})
-      goals.emplace_back(one.goal.tag, one.ref);
+      goals.push_back({one.goal.tag, one.ref, one.sample});
   return goals;
 }
 
@@ -216,7 +218,7 @@ std::vector<std::string> Tasks::save() const {
                       std::to_string(one.ref.second) + "\t" + std::to_string(one.answers.first) +
                       "\t" + std::to_string(one.answers.second) + "\t" + field(one.goal.speaker) +
                       "\t" + field(one.what) + "\t" + field(one.doing) + "\t" + field(one.name) +
-                      "\t" + one.goal.functor);
+                      "\t" + one.goal.functor + "\t" + field(one.sample));
   return lines;
 }
 
@@ -224,7 +226,7 @@ void Tasks::restore(const std::string& line) {
   std::vector<std::string> parts = fields(line);
   if (parts.size() < 7)
     return;
-  parts.resize(10);  // an older file has 7
+  parts.resize(11);  // an older file has 7 or 10
   std::array<std::uint64_t, 5> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto number = number_in<std::uint64_t>(parts[i]);
@@ -241,6 +243,7 @@ void Tasks::restore(const std::string& line) {
   task.what = parts[6];
   task.doing = parts[7];
   task.name = parts[8];
+  task.sample = parts[10];
   task.answers = {numbers[3], numbers[4]};
   task.ref = {numbers[1], numbers[2]};
   open_.push_back(std::move(task));

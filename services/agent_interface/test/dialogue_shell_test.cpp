@@ -228,6 +228,25 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   EXPECT_TRUE(answers().empty());
 }
 
+// Otherwise nobody would hold the goal, and a restart of the intentions would lose it.
+TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsAskedForAgainWhileItIsUnderway) {
+  say("Flakey, take the mail from EJ-231 to EJ-233");
+  const auto first = goals.take();
+  ASSERT_EQ(first.size(), 1u);
+  start();
+  dialogue->step();
+  const auto unknown = goals.take();
+  EXPECT_TRUE(std::all_of(unknown.begin(), unknown.end(), [](const auto& sample) {
+    return sample.info.disposed;
+  })) << "a goal that nobody knows may be from yesterday";
+  tell(first[0].data.id(), v1::GOAL_UNDERWAY);
+  const auto again = goals.take();
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].data, first[0].data);
+  tell(first[0].data.id(), v1::GOAL_UNDERWAY);
+  EXPECT_TRUE(goals.take().empty());
+}
+
 TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
   const auto first = goals.take();

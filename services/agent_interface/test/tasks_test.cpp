@@ -220,12 +220,13 @@ TEST_F(TasksTest, BetweenBriefStepsTheRobotStandsAndTheTaskGoesOnAfterTheLast) {
 TEST_F(TasksTest, LastingGoalsOutliveARestart) {
   want({errand("alice", "the mail")}, "alice");
   want({motion("alice")}, "alice");
-  tasks.asked(1, {40, 2});
+  tasks.asked(1, {40, 2}, "{\"functor\":\"deliver\"}");
   const std::vector<std::string> lines = tasks.save();
   ASSERT_EQ(lines.size(), 1u);
   Tasks restarted;
   restarted.restore(lines[0]);
   EXPECT_EQ(restarted.lasting(), tasks.lasting());
+  EXPECT_EQ(restarted.lasting().at(0).sample, "{\"functor\":\"deliver\"}");
   EXPECT_EQ(restarted.doing(), "I bring the mail");
   EXPECT_EQ(restarted.spoken_for(), (UtteranceId{7, 1}));
   EXPECT_EQ(restarted.save(), lines);

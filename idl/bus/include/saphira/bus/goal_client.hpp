@@ -36,6 +36,9 @@ class GoalClient {
   /// Asks for a goal; fills in its id and, where it names none, its requester.
   /// std::runtime_error where the bus did not take it.
   v1::GoalId ask(v1::Goal goal);
+  /// Takes over a goal that this program asked for before it was started again. Exceptions as
+  /// above.
+  void adopt(const v1::GoalId& id, v1::Goal goal);
   /// Replaces the goal under the id of one that this client asked for.
   void change(const v1::GoalId& id, v1::Goal goal);
   /// Withdraws a goal: also one of another client, by its id. why: for its status, in words.

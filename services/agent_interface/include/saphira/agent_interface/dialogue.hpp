@@ -114,10 +114,12 @@ class Dialogue {
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
   /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.
   Outputs without_status(const std::vector<std::uint64_t>& tags, double seconds);
-  /// A lasting goal was asked for, under that name. save() includes it.
-  void asked(std::uint64_t tag, const GoalRef& goal) { tasks_.asked(tag, goal); }
-  /// The lasting goals that have not ended, by tag.
-  std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const { return tasks_.lasting(); }
+  /// A lasting goal was asked for, under that name and with that text. save() includes both.
+  void asked(std::uint64_t tag, const GoalRef& goal, const std::string& sample) {
+    tasks_.asked(tag, goal, sample);
+  }
+  /// The lasting goals that have not ended.
+  std::vector<LastingGoal> lasting() const { return tasks_.lasting(); }
   /// An activity's message to people. Messages from before a restart, and those of activities while
   /// this dialogue has no goal, are not said.
   Outputs says(const std::string& text, const CycleRef& when);

@@ -71,6 +71,15 @@ struct Outcome {
   std::string reason;
 };
 
+/// A goal that outlives a restart of the dialogue.
+struct LastingGoal {
+  std::uint64_t tag = 0;
+  GoalRef ref{};
+  std::string sample;  ///< as the shell wrote it; empty: unknown
+
+  bool operator==(const LastingGoal&) const = default;
+};
+
 /// The order of a person. Its owner is the speaker of its goal.
 struct Task {
   WantedGoal goal;
@@ -79,6 +88,7 @@ struct Task {
   std::string name;        ///< "the way to the library"; empty: unknown
   UtteranceId answers{};   ///< the utterance that asked for it
   GoalRef ref{};           ///< of a lasting goal on the bus
+  std::string sample;      ///< that goal as the shell wrote it
   ProgramId program{};     ///< the task ends with this program
   bool brief = false;      ///< a motion or a look: a task goes on after it
   std::vector<Task> then;  ///< the later steps of a sequence
@@ -109,10 +119,10 @@ class Tasks {
   const Task* task() const;
   /// The open task of that tag; nullptr: none.
   const Task* find(std::uint64_t tag) const;
-  /// A lasting goal was asked for, under that name. save() includes it.
-  void asked(std::uint64_t tag, const GoalRef& goal);
-  /// The lasting goals that have not ended, by tag.
-  std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const;
+  /// A lasting goal was asked for, under that name and with that text. save() includes both.
+  void asked(std::uint64_t tag, const GoalRef& goal, const std::string& sample);
+  /// The lasting goals that have not ended.
+  std::vector<LastingGoal> lasting() const;
   bool empty() const { return open_.empty(); }
   /// In the robot's words, the newest first; empty: nothing.
   std::string doing() const;
