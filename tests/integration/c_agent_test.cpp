@@ -37,7 +37,7 @@ TEST(Installed, HoldsWhatPeopleNeedAndNoDebugInformation) {
   EXPECT_LT(megabytes(installed.prefix()), 200U);
 }
 
-TEST(CAgent, OfAnotherVendorLooksSendsTakesBackAndDrives) {
+TEST(CAgent, OfAnotherVendorLooksSendsTakesBackDrivesAnswersAndAsks) {
   if (!there_is("command -v idlc") || !there_is("ls /usr/lib/*/cmake/CycloneDDS"))
     GTEST_SKIP() << "no Cyclone DDS: apt-get install cyclonedds-dev cyclonedds-tools";
   const test::Installed installed;
@@ -65,6 +65,22 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackAndDrives) {
   run({"cancel", "8", "0", "3"}, "canceled");
   run({"drive", "0.1", "0.3", "2"}, "c_agent drives");
   run({"go", "1", "0"}, "succeeded");
+  {
+    test::Process knows({build + "/c_agent", "know", "karen", "library"},
+                        installed.path("know.log"), environment);
+    const auto asked = [&](const std::vector<std::string>& command) {
+      test::Process asks(command, installed.path("asked.log"), environment);
+      return asks.wait() == 0 ? asks.output() : std::string();
+    };
+    EXPECT_TRUE(test::wait_until([&] {
+      return asked({installed.program("saphira"), "ask", "place_of", "person=karen", "place=?"})
+                 .find("library") != std::string::npos;
+    })) << knows.output();
+    EXPECT_NE(asked({build + "/c_agent", "ask", "karen"}).find("karen is in library"),
+              std::string::npos)
+        << knows.output();
+    EXPECT_EQ(asked({build + "/c_agent", "ask", "nobody"}), "");
+  }
   // A wrong word gives the exit code of a usage error.
   test::Process wrong({build + "/c_agent", "fly"}, installed.path("wrong.log"), environment);
   EXPECT_EQ(wrong.wait(), std::optional<int>(2));

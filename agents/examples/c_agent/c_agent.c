@@ -1,10 +1,12 @@
 /* An agent in C on Cyclone DDS: looks at the robot, sends it to a point and follows that, takes the
- * goal back, drives it by hand.
+ * goal back, drives it by hand; answers other agents, and asks them.
  *
  *   c_agent state              the robot's state for a second
  *   c_agent go X Y             to the point [m in odom]; exit code 0 when it is there
  *   c_agent cancel X Y SECONDS the same, and takes the goal back after so long
  *   c_agent drive SPEED TURN SECONDS   [m/s], [rad/s]
+ *   c_agent know PERSON PLACE  tells whoever asks where that person is, until Ctrl-C
+ *   c_agent ask PERSON         asks all agents that can tell; exit code 0 when one knows
  *
  * SAPHIRA_ROBOT and SAPHIRA_DOMAIN say which robot. Without CYCLONEDDS_URI it speaks on this machine
  * alone, as the profile host does.
@@ -18,9 +20,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "agents.h"
 #include "dds/dds.h"
 #include "intention.h"
 #include "motion.h"
+#include "request.h"
 #include "robot.h"
 
 static const char* const kThisMachine =
@@ -49,16 +53,19 @@ static const char* robot_name(void) {
 }
 
 /* The rows of the QoS table that this agent needs. */
-enum qos { CYCLIC, MOTION, GOAL, LATCHED };
+enum qos { CYCLIC, MOTION, COMMAND, GOAL, LATCHED, EVENT };
 
 static dds_qos_t* qos_of(enum qos name, bool reader) {
   dds_qos_t* qos = dds_create_qos();
-  const bool reliable = name == GOAL || name == LATCHED;
+  const bool reliable = name != CYCLIC && name != MOTION;
+  const bool kept = reliable && name != COMMAND;
+  const int most = name == EVENT ? 100 : name == COMMAND ? 16 : 1;
+  const int reads = name == LATCHED ? 8 : most == 1 ? 4 : most;
   const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        DDS_SECS(1));
-  dds_qset_durability(qos, reliable ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, reader && name == LATCHED ? 8 : reader ? 4 : 1);
+  dds_qset_durability(qos, kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, reader ? reads : most);
   dds_qset_data_representation(qos, 1, &xcdr1);
   return qos;
 }
@@ -235,6 +242,105 @@ static int drive(double speed, double turn, double seconds) {
   return 0;
 }
 
+/* The text of an argument; "" where it has none of that name. */
+static const char* text_of(const saphira_v1_Request* request, const char* name) {
+  for (uint32_t i = 0; i < request->arguments._length; ++i) {
+    const saphira_v1_Argument* one = &request->arguments._buffer[i];
+    if (strcmp(one->name, name) == 0 && one->kind == saphira_v1_ARGUMENT_TEXT) return one->text;
+  }
+  return "";
+}
+
+static saphira_v1_Argument text_argument(const char* name, const char* text) {
+  return (saphira_v1_Argument){
+      .name = (char*)name, .kind = saphira_v1_ARGUMENT_TEXT, .text = (char*)text};
+}
+
+/* Announces that it can tell the places of people, and answers. The facilitator routes the requests
+ * of all askers here, by the address ID/NAME. The announcement ends with this program. */
+static int know(const char* person, const char* place) {
+  const dds_entity_t requests = reader_of(&saphira_v1_Request_desc, "agents/request", COMMAND);
+  const dds_entity_t answers = writer_of(&saphira_v1_Answer_desc, "agents/answers", EVENT);
+  const dds_entity_t agents = writer_of(&saphira_v1_Agent_desc, "agents", GOAL);
+  saphira_v1_CapabilityParameter parameters[2] = {
+      {.name = "person", .kind = saphira_v1_ARGUMENT_TEXT, .meaning = "a name", .required = true},
+      {.name = "place", .kind = saphira_v1_ARGUMENT_TEXT, .meaning = "of the map"}};
+  saphira_v1_Capability capability = {
+      .functor = "place_of",
+      .summary = "where a person is",
+      .parameters = {._maximum = 2, ._length = 2, ._buffer = parameters}};
+  saphira_v1_Agent agent = {.id = self,
+                            .name = "c_agent",
+                            .summary = "knows where a person is",
+                            .capabilities = {._maximum = 1, ._length = 1, ._buffer = &capability}};
+  check(dds_write(agents, &agent), "agent");
+  char address[64];
+  snprintf(address, sizeof address, "%llx/c_agent", (unsigned long long)self);
+  while (!stopped) {
+    void* sample = NULL;
+    while (take(requests, &sample)) {
+      const saphira_v1_Request* request = sample;
+      if (strcmp(request->service, address) != 0) continue;
+      const bool known = strcmp(text_of(request, "person"), person) == 0;
+      saphira_v1_Argument result = text_argument("place", place);
+      const saphira_v1_Answer answer = {
+          .stamp = request->stamp,
+          .asker = request->asker,
+          .number = request->number,
+          .service = address,
+          .code = known ? saphira_v1_ANSWER_DONE : saphira_v1_ANSWER_REFUSED,
+          .text = known ? "" : "this agent knows one person alone",
+          .results = {._maximum = 1, ._length = known ? 1 : 0, ._buffer = &result}};
+      check(dds_write(answers, &answer), "answer");
+      printf("%s asked for %s\n", request->source, text_of(request, "person"));
+      fflush(stdout);
+    }
+    dds_sleepfor(DDS_MSECS(20));
+  }
+  check(dds_dispose(agents, &agent), "agent");
+  return 0;
+}
+
+static int ask(const char* person) {
+  const dds_entity_t answers = reader_of(&saphira_v1_Answer_desc, "agents/solved", EVENT);
+  const dds_entity_t requests = writer_of(&saphira_v1_Request_desc, "agents/solve", COMMAND);
+  saphira_v1_Argument arguments[2] = {
+      text_argument("person", person),
+      {.name = "place", .kind = saphira_v1_ARGUMENT_UNBOUND, .text = ""}};
+  const saphira_v1_Request request = {.asker = self,
+                                      .number = 1,
+                                      .source = "c_agent",
+                                      .service = "",
+                                      .functor = "place_of",
+                                      .arguments = {._maximum = 2, ._length = 2, ._buffer = arguments},
+                                      .deadline = 5.0};
+  bool sent = false;
+  for (const dds_time_t began = dds_time(); !stopped && dds_time() - began < DDS_SECS(15);) {
+    /* A command is not kept for late readers: the facilitator has to be there first. */
+    dds_publication_matched_status_t matched;
+    if (!sent && dds_get_publication_matched_status(requests, &matched) == 0 &&
+        matched.current_count > 0) {
+      check(dds_write(requests, &request), "request");
+      sent = true;
+    }
+    void* sample = NULL;
+    while (take(answers, &sample)) {
+      const saphira_v1_Answer* answer = sample;
+      if (answer->asker != self || answer->code == saphira_v1_ANSWER_UNDERWAY) continue;
+      const bool good = answer->code == saphira_v1_ANSWER_DONE && answer->results._length > 0;
+      if (good)
+        printf("%s is in %s, by %s\n", person, answer->results._buffer[0].text, answer->service);
+      else
+        fprintf(stderr, "c_agent: %s\n", answer->text);
+      dds_return_loan(answers, &sample, 1);
+      return good ? 0 : 1;
+    }
+    dds_sleepfor(DDS_MSECS(20));
+  }
+  fprintf(stderr, "c_agent: %s\n", sent ? "no answer" : "no facilitator is on the bus");
+  return 1;
+}
+
 int main(int argc, char** argv) {
   const char* domain = getenv("SAPHIRA_DOMAIN");
   const dds_domainid_t id = domain == NULL ? 0 : (dds_domainid_t)strtoul(domain, NULL, 10);
@@ -256,8 +362,13 @@ int main(int argc, char** argv) {
     code = go(atof(argv[2]), atof(argv[3]), atof(argv[4]));
   else if (argc == 5 && strcmp(argv[1], "drive") == 0)
     code = drive(atof(argv[2]), atof(argv[3]), atof(argv[4]));
+  else if (argc == 4 && strcmp(argv[1], "know") == 0)
+    code = know(argv[2], argv[3]);
+  else if (argc == 3 && strcmp(argv[1], "ask") == 0)
+    code = ask(argv[2]);
   else
-    fprintf(stderr, "c_agent: expected state | go X Y | cancel X Y SECONDS | drive SPEED TURN SECONDS\n");
+    fprintf(stderr, "c_agent: expected state | go X Y | cancel X Y SECONDS | drive SPEED TURN SECONDS"
+                    " | know PERSON PLACE | ask PERSON\n");
   dds_delete(DDS_CYCLONEDDS_HANDLE);
   return code;
 }
