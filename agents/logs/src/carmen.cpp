@@ -208,6 +208,22 @@ std::string mend_step(LaserScan& scan, double field) {
       std::abs(degrees(scan.step)) * (beams - 1.0));
 }
 
+// Takes a header in degrees as such: its angles fit each other, and are more than a whole turn.
+// Returns the words; empty: it is in radians.
+std::string mend_unit(LaserScan& scan, double& field) {
+  constexpr double kMost = 1.02 * 2.0 * kPi;
+  const double all = std::abs(scan.step) * (static_cast<double>(scan.ranges.size()) - 1.0);
+  if (!(field > kMost) || !(all > kMost))
+    return {};
+  std::string words = format(
+      "the header's field of view of %g rad is more than a whole turn: its angles are taken as "
+      "degrees",
+      field);
+  for (double* angle : {&scan.first_angle, &scan.step, &field})
+    *angle = radians(*angle);
+  return words;
+}
+
 // Stamp, host, and the logger's stamp, as far as present.
 Stamps stamps(Words& words) {
   Stamps time;
@@ -260,13 +276,14 @@ LaserScan new_laser(Words& words, Laser laser, bool with_robot, Parameters& para
   scan.laser = laser;
   words.number("the laser's type");
   scan.first_angle = words.number("the first angle");
-  const double field = words.number("the field of view");
+  double field = words.number("the field of view");
   scan.step = words.number("the angular resolution");
   const double longest = words.number("the longest range");
   scan.no_return = longest > 1.0 ? longest - 0.01 : 0.0;
   words.number("the accuracy");
   words.number("the remission mode");
   ranges_of(words, scan);
+  parameters.doubt(laser, mend_unit(scan, field));
   parameters.doubt(laser, mend_step(scan, field));
   // CARMEN's documents have no remissions there, its programs do. Then come two poses and five
   // numbers, a stamp, a name and a stamp.

@@ -179,6 +179,8 @@ TEST(Carmen, ARobotLaserWhoseStepDoesNotFitItsFieldIsTold) {
            Case{"-1.570796 1.570796 0.017453293", 1.0, true},
            Case{"-1.570796 3.141593 0.017453293", 1.0, false},
            Case{"-1.570796 3.141593 0", 180.0 / 179.0, false},
+           Case{"-90 180 1", 1.0, true},
+           Case{"-180 360 2.0111731844", 360.0 / 179.0, true},
        }) {
     std::string line = "ROBOTLASER1 0 " + std::string(each.head) + " 50 0.01 0 180";
     for (int i = 0; i < 180; ++i)
@@ -187,6 +189,7 @@ TEST(Carmen, ARobotLaserWhoseStepDoesNotFitItsFieldIsTold) {
     ASSERT_EQ(log.scans.size(), 1U) << each.head;
     EXPECT_NEAR(degrees(log.scans[0].step), each.step, 1e-3) << each.head;
     EXPECT_EQ(log.notes.size(), each.told ? 1U : 0U) << each.head;
+    EXPECT_LE(std::abs(log.scans[0].first_angle), kPi) << each.head;
   }
 }
 
