@@ -228,7 +228,7 @@ class Teleop {
       return false;
     if (n > 0)
       input_.append(buffer.data(), static_cast<std::size_t>(n));
-    for (const DriveKey key : take_keys(input_))
+    for (const DriveKey key : teleop::take_keys(input_))
       press(key);
     return true;
   }

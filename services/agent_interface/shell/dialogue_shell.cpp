@@ -15,6 +15,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/introspect.hpp"
 
 namespace saphira::agent_interface {
 namespace {
