@@ -18,7 +18,7 @@ std::string wrong(std::string_view text) {
 TEST(Message, EachKindIsRead) {
   const Message drive = parse_message(
       R"({"type":"drive","number":7,"at":1.5,"active":true,"velocity":-0.1,"rotation":0.2,"cycle":9})");
-  const auto& sample = std::get<Control::Sample>(drive);
+  const auto& sample = std::get<teleop::Control::Sample>(drive);
   EXPECT_EQ(sample.number, 7U);
   EXPECT_DOUBLE_EQ(sample.device_time, 1.5);
   EXPECT_TRUE(sample.active);
