@@ -11,12 +11,15 @@
 #include <string_view>
 
 #include "saphira/console/access.hpp"
-#include "saphira/console/control.hpp"
 #include "saphira/console/message.hpp"
+#include "saphira/teleop/control.hpp"
 
 using namespace saphira::console;
 
 namespace {
+
+using saphira::teleop::Control;
+using saphira::teleop::Order;
 
 constexpr Control::OperatorId kPeople = 3;
 
@@ -63,13 +66,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += 0.01 * static_cast<double>(line.size() % 16);
     if (apply(control, who, parse_message(line), now))
       newest[who] = now;
-    const Control::Order order = control.order(now);
+    const Order order = control.order(now);
     if (order.active &&
         (control.holder() == 0 || now - newest[control.holder()] > settings.hold + 1e-9))
       std::abort();
     if (!std::isfinite(order.velocity) || !std::isfinite(order.rotation))
       std::abort();
-    if (!nlohmann::json::accept(control.json()))
+    if (!nlohmann::json::accept(to_json(control.state())))
       std::abort();
   }
   return 0;
