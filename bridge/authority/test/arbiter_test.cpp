@@ -377,6 +377,7 @@ TEST(Arbiter, NobodyDrivesARobotThatIsSilent) {
   EXPECT_FALSE(s.arbiter.offer(blind, s.cycle));
   s.wait(1);
   s.arbiter.forget(s.cycle - 1, s.now);
+  s.offer(Role::teleop, 1, false);
   EXPECT_TRUE(s.offer(Role::teleop, 1));
   EXPECT_EQ(s.driver(), Role::teleop);
 }

@@ -64,7 +64,7 @@ TEST_F(DialogueTest, WhereAPersonIsComesBeforeWhoKnowsAndAnOfficeIsAnOffice) {
             "Carol said that karen is at EJ-233; Bob said that EJ-231 is karen's office; "
             "Alice said that john knows where karen is");
   EXPECT_EQ(said("Flakey, go to Karens office"), "I go to EJ-231");
-  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\" whose=\"karen\"");
   EXPECT_EQ(said("Flakey, go to Johns office"), "nobody has told me where john's office is");
   EXPECT_EQ(said("Flakey, go to Bobs office"),
             "I know no place or person called bobs office, but EJ-231, EJ-233, upper corridor. "
@@ -194,7 +194,7 @@ TEST_F(DialogueTest, MyOfficeIsTheSpeakers) {
   EXPECT_EQ(said("Flakey, EJ-233 is my office", ""), "I do not know who you are");
   EXPECT_EQ(said("Flakey, go to my office", "Karen"), "nobody has told me where karen's office is");
   hear("Flakey, go to my office", "John");
-  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\" whose=\"john\"");
 }
 
 TEST_F(DialogueTest, AFindIsLearnedOnceAndNotWhereItIsOlderThanTheDialogue) {

@@ -188,7 +188,7 @@ TEST_F(DialogueTest, TasksAreActivitiesWithPlacesOrPersons) {
   EXPECT_EQ(goals(), "deliver object=\"the mail\" from=\"EJ-231\" to=\"john\"");
   hear("Flakey, this is Karen's office");
   hear("Flakey, go to Karen's office");
-  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\" whose=\"karen\"");
   EXPECT_EQ(said("Flakey, go to Bob's office"), "nobody has told me where bob's office is");
   hear("Flakey, look at me");
   EXPECT_EQ(dialogue.ended({last.goals.at(0).tag, false, "nobody was seen"}).said.at(0).text,
