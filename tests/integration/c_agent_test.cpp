@@ -66,6 +66,8 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackDrivesAnswersAndAsks) {
   run({"drive", "0.1", "0.3", "2"}, "c_agent drives");
   run({"go", "1", "0"}, "succeeded");
   {
+    const test::Process facilitator({installed.program("saphira-facilitator")},
+                                    installed.path("facilitator.log"), environment);
     test::Process knows({build + "/c_agent", "know", "karen", "library"},
                         installed.path("know.log"), environment);
     const auto asked = [&](const std::vector<std::string>& command) {
