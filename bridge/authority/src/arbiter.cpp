@@ -23,7 +23,7 @@ double age_of(const Command& command, std::uint64_t cycle) {
 }
 
 constexpr std::array kDriving{Role::teleop, Role::direct, Role::behaviors};
-constexpr const char* kInterrupted = "drove when the link to the robot was interrupted";
+constexpr const char* kInterrupted = "the link to the robot was interrupted while a person drove";
 constexpr const char* kHandBack = "saphira drive hand-back";
 
 bool is_autonomy(Role role) {
@@ -263,7 +263,7 @@ std::string Arbiter::reset(const std::string& source, double now) {
     latches_.wait = Wait::reset;
   const Player& person = player(Role::teleop);
   if (person.held && person.newest.active && fresh(person, now))
-    must_let_go_ = {person.newest.writer, "drove when the emergency stop was reset"};
+    must_let_go_ = {person.newest.writer, "the emergency stop was reset while a person drove"};
   quiet_heard_ = kNever;
   return {};
 }

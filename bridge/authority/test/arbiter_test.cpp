@@ -327,7 +327,7 @@ TEST(Arbiter, AnInterruptedPersonHoldsUpNobodyElse) {
   silence(s, 20);
   s.offer(Role::teleop, 1);
   EXPECT_EQ(s.grant().reason,
-            "drove when the link to the robot was interrupted: let go first, then drive");
+            "the link to the robot was interrupted while a person drove: let go first, then drive");
   silence(s, 4);
   s.offer(Role::teleop, 2);
   EXPECT_EQ(s.driver(), Role::teleop);
