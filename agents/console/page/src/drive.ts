@@ -55,7 +55,11 @@ export class Drive {
   }
   // The reason why nothing that is held moves the robot until it was let go, and what to do; empty: there is none.
   letGoFirst(): string {
-    const why = this.mine() && this.by ? this.link.data<ControlState>('console/control')!.let_go : '';
+    if (!this.mine() || !this.by) return '';
+    // Of the gateway, or of the bridge.
+    const grant = this.link.data<Grant>('drive/grant');
+    const why = this.link.data<ControlState>('console/control')!.let_go
+      || (grant?.role === 'ROLE_NONE' ? /^(.*): let go/.exec(grant.reason)?.[1] : '');
     if (!why) return '';
     const again = {stick: 'the stick, then hold it', key: 'the key, then press it', gamepad: "the gamepad's shoulder button, then press it", '': ''};
     return `${why[0].toUpperCase()}${why.slice(1)}: let go of ${again[this.by]} again.`;
