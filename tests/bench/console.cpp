@@ -59,19 +59,7 @@ void write_map(const std::string& file, int artifacts) {
         << ", 400\n";
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CommandLine app{"The console, live at 10 Hz: what one page draws, and what three cost"};
-  bool json = false;
-  unsigned seconds = 20;
-  app.add_flag("--json", json, "one JSON object on the last line");
-  int artifacts = 5000;
-  app.add_option("--artifacts", artifacts, "of the map").in_range(0, 100000);
-  app.add_option("--seconds", seconds, "how long to watch, twice").in_range(5, 3600);
-  if (const auto code = app.parse(argc, argv))
-    return *code;
-
+int run(unsigned seconds, int artifacts, bool json) {
   setenv("SAPHIRA_DOMAIN", "199", 1);
   setenv("SAPHIRA_ROBOT", "bench-console", 1);
   const test::TempDir folder;
@@ -149,4 +137,24 @@ int main(int argc, char** argv) {
                             .dump()
                             .c_str());
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app{"The console, live at 10 Hz: what one page draws, and what three cost"};
+  bool json = false;
+  unsigned seconds = 20;
+  app.add_flag("--json", json, "one JSON object on the last line");
+  int artifacts = 5000;
+  app.add_option("--artifacts", artifacts, "of the map").in_range(0, 100000);
+  app.add_option("--seconds", seconds, "how long to watch, twice").in_range(5, 3600);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
+  try {
+    return run(seconds, artifacts, json);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-bench-console: %s\n", error.what());
+    return 1;
+  }
 }

@@ -1,3 +1,5 @@
+#include <stdlib.h>
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -47,6 +49,7 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
   }
   std::vector<std::string> words{bin + "/" + kPrefix + name};
   words.insert(words.end(), arguments.begin(), arguments.end());
+  setenv("SAPHIRA_BIN_DIR", bin.c_str(), 0);  // the benchmarks start our programs
   execute(std::move(words));
 }
 
