@@ -46,7 +46,8 @@ class Parser {
     try {
       root = YAML::Load(deployment_.text);
     } catch (const YAML::ParserException& error) {
-      fail(error.mark, "not YAML: " + error.msg);
+      fail(error.mark,
+           "expected a deployment in YAML, such as config/deployments/demo.yaml: " + error.msg);
     }
     if (!root.IsMap())
       fail(root.Mark(), "expected a deployment (keys such as programs:), found " + kind(root));

@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
     Each, BrokenDeployment,
     testing::Values(
         Broken{"", 1, 1, "expected a deployment"}, Broken{"- a\n- b", 1, 1, "found a list"},
-        Broken{"programs: [", 1, 1, "not YAML"}, Broken{"robot: a\n", 1, 1, "expected programs:"},
+        Broken{"programs: [", 1, 1, "in YAML"}, Broken{"robot: a\n", 1, 1, "expected programs:"},
         Broken{"programs: []\n", 1, 1, "at least one program"},
         Broken{"\nprogram:\n  - x\n", 2, 1, "unknown key \"program\": expected one of robot"},
         Broken{"programs:\n  - program: sh\n    argument: [a]\n", 3, 5,

@@ -50,7 +50,15 @@ std::string guess(std::string_view word, const std::vector<std::string>& candida
   const auto longer = std::find_if(
       candidates.begin(), candidates.end(),
       [&](const std::string& candidate) { return lowered(candidate).starts_with(small); });
-  return longer == candidates.end() ? "" : *longer;
+  if (longer != candidates.end())
+    return *longer;
+  for (const std::string& candidate : candidates) {
+    const std::string known = lowered(candidate);
+    if (known.size() > best.size() && small.starts_with(known) &&
+        (small[known.size()] == '-' || small[known.size()] == '_'))
+      best = candidate;
+  }
+  return best;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,

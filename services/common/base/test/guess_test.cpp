@@ -27,5 +27,12 @@ TEST(Guess, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(did_you_mean("fly", kCommands, "; help lists them"), "; help lists them");
 }
 
+TEST(Guess, TheLongestKnownBeginningOfALongerName) {
+  const std::vector<std::string> robots{"p3dx", "p3dx-sh", "p3at"};
+  EXPECT_EQ(guess("p3dx-sh-lms1xx", robots), "p3dx-sh");
+  EXPECT_EQ(guess("P3AT_laser_and_gripper", robots), "p3at");
+  EXPECT_EQ(guess("p3atlaserandgripper", robots), "");
+}
+
 }  // namespace
 }  // namespace saphira
