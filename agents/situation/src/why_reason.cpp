@@ -387,9 +387,17 @@ std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
 
 /// People's advice on the subject of the intention: each once, at its first use.
 void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
+  std::string arguments = of.arguments();
+  if (of.parent() == 0 && arguments.empty()) {  // the goal has them: functor(name=value, ...)
+    const std::string goal = goal_text(of.goal());
+    const std::size_t open = goal.find('(');
+    const std::size_t close = goal.rfind(')');
+    if (open < close && close != std::string::npos)
+      arguments = goal.substr(open + 1, close - open - 1);
+  }
   for (const v1::Belief& belief : scene_.beliefs)
-    if (belief.said_by().find(" said ") != std::string::npos && concerns(belief, of) &&
-        told_beliefs_.insert(belief.name()).second)
+    if (belief.said_by().find(" said ") != std::string::npos &&
+        concerns(belief, of.schema(), arguments) && told_beliefs_.insert(belief.name()).second)
       cause.because.push_back(
           {"belief", belief.said_by() + " (" + belief.name() + ": " + belief.value() + ")", {}});
 }

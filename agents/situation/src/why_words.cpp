@@ -112,12 +112,13 @@ std::string intention_name(const v1::IntentionNode& node) {
              : node.schema() + " (" + without_number(node.name()) + ")";
 }
 
-bool concerns(const v1::Belief& belief, const v1::IntentionNode& node) {
+bool concerns(const v1::Belief& belief, const std::string& schema, std::string arguments) {
   if (belief.name() == "hazards")
-    return node.schema() == "go-to-place";
+    return schema == "go-to-place";
+  std::erase(arguments, '"');
   const auto is_argument = [&](std::string word) {
     std::erase(word, '"');
-    const std::string text = " " + node.arguments() + ",";
+    const std::string text = " " + arguments + ",";
     for (std::size_t at = text.find(word); word.size() > 1 && at != std::string::npos;
          at = text.find(word, at + 1))
       if (text[at - 1] == '=' && text[at + word.size()] == ',')

@@ -49,9 +49,9 @@ std::string plain(const std::string& name);
 /// True where an instance is named after its schema: KeepOff#3, keep-off.
 bool nameless(const std::string& name, const std::string& schema);
 std::string intention_name(const v1::IntentionNode& node);
-/// True where the belief concerns an argument of the intention: "place-of-karen" concerns
-/// "name=karen".
-bool concerns(const v1::Belief& belief, const v1::IntentionNode& node);
+/// True where the belief concerns an argument of an intention with that schema: "place-of-karen"
+/// concerns "name=karen, patience=15".
+bool concerns(const v1::Belief& belief, const std::string& schema, std::string arguments);
 std::string with_arguments(const v1::IntentionNode& node);
 
 }  // namespace saphira::situation

@@ -101,7 +101,21 @@ TEST_F(WhyTest, APlaceOfTwoPersonsIsGroundedInTheOneThatWasMeant) {
   std::string text = to_text(why(scene));
   EXPECT_NE(text.find("place-of-karen"), std::string::npos) << text;
   EXPECT_EQ(text.find("place-of-john"), std::string::npos) << text;
-  node.arguments("place=\"EJ-231\", speed=0.3, whose=");
+  // The goal has the arguments of the first intention.
+  node.arguments("");
+  scene.goals[0].functor("go-to-place");
+  v1::Argument place;
+  place.name("place");
+  place.kind(v1::ARGUMENT_TEXT);
+  place.text("EJ-231");
+  v1::Argument whose = place;
+  whose.name("whose");
+  whose.text("karen");
+  scene.goals[0].arguments({place, whose});
+  text = to_text(why(scene));
+  EXPECT_NE(text.find("place-of-karen"), std::string::npos) << text;
+  EXPECT_EQ(text.find("place-of-john"), std::string::npos) << text;
+  scene.goals[0].arguments({place});
   text = to_text(why(scene));
   EXPECT_EQ(text.find("place-of-"), std::string::npos) << "nobody was named: " << text;
 }
