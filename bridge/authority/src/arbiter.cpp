@@ -120,8 +120,12 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   said.stops = command.stop;
   said.newest_at = command.received;
 
-  if (const std::string wrong = stale(command, cycle); !wrong.empty())
+  if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
+    // Such a person drove before this bridge or this connection began.
+    if (command.role == Role::teleop)
+      must_let_go_ = {command.writer, kInterrupted};
     return no(wrong);
+  }
   Player& p = player(command.role);
   const bool heard = p.held && p.newest.active && fresh(p, command.received);
   const bool another = heard && p.newest.writer != command.writer;

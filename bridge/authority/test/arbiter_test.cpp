@@ -321,6 +321,33 @@ TEST(Arbiter, APersonWhoseDrivingWasInterruptedLetsGoFirst) {
   EXPECT_EQ(after(old_pictures), Role::none);
 }
 
+// The keys are held while a bridge is started again.
+TEST(Arbiter, APersonWhoDroveBeforeTheConnectionLetsGoFirst) {
+  Scene s;
+  s.arbiter.connect(0);
+  EXPECT_FALSE(s.offer(Role::teleop, 1)) << "no robot";
+  s.arbiter.connect(1);
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::none);
+  s.offer(Role::teleop, 1, false);
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::teleop);
+
+  s.arbiter.connect(2);
+  Command old = s.command(Role::teleop, 3);
+  EXPECT_FALSE(s.arbiter.offer(old, s.cycle)) << "it has not seen this robot";
+  const auto now = [&](bool active) {
+    Command c = s.command(Role::teleop, 3, active);
+    c.epoch = 2;
+    return s.arbiter.offer(c, s.cycle);
+  };
+  now(true);
+  EXPECT_EQ(s.driver(), Role::none);
+  now(false);
+  now(true);
+  EXPECT_EQ(s.driver(), Role::teleop);
+}
+
 TEST(Arbiter, AnInterruptedPersonHoldsUpNobodyElse) {
   Scene s;
   s.offer(Role::teleop, 1);

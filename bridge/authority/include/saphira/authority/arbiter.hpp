@@ -84,8 +84,8 @@ struct Grant {
 /// another epoch, an answer to an old cycle, a second writer in a role that is held.
 ///
 /// A person does not drive on after an interruption: where the lease ran out for longer than
-/// `interruption`, or the robot or the bridge was away, the same writer has to let go first. Thus a
-/// robot does not jump off when a link comes back.
+/// `interruption`, the robot or the bridge was away, or a command was stale, the same writer has to
+/// let go first. Thus a robot does not jump off when a link comes back.
 ///
 /// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
 /// from the present driver, who has to let go before driving again. The stop keeps the role for
