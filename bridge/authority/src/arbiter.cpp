@@ -41,9 +41,6 @@ const char* name(Role role) {
 }
 
 void Arbiter::let_go() {
-  const Player& person = player(Role::teleop);
-  if (person.held && person.newest.active)
-    must_let_go_ = {person.newest.writer, kInterrupted};
   for (Player& p : players_)
     p.held = false;
   // The person's program counts as alive when it is heard again.
@@ -54,6 +51,8 @@ void Arbiter::connect(std::uint64_t epoch) {
   epoch_ = epoch;
   deaf_cycle_ = 0;
   deaf_until_ = kNever;
+  if (const Player& person = player(Role::teleop); person.held && person.newest.active)
+    must_let_go_ = {person.newest.writer, kInterrupted};
   let_go();
 }
 
@@ -121,9 +120,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   said.newest_at = command.received;
 
   if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
-    // Such a person drove before this bridge or this connection began.
-    if (command.role == Role::teleop)
-      must_let_go_ = {command.writer, kInterrupted};
+    if (command.role == Role::teleop && (epoch_ == 0 || command.epoch != epoch_))
+      must_let_go_ = {command.writer, kInterrupted};  // drove before this connection began
     return no(wrong);
   }
   Player& p = player(command.role);
@@ -189,6 +187,8 @@ bool Arbiter::release(const Command& command, std::uint64_t cycle) {
     return true;
   if (must_let_go_ && must_let_go_->writer == command.writer)
     must_let_go_.reset();
+  if (driven_ && driven_->writer == command.writer)
+    driven_.reset();
   if (command.writer == person_) {
     if (command.received - quiet_heard_ > settings_.lease + kTick)
       quiet_since_ = command.received;
@@ -336,10 +336,12 @@ void Arbiter::end_wait(double now) {
 /// A short gap costs no more than its time. After a longer one the person may not look any more.
 void Arbiter::watch_person(double now, std::uint64_t cycle) {
   const Player& p = player(Role::teleop);
-  if (!p.held || !p.newest.active || live(p, now, cycle))
-    interrupted_since_ = now;
-  else if (now - interrupted_since_ >= settings_.interruption - kTick)
+  if (!live(p, now, cycle))
+    return;
+  if (driven_ && driven_->writer == p.newest.writer &&
+      now - driven_->when > settings_.interruption + kTick)
     must_let_go_ = {p.newest.writer, kInterrupted};
+  driven_ = {p.newest.writer, now};
 }
 
 Grant Arbiter::decide(double now, std::uint64_t cycle) {

@@ -296,8 +296,15 @@ TEST(Arbiter, APersonWhoseDrivingWasInterruptedLetsGoFirst) {
   const auto cut = [](Scene& s) { silence(s, 20); };
   EXPECT_EQ(after(cut), Role::none);
   EXPECT_EQ(after(cut, true), Role::teleop);
-  EXPECT_EQ(after([](Scene& s) { silence(s, 4); }), Role::teleop) << "a few lost packets";
-  const auto bridge_hung = [](Scene& s) { s.arbiter.forget(s.cycle, s.now); };
+  EXPECT_EQ(after([](Scene& s) { silence(s, 6); }), Role::teleop) << "a few lost packets";
+  const auto hung = [](int cycles) {
+    return [cycles](Scene& s) {
+      s.wait(cycles);
+      s.arbiter.forget(s.cycle, s.now);
+    };
+  };
+  EXPECT_EQ(after(hung(3)), Role::teleop) << "a busy machine";
+  const auto bridge_hung = hung(20);
   EXPECT_EQ(after(bridge_hung), Role::none);
   EXPECT_EQ(after(bridge_hung, true), Role::teleop);
   const auto new_connection = [](Scene& s) {
@@ -310,7 +317,7 @@ TEST(Arbiter, APersonWhoseDrivingWasInterruptedLetsGoFirst) {
   EXPECT_EQ(after(lost_and_found), Role::none);
   const auto old_pictures = [](Scene& s) {
     const std::uint64_t seen = s.cycle;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 10; ++i) {
       s.wait(1);
       Command c = s.command(Role::teleop, 1);
       c.cycle = seen;
@@ -404,7 +411,6 @@ TEST(Arbiter, NobodyDrivesARobotThatIsSilent) {
   EXPECT_FALSE(s.arbiter.offer(blind, s.cycle));
   s.wait(1);
   s.arbiter.forget(s.cycle - 1, s.now);
-  s.offer(Role::teleop, 1, false);
   EXPECT_TRUE(s.offer(Role::teleop, 1));
   EXPECT_EQ(s.driver(), Role::teleop);
 }

@@ -47,8 +47,9 @@ struct Settings {
   double quiet = std::numeric_limits<double>::infinity();
   double oldest = kOldest;  ///< [s] a command that answers an older cycle is refused
   double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for this long
-  /// [s] A person whose driving was interrupted for this long has to let go before driving on.
-  double interruption = 0.3;
+  /// [s] A person who could not drive for longer, with the lease run out or the bridge deaf, has to
+  /// let go before driving on.
+  double interruption = 0.5;
 };
 
 struct Refusal {
@@ -83,9 +84,9 @@ struct Grant {
 /// Keeps the offered commands and knows no clock. Refuses, with a reason: a repeated number,
 /// another epoch, an answer to an old cycle, a second writer in a role that is held.
 ///
-/// A person does not drive on after an interruption: where the lease ran out for longer than
-/// `interruption`, the robot or the bridge was away, or a command was stale, the same writer has to
-/// let go first. Thus a robot does not jump off when a link comes back.
+/// A person does not drive on after an interruption: a longer one than `interruption`, the loss of
+/// the writer, or a new connection. The same writer has to let go first. Thus a robot does not jump
+/// off when a link comes back.
 ///
 /// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
 /// from the present driver, who has to let go before driving again. The stop keeps the role for
@@ -185,11 +186,15 @@ class Arbiter {
     std::string why;
   };
   std::optional<MustLetGo> must_let_go_;  ///< the person who may not drive before a release
-  double interrupted_since_ = 0.0;        ///< [s] newest time without an interruption
-  WriterId person_{};                     ///< the person's program that drove last
-  double quiet_since_ = 0.0;              ///< since then it reports that it does not drive
-  double quiet_heard_ = -1e300;           ///< its newest such report
-  WriterId stopper_{};                    ///< the person who last stopped another one
+  struct Driven {
+    WriterId writer{};
+    double when = 0.0;  ///< [s] the newest time with a live command
+  };
+  std::optional<Driven> driven_;  ///< by a person who has not let go since
+  WriterId person_{};             ///< the person's program that drove last
+  double quiet_since_ = 0.0;      ///< since then it reports that it does not drive
+  double quiet_heard_ = -1e300;   ///< its newest such report
+  WriterId stopper_{};            ///< the person who last stopped another one
   std::string stopper_name_;
   double stopped_at_ = -1e300;  ///< [s] time of that stop
 
