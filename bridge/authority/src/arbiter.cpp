@@ -120,7 +120,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   said.newest_at = command.received;
 
   if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
-    if (command.role == Role::teleop && (epoch_ == 0 || command.epoch != epoch_))
+    if (command.role == Role::teleop &&
+        (epoch_ == 0 || (command.epoch != 0 && command.epoch != epoch_)))
       must_let_go_ = {command.writer, kInterrupted};  // drove before this connection began
     return no(wrong);
   }
