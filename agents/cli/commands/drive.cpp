@@ -234,11 +234,11 @@ class Teleop {
   }
 
   void take_stick() {
-    const bool was = joystick_.stick().setpoint(now()).active;
+    const bool was = joystick_.stick().order(now()).active;
     joystick_.read(now());
     if (!robot_)
       return joystick_.stick().let_go();  // a person must see the robot to drive it
-    const bool is = joystick_.stick().setpoint(now()).active;
+    const bool is = joystick_.stick().order(now()).active;
     if (is == was)
       return;
     if (is) {
@@ -324,10 +324,6 @@ class Teleop {
     if (const auto grant = grants_.take_newest()) {
       grant_ = *grant;
       pilot_.heard(*grant, now());
-      if (const std::string refusal = pilot_.refusal(now()); !refusal.empty()) {
-        told_ = "refused: " + refusal;
-        told_at_ = Clock::now();
-      }
     }
     if (constant_)
       if (const auto status = goals_.status(*constant_)) {
@@ -340,21 +336,14 @@ class Teleop {
 
   /// The keys' stop is stronger than a held stick.
   Order wanted() {
-    const KeyDrive::Setpoint keys = keys_.setpoint(now());
-    const StickDrive::Setpoint stick = joystick_.stick().setpoint(now());
-    Order order;
+    Order order = keys_.order(now());
+    // Unique over restarts of this program too, or the bridge would take the first for an old one.
+    if (order.turn)
+      order.turn->move += node_.instance();
+    if (const Order stick = joystick_.stick().order(now()); stick.active && !order.active)
+      order = stick;
     if (robot_)
       order.cycle = robot_->stamp().cycle();
-    order.active = keys.active || stick.active;
-    if (keys.active || !stick.active) {
-      order.velocity = keys.velocity;
-      // Unique over restarts of this program too, or the bridge would take the first for an old
-      // one.
-      order.turn = {keys.heading, node_.instance() + keys.move};
-    } else {
-      order.velocity = stick.velocity;
-      order.rotation = stick.turn;
-    }
     return order;
   }
 
@@ -393,8 +382,8 @@ class Teleop {
       note_ = "the joystick is held and says nothing: move it, or press its button again";
     if (grant_)
       second += "  |  " + describe(*grant_);
-    const std::string third =
-        !told_.empty() && seconds_since(told_at_) < kTellRefusal ? told_ : note_;
+    const std::string refusal = pilot_.refusal(now(), kTellRefusal);
+    const std::string third = refusal.empty() ? note_ : "refused: " + refusal;
     // Four lines, each cut to the terminal, so that the cursor can go back up over them.
     winsize size{};
     const std::size_t width =
@@ -445,8 +434,6 @@ class Teleop {
   std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;
   std::optional<v1::Grant> grant_;
-  std::string told_;  ///< the newest refusal
-  Clock::time_point told_at_;
   std::string note_;
 };
 

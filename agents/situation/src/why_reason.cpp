@@ -388,13 +388,11 @@ std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
 /// People's advice on the subject of the intention: each once, at its first use.
 void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
   std::string arguments = of.arguments();
-  if (of.parent() == 0 && arguments.empty()) {  // the goal has them: functor(name=value, ...)
-    const std::string goal = goal_text(of.goal());
-    const std::size_t open = goal.find('(');
-    const std::size_t close = goal.rfind(')');
-    if (open < close && close != std::string::npos)
-      arguments = goal.substr(open + 1, close - open - 1);
-  }
+  for (const v1::Goal& goal : scene_.goals)  // the first intention has those of its goal
+    if (of.parent() == 0 && same(goal.id(), of.goal()))
+      for (const v1::Argument& argument : goal.arguments())
+        if (argument.kind() == v1::ARGUMENT_TEXT)
+          arguments += (arguments.empty() ? "" : ", ") + argument.name() + "=" + argument.text();
   for (const v1::Belief& belief : scene_.beliefs)
     if (belief.said_by().find(" said ") != std::string::npos &&
         concerns(belief, of.schema(), arguments) && told_beliefs_.insert(belief.name()).second)

@@ -112,10 +112,9 @@ std::string intention_name(const v1::IntentionNode& node) {
              : node.schema() + " (" + without_number(node.name()) + ")";
 }
 
-bool concerns(const v1::Belief& belief, const std::string& schema, std::string arguments) {
+bool concerns(const v1::Belief& belief, const std::string& schema, const std::string& arguments) {
   if (belief.name() == "hazards")
     return schema == "go-to-place";
-  std::erase(arguments, '"');
   const auto is_argument = [&](std::string word) {
     std::erase(word, '"');
     const std::string text = " " + arguments + ",";

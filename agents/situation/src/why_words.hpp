@@ -51,7 +51,7 @@ bool nameless(const std::string& name, const std::string& schema);
 std::string intention_name(const v1::IntentionNode& node);
 /// True where the belief concerns an argument of an intention with that schema: "place-of-karen"
 /// concerns "name=karen, patience=15".
-bool concerns(const v1::Belief& belief, const std::string& schema, std::string arguments);
+bool concerns(const v1::Belief& belief, const std::string& schema, const std::string& arguments);
 std::string with_arguments(const v1::IntentionNode& node);
 
 }  // namespace saphira::situation

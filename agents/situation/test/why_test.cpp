@@ -64,14 +64,19 @@ TEST_F(WhyTest, DrawsTheTreeFromTheWheelsToTheGoal) {
 )");
 }
 
-TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
-  v1::IntentionNode& node = scene.intentions->nodes()[0];
-  node.schema("find-person");
-  node.arguments("name=karen, patience=15");
+v1::Belief karens_office() {
   v1::Belief told;
   told.name("place-of-karen");
   told.value("\"EJ-231\"");
   told.said_by("Alice said at 10:02 \"Flakey, EJ-231 is Karen's office\"");
+  return told;
+}
+
+TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
+  v1::IntentionNode& node = scene.intentions->nodes()[0];
+  node.schema("find-person");
+  node.arguments("name=karen, patience=15");
+  const v1::Belief told = karens_office();
   v1::Belief other = told;
   other.name("place-of-john");
   other.value("\"EJ-233\"");
@@ -89,11 +94,8 @@ TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
 TEST_F(WhyTest, APlaceOfTwoPersonsIsGroundedInTheOneThatWasMeant) {
   v1::IntentionNode& node = scene.intentions->nodes()[0];
   node.schema("go-to-place");
-  node.arguments("place=\"EJ-231\", speed=0.3, whose=karen");
-  v1::Belief told;
-  told.name("place-of-karen");
-  told.value("\"EJ-231\"");
-  told.said_by("Alice said at 10:02 \"Flakey, EJ-231 is Karen's office\"");
+  node.arguments("place=EJ-231, speed=0.3, whose=karen");
+  const v1::Belief told = karens_office();
   v1::Belief other = told;
   other.name("place-of-john");
   other.said_by("Bob said at 10:03 \"Flakey, John is in EJ-231\"");

@@ -74,8 +74,8 @@ std::vector<DriveKey> take_keys(std::string& input) {
 void KeyDrive::press(DriveKey key, double now) {
   if (key > DriveKey::keep)
     return;
-  if (!setpoint(now).active)
-    ++setpoint_.move;  // hold the present heading
+  if (!order(now).active)
+    ++order_.turn->move;  // hold the present heading
   const double gap = now - last_key_;
   last_key_ = now;
   // Simultaneous keys count as one: a slow line bundles them.
@@ -88,20 +88,20 @@ void KeyDrive::press(DriveKey key, double now) {
   else
     hold_until_ =
         now + std::clamp(settings_.margin * slowest_, settings_.repeat_hold, settings_.first_hold);
-  setpoint_.active = true;
+  order_.active = true;
 
   const double step =
       std::min(settings_.velocity_step, settings_.velocity_rate * (now - last_step_));
   const auto accelerate = [&](double by) {
     last_step_ = now;
-    setpoint_.velocity =
-        std::clamp(setpoint_.velocity + by, -settings_.max_velocity, settings_.max_velocity);
-    if (std::fabs(setpoint_.velocity) < 1e-9)
-      setpoint_.velocity = 0.0;
+    order_.velocity =
+        std::clamp(order_.velocity + by, -settings_.max_velocity, settings_.max_velocity);
+    if (std::fabs(order_.velocity) < 1e-9)
+      order_.velocity = 0.0;
   };
   const auto turn = [&](double by) {
-    setpoint_.heading = by;
-    ++setpoint_.move;
+    order_.turn->by = by;
+    ++order_.turn->move;
   };
   switch (key) {
     case DriveKey::faster:
@@ -117,7 +117,7 @@ void KeyDrive::press(DriveKey key, double now) {
       turn(-settings_.turn_step);
       break;
     case DriveKey::stop:
-      setpoint_.velocity = 0.0;
+      order_.velocity = 0.0;
       turn(0.0);
       break;
     default:
@@ -129,15 +129,15 @@ void KeyDrive::release() {
   hold_until_ = -1e9;
   last_key_ = -1e9;
   slowest_ = 0.0;
-  setpoint_.active = false;
-  setpoint_.velocity = 0.0;
-  setpoint_.heading = 0.0;
+  order_.active = false;
+  order_.velocity = 0.0;
+  order_.turn->by = 0.0;
 }
 
-KeyDrive::Setpoint KeyDrive::setpoint(double now) {
-  if (setpoint_.active && now > hold_until_)
+Order KeyDrive::order(double now) {
+  if (order_.active && now > hold_until_)
     release();
-  return setpoint_;
+  return order_;
 }
 
 }  // namespace saphira::teleop

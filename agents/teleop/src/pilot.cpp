@@ -4,12 +4,6 @@
 
 namespace saphira::teleop {
 
-namespace {
-
-constexpr double kRefused = 0.4;  // [s] for which a refusal counts as present
-
-}  // namespace
-
 std::optional<v1::MotorCommand> Pilot::drive(const Order& order, const v1::Stamp& stamp) {
   if (!order.source.empty())
     source_ = order.source;
@@ -74,8 +68,8 @@ void Pilot::heard(const v1::Grant& grant, double now) {
     }
 }
 
-std::string Pilot::refusal(double now) const {
-  return now - refused_at_ < kRefused ? refusal_ : std::string();
+std::string Pilot::refusal(double now, double within) const {
+  return now - refused_at_ < within ? refusal_ : std::string();
 }
 
 }  // namespace saphira::teleop

@@ -84,10 +84,14 @@ double StickDrive::share(double axis) const {
   return std::copysign(way * way, axis);
 }
 
-StickDrive::Setpoint StickDrive::setpoint(double now) const {
-  if (held_.empty() || is_silent(now))
-    return {};
-  return {true, settings_.max_velocity * share(ahead_), settings_.max_turn * share(left_)};
+Order StickDrive::order(double now) const {
+  Order order;
+  order.active = !held_.empty() && !is_silent(now);
+  if (!order.active)
+    return order;
+  order.velocity = settings_.max_velocity * share(ahead_);
+  order.rotation = settings_.max_turn * share(left_);
+  return order;
 }
 
 }  // namespace saphira::teleop

@@ -36,16 +36,16 @@ TEST(TakeKeys, ASequenceInTwoPiecesIsWaitedFor) {
 }
 
 TEST(KeyDrive, NothingIsDrivenWithoutAKey) {
-  EXPECT_FALSE(KeyDrive().setpoint(0.0).active);
+  EXPECT_FALSE(KeyDrive().order(0.0).active);
 }
 
 TEST(KeyDrive, ATapDrivesForTheFirstHoldAndStops) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 10.0);
-  EXPECT_TRUE(drive.setpoint(10.0).active);
-  EXPECT_DOUBLE_EQ(drive.setpoint(10.0).velocity, 0.05);
-  EXPECT_TRUE(drive.setpoint(10.7).active);
-  const auto after = drive.setpoint(10.9);
+  EXPECT_TRUE(drive.order(10.0).active);
+  EXPECT_DOUBLE_EQ(drive.order(10.0).velocity, 0.05);
+  EXPECT_TRUE(drive.order(10.7).active);
+  const auto after = drive.order(10.9);
   EXPECT_FALSE(after.active);
   EXPECT_EQ(after.velocity, 0.0);
 }
@@ -53,14 +53,14 @@ TEST(KeyDrive, ATapDrivesForTheFirstHoldAndStops) {
 TEST(KeyDrive, AHeldKeyBridgesTheDelayBeforeItsFirstRepeat) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 0.0);
-  EXPECT_TRUE(drive.setpoint(0.66).active);
+  EXPECT_TRUE(drive.order(0.66).active);
   double now = 0.66;
   for (int i = 0; i < 70; ++i) {
     now += 0.033;
     drive.press(DriveKey::faster, now);
-    EXPECT_TRUE(drive.setpoint(now + 0.03).active);
+    EXPECT_TRUE(drive.order(now + 0.03).active);
   }
-  EXPECT_DOUBLE_EQ(drive.setpoint(now).velocity, 0.4);
+  EXPECT_DOUBLE_EQ(drive.order(now).velocity, 0.4);
 }
 
 TEST(KeyDrive, LettingGoOfAHeldKeyStopsSoon) {
@@ -68,8 +68,8 @@ TEST(KeyDrive, LettingGoOfAHeldKeyStopsSoon) {
   drive.press(DriveKey::keep, 0.0);
   for (int i = 0; i <= 8; ++i)
     drive.press(DriveKey::keep, 0.5 + 0.05 * i);
-  EXPECT_TRUE(drive.setpoint(1.1).active);
-  EXPECT_FALSE(drive.setpoint(1.25).active);
+  EXPECT_TRUE(drive.order(1.1).active);
+  EXPECT_FALSE(drive.order(1.25).active);
 }
 
 TEST(KeyDrive, AHeldKeyAcceleratesNoFasterThanTheRate) {
@@ -77,7 +77,7 @@ TEST(KeyDrive, AHeldKeyAcceleratesNoFasterThanTheRate) {
   drive.press(DriveKey::faster, 0.0);
   for (int i = 1; i <= 30; ++i)
     drive.press(DriveKey::faster, 0.5 + i * 0.033);
-  EXPECT_LT(drive.setpoint(1.5).velocity, 0.05 + 0.05 + 0.2 * 1.0 + 0.01);
+  EXPECT_LT(drive.order(1.5).velocity, 0.05 + 0.05 + 0.2 * 1.0 + 0.01);
 }
 
 TEST(KeyDrive, TheRobotsLimitHolds) {
@@ -85,38 +85,38 @@ TEST(KeyDrive, TheRobotsLimitHolds) {
   drive.set_max_velocity(0.12);
   for (int i = 0; i < 10; ++i)
     drive.press(DriveKey::faster, i * 0.5);
-  EXPECT_DOUBLE_EQ(drive.setpoint(4.6).velocity, 0.12);
+  EXPECT_DOUBLE_EQ(drive.order(4.6).velocity, 0.12);
   for (int i = 10; i < 30; ++i)
     drive.press(DriveKey::slower, i * 0.5);
-  EXPECT_DOUBLE_EQ(drive.setpoint(14.6).velocity, -0.12);
+  EXPECT_DOUBLE_EQ(drive.order(14.6).velocity, -0.12);
 }
 
 TEST(KeyDrive, EachTurnIsANewMove) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 0.0);
-  const auto straight = drive.setpoint(0.0);
-  EXPECT_EQ(straight.heading, 0.0);
+  const auto straight = drive.order(0.0);
+  EXPECT_EQ(straight.turn->by, 0.0);
   drive.press(DriveKey::left, 0.1);
-  const auto left = drive.setpoint(0.1);
-  EXPECT_GT(left.heading, 0.0);
-  EXPECT_NE(left.move, straight.move);
+  const auto left = drive.order(0.1);
+  EXPECT_GT(left.turn->by, 0.0);
+  EXPECT_NE(left.turn->move, straight.turn->move);
   EXPECT_DOUBLE_EQ(left.velocity, straight.velocity);
   drive.press(DriveKey::right, 0.2);
-  EXPECT_LT(drive.setpoint(0.2).heading, 0.0);
-  EXPECT_NE(drive.setpoint(0.2).move, left.move);
+  EXPECT_LT(drive.order(0.2).turn->by, 0.0);
+  EXPECT_NE(drive.order(0.2).turn->move, left.turn->move);
   drive.press(DriveKey::keep, 0.3);
-  EXPECT_EQ(drive.setpoint(0.3).move, drive.setpoint(0.2).move);
+  EXPECT_EQ(drive.order(0.3).turn->move, drive.order(0.2).turn->move);
 }
 
 TEST(KeyDrive, AfterAReleaseTheHeadingIsHeldAnew) {
   KeyDrive drive;
   drive.press(DriveKey::left, 0.0);
-  const auto first = drive.setpoint(0.0);
-  EXPECT_FALSE(drive.setpoint(5.0).active);
+  const auto first = drive.order(0.0);
+  EXPECT_FALSE(drive.order(5.0).active);
   drive.press(DriveKey::faster, 6.0);
-  const auto second = drive.setpoint(6.0);
-  EXPECT_NE(second.move, first.move);
-  EXPECT_EQ(second.heading, 0.0);
+  const auto second = drive.order(6.0);
+  EXPECT_NE(second.turn->move, first.turn->move);
+  EXPECT_EQ(second.turn->by, 0.0);
 }
 
 TEST(KeyDrive, KeysThatASlowLineBringsTogetherAreOneDrive) {
@@ -126,11 +126,11 @@ TEST(KeyDrive, KeysThatASlowLineBringsTogetherAreOneDrive) {
     for (int key = 0; key < 3; ++key)
       drive.press(DriveKey::faster, 0.5 * burst + 0.001 * key);
     for (int i = 1; i < 10; ++i)
-      EXPECT_TRUE(drive.setpoint(0.5 * burst + 0.05 * i).active) << burst;
-    velocity = drive.setpoint(0.5 * burst + 0.49).velocity;
+      EXPECT_TRUE(drive.order(0.5 * burst + 0.05 * i).active) << burst;
+    velocity = drive.order(0.5 * burst + 0.49).velocity;
   }
   EXPECT_GE(velocity, 0.3);
-  EXPECT_FALSE(drive.setpoint(4.5 + 0.002 + 0.81).active) << "let go";
+  EXPECT_FALSE(drive.order(4.5 + 0.002 + 0.81).active) << "let go";
 }
 
 TEST(KeyDrive, OnAGoodLineItStopsSoonAfterAKeyIsLetGo) {
@@ -139,33 +139,33 @@ TEST(KeyDrive, OnAGoodLineItStopsSoonAfterAKeyIsLetGo) {
   double now = 0.5;  // the first repeat comes late
   for (int i = 0; i < 30; ++i, now += 0.033)
     drive.press(DriveKey::faster, now);
-  EXPECT_TRUE(drive.setpoint(now - 0.033 + 0.29).active);
-  EXPECT_FALSE(drive.setpoint(now - 0.033 + 0.31).active);
+  EXPECT_TRUE(drive.order(now - 0.033 + 0.29).active);
+  EXPECT_FALSE(drive.order(now - 0.033 + 0.31).active);
 }
 
 TEST(KeyDrive, AllStopHoldsForAMomentAndThenLetsGo) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 0.0);
   drive.press(DriveKey::stop, 0.1);
-  const auto after = drive.setpoint(2.0);
+  const auto after = drive.order(2.0);
   EXPECT_TRUE(after.active);
   EXPECT_EQ(after.velocity, 0.0);
-  EXPECT_FALSE(drive.setpoint(2.2).active) << "a forgotten terminal does not keep the role";
+  EXPECT_FALSE(drive.order(2.2).active) << "a forgotten terminal does not keep the role";
 }
 
 TEST(KeyDrive, ATapAfterAnAllStopHoldsAsLongAsAnyTap) {
   KeyDrive drive;
   drive.press(DriveKey::stop, 0.0);
   drive.press(DriveKey::faster, 0.5);
-  EXPECT_TRUE(drive.setpoint(1.2).active);
-  EXPECT_FALSE(drive.setpoint(1.4).active);
+  EXPECT_TRUE(drive.order(1.2).active);
+  EXPECT_FALSE(drive.order(1.4).active);
 }
 
 TEST(KeyDrive, ReleaseIsAtOnce) {
   KeyDrive drive;
   drive.press(DriveKey::stop, 0.0);
   drive.release();
-  EXPECT_FALSE(drive.setpoint(0.0).active);
+  EXPECT_FALSE(drive.order(0.0).active);
 }
 
 }  // namespace

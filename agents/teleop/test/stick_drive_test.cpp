@@ -29,26 +29,26 @@ TEST(StickDrive, DrivesWhileAShoulderButtonIsHeld) {
   StickDrive stick;
   stick.set_max_velocity(0.8);
   stick.take(axis(1, -32767) + axis(0, -32767), 1.0);
-  EXPECT_FALSE(stick.setpoint(1.0).active) << "the stick alone does not drive";
+  EXPECT_FALSE(stick.order(1.0).active) << "the stick alone does not drive";
   stick.take(button(5, true), 1.1);
-  EXPECT_TRUE(stick.setpoint(1.1).active);
-  EXPECT_NEAR(stick.setpoint(1.1).velocity, 0.8, 1e-9) << "pushed is ahead";
-  EXPECT_NEAR(stick.setpoint(1.1).turn, 1.0, 1e-9) << "left is left";
+  EXPECT_TRUE(stick.order(1.1).active);
+  EXPECT_NEAR(stick.order(1.1).velocity, 0.8, 1e-9) << "pushed is ahead";
+  EXPECT_NEAR(stick.order(1.1).rotation, 1.0, 1e-9) << "left is left";
   stick.take(axis(1, 16384) + axis(0, 0), 1.2);
-  EXPECT_LT(stick.setpoint(1.2).velocity, 0.0);
-  EXPECT_GT(stick.setpoint(1.2).velocity, -0.4) << "fine near the middle";
+  EXPECT_LT(stick.order(1.2).velocity, 0.0);
+  EXPECT_GT(stick.order(1.2).velocity, -0.4) << "fine near the middle";
   stick.take(axis(1, 2000), 1.3);
-  EXPECT_EQ(stick.setpoint(1.3).velocity, 0.0) << "within the dead zone";
-  EXPECT_TRUE(stick.setpoint(1.3).active) << "held, and standing";
+  EXPECT_EQ(stick.order(1.3).velocity, 0.0) << "within the dead zone";
+  EXPECT_TRUE(stick.order(1.3).active) << "held, and standing";
   stick.take(button(5, false), 1.4);
-  EXPECT_FALSE(stick.setpoint(1.4).active);
+  EXPECT_FALSE(stick.order(1.4).active);
 }
 
 TEST(StickDrive, OtherButtonsDoNotDrive) {
   StickDrive stick;
   for (const unsigned number : {0U, 3U, 8U, 11U, 200U})
     stick.take(button(number, true), 1.0);
-  EXPECT_FALSE(stick.setpoint(1.0).active);
+  EXPECT_FALSE(stick.order(1.0).active);
 }
 
 struct Device {
@@ -89,12 +89,12 @@ TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
       EXPECT_EQ(stick.dead_man(), device.dead_man) << device.name;
       stick.take(axis(number_of(ABS_Y), -32767) + axis(number_of(ABS_X), 16384), 1.0);
       stick.take(button(i, true), 1.0);
-      const StickDrive::Setpoint setpoint = stick.setpoint(1.0);
+      const Order setpoint = stick.order(1.0);
       EXPECT_EQ(setpoint.active, device.hold.contains(i)) << device.name << ", button " << i;
       if (!setpoint.active)
         continue;
       EXPECT_GT(setpoint.velocity, 0.3) << device.name;
-      EXPECT_LT(setpoint.turn, 0.0) << device.name;
+      EXPECT_LT(setpoint.rotation, 0.0) << device.name;
     }
   }
 }
@@ -103,47 +103,47 @@ TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
   StickDrive stick;
   stick.take(event(JS_EVENT_BUTTON | JS_EVENT_INIT, 4, 1), 1.0);
   stick.take(event(JS_EVENT_AXIS | JS_EVENT_INIT, 1, -32767), 1.0);
-  EXPECT_FALSE(stick.setpoint(1.0).active);
+  EXPECT_FALSE(stick.order(1.0).active);
   stick.take(button(4, false) + button(4, true), 1.5);
-  EXPECT_GT(stick.setpoint(1.5).velocity, 0.3);
+  EXPECT_GT(stick.order(1.5).velocity, 0.3);
 }
 
 TEST(StickDrive, OneThatSaysNothingMayBeOutOfReach) {
   StickDrive stick;
   stick.take(button(4, true) + axis(1, -30000), 1.0);
-  EXPECT_TRUE(stick.setpoint(5.9).active);
-  EXPECT_FALSE(stick.setpoint(6.1).active);
+  EXPECT_TRUE(stick.order(5.9).active);
+  EXPECT_FALSE(stick.order(6.1).active);
   EXPECT_TRUE(stick.is_silent(6.1));
   stick.take(axis(1, -29000), 7.0);
-  EXPECT_TRUE(stick.setpoint(7.0).active);
+  EXPECT_TRUE(stick.order(7.0).active);
 }
 
 TEST(StickDrive, AfterAStopTheButtonHasToBePressedAgain) {
   StickDrive stick;
   stick.take(button(4, true) + axis(1, -32767), 1.0);
   stick.let_go();
-  EXPECT_FALSE(stick.setpoint(1.0).active);
+  EXPECT_FALSE(stick.order(1.0).active);
   stick.take(axis(1, -32000), 1.1);
-  EXPECT_FALSE(stick.setpoint(1.1).active);
+  EXPECT_FALSE(stick.order(1.1).active);
   stick.take(button(4, false) + button(4, true), 1.2);
-  EXPECT_GT(stick.setpoint(1.2).velocity, 0.3) << "where the stick is, is known";
+  EXPECT_GT(stick.order(1.2).velocity, 0.3) << "where the stick is, is known";
 }
 
 TEST(StickDrive, ADeviceThatIsGoneHoldsNothing) {
   StickDrive stick;
   stick.take(button(4, true) + axis(1, -30000), 1.0);
   stick.lost();
-  EXPECT_FALSE(stick.setpoint(1.0).active);
+  EXPECT_FALSE(stick.order(1.0).active);
 }
 
 TEST(StickDrive, EventsMayComeInPieces) {
   StickDrive stick;
   const std::string bytes = button(6, true) + axis(1, -32767);
   for (const char byte : bytes) {
-    EXPECT_LT(stick.setpoint(1.0).velocity, 0.1);
+    EXPECT_LT(stick.order(1.0).velocity, 0.1);
     stick.take(std::string(1, byte), 1.0);
   }
-  EXPECT_NEAR(stick.setpoint(1.0).velocity, 0.4, 1e-9);
+  EXPECT_NEAR(stick.order(1.0).velocity, 0.4, 1e-9);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ void Arbiter::connect(std::uint64_t epoch) {
   deaf_cycle_ = 0;
   deaf_until_ = kNever;
   if (const Player& person = player(Role::teleop); person.held && person.newest.active)
-    must_let_go_ = {person.newest.writer, kInterrupted};
+    must_let_go(person.newest.writer, kInterrupted);
   let_go();
 }
 
@@ -111,7 +111,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   said.newest = command.number;
   said.used = ++offers_;
   if (!command.active) {
-    said.newest_at = kNever;
+    said.newest_at = said.drove = kNever;
+    said.must_let_go.clear();
     return release(command, cycle);
   }
   if (said.stops != command.stop || command.received - said.newest_at > settings_.lease + kTick)
@@ -122,7 +123,7 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
     if (command.role == Role::teleop &&
         (epoch_ == 0 || (command.epoch != 0 && command.epoch != epoch_)))
-      must_let_go_ = {command.writer, kInterrupted};  // drove before this connection began
+      said.must_let_go = kInterrupted;  // drove before this connection began
     return no(wrong);
   }
   Player& p = player(command.role);
@@ -140,11 +141,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     stopper_name_ = command.source;
     stopped_at_ = command.received;
   }
-  if (command.role == Role::teleop) {
+  if (command.role == Role::teleop)
     quiet_heard_ = kNever;
-    if (must_let_go_ && must_let_go_->writer != command.writer)
-      must_let_go_.reset();
-  }
   if (!heard || another || command.cycle == 0 || command.cycle > p.newest.cycle)
     p.moved_on = command.received;
   p.held = true;
@@ -186,10 +184,6 @@ bool Arbiter::release(const Command& command, std::uint64_t cycle) {
   }
   if (command.role != Role::teleop)
     return true;
-  if (must_let_go_ && must_let_go_->writer == command.writer)
-    must_let_go_.reset();
-  if (driven_ && driven_->writer == command.writer)
-    driven_.reset();
   if (command.writer == person_) {
     if (command.received - quiet_heard_ > settings_.lease + kTick)
       quiet_since_ = command.received;
@@ -238,7 +232,7 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
   Player& p = player(role);
   if (p.held && p.newest.writer == writer && p.newest.active) {
     if (role == Role::teleop)
-      must_let_go_ = {writer, kInterrupted};  // it may come back
+      must_let_go(writer, kInterrupted);  // it may come back
     p.newest.active = false;
     p.newest.received = now;
   }
@@ -268,7 +262,7 @@ std::string Arbiter::reset(const std::string& source, double now) {
     latches_.wait = Wait::reset;
   const Player& person = player(Role::teleop);
   if (person.held && person.newest.active && fresh(person, now))
-    must_let_go_ = {person.newest.writer, "the emergency stop was reset while a person drove"};
+    must_let_go(person.newest.writer, "the emergency stop was reset while a person drove");
   quiet_heard_ = kNever;
   return {};
 }
@@ -308,8 +302,11 @@ std::string Arbiter::why_to_stand(Role role) const {
   if (latches_.estopped)
     return "an emergency stop is latched, pressed by " + latches_.estop_source +
            ": saphira estop reset releases it";
-  if (role == Role::teleop && must_let_go_)
-    return must_let_go_->why + ": let go first, then drive";
+  if (role == Role::teleop) {
+    const auto person = numbers_.find({role, player(role).newest.writer});
+    if (person != numbers_.end() && !person->second.must_let_go.empty())
+      return person->second.must_let_go + ": let go first, then drive";
+  }
   if (!is_autonomy(role))
     return {};
   switch (latches_.wait) {
@@ -334,15 +331,21 @@ void Arbiter::end_wait(double now) {
     latches_.wait = Wait::none;
 }
 
+void Arbiter::must_let_go(const WriterId& person, const char* why) {
+  if (const auto known = numbers_.find({Role::teleop, person}); known != numbers_.end())
+    known->second.must_let_go = why;
+}
+
 /// A short gap costs no more than its time. After a longer one the person may not look any more.
 void Arbiter::watch_person(double now, std::uint64_t cycle) {
   const Player& p = player(Role::teleop);
-  if (!live(p, now, cycle))
+  const auto known = numbers_.find({Role::teleop, p.newest.writer});
+  if (known == numbers_.end() || !live(p, now, cycle))
     return;
-  if (driven_ && driven_->writer == p.newest.writer &&
-      now - driven_->when > settings_.interruption + kTick)
-    must_let_go_ = {p.newest.writer, kInterrupted};
-  driven_ = {p.newest.writer, now};
+  double& drove = known->second.drove;
+  if (drove != kNever && now - drove > settings_.interruption + kTick)
+    must_let_go(p.newest.writer, kInterrupted);
+  drove = now;
 }
 
 Grant Arbiter::decide(double now, std::uint64_t cycle) {

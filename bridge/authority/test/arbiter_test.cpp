@@ -365,6 +365,13 @@ TEST(Arbiter, AnInterruptedPersonHoldsUpNobodyElse) {
   silence(s, 4);
   s.offer(Role::teleop, 2);
   EXPECT_EQ(s.driver(), Role::teleop);
+  EXPECT_FALSE(s.offer(Role::teleop, 1)) << "the other one drives";
+  s.offer(Role::teleop, 2, false);
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::none) << "it was held all the time";
+  s.offer(Role::teleop, 1, false);
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::teleop);
 }
 
 TEST(Arbiter, WhatIsTooOldIsRefused) {

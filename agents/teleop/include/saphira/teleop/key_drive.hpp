@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/teleop/pilot.hpp"
+
 namespace saphira::teleop {
 
 /// The actions of the keys of manual Table 2-1, and of further keys of a terminal.
@@ -26,7 +28,7 @@ enum class DriveKey {
 /// in `input`.
 std::vector<DriveKey> take_keys(std::string& input);
 
-/// From keys to setpoints, with a dead-man by key repeat: the robot drives while keys keep coming.
+/// From keys to orders, with a dead-man by key repeat: the robot drives while keys keep coming.
 /// Times are seconds of any steady clock.
 ///
 /// A terminal reports presses and repeats, not releases, and the first repeat of a held key comes
@@ -48,27 +50,20 @@ class KeyDrive {
     double max_velocity = 0.4;    ///< [m/s]
   };
 
-  /// The command to send now.
-  struct Setpoint {
-    bool active = false;
-    double velocity = 0.0;   ///< [m/s]
-    double heading = 0.0;    ///< [rad] from the heading at the first sample with `move`
-    std::uint64_t move = 0;  ///< a new number for a new heading
-  };
-
-  KeyDrive() = default;
-  explicit KeyDrive(Settings settings) : settings_(settings) {}
+  KeyDrive() : KeyDrive(Settings()) {}
+  explicit KeyDrive(Settings settings) : settings_(settings) { order_.turn.emplace(); }
 
   void set_max_velocity(double limit) { settings_.max_velocity = limit; }
   /// One of the driving keys (faster to keep); others are ignored.
   void press(DriveKey key, double now);
   /// Releases the robot at once.
   void release();
-  Setpoint setpoint(double now);
+  /// The order now, with a turn from the heading at its first command.
+  Order order(double now);
 
  private:
   Settings settings_;
-  Setpoint setpoint_;
+  Order order_;  ///< with a turn, always
   double last_key_ = -1e9;
   double slowest_ = 0.0;  ///< [s] slowest recent gap of keys; 0: no repeat yet
   double last_step_ = -1e9;

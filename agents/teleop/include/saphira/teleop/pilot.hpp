@@ -48,8 +48,9 @@ class Pilot {
 
   /// Takes a grant at that time.
   void heard(const v1::Grant& grant, double now);
-  /// The reason why the bridge refuses this person's driving; empty: it does not.
-  std::string refusal(double now) const;
+  /// The reason why the bridge refuses this person's driving, or did in the last `within` seconds;
+  /// empty: it does not.
+  std::string refusal(double now, double within = 0.4) const;
 
  private:
   std::string source_;

@@ -6,9 +6,11 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/teleop/pilot.hpp"
+
 namespace saphira::teleop {
 
-/// From a joystick or gamepad to setpoints, with a dead-man: the robot is driven by the first stick
+/// From a joystick or gamepad to orders, with a dead-man: the robot is driven by the first stick
 /// while a button is held. That is a shoulder button; the trigger of a joystick without shoulder
 /// buttons; the first button of a device with neither. The device is the kernel's
 /// (linux/joystick.h): events of 8 bytes, time [ms], value, type and number. Times are seconds of
@@ -21,12 +23,6 @@ class StickDrive {
     double max_velocity = 0.4;  ///< [m/s] at full deflection
     double max_turn = 1.0;      ///< [rad/s] likewise
   };
-  struct Setpoint {
-    bool active = false;    ///< the dead-man is held
-    double velocity = 0.0;  ///< [m/s]
-    double turn = 0.0;      ///< [rad/s] counter-clockwise
-  };
-
   /// The codes of the device's axes and buttons (linux/input-event-codes.h), in their order. A
   /// device is a gamepad whose shoulder buttons are 4 to 7 until it has told them.
   void set_layout(const std::vector<std::uint8_t>& axes, const std::vector<std::uint16_t>& buttons);
@@ -40,7 +36,7 @@ class StickDrive {
   void let_go() { held_.clear(); }
   /// The device is gone: nothing is held.
   void lost();
-  Setpoint setpoint(double now) const;
+  Order order(double now) const;
   /// A button is held and the device is silent: the button has to be let go.
   bool is_silent(double now) const;
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -154,6 +153,7 @@ class Arbiter {
   std::string why_to_stand(Role role) const;
   void end_wait(double now);
   void watch_person(double now, std::uint64_t cycle);
+  void must_let_go(const WriterId& person, const char* why);
 
   Settings settings_;
   std::uint64_t epoch_ = 0;
@@ -168,6 +168,9 @@ class Arbiter {
     bool stops = false;
     double began = 0.0;         ///< [s]
     double newest_at = -1e300;  ///< [s]
+    // A person's program, since its newest release:
+    double drove = -1e300;    ///< [s] newest time with a live command
+    std::string must_let_go;  ///< why a release has to come before driving [empty: it need not]
   };
 
   /// Newest number by role and writer. Kept over connections, so that a repeated old command never
@@ -181,20 +184,10 @@ class Arbiter {
     double received = 0.0;
   };
   std::map<WriterId, Press> pressed_;  ///< emergency stops that have not been let go
-  struct MustLetGo {
-    WriterId writer{};
-    std::string why;
-  };
-  std::optional<MustLetGo> must_let_go_;  ///< the person who may not drive before a release
-  struct Driven {
-    WriterId writer{};
-    double when = 0.0;  ///< [s] the newest time with a live command
-  };
-  std::optional<Driven> driven_;  ///< by a person who has not let go since
-  WriterId person_{};             ///< the person's program that drove last
-  double quiet_since_ = 0.0;      ///< since then it reports that it does not drive
-  double quiet_heard_ = -1e300;   ///< its newest such report
-  WriterId stopper_{};            ///< the person who last stopped another one
+  WriterId person_{};                  ///< the person's program that drove last
+  double quiet_since_ = 0.0;           ///< since then it reports that it does not drive
+  double quiet_heard_ = -1e300;        ///< its newest such report
+  WriterId stopper_{};                 ///< the person who last stopped another one
   std::string stopper_name_;
   double stopped_at_ = -1e300;  ///< [s] time of that stop
 
