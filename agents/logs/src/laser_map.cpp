@@ -1,10 +1,11 @@
 #include "saphira/logs/laser_map.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
+
+#include "saphira/geometry/axes.hpp"
 
 namespace saphira::logs {
 
@@ -118,7 +119,7 @@ maps::Map walls_of(const std::vector<Scan>& scans, const std::vector<Pose>& pose
       Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
       for (const std::size_t i : members)
         scatter += (cells[i].at - mean) * (cells[i].at - mean).transpose();
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
+      const auto axes = principal_axes(scatter);
       Vec2 fitted = axes.eigenvectors().col(0);
       if (fitted.dot(normal) < 0.0)
         fitted = -fitted;

@@ -1,6 +1,5 @@
 #include "saphira/logs/scan_mapping.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "saphira/base/shortest_ways.hpp"
+#include "saphira/geometry/axes.hpp"
 
 namespace saphira::logs {
 
@@ -45,8 +45,7 @@ Eigen::Matrix3d matched_information(const Alignment& alignment) {
 // Along bare walls the noise of the normals gives two scans some false information: it is removed.
 Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
   constexpr double kLeast = 0.01;  // of the information across
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
-      Eigen::Matrix2d(information.topLeftCorner<2, 2>()));
+  const auto axes = principal_axes(information.topLeftCorner<2, 2>());
   if (axes.eigenvalues()[0] > kLeast * axes.eigenvalues()[1])
     return information;
   Eigen::Matrix3d without = Eigen::Matrix3d::Identity();
@@ -56,9 +55,7 @@ Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
 }
 
 bool leaves_open(const Eigen::Matrix3d& information) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
-             Eigen::Matrix2d(information.topLeftCorner<2, 2>()))
-             .eigenvalues()[0] < 10.0 / kNothing;
+  return principal_axes(information.topLeftCorner<2, 2>()).eigenvalues()[0] < 10.0 / kNothing;
 }
 
 Scan thinned(const Scan& scan, std::size_t most) {
@@ -284,8 +281,7 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
                                                             const Eigen::Matrix3d& covariance,
                                                             const Scan& query) const {
   const Eigen::Matrix2d prior = covariance.topLeftCorner<2, 2>();
-  const double spread =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(prior).eigenvalues().maxCoeff());
+  const double spread = std::sqrt(principal_axes(prior).eigenvalues().maxCoeff());
   const double reach =
       std::clamp(3.0 * spread + 0.3, settings_.loop_reach, settings_.loop_reach_limit);
   const double turn =
@@ -306,8 +302,8 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
   if (found.overlap < settings_.loop_overlap)
     return std::nullopt;
   Pose pose = found.pose;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> slack(field.slack(
-      few, found.pose, guess.position(), prior + 0.04 * Eigen::Matrix2d::Identity(), reach));
+  const auto slack = principal_axes(field.slack(few, found.pose, guess.position(),
+                                                prior + 0.04 * Eigen::Matrix2d::Identity(), reach));
   Eigen::Matrix2d position = Eigen::Matrix2d::Zero();
   const double free = settings_.loop_slack * settings_.loop_slack;
   if (slack.eigenvalues()[0] > free)

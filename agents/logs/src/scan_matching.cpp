@@ -1,10 +1,11 @@
 #include "saphira/logs/scan_matching.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "saphira/geometry/axes.hpp"
 
 namespace saphira::logs {
 
@@ -46,7 +47,7 @@ Vec2 normal_at(const std::vector<Vec2>& points, std::size_t i, double reach) {
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (std::size_t k = 0; k < count; ++k)
     scatter += (near[k] - mean) * (near[k] - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
+  const auto axes = principal_axes(scatter);
   if (axes.eigenvalues()[0] > 0.1 * axes.eigenvalues()[1] || axes.eigenvalues()[1] < 1e-6)
     return Vec2::Zero();
   return axes.eigenvectors().col(0);

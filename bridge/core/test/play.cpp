@@ -201,7 +201,7 @@ void Player::tell(const DriveCommand& command) {
 
 /// A command of a correct program, unless `strange`.
 void Player::drive(Role role, bool strange) {
-  constexpr std::array kNumbers{0.0, 0.1, 0.3, -0.2, 1.5, 1e5};
+  constexpr std::array speeds{0.0, 0.1, 0.3, -0.2, 1.5, 1e5};
   const unsigned what = script_.byte();
   DriveCommand in;
   in.command.role = role;
@@ -214,10 +214,10 @@ void Player::drive(Role role, bool strange) {
   in.command.hand_back = strange && (what & 8U) != 0;
   in.motion.translation = static_cast<reflector::Translation>(script_.choice(3));
   in.motion.rotation = static_cast<reflector::Rotation>(script_.choice(4));
-  const std::size_t usual = strange ? kNumbers.size() : kNumbers.size() - 1;
-  in.motion.velocity = kNumbers[script_.byte() % usual];
+  const std::size_t usual = strange ? speeds.size() : speeds.size() - 1;
+  in.motion.velocity = speeds[script_.byte() % usual];
   in.motion.heading = in.motion.rotation_velocity = in.motion.distance =
-      kNumbers[script_.byte() % usual];
+      speeds[script_.byte() % usual];
   in.motion.move = number_ / 8;
   if (strange) {
     const unsigned odd = script_.byte();

@@ -1,15 +1,16 @@
 #include "saphira/registration/particle_cloud.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "saphira/geometry/axes.hpp"
 
 namespace saphira::registration {
 
 void ParticleCloud::begin(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
                           double drift_sigma) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance.topLeftCorner<2, 2>());
+  const auto axes = principal_axes(covariance.topLeftCorner<2, 2>());
   const auto sigma = [](double variance, double least) {
     return std::max(std::sqrt(std::max(0.0, variance)), least);
   };

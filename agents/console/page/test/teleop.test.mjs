@@ -6,7 +6,7 @@ import {mkdtempSync, rmSync} from 'node:fs';
 import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
-import {after, before, test} from 'node:test';
+import {after, describe, test} from 'node:test';
 import {end, output, sleep, start, trace, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
@@ -15,25 +15,31 @@ const wanted = 0.3;          // [m/s]
 const within = 0.6;          // [s] until the robot stands: 0.5 s, and a row of the trace
 const resend = 200;          // [ms] until TCP sends again what was lost, besides the delay
 const folder = mkdtempSync(join(tmpdir(), 'saphira-teleop-'));
-const table = [];
-let simulator, bridge, gateway, port, key;
+const table = [], rigs = [];
 
-before(async () => {
-  const robot = `teleop-${process.pid}`, line = join(folder, 'robot');
-  simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', join(folder, 'trace.csv'));
-  bridge = start('saphira-bridge', '--robot', robot, '--link', line);
-  gateway = start('saphira-console', '--robot', robot, '--port', '0');
-  const address = await until('the address', () => output().match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
-  [port, key] = [Number(address[1]), address[2]];
-});
+// A simulated robot with its bridge and gateway: each test has its own, since all run at the same time.
+async function rig() {
+  const robot = `teleop-${process.pid}-${rigs.length}`, line = join(folder, robot), rows = `${line}.csv`;
+  const self = {forth: 1, people: [], ...trace(rows)};
+  rigs.push(self);
+  const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows);
+  const bridge = start('saphira-bridge', '--robot', robot, '--link', line);
+  self.gateway = start('saphira-console', '--robot', robot, '--port', '0');
+  self.children = [self.gateway, bridge, simulator];
+  let said = '';
+  self.gateway.stdout.on('data', data => { said += data; });
+  const address = await until('the address', () => said.match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
+  [self.port, self.key] = [Number(address[1]), address[2]];
+  return self;
+}
 after(async () => {
-  for (const person of people) person.leave();   // a test that failed leaves them
-  for (const child of [gateway, bridge, simulator]) await end(child);
+  for (const {people, children} of rigs) {
+    for (const person of people) person.leave();   // a test that failed leaves them
+    for (const child of children) await end(child);
+  }
   rmSync(folder, {recursive: true, force: true});
   console.log(`\n| link | speed [m/s] | what happens | until it stands [s] | afterwards |\n| --- | --- | --- | --- | --- |\n${table.join('\n')}`);
 });
-
-const {now, speed, stood, drivesOn} = trace(join(folder, 'trace.csv'));
 
 // The same losses in each run.
 function chance(seed) {
@@ -42,7 +48,7 @@ function chance(seed) {
 }
 
 // A link of its own for an operator. What is lost is sent again, and what follows waits for it, as TCP does.
-async function link(delay = 0, loss = 0) {
+async function link({port}, delay = 0, loss = 0) {
   const state = {cut: false};
   const random = chance(7);
   const carry = (from, to) => {
@@ -67,8 +73,7 @@ async function link(delay = 0, loss = 0) {
 }
 
 // A page with a key that is held: `held` false lets it go.
-const people = [];
-async function operator(at, name) {
+async function operator({people, port, key}, at, name) {
   const headers = {Host: `localhost:${port}`, Origin: `http://localhost:${port}`};
   const self = {name, held: false, velocity: wanted, control: {}, cycle: 0};
   let telemetry, commands, lanes = [], number = 0;
@@ -113,9 +118,8 @@ async function operator(at, name) {
   return self;
 }
 const holds = self => self.control.name === self.name;
-let forth = 1;  // to and fro, so that there is always room
-async function drives(self) {
-  self.velocity = wanted * (forth = -forth);
+async function drives(robot, self) {
+  self.velocity = wanted * (robot.forth = -robot.forth);  // to and fro, so that there is always room
   await until('control', async () => {
     if (!holds(self)) self.say({type: 'take', force: false});
     await sleep(300);
@@ -128,8 +132,8 @@ async function drives(self) {
     await sleep(300);
     self.held = true;
     const end = Date.now() + 2500;
-    for (fastest = 0; Date.now() < end; await sleep(50)) fastest = Math.max(fastest, speed());
-    return speed() > 0.05;
+    for (fastest = 0; Date.now() < end; await sleep(50)) fastest = Math.max(fastest, robot.speed());
+    return robot.speed() > 0.05;
   });
   return fastest;
 }
@@ -138,107 +142,111 @@ function row(link, velocity, what, stands, then) {
 }
 
 const bad = [100, 0.05];
-let long;   // a link that is cut while others drive
-test('over 100 ms and 5 % loss each way it drives; a cut for 20 s begins, cuts for 2 and 0.3 s', async () => {
-  for (const cut of [20, 2, 0.3]) {
-    const far = await link(...bad), ann = await operator(far.port, `ann${cut}`);
-    const velocity = await drives(ann), from = now(), began = Date.now();
+describe('driving', {concurrency: true}, () => {
+  test('over 100 ms and 5 % loss each way it drives; a cut for 2 s ends in watching, one for 0.3 s need not', async () => {
+    const robot = await rig(), {now, speed, stood, drivesOn} = robot;
+    for (const cut of [2, 0.3]) {
+      const far = await link(robot, ...bad), ann = await operator(robot, far.port, `ann${cut}`);
+      const velocity = await drives(robot, ann), from = now();
+      far.cut = true;
+      await sleep(cut * 1000);
+      far.cut = false;
+      await sleep(2000);
+      // The key is held all the time.
+      const stands = stood(from), moves = speed() > 0.01;
+      if (cut > 1) {
+        assert.ok(stands <= within, `stands after ${stands} s`);
+        await until('that it watches', () => !holds(ann));
+      }
+      assert.ok(!drivesOn(from), `it stood after ${stands} s, and then moved on`);
+      row('100 ms, 5 %', velocity, `cut for ${cut} s`, stands, moves ? 'drives on' : holds(ann) ? 'stands until the key is let go' : 'watches');
+      ann.held = false;
+      await until('that it stands', () => stood(now() - 1) !== undefined);
+      ann.leave();
+    }
+  });
+
+  test('a link that is cut for 20 s comes back to watching', async () => {
+    const robot = await rig(), {now, speed, stood, drivesOn} = robot;
+    const far = await link(robot, ...bad), ann = await operator(robot, far.port, 'ann');
+    const velocity = await drives(robot, ann);
+    let from = now();
     far.cut = true;
-    await sleep(Math.min(cut, 2) * 1000);
-    if (cut > 2) {
-      assert.ok(stood(from) <= within, `stands after ${stood(from)} s`);
-      long = {far, ann, velocity, began, stands: stood(from)};
-      continue;
-    }
-    far.cut = false;
     await sleep(2000);
-    // The key is held all the time.
-    const stands = stood(from), moves = speed() > 0.01;
-    if (cut > 1) {
-      assert.ok(stands <= within, `stands after ${stands} s`);
-      await until('that it watches', () => !holds(ann));
-    }
-    assert.ok(!drivesOn(from), `it stood after ${stands} s, and then moved on`);
-    row('100 ms, 5 %', velocity, `cut for ${cut} s`, stands, moves ? 'drives on' : holds(ann) ? 'stands until the key is let go' : 'watches');
-    ann.held = false;
-    await until('that it stands', () => stood(now() - 1) !== undefined);
+    const stands = stood(from);
+    assert.ok(stands <= within, `stands after ${stands} s`);
+    await sleep(18_000);
+    from = now();
+    far.cut = false;
+    await until('news', () => ann.control.holder === 0);
+    await sleep(1500);
+    assert.ok(!drivesOn(from) && speed() < 0.01, 'the key is held all the time');
+    assert.ok(!holds(ann));
+    row('100 ms, 5 %', velocity, 'cut for 20 s', stands, 'watches');
     ann.leave();
-  }
-});
+  });
 
-test('over 500 ms each way it is slow', async () => {
-  const near = await operator(port, 'ben');
-  const quick = await drives(near);
-  let from = now();
-  near.held = false;
-  const letGo = await until('that it stands', () => stood(from));
-  row('none', quick, 'key let go', letGo, 'keeps control');
-  near.leave();
-  const far = await link(500), ann = await operator(far.port, 'fay');
-  const slow = await drives(ann);
-  assert.ok(slow < 0.7 * quick, `${slow} m/s over 500 ms, ${quick} m/s here`);
-  // Without pauses: it hears of each cycle, though late.
-  let looks = 0, moving = 0;
-  for (const end = Date.now() + 4000; Date.now() < end; await sleep(50), ++looks) moving += speed() > 0.05 ? 1 : 0;
-  assert.ok(moving > 0.7 * looks, `it moves at ${moving} of ${looks} looks`);
-  from = now();
-  far.cut = true;
-  const stands = await until('that it stands', () => stood(from));
-  row('500 ms', slow, 'cut', stands, 'watches');
-  assert.ok(stands <= within, `stands after ${stands} s`);
-  far.cut = false;
-  ann.leave();
-});
+  test('over 500 ms each way it is slow', async () => {
+    const robot = await rig(), {now, speed, stood} = robot;
+    const near = await operator(robot, robot.port, 'ben');
+    const quick = await drives(robot, near);
+    let from = now();
+    near.held = false;
+    const letGo = await until('that it stands', () => stood(from));
+    row('none', quick, 'key let go', letGo, 'keeps control');
+    near.leave();
+    const far = await link(robot, 500), ann = await operator(robot, far.port, 'fay');
+    const slow = await drives(robot, ann);
+    assert.ok(slow < 0.7 * quick, `${slow} m/s over 500 ms, ${quick} m/s here`);
+    // Without pauses: it hears of each cycle, though late.
+    let looks = 0, moving = 0;
+    for (const end = Date.now() + 4000; Date.now() < end; await sleep(50), ++looks) moving += speed() > 0.05 ? 1 : 0;
+    assert.ok(moving > 0.7 * looks, `it moves at ${moving} of ${looks} looks`);
+    from = now();
+    far.cut = true;
+    const stands = await until('that it stands', () => stood(from));
+    row('500 ms', slow, 'cut', stands, 'watches');
+    assert.ok(stands <= within, `stands after ${stands} s`);
+    far.cut = false;
+    ann.leave();
+  });
 
-test('a gateway that hangs, an operator who is gone, another who takes over', async () => {
-  const ann = await operator(port, 'ann');
-  let velocity = await drives(ann);
-  let from = now();
-  gateway.kill('SIGSTOP');
-  await sleep(2500);
-  let stands = stood(from);
-  gateway.kill('SIGCONT');
-  await sleep(1500);
-  assert.ok(stands <= within, `stands after ${stands} s`);
-  assert.ok(speed() < 0.01, 'the key is held all the time');
-  row('none', velocity, 'gateway stopped for 2.5 s', stands, 'watches');
-  ann.leave();
+  test('a gateway that hangs, an operator who is gone, another who takes over', async () => {
+    const robot = await rig(), {gateway, now, speed, stood} = robot;
+    const ann = await operator(robot, robot.port, 'ann');
+    let velocity = await drives(robot, ann);
+    let from = now();
+    gateway.kill('SIGSTOP');
+    await sleep(2500);
+    let stands = stood(from);
+    gateway.kill('SIGCONT');
+    await sleep(1500);
+    assert.ok(stands <= within, `stands after ${stands} s`);
+    assert.ok(speed() < 0.01, 'the key is held all the time');
+    row('none', velocity, 'gateway stopped for 2.5 s', stands, 'watches');
+    ann.leave();
 
-  const cora = await operator(port, 'cora'), dan = await operator(port, 'dan');
-  velocity = await drives(cora);
-  dan.say({type: 'take', force: false});
-  await sleep(500);
-  assert.ok(holds(cora) && speed() > 0.05, 'who asks takes nothing');
-  from = now();
-  dan.held = true;
-  dan.say({type: 'take', force: true});
-  stands = await until('that it stands', () => stood(from));
-  await until('that dan has control', () => holds(dan));
-  assert.ok(stands <= within, `stands after ${stands} s`);
-  row('none', velocity, 'somebody takes control, key held', stands, 'the other has control');
-  cora.leave();
-  dan.leave();
+    const cora = await operator(robot, robot.port, 'cora'), dan = await operator(robot, robot.port, 'dan');
+    velocity = await drives(robot, cora);
+    dan.say({type: 'take', force: false});
+    await sleep(500);
+    assert.ok(holds(cora) && speed() > 0.05, 'who asks takes nothing');
+    from = now();
+    dan.held = true;
+    dan.say({type: 'take', force: true});
+    stands = await until('that it stands', () => stood(from));
+    await until('that dan has control', () => holds(dan));
+    assert.ok(stands <= within, `stands after ${stands} s`);
+    row('none', velocity, 'somebody takes control, key held', stands, 'the other has control');
+    cora.leave();
+    dan.leave();
 
-  const eve = await operator(port, 'eve');
-  velocity = await drives(eve);
-  from = now();
-  eve.leave();
-  stands = await until('that it stands', () => stood(from));
-  assert.ok(stands <= within, `stands after ${stands} s`);
-  row('none', velocity, 'page closed', stands, '-');
-});
-
-// Last: a key that was held for the whole cut moves nothing afterwards.
-test('the link that was cut for 20 s comes back to watching', async () => {
-  assert.ok(long, 'no link was cut for 20 s');
-  const {far, ann, velocity, began, stands} = long;
-  await sleep(Math.max(0, began + 20_000 - Date.now()));
-  const from = now();
-  far.cut = false;
-  await until('news', () => ann.control.holder === 0);
-  await sleep(1500);
-  assert.ok(!drivesOn(from) && speed() < 0.01, 'the key is held all the time');
-  assert.ok(!holds(ann));
-  row('100 ms, 5 %', velocity, 'cut for 20 s', stands, 'watches');
-  ann.leave();
+    const eve = await operator(robot, robot.port, 'eve');
+    velocity = await drives(robot, eve);
+    from = now();
+    eve.leave();
+    stands = await until('that it stands', () => stood(from));
+    assert.ok(stands <= within, `stands after ${stands} s`);
+    row('none', velocity, 'page closed', stands, '-');
+  });
 });

@@ -1,12 +1,12 @@
 #include "saphira/base/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -237,7 +237,11 @@ std::string read_bytes(const std::string& path) {
   in.peek();
   if (in.bad())
     throw UnusableFile(path + ": cannot be read (is it a file?)");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string bytes;
+  std::array<char, 65536> part{};
+  while (in.read(part.data(), part.size()), in.gcount() > 0)
+    bytes.append(part.data(), static_cast<std::size_t>(in.gcount()));
+  return bytes;
 }
 
 std::string read_file(const std::string& path) {

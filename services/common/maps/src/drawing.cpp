@@ -1,6 +1,5 @@
 #include "saphira/maps/drawing.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <string_view>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/geometry/axes.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::maps {
@@ -295,7 +295,7 @@ void Picture::robot() {
        R"(stroke="#000" stroke-width="0.07")");
   Eigen::Matrix2d covariance;
   covariance << robot.xx, robot.xy, robot.xy, robot.yy;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
+  const auto solver = principal_axes(covariance);
   const Eigen::Vector2d axes = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() * 2.0;
   const Eigen::Vector2d along = solver.eigenvectors().col(1);
   out_ += "<ellipse cx=\"0\" cy=\"0\" rx=\"" + number(axes(1)) + "\" ry=\"" + number(axes(0)) +
