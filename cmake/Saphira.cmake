@@ -78,9 +78,11 @@ endfunction()
 
 # saphira_computes(<name>...): libraries whose loops take the robot's time, or that of its tests.
 function(saphira_computes)
-  foreach(name ${ARGN})
-    target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O2>)
-  endforeach()
+  if(NOT SAPHIRA_SANITIZE)
+    foreach(name ${ARGN})
+      target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O2>)
+    endforeach()
+  endif()
 endfunction()
 
 # saphira_program(<name> SOURCES main.cpp... LINK t... [COMPONENT speech]): an executable that is
