@@ -15,7 +15,7 @@ add_compile_options(-ffp-contract=off)
 # -Og: a third less to compile than -O2, for the command line, agents, mains and tests. Libraries of services, bridge,
 # simulator and bus, and those that saphira_computes() names, have -O2.
 add_compile_options($<$<CONFIG:RelWithDebInfo>:-g1> $<$<CONFIG:RelWithDebInfo>:-Og>)
-# GCC looks for garbage in its memory less often: a tenth less to compile, for 0.3 GB.
+# GCC looks for garbage in its memory less often: a tenth less to compile, for 0.2 GB.
 add_compile_options("$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-expand=200 --param ggc-min-heapsize=600000>")
 # __FILE__ names no folder of this machine, and ccache serves one build folder with the objects of another.
 add_compile_options("-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=")
