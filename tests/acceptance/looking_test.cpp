@@ -158,10 +158,13 @@ TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
 }
 
 TEST_F(LookingTest, SaysThatNobodyIsThere) {
-  for (const char* command : {"intentions", "why", "processes"}) {
-    const Outcome outcome = run({command});
-    EXPECT_EQ(outcome.code, 1) << outcome.text;
-    EXPECT_TRUE(has(outcome.text, "no program is on the bus")) << outcome.text;
+  std::vector<std::pair<std::string, Process>> asked;  // each listens for a while: at the same time
+  for (const char* const command : {"intentions", "why", "processes"})
+    asked.emplace_back(command, Process({"saphira", command}, system.folder().path(command),
+                                        {{"SAPHIRA_ROBOT", system.robot()}}));
+  for (auto& [command, process] : asked) {
+    EXPECT_EQ(process.wait(), 1) << command;
+    EXPECT_TRUE(has(process.output(), "no program is on the bus")) << process.output();
   }
 }
 

@@ -61,10 +61,10 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackDrivesAnswersAndAsks) {
     test::Process agent({build + "/c_agent", "state"}, installed.path("state.log"), environment);
     return agent.wait() == 0 && agent.output().find("m/s") != std::string::npos;
   })) << up.output();
-  run({"go", "1", "0"}, "succeeded");
+  run({"go", "0.6", "0"}, "succeeded");
   run({"cancel", "8", "0", "3"}, "canceled");
   run({"drive", "0.1", "0.3", "2"}, "c_agent drives");
-  run({"go", "1", "0"}, "succeeded");
+  run({"go", "0.6", "0"}, "succeeded");
   {
     const test::Process facilitator({installed.program("saphira-facilitator")},
                                     installed.path("facilitator.log"), environment);

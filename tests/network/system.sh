@@ -26,7 +26,7 @@ if [ "${4:-}" = services ]; then
   }
   "$bin/saphira-behaviors" &
   "$bin/saphira-intentions" --memory "$run/goals" &
-  "$bin/saphira" goal go 5 0 --deadline 90 &
+  "$bin/saphira" goal go 2.5 0 --deadline 90 &
   goal=$!
   wait_for moving 300 || exit 1
   ip link set vb down || exit 1

@@ -255,7 +255,7 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   const int stream = listen();
   http(port, session,
        R"({"id":3,"method":"resources/subscribe","params":{"uri":"saphira://robot/goals"}})");
-  EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
+  EXPECT_EQ(call(go(0.4, 20))["structuredContent"]["state"], "succeeded");
   EXPECT_TRUE(comes(stream, "notifications/resources/updated"));
   close(stream);
 
@@ -269,7 +269,7 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
                                "\r\nMcp-Name: " + name,
                            json{{"id", 5}, {"method", method}, {"params", parameters}}.dump()));
   };
-  const json task = ask("tools/call", "go_to", go(1.2, 20))["result"];
+  const json task = ask("tools/call", "go_to", go(0.7, 20))["result"];
   EXPECT_EQ(task["status"], "working");
   json state;
   EXPECT_TRUE(wait_until([&] {
