@@ -141,11 +141,7 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
                  with_writer ? owner(info.writer) : std::string());
     });
     for (const bus::WriterId& writer : reader->take_lost()) {
-      board_.hide(rank, owner(writer), now());
-      any = true;
-    }
-    for (const bus::WriterId& writer : reader->take_returned()) {
-      board_.show(rank, owner(writer));
+      board_.lose(rank, owner(writer));
       any = true;
     }
     return any;

@@ -29,7 +29,6 @@ int Board::topic(std::string name, std::size_t most) {
 
 void Board::put(int topic, const std::string& key, std::string json, double now,
                 const std::string& owner) {
-  forget_hidden(topic, key);
   auto [item, added] = items_.try_emplace({topic, key});
   item->second = {std::move(json), owner, ++version_, now};
   if (added && ++entry(topic).count > entry(topic).most)
@@ -37,41 +36,20 @@ void Board::put(int topic, const std::string& key, std::string json, double now,
 }
 
 void Board::withdraw(int topic, const std::string& key) {
-  forget_hidden(topic, key);
   if (items_.erase({topic, key}) > 0)
     --entry(topic).count;
 }
 
-void Board::hide(int topic, const std::string& owner, double now) {
-  Topic& of = entry(topic);
-  std::erase_if(of.hidden,
-                [&](const auto& one) { return now - one.second.since > settings_.hidden; });
-  Hidden hidden{now, {}};
+void Board::lose(int topic, const std::string& owner) {
   for (auto item = items_.lower_bound({topic, {}});
        item != items_.end() && item->first.first == topic;) {
     if (item->second.owner != owner) {
       ++item;
       continue;
     }
-    hidden.items[item->first.second] = std::move(item->second);
     item = items_.erase(item);
-    --of.count;
+    --entry(topic).count;
   }
-  if (!hidden.items.empty())
-    of.hidden[owner] = std::move(hidden);
-}
-
-void Board::show(int topic, const std::string& owner) {
-  const auto hidden = entry(topic).hidden.extract(owner);
-  if (hidden.empty())
-    return;
-  for (auto& [key, item] : hidden.mapped().items)
-    put(topic, key, std::move(item.json), item.came, owner);
-}
-
-void Board::forget_hidden(int topic, const std::string& key) {
-  for (auto& [owner, hidden] : entry(topic).hidden)
-    hidden.items.erase(key);
 }
 
 void Board::forget_oldest(int topic) {

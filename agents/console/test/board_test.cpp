@@ -132,52 +132,22 @@ TEST(Board, AWithdrawnItemIsToldOnce) {
   EXPECT_TRUE(read(board, viewer, 0.2).is_null());
 }
 
-TEST(Board, TheItemsOfALostOwnerAreThereAgainWhenItReturns) {
+TEST(Board, TheItemsOfALostOwnerAreWithdrawn) {
   Board board;
   const int tasks = board.topic("system/processes", 10);
+  const int goals = board.topic("goals", 10);
   board.put(tasks, "a", "1", 0.0, "one");
   board.put(tasks, "b", "2", 0.0, "one");
   board.put(tasks, "c", "3", 0.0, "two");
+  board.put(goals, "a", "4", 0.0, "one");
   Viewer viewer;
   read(board, viewer, 0.0);
-  board.hide(tasks, "one", 1.0);
-  EXPECT_EQ(board.size(), 1U);
+  board.lose(tasks, "one");
+  EXPECT_EQ(board.size(), 2U);
   const Json gone = read(board, viewer, 1.0);
   ASSERT_EQ(gone.at("items").size(), 2U);
   EXPECT_TRUE(gone["items"][0]["d"].is_null());
-  board.show(tasks, "one");
-  const Json back = read(board, viewer, 9.0);
-  ASSERT_EQ(back.at("items").size(), 2U);
-  EXPECT_EQ(back["items"][0], Json::parse(R"({"t":"system/processes","k":"a","a":9000,"d":1})"));
-  // Neither a second return nor that of a stranger changes anything.
-  board.show(tasks, "one");
-  board.show(tasks, "three");
-  EXPECT_TRUE(read(board, viewer, 9.1).is_null());
-}
-
-TEST(Board, AHiddenItemThatIsPutOrWithdrawnStaysSo) {
-  Board board;
-  const int goals = board.topic("goals", 10);
-  board.put(goals, "a", "1", 0.0, "one");
-  board.put(goals, "b", "2", 0.0, "one");
-  board.hide(goals, "one", 1.0);
-  board.put(goals, "a", "3", 2.0, "two");
-  board.withdraw(goals, "b");
-  board.show(goals, "one");
-  Viewer viewer;
-  const Json all = read(board, viewer, 2.0);
-  ASSERT_EQ(all.at("items").size(), 1U);
-  EXPECT_EQ(all["items"][0]["d"], 3);
-}
-
-TEST(Board, AnOwnerThatNeverReturnsCostsNothingForLong) {
-  Board board({.hidden = 60.0});
-  const int tasks = board.topic("system/processes", 10);
-  board.put(tasks, "a", "1", 0.0, "one");
-  board.hide(tasks, "one", 0.0);
-  board.hide(tasks, "two", 61.0);
-  board.show(tasks, "one");
-  EXPECT_EQ(board.size(), 0U);
+  EXPECT_TRUE(gone["items"][1]["d"].is_null());
 }
 
 TEST(Board, OfManyItemsTheNewestAreKept) {

@@ -11,8 +11,9 @@
  * SAPHIRA_ROBOT and SAPHIRA_DOMAIN say which robot. Without CYCLONEDDS_URI it speaks on this machine
  * alone, as the profile host does.
  *
- * Besides the types, a program on another vendor's DDS needs two things: the robot's name as its
- * partition, and the QoS of each topic (idl/README.md). Both are in reader_of and writer_of below.
+ * Besides the types, a program on another vendor's DDS needs three things: the robot's name as its
+ * partition, and the QoS of each topic (idl/README.md), both in reader_of and writer_of below; and
+ * its presence, in rest(): without it others notice late that the program is gone.
  */
 #include <math.h>
 #include <signal.h>
@@ -26,11 +27,15 @@
 #include "motion.h"
 #include "request.h"
 #include "robot.h"
+#include "system.h"
 
+/* With the lease of the other programs. A program that stood still for longer may not be found
+ * again. */
 static const char* const kThisMachine =
     "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1' "
-    "multicast='true'/></Interfaces></General><Discovery><Ports><Base>7525</Base></Ports>"
-    "</Discovery></Domain></CycloneDDS>";
+    "multicast='true'/></Interfaces></General><Discovery><LeaseDuration>60s</LeaseDuration>"
+    "<SPDPInterval>1s</SPDPInterval><Ports><Base>7525</Base></Ports></Discovery></Domain>"
+    "</CycloneDDS>";
 
 static volatile sig_atomic_t stopped = 0;
 static void stop(int number) {
@@ -53,11 +58,11 @@ static const char* robot_name(void) {
 }
 
 /* The rows of the QoS table that this agent needs. */
-enum qos { CYCLIC, MOTION, COMMAND, GOAL, LATCHED, EVENT };
+enum qos { CYCLIC, MOTION, PRESENCE, COMMAND, GOAL, LATCHED, EVENT };
 
 static dds_qos_t* qos_of(enum qos name, bool reader) {
   dds_qos_t* qos = dds_create_qos();
-  const bool reliable = name != CYCLIC && name != MOTION;
+  const bool reliable = name != CYCLIC && name != MOTION && name != PRESENCE;
   const bool kept = reliable && name != COMMAND;
   const int most = name == EVENT ? 100 : name == COMMAND ? 16 : 1;
   const int reads = name == LATCHED ? 8 : most == 1 ? 4 : most;
@@ -108,6 +113,21 @@ static dds_entity_t writer_of(const dds_topic_descriptor_t* type, const char* to
   return writer;
 }
 
+/* Waits, and says ten times a second that this program is there. */
+static void rest(dds_duration_t time) {
+  static dds_entity_t presence = 0;
+  static dds_time_t said = 0;
+  static saphira_v1_Presence sample;
+  if (presence == 0) presence = writer_of(&saphira_v1_Presence_desc, "system/presence", PRESENCE);
+  if (dds_time() - said >= DDS_MSECS(100)) {
+    said = dds_time();
+    sample.instance = self;
+    ++sample.count;
+    check(dds_write(presence, &sample), "presence");
+  }
+  dds_sleepfor(time);
+}
+
 /* The next sample of a reader into *sample, which is NULL the first time; false: none. */
 static bool take(dds_entity_t reader, void** sample) {
   dds_sample_info_t info;
@@ -131,7 +151,7 @@ static int state(void) {
              robot->pose_in_odom.th * 180.0 / 3.14159265, robot->velocity, robot->sonars._length);
       ++shown;
     }
-    dds_sleepfor(DDS_MSECS(100));
+    rest(DDS_MSECS(100));
   }
   if (shown == 0) fprintf(stderr, "c_agent: nothing is heard of robot %s\n", robot_name());
   return shown > 0 ? 0 : 1;
@@ -185,7 +205,7 @@ static int go(double x, double y, double take_back) {
       check(dds_dispose(goals, &goal), "dispose");
       taken_back = true;
     }
-    dds_sleepfor(DDS_MSECS(50));
+    rest(DDS_MSECS(50));
   }
 }
 
@@ -237,7 +257,7 @@ static int drive(double speed, double turn, double seconds) {
       ++command.number;
       check(dds_write(commands, &command), "command");
     }
-    dds_sleepfor(DDS_MSECS(50));
+    rest(DDS_MSECS(50));
   }
   return 0;
 }
@@ -261,7 +281,7 @@ static saphira_v1_Argument text_argument(const char* name, const char* text) {
 static int know(const char* person, const char* place) {
   const dds_entity_t requests = reader_of(&saphira_v1_Request_desc, "agents/request", COMMAND);
   const dds_entity_t answers = writer_of(&saphira_v1_Answer_desc, "agents/answers", EVENT);
-  const dds_entity_t agents = writer_of(&saphira_v1_Agent_desc, "agents", GOAL);
+  const dds_entity_t agents = writer_of(&saphira_v1_Agent_desc, "agents", LATCHED);
   saphira_v1_CapabilityParameter parameters[2] = {
       {.name = "person", .kind = saphira_v1_ARGUMENT_TEXT, .meaning = "a name", .required = true},
       {.name = "place", .kind = saphira_v1_ARGUMENT_TEXT, .meaning = "of the map"}};
@@ -295,7 +315,7 @@ static int know(const char* person, const char* place) {
       printf("%s asked for %s\n", request->source, text_of(request, "person"));
       fflush(stdout);
     }
-    dds_sleepfor(DDS_MSECS(20));
+    rest(DDS_MSECS(20));
   }
   check(dds_dispose(agents, &agent), "agent");
   return 0;
@@ -335,7 +355,7 @@ static int ask(const char* person) {
       dds_return_loan(answers, &sample, 1);
       return good ? 0 : 1;
     }
-    dds_sleepfor(DDS_MSECS(20));
+    rest(DDS_MSECS(20));
   }
   fprintf(stderr, "c_agent: %s\n", sent ? "no answer" : "no facilitator is on the bus");
   return 1;

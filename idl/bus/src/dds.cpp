@@ -241,9 +241,7 @@ class DdsWriter : public RawWriter, public DdsEnd<WriterPart> {
 
  private:
   /// True where a later session gets the stored samples again.
-  bool keeps() const {
-    return policies_.kept_by_session || (policies_.transient_local && policies_.writer_depth == 1);
-  }
+  bool keeps() const { return policies_.kept_by_session || policies_.declares(); }
   /// Loopback first. True where it went well in all sessions.
   template <class Do>
   bool each_part(Do&& act) {
@@ -305,6 +303,9 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     if (begun_anew_.exchange(false))
       taken_before_ = taken_;
     for (ReaderPart& part : parts_)
+      for (const WriterId& writer : bus_->peers.take_returned(part.ends))
+        declare_again(writer, each);
+    for (ReaderPart& part : parts_)
       take(part, each);
   }
 
@@ -312,18 +313,36 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     std::vector<WriterId> lost = bus_->peers.take_lost(parts_[0].ends);
     const std::vector<WriterId> more = bus_->peers.take_lost(parts_[1].ends);
     lost.insert(lost.end(), more.begin(), more.end());
+    // Its history is news again, where a new match sends it.
+    for (auto* const taken : {&taken_, &taken_before_})
+      std::erase_if(*taken, [&](const auto& one) {
+        return std::find(lost.begin(), lost.end(), to_id(one.first)) != lost.end();
+      });
     return lost;
-  }
-  std::vector<WriterId> take_returned() override {
-    std::vector<WriterId> returned = bus_->peers.take_returned(parts_[0].ends);
-    const std::vector<WriterId> more = bus_->peers.take_returned(parts_[1].ends);
-    returned.insert(returned.end(), more.begin(), more.end());
-    return returned;
   }
   std::size_t matched() const override { return present(); }
 
  private:
   using Holder = std::unique_ptr<void, void (*)(void*)>;
+  struct Last {
+    Holder data;
+    SampleInfo info;
+    rtps::SampleIdentity identity;
+    std::int64_t written = 0;  ///< [ns since 1970]
+  };
+
+  void declare_again(const WriterId& writer,
+                     const std::function<void(const void*, const SampleInfo&)>& each) {
+    if (!policies_.declares())
+      return;
+    for (auto& [instance, last] : last_) {
+      if (last.info.writer != writer)
+        continue;
+      was_taken(last.identity);
+      last.info.age = age_of(last.written);
+      each(last.data.get(), last.info);
+    }
+  }
 
   void take(ReaderPart& part, const std::function<void(const void*, const SampleInfo&)>& each) {
     fdds::SampleInfo dds_info;
@@ -334,14 +353,14 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
         continue;
       } else if (dds_info.valid_data) {
         if (type_.keyed)
-          remember(dds_info.instance_handle);
+          remember(dds_info, info);
         each(scratch_.get(), info);
       } else if (dds_info.instance_state == fdds::NOT_ALIVE_DISPOSED_INSTANCE_STATE) {
         // Withdrawn before any sample of it was taken: there is nothing to tell.
         const auto found = last_.find(dds_info.instance_handle);
         if (found == last_.end())
           continue;
-        const Holder last = std::move(found->second);
+        const Holder last = std::move(found->second.data);
         last_.erase(found);
         info.disposed = true;
         each(last.get(), info);
@@ -358,7 +377,7 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     const rtps::GUID_t& writer = from.sample_identity.writer_guid();
     info = {};
     info.writer = to_id(writer);
-    info.age = 1e-9 * static_cast<double>(nanoseconds_since_1970() - from.source_timestamp.to_ns());
+    info.age = age_of(from.source_timestamp.to_ns());
     if (bus_->guard())
       info.sender = part.discovery->identity_of(writer);
     malformed = internal::take_malformed();
@@ -382,18 +401,27 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
   }
 
   // get_key_value() is not supported: this map alone gives the key of a withdrawn instance.
-  void remember(const rtps::InstanceHandle_t& handle) {
-    auto found = last_.find(handle);
+  void remember(const fdds::SampleInfo& sample, const SampleInfo& info) {
+    auto found = last_.find(sample.instance_handle);
     if (found == last_.end())
-      found = last_.emplace(handle, Holder(type_.create(), type_.destroy)).first;
-    type_.copy(scratch_.get(), found->second.get());
+      found = last_.emplace(sample.instance_handle, Last{{type_.create(), type_.destroy}, {}, {}})
+                  .first;
+    Last& last = found->second;
+    type_.copy(scratch_.get(), last.data.get());
+    last.info = info;
+    last.identity = sample.sample_identity;
+    last.written = sample.source_timestamp.to_ns();
+  }
+  /// [s]
+  static double age_of(std::int64_t written) {
+    return 1e-9 * static_cast<double>(nanoseconds_since_1970() - written);
   }
 
   // Writers come and go for months. A forgotten writer costs at most a sample that comes twice.
   static constexpr std::size_t kMostWriters = 1000;
 
   Holder scratch_;
-  std::map<rtps::InstanceHandle_t, Holder> last_;
+  std::map<rtps::InstanceHandle_t, Last> last_;
   // For each writer the number of the sample that was taken last: now, and at the session's start.
   std::map<rtps::GUID_t, std::uint64_t> taken_;
   std::map<rtps::GUID_t, std::uint64_t> taken_before_;

@@ -25,6 +25,9 @@ struct Policies {
   /// A node that begins anew on the bus writes the samples of this writer again: a state is
   /// repeated, an event or a wish is not.
   bool kept_by_session = false;
+
+  /// The newest sample of each key is what its writer declares, for as long as it is there.
+  bool declares() const { return transient_local && writer_depth == 1; }
 };
 
 Policies policies(Qos qos, bool lockstep);

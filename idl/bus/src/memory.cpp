@@ -112,7 +112,6 @@ class MemoryReader : public RawReader {
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override;
   std::vector<WriterId> take_lost() override;
-  std::vector<WriterId> take_returned() override;
   std::size_t matched() const override;
 
   void deliver(const Item& item) {
@@ -128,7 +127,7 @@ class MemoryReader : public RawReader {
   std::vector<WriterId> returned;
 
  private:
-  std::map<InstanceKey, std::shared_ptr<const void>> last_;  // taken, and not withdrawn since
+  std::map<InstanceKey, Item> last_;  // taken, and not withdrawn since
 };
 
 template <class Matches>
@@ -221,22 +220,30 @@ MemoryReader::~MemoryReader() {
 
 void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)>& each) {
   std::deque<Item> items;
+  std::vector<WriterId> back;
   {
     const std::scoped_lock lock(common.bus->mutex);
     items.swap(queue);
+    back.swap(returned);
   }
   const auto now = std::chrono::steady_clock::now();
+  const auto info_of = [now](const Item& item) {
+    return SampleInfo{item.writer, item.disposed, item.sender,
+                      std::chrono::duration<double>(now - item.written).count()};
+  };
+  if (common.policies.declares())
+    for (const auto& [key, item] : last_)
+      if (std::find(back.begin(), back.end(), item.writer) != back.end())
+        items.push_front(item);
   for (const auto& item : items) {
-    const SampleInfo info{item.writer, item.disposed, item.sender,
-                          std::chrono::duration<double>(now - item.written).count()};
     if (!item.disposed) {
       if (common.type->keyed)
-        last_[item.key] = item.data;
-      each(item.data.get(), info);
+        last_.insert_or_assign(item.key, item);
+      each(item.data.get(), info_of(item));
     } else if (const auto found = last_.find(item.key); found != last_.end()) {
-      const auto data = std::move(found->second);
+      const auto data = std::move(found->second.data);
       last_.erase(found);
-      each(data.get(), info);
+      each(data.get(), info_of(item));
     }
   }
 }
@@ -244,11 +251,6 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
 std::vector<WriterId> MemoryReader::take_lost() {
   const std::scoped_lock lock(common.bus->mutex);
   return std::exchange(lost, {});
-}
-
-std::vector<WriterId> MemoryReader::take_returned() {
-  const std::scoped_lock lock(common.bus->mutex);
-  return std::exchange(returned, {});
 }
 
 std::size_t MemoryReader::matched() const {
@@ -346,9 +348,12 @@ void set_silent(MemoryBus& bus, const std::string& program, bool silent) {
       }
   };
   change(bus.writers, [&](const internal::MemoryWriter& writer, internal::MemoryReader& reader) {
-    if (silent)
+    if (silent) {
       std::erase(reader.returned, writer.id);
-    (silent ? reader.lost : reader.returned).push_back(writer.id);
+      reader.lost.push_back(writer.id);
+    } else if (std::erase(reader.lost, writer.id) == 0) {
+      reader.returned.push_back(writer.id);
+    }
   });
   change(bus.readers, [](const auto& /*reader*/, auto& /*writer*/) {});
 }

@@ -27,8 +27,8 @@ void Peers::match(Ends& ends, const WriterId& other) {
   ends.before_.erase(other);
   if (const Program program = program_of(other); joined_.contains(program))
     programs_.try_emplace(program);
-  if (ends.late_.erase(other) > 0 && !is_absent(program_of(other)))
-    ends.come_back(other);
+  if (!is_absent(program_of(other)))
+    std::erase(ends.lost_, other);
   count(ends);
   wake_->signal();
 }
@@ -49,7 +49,8 @@ void Peers::unmatch(Ends& ends, const WriterId& other) {
 void Peers::restart(Ends& ends) {
   const std::scoped_lock lock(mutex_);
   for (const WriterId& other : ends.matched_)
-    (is_absent(program_of(other)) ? ends.late_ : ends.before_).insert(other);
+    if (!is_absent(program_of(other)))
+      ends.before_.insert(other);
   ends.matched_.clear();
   ends.ticks_left_ = kRestart;
   std::erase_if(programs_, [&](const auto& program) {
@@ -150,7 +151,6 @@ void Peers::change(const Program& program, bool absent) {
 void Peers::lose_old_matches(Ends& ends) {
   for (const WriterId& other : ends.before_)
     ends.lose(other);
-  ends.late_.merge(ends.before_);
   ends.before_.clear();
   wake_->signal();
 }

@@ -33,8 +33,9 @@ class Ends {
     lost_.push_back(other);
     std::erase(returned_, other);
   }
+  /// A loss that nobody has taken yet is forgotten.
   void come_back(const WriterId& other) {
-    if (side_ == Side::writers)
+    if (side_ == Side::writers && std::erase(lost_, other) == 0)
       returned_.push_back(other);
   }
 
@@ -42,7 +43,6 @@ class Ends {
   std::set<WriterId> matched_;
   std::set<WriterId> before_;  ///< of the session before, not matched again yet
   int ticks_left_ = 0;         ///< until those of `before_` are lost
-  std::set<WriterId> late_;    ///< lost in an earlier session, not matched since
   std::vector<WriterId> lost_;
   std::vector<WriterId> returned_;
   std::atomic<std::size_t> present_{0};
@@ -79,7 +79,8 @@ class Peers {
   void restart(Ends& ends);
   /// Other ends that are gone since the last call, by discovery or by their program's silence.
   std::vector<WriterId> take_lost(Ends& ends);
-  /// Lost ends that are there again since the last call; those that are lost once more are not.
+  /// Ends that were named as lost and are heard again, without a new match, since the last call;
+  /// those that are lost once more are not.
   std::vector<WriterId> take_returned(Ends& ends);
   /// True where one of them is matched and not there.
   bool any_absent(const Ends& ends) const;

@@ -243,6 +243,33 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
   }
 }
 
+TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) {
+  v1::Trigger trigger;
+  trigger.kind(v1::TRIGGER_EVENT);
+  trigger.condition("dust");
+  trigger.action("sweep");
+  worker.set(trigger);
+  turn();
+  bus::set_silent(*memory, "sweeper", true);
+  turn();
+  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
+  auto events = person.writer(bus::topics::kAgentEvents);
+  v1::AgentEvent dust;
+  dust.functor("dust");
+  events.write(dust);
+  turn();
+  EXPECT_EQ(begun.size(), 0u);
+  bus::set_silent(*memory, "sweeper", false);
+  turn();
+  EXPECT_EQ(begun.size(), 0u) << "the event is over";
+  const std::uint64_t number = asker.send(sweep());
+  turn();
+  EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
+  events.write(dust);
+  turn();
+  EXPECT_EQ(begun.size(), 2u);
+}
+
 TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
   v1::Trigger trigger;
   trigger.id().writer(3);

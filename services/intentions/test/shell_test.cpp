@@ -146,6 +146,37 @@ TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
   EXPECT_EQ(state(kept), v1::GOAL_SUCCEEDED);
 }
 
+TEST_F(ShellTest, AProgramThatWasSilentIsBelievedAgainAndItsEndedGoalsStayEnded) {
+  start();
+  auto beliefs = requester.reader(bus::topics::kBeliefs);
+  const auto believed = [&] {
+    cycle();
+    cycle();
+    const auto newest = beliefs.take_newest();
+    return newest && std::any_of(newest->beliefs().begin(), newest->beliefs().end(),
+                                 [](const v1::Belief& one) { return one.name() == "door"; });
+  };
+  bus::Node node(test::memory_options("another", true), bus);
+  bus::GoalClient another(node, "another");
+  auto claims = node.writer(bus::topics::kBeliefClaims);
+  v1::BeliefClaim claim;
+  claim.id().number(1);
+  claim.name("door");
+  claim.value("open");
+  claim.writer_lost(v1::WRITER_LOST_CANCEL);
+  claims.write(claim);
+  const v1::GoalId id = another.ask(go_to(5.0, 0.0));
+  EXPECT_TRUE(believed());
+  EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
+  bus::set_silent(*bus, "another", true);
+  EXPECT_FALSE(believed());
+  EXPECT_EQ(goals.status(id)->code(), v1::CODE_WRITER_LOST);
+  bus::set_silent(*bus, "another", false);
+  EXPECT_TRUE(believed());
+  EXPECT_EQ(state(id), v1::GOAL_CANCELED);
+  EXPECT_TRUE(robot.intended->behaviors().empty());
+}
+
 TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
   const test::TempDir dir;
   start(dir.path("memory"));

@@ -40,7 +40,6 @@ class Board {
     std::size_t most_unseen = 12;       ///< frames in all
     double queue = 0.2;                 ///< [s] a link that delays by this much more is full
     double silence = 0.5;               ///< [s] until an empty frame as a sign of life
-    double hidden = 100.0;              ///< [s] for which a hidden item is kept
   };
 
   Board() = default;
@@ -54,10 +53,8 @@ class Board {
   void put(int topic, const std::string& key, std::string json, double now,
            const std::string& owner = {});
   void withdraw(int topic, const std::string& key);
-  /// The owner is lost: for viewers its items are withdrawn.
-  void hide(int topic, const std::string& owner, double now);
-  /// It is there again: so are its items, as far as nobody has put or withdrawn them since.
-  void show(int topic, const std::string& owner);
+  /// The owner is lost: its items are withdrawn.
+  void lose(int topic, const std::string& owner);
   std::size_t size() const { return items_.size(); }
 
   /// The news for a viewer, as one JSON text:
@@ -76,19 +73,13 @@ class Board {
     std::uint64_t version = 0;
     double came = 0.0;  ///< [s]
   };
-  struct Hidden {
-    double since = 0.0;  ///< [s]
-    std::map<std::string, Item> items;
-  };
   struct Topic {
     std::string name;
     std::size_t most = 1;
     std::size_t count = 0;
-    std::map<std::string, Hidden> hidden = {};  ///< by owner
   };
 
   Topic& entry(int topic) { return topics_.at(static_cast<std::size_t>(topic)); }
-  void forget_hidden(int topic, const std::string& key);
   void forget_oldest(int topic);
 
   Settings settings_;

@@ -78,11 +78,10 @@ class RawReader {
  public:
   virtual ~RawReader() = default;
   /// Hands over each sample that has come, oldest first. References are valid during the call only.
+  /// A lost writer that is heard again: the newest sample of each of its keys comes once more.
   virtual void take(const std::function<void(const void* sample, const SampleInfo&)>& each) = 0;
-  /// Writers whose match has ended since the last call.
+  /// Writers whose match has ended since the last call, and that are not there again.
   virtual std::vector<WriterId> take_lost() = 0;
-  /// Lost writers that are heard again, since the last call. To be called after take_lost().
-  virtual std::vector<WriterId> take_returned() = 0;
   virtual std::size_t matched() const = 0;
 };
 
@@ -108,7 +107,9 @@ class Reader {
  public:
   explicit Reader(std::unique_ptr<RawReader> raw) : raw_(std::move(raw)) {}
 
-  /// Everything that has come since the last call, oldest first.
+  /// Everything that has come since the last call, oldest first. A writer that take_lost() named,
+  /// and that is there again (its program stood still, or was cut off), declares its state once
+  /// more: on keyed topics with the newest value of each key, as to a late joiner.
   std::vector<Sample<T>> take() {
     std::vector<Sample<T>> samples;
     raw_->take([&](const void* sample, const SampleInfo& info) {
@@ -135,10 +136,8 @@ class Reader {
     return newest;
   }
 
+  /// Writers that are gone since the last call, and have not returned.
   std::vector<WriterId> take_lost() { return raw_->take_lost(); }
-  /// Lost writers that go on: their program stood still, or was cut off. What they wrote before
-  /// does not come again. Valid after take_lost(), which may name the same writers.
-  std::vector<WriterId> take_returned() { return raw_->take_returned(); }
   std::size_t matched() const { return raw_->matched(); }
 
  private:
