@@ -323,8 +323,8 @@ void Sonars::hear_rough(const Pose& at, Firing& firing) const {
     const Vec2 direction(std::cos(at.th + offset), std::sin(at.th + offset));
     const auto hit = cast_ray(in_beam_.things.segments, firing.origin, direction,
                               firing.nearest.value_or(model_.max_range));
-    if (hit && is_first(firing, direction, hit->range))
-      firing.nearest = hit->range;
+    if (hit && is_first(firing, direction, *hit))
+      firing.nearest = *hit;
   }
 }
 

@@ -72,7 +72,7 @@ class View {
   void meet(const Vec2& direction, const Layer& layer) {
     if (const auto hit = cast_ray(one_, eye_, direction, range_)) {
       layers_.push_back(layer);
-      layers_.back().range = hit->range;
+      layers_.back().range = *hit;
     }
   }
 

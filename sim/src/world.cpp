@@ -257,10 +257,10 @@ bool intersect(const Segment& a, const Segment& b) {
   return b_from * b_to <= 0.0 && a_from * a_to <= 0.0 && (b_from != b_to || a_from != a_to);
 }
 
-std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
-                            const Vec2& direction, double range) {
+std::optional<double> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
+                               const Vec2& direction, double range) {
   double best = range;
-  const Segment* hit = nullptr;
+  bool hit = false;
   for (const Segment& segment : segments) {
     const Vec2 along = segment.to - segment.from;
     const Vec2 to_from = segment.from - origin;
@@ -279,17 +279,13 @@ std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& or
       continue;  // parallel: its ends belong to other segments, or are too thin to see
     }
     best = on_ray / cross;
-    hit = &segment;
+    hit = true;
   }
-  if (hit == nullptr)
-    return std::nullopt;
-  const Vec2 along = (hit->to - hit->from).normalized();
-  const double sine = std::min(1.0, std::abs(direction.dot(along)));
-  return Hit{best, std::asin(sine)};
+  return hit ? std::optional<double>(best) : std::nullopt;
 }
 
-std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
-                            double range) {
+std::optional<double> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
+                               double range) {
   auto best = cast_ray(things.segments, origin, direction, range);
   for (const Disc& disc : things.discs) {
     const Vec2 to_centre = disc.centre - origin;
@@ -299,8 +295,8 @@ std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2
     if (along < 0.0 || inside <= 0.0)
       continue;
     const double hit = along - std::sqrt(inside);
-    if (hit >= 0.0 && hit < (best ? best->range : range))
-      best = Hit{hit, std::asin(std::min(1.0, std::abs(aside) / disc.radius))};
+    if (hit >= 0.0 && hit < best.value_or(range))
+      best = hit;
   }
   return best;
 }

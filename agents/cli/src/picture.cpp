@@ -118,12 +118,6 @@ void Picture::add_echo(const Vec2& point) {
   }
 }
 
-void Picture::clear() {
-  wake_.clear();
-  echoes_.clear();
-  order_.clear();
-}
-
 std::string Picture::legend(bool utf8) {
   std::string text;
   const auto add = [&](Layer layer, const char* name) {

@@ -192,7 +192,6 @@ class Os {
   bool interpretation_began_ = false;
   bool behaviors_drive_ = false;
   int stands_ = 0;  ///< [cycles] on the way to a position
-  std::uint64_t seen_ = 0;
   std::deque<std::pair<double, std::uint64_t>> seen_times_;
   std::uint64_t map_revision_ = 0;
   std::uint32_t environment_ = 0;

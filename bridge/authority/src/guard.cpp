@@ -29,8 +29,9 @@ double limit_of(double setting, double robot) {
 namespace {
 
 struct Nearest {
-  double free = std::numeric_limits<double>::infinity();  // [m] as free_distance()
-  std::size_t point = 0;                                  // its index
+  // [m] of the hull along its straight path until the point comes within it and its side margin
+  double free = std::numeric_limits<double>::infinity();
+  std::size_t point = 0;  // its index
 };
 
 Nearest nearest(const std::vector<Vec2>& points, double radius, double side_margin, bool forward) {
@@ -51,11 +52,6 @@ Nearest nearest(const std::vector<Vec2>& points, double radius, double side_marg
 }
 
 }  // namespace
-
-double free_distance(const std::vector<Vec2>& points, double radius, double side_margin,
-                     bool forward) {
-  return nearest(points, radius, side_margin, forward).free;
-}
 
 double approach_speed(double distance, double end, double reaction, double deceleration,
                       double closing) {

@@ -204,8 +204,8 @@ TEST(Language, ParametersHaveUnitsLimitsAndDefaults) {
 }
 
 TEST(Language, TheManualsExampleRunsAsItIsPrinted) {
-  const std::string text = read_file(test::source("services/behaviors/test/data/manual-7.2.beh"));
-  const Compiled compiled = compile(text, "manual-7.2.beh");
+  const std::string text = read_file(test::source("config/behaviors/manual-example.beh"));
+  const Compiled compiled = compile(text, "manual-example.beh");
   ASSERT_EQ(all(compiled.errors), "");
   // Three underscores lost in print.
   EXPECT_EQ(compiled.warnings.size(), 3U) << all(compiled.warnings);

@@ -50,14 +50,6 @@ double PoseFilter::sigma_position() const {
   return std::sqrt((a + b) / 2.0 + std::sqrt((a - b) * (a - b) / 4.0 + c * c));
 }
 
-void PoseFilter::set_pose(const Pose& pose, const Eigen::Matrix3d& covariance) {
-  state_.head<3>() << pose.x, pose.y, norm2_angle(pose.th);
-  const double drift_variance = covariance_(3, 3);
-  covariance_.setZero();
-  covariance_.topLeftCorner<3, 3>() = covariance;
-  covariance_(3, 3) = drift_variance;
-}
-
 void PoseFilter::widen(double position, double heading) {
   covariance_(0, 0) += position * position;
   covariance_(1, 1) += position * position;

@@ -63,7 +63,6 @@ class Registration::Self {
   const Output& output() const { return now_.output; }
   const maps::Map& map() const { return map_; }
   const Settings& settings() const { return settings_; }
-  bool on() const { return now_.on; }
 
   void place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, double confidence);
@@ -696,10 +695,6 @@ void Registration::forget_pose() {
 
 void Registration::switch_on(bool on) {
   self_->switch_on(on);
-}
-
-bool Registration::on() const {
-  return self_->on();
 }
 
 const std::set<std::uint32_t>& Registration::closed_doors() const {

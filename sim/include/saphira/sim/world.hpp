@@ -29,12 +29,6 @@ struct Things {
   std::vector<Disc> discs;
 };
 
-/// The surface that a ray meets.
-struct Hit {
-  double range = 0.0;      ///< [m]
-  double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
-};
-
 /// A place in a world file.
 struct Place {
   int line = 1;
@@ -95,13 +89,14 @@ double distance(const Things& things, const Vec2& point);
 /// True where two segments have a common point, including ends; not where they are collinear.
 bool intersect(const Segment& a, const Segment& b);
 
-/// The first segment that a ray meets within `range`. `direction` is a unit vector.
-std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
-                            const Vec2& direction, double range);
+/// The distance of the first segment that a ray meets within `range` [m]. `direction` is a unit
+/// vector.
+std::optional<double> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
+                               const Vec2& direction, double range);
 
-/// The nearest thing on a ray within `range`. A ray from within a disc does not meet the disc.
-std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
-                            double range);
+/// The same of the nearest thing. A ray from within a disc does not meet the disc.
+std::optional<double> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
+                               double range);
 
 /// The segments of a world near a moving point: the same results as from all of them, at the cost
 /// of the near ones.

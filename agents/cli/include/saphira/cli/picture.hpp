@@ -20,7 +20,6 @@ class Picture {
   void move_robot(const Pose& pose);
   /// Adds an echo; echoes in the same 5 cm are one.
   void add_echo(const Vec2& point);
-  void clear();
   /// Walls and the sides of rooms and corridors, from point to point, of the map; shown within the
   /// range of the other contents.
   void set_walls(std::vector<std::pair<Vec2, Vec2>> walls) { walls_ = std::move(walls); }

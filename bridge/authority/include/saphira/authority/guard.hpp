@@ -59,11 +59,6 @@ struct Guarded {
   std::optional<Vec2> obstacle = std::nullopt;
 };
 
-/// Free distance [m] of the hull along its straight path (forward, or backward) until the first of
-/// `points` (robot frame) comes within the hull and its side margin; infinity: none does.
-double free_distance(const std::vector<Vec2>& points, double radius, double side_margin,
-                     bool forward);
-
 /// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A
 /// stop takes effect after `reaction` [s] with `deceleration` [m/s2], and the obstacle approaches
 /// at `closing` [m/s] until then.

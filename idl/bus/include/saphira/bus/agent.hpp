@@ -22,7 +22,8 @@ namespace saphira::bus {
 ///             [&](const v1::Request& request) { return done({text("place", "library")}); });
 ///   while (!stop.requested()) { node.wait(500ms, &stop); agent.poll(); }
 ///
-/// Its capabilities end with the object, also when the process is killed.
+/// Its capabilities end with the object, also when the process is killed. A process that stood
+/// still, or was cut off, has them again when it is heard again.
 class Agent {
  public:
   /// Its answer to a request whose arguments fit. ANSWER_UNDERWAY: the end follows by answer().

@@ -45,8 +45,6 @@ class PoseFilter {
   Eigen::Matrix3d pose_covariance() const { return covariance_.topLeftCorner<3, 3>(); }
   double sigma_position() const;  ///< [m] along the worst direction
   void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
-  /// Another pose; the drift stays.
-  void set_pose(const Pose& pose, const Eigen::Matrix3d& covariance);
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
 

@@ -157,7 +157,6 @@ class Registration {
   /// Forgets the robot's pose, and searches for it.
   void forget_pose();
   void switch_on(bool on);
-  bool on() const;
   /// Doors by id that were closed when the robot last looked at them.
   const std::set<std::uint32_t>& closed_doors() const;
   void recall_closed(std::set<std::uint32_t> doors);
