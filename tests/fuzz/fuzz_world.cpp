@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double nearest = saphira::sim::distance(world.segments, {1.0, 1.0});
     const auto hit = saphira::sim::cast_ray(world.segments, {1.0, 1.0}, {1.0, 0.0}, 5.0);
     // The hit of a ray is not nearer than the nearest point (except for rounding, far out).
-    if (std::isnan(nearest) || (hit && hit->range < nearest - 1e-3))
+    if (std::isnan(nearest) || (hit && *hit < nearest - 1e-3))
       std::abort();
     saphira::sim::plot_svg(world, {}, 0.2);
     // The scene can run.

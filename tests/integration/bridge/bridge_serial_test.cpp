@@ -56,12 +56,13 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
       << "commands that wait are old";
   EXPECT_EQ(scene.state.bad_packets(), 0U);
   EXPECT_EQ(scene.status.reason(), "");
-  // Release stops the robot: 0.3 m/s at 2 m/s2, plus the line's own time.
+  // Release stops the robot: 0.3 m/s at 2 m/s2, plus the line's own time. From the grant's end on,
+  // so that a busy machine's way from here to the bridge does not count.
   scene.drives = false;
   scene.command.active(false);
-  const std::uint64_t released = scene.trace().back().cycle;
   scene.publish();
-  const int cycles = scene.cycles_to_stand(released);
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
+  const int cycles = scene.cycles_to_stand(scene.grant.stamp().cycle());
   std::printf("%.0f bytes/s from the robot; stood still %d cycles after the release\n", rate,
               cycles);
   EXPECT_GE(cycles, 0);
@@ -192,7 +193,11 @@ TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   const std::uint64_t cycle = scene.state.stamp().cycle();
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
   EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the first one is not disturbed";
-  EXPECT_GT(scene.state.velocity(), 0.28);
+  // It drives as before. Nothing was commanded while the second node was made: let go first.
+  scene.command.active(false);
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  forward(scene.command, 0.3);
+  EXPECT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
   // After the end of the first one, the second has the robot.
   scene.bridge->signal(SIGTERM);
   auto states = second.node.reader(bus::topics::kRobotState);

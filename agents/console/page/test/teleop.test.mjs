@@ -197,7 +197,8 @@ describe('driving', {concurrency: true}, () => {
     near.leave();
     const far = await link(robot, 500), ann = await operator(robot, far.port, 'fay');
     const slow = await drives(robot, ann);
-    assert.ok(slow < 0.7 * quick, `${slow} m/s over 500 ms, ${quick} m/s here`);
+    // Of what is asked for: a busy machine delays, and so slows, the near one as well.
+    assert.ok(slow < 0.7 * wanted, `${slow} of ${wanted} m/s over 500 ms`);
     // Without pauses: it hears of each cycle, though late.
     let looks = 0, moving = 0;
     for (const end = Date.now() + 4000; Date.now() < end; await sleep(50), ++looks) moving += speed() > 0.05 ? 1 : 0;
