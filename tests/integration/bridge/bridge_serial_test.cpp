@@ -62,6 +62,7 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
   scene.command.active(false);
   scene.publish();
   ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
+  EXPECT_EQ(scene.grant.reason(), "nothing asks the robot to move") << "by release, not by lease";
   const int cycles = scene.cycles_to_stand(scene.grant.stamp().cycle());
   std::printf("%.0f bytes/s from the robot; stood still %d cycles after the release\n", rate,
               cycles);
