@@ -194,6 +194,9 @@ v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authorit
   out.estopped(grant.estopped);
   out.estop_source(grant.estop_source);
   out.waits_for_hand_back(grant.waits_for_hand_back);
+  out.stop().asker(grant.stop.asker);
+  out.stop().number(grant.stop.number);
+  out.stop_source(grant.stop_source);
   const auto refusal = [](const authority::Refusal& one) {
     v1::Refusal result;
     result.role(kRoles.theirs(one.role));
@@ -238,6 +241,7 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
   out.command.number = command.number();
   out.command.active = command.active();
   out.command.hand_back = command.hand_back();
+  out.command.heeds = {command.heeds().asker(), command.heeds().number()};
   return out;
 }
 

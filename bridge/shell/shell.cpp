@@ -78,17 +78,23 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      resets_(node_, bus::topics::kEstopReset.answers),
+      stops_(node_, bus::topics::kDriveStop.answers),
       other_programs_(node_),
       link_(transport::parse_address(options_.robot_port)),
       core_(settings_of(options_, lockstep_)),
       devices_(node_, core_.reflector()),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  resets_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
-                [this](const Request& request) {
-                  return core_.reset_estop(request.source, BootClock::seconds());
-                });
+  stops_.serve(
+      bus::topics::kDriveStop,
+      {{"stop",
+        "ends whatever moves the robot, in every role; done once the robot is at rest",
+        {optional(text_parameter("by", "the person or agent behind the program"))}}},
+      [this](const Request& request) { return core_.stop(request, BootClock::seconds()); });
+  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
+               [this](const Request& request) {
+                 return core_.reset_estop(request.source, BootClock::seconds());
+               });
   if (!options_.vision.empty()) {
     camera_.emplace(node_, options_.vision);
     devices_.know(*camera_);
@@ -216,7 +222,7 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  resets_.take(core_.stamp());
+  stops_.take(core_.stamp());
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle());
   core_.answer(now);
@@ -322,6 +328,10 @@ void Shell::perform(const GrantDecided& decided, double) {
     recalled_ = stamp;
     state_recall_.write(newest_state_);
   }
+}
+
+void Shell::perform(const StopEnded& ended, double) {
+  stops_.answer(ended.id.asker, ended.id.number, ended.answer);
 }
 
 void Shell::perform(const WatchLink& watch, double) {

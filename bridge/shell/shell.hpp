@@ -92,6 +92,7 @@ class Shell {
   void perform(const OtherPacket& other, double now);
   void perform(const DevicesChanged& changed, double now);
   void perform(const GrantDecided& decided, double now);
+  void perform(const StopEnded& ended, double now);
   void perform(const WatchLink& watch, double now);
   void perform(const CloseLink& close, double now);
   void perform(const KeepLatches& keep, double now);
@@ -117,7 +118,7 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
   bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
   bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
-  Desk resets_;
+  Desk stops_;  ///< and resets of the emergency stop
   bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);
   OtherPrograms other_programs_;
 

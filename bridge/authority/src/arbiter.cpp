@@ -49,6 +49,7 @@ void Arbiter::let_go() {
 
 void Arbiter::connect(std::uint64_t epoch) {
   epoch_ = epoch;
+  stop_cycle_ = 0;
   deaf_cycle_ = 0;
   deaf_until_ = kNever;
   if (const Player& person = player(Role::teleop); person.held && person.newest.active)
@@ -106,14 +107,23 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
         return a.second.used < b.second.used;
       }));
     known = numbers_.try_emplace(key).first;
+    // First heard of now, it drove before the stop.
+    if (command.cycle != 0 && command.epoch == epoch_ && command.cycle <= stop_cycle_)
+      must_heed(known->second);
   }
   Numbers& said = known->second;
   said.newest = command.number;
   said.used = ++offers_;
+  said.source = command.source;
   if (!command.active) {
     said.newest_at = said.drove = kNever;
     said.must_let_go.clear();
+    said.stopped = false;
     return release(command, cycle);
+  }
+  if (said.stopped && command.heeds == stop_.id) {
+    said.must_let_go.clear();
+    said.stopped = false;
   }
   if (said.stops != command.stop || command.received - said.newest_at > settings_.lease + kTick)
     said.began = command.received;
@@ -127,7 +137,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     return no(wrong);
   }
   Player& p = player(command.role);
-  const bool heard = p.held && p.newest.active && fresh(p, command.received);
+  const bool heard = p.held && p.newest.active && fresh(p, command.received) &&
+                     (command.role == Role::teleop || why_to_let_go(p.newest).empty());
   const bool another = heard && p.newest.writer != command.writer;
   if (another || (command.role == Role::teleop && !command.stop && command.writer != stopper_)) {
     if (const std::string why = another || said.began <= stopped_at_
@@ -238,6 +249,39 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
   }
 }
 
+void Arbiter::must_heed(Numbers& said) const {
+  said.must_let_go = "stopped by " + stop_.source;
+  said.stopped = true;
+}
+
+std::vector<std::string> Arbiter::stop(const StopId& id, const std::string& source, double now,
+                                       std::uint64_t cycle) {
+  stop_ = {id, source};
+  stop_cycle_ = cycle;
+  std::vector<std::string> stopped;
+  for (const Role role : kDriving) {
+    for (auto& [key, said] : numbers_) {
+      if (key.first != role || said.newest_at == kNever)
+        continue;
+      must_heed(said);
+      if (now - said.newest_at <= settings_.lease + kTick)
+        stopped.push_back(said.source + " (" + name(role) + ")");
+    }
+  }
+  return stopped;
+}
+
+/// The reason why the writer has to let go, or to heed the newest stop, before it drives; empty: it
+/// need not.
+std::string Arbiter::why_to_let_go(const Command& command) const {
+  const auto said = numbers_.find({command.role, command.writer});
+  if (said != numbers_.end() && !said->second.must_let_go.empty())
+    return said->second.must_let_go + ": let go first, then drive";
+  if (command.role == Role::behaviors && command.heeds != stop_.id && stop_.id != StopId{})
+    return "stopped by " + stop_.source + ": the goals of before have not ended yet";
+  return {};
+}
+
 std::string Arbiter::reset(const std::string& source, double now) {
   if (!latches_.estopped)
     return "no emergency stop is latched";
@@ -289,12 +333,19 @@ std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) c
   return who + " answers what was " + seconds(age_of(p.newest, cycle)) + " ago, which is too old";
 }
 
+/// A stopped program that drives on does not keep weaker roles from driving. A person does, whose
+/// hand is at the robot.
 Role Arbiter::strongest(double now, std::uint64_t cycle) const {
+  Role stopped = Role::none;
   for (const Role role : kDriving) {
-    if (live(player(role), now, cycle))
+    if (!live(player(role), now, cycle))
+      continue;
+    if (role == Role::teleop || why_to_let_go(player(role).newest).empty())
       return role;
+    if (stopped == Role::none)
+      stopped = role;
   }
-  return Role::none;
+  return stopped;
 }
 
 /// The reason why a role with a live command may not drive; empty where it may.
@@ -302,11 +353,8 @@ std::string Arbiter::why_to_stand(Role role) const {
   if (latches_.estopped)
     return "an emergency stop is latched, pressed by " + latches_.estop_source +
            ": saphira estop reset releases it";
-  if (role == Role::teleop) {
-    const auto person = numbers_.find({role, player(role).newest.writer});
-    if (person != numbers_.end() && !person->second.must_let_go.empty())
-      return person->second.must_let_go + ": let go first, then drive";
-  }
+  if (std::string why = why_to_let_go(player(role).newest); role != Role::none && !why.empty())
+    return why;
   if (!is_autonomy(role))
     return {};
   switch (latches_.wait) {
@@ -356,11 +404,15 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   Grant grant;
   grant.estopped = latches_.estopped;
   grant.estop_source = latches_.estop_source;
+  grant.stop = stop_.id;
+  grant.stop_source = stop_.source;
   const std::string why = why_to_stand(role);
   if (role != Role::none && !why.empty()) {
     for (const Role other : kDriving) {
-      if (live(player(other), now, cycle))
-        refuse(other, player(other).newest.source, why);
+      if (!live(player(other), now, cycle))
+        continue;
+      const std::string own = why_to_let_go(player(other).newest);
+      refuse(other, player(other).newest.source, own.empty() ? why : own);
     }
   }
   if (role == Role::teleop && why.empty()) {
@@ -403,9 +455,11 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   grant.expires_in = settings_.lease - (now - p.moved_on);
   grant.reason = "no stronger driver sends commands";
   for (const Role other : kDriving) {
-    if (other > role && live(player(other), now, cycle))
-      refuse(other, player(other).newest.source,
-             std::string(name(role)) + " is stronger and drives");
+    if (other == role || !live(player(other), now, cycle))
+      continue;
+    const std::string own = why_to_let_go(player(other).newest);
+    refuse(other, player(other).newest.source,
+           own.empty() ? std::string(name(role)) + " is stronger and drives" : own);
   }
   return grant;
 }

@@ -188,6 +188,7 @@ void Core::lost(const std::string& why, double now, Note::Level level) {
   guarded_ = {};
   if (in_session())
     publish_grant();
+  end_stops(AnswerCode::lost, "the link to the robot was lost before it was seen at rest");
   reflector_.devices().connect();
   put(DevicesChanged{session_.stamp});
   session_ = Session();
@@ -368,6 +369,7 @@ void Core::finish_cycle(double now) {
     return step(now);
   }
   decide(now);
+  mind_stops();
   // The driver that follows the cycles answers this packet in a moment, and there is one command a
   // cycle. So the bridge waits for the answer, unless the robot has to stand.
   const bool stops = guarded_.velocity == 0.0 && reflector_.sent_velocity() != 0.0;

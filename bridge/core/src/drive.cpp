@@ -7,6 +7,7 @@
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
+#include "saphira/geometry/pose.hpp"
 
 namespace saphira::bridge {
 
@@ -31,6 +32,15 @@ bool is_stop(const reflector::Motion& motion) {
                      (motion.rotation == Rotation::velocity && motion.rotation_velocity == 0.0) ||
                      (motion.rotation == Rotation::relative_heading && motion.heading == 0.0);
   return stands && holds;
+}
+
+/// Setpoints that keep a robot with this heading where it is.
+bool stand(const reflector::Setpoints& told, double heading_in_odom) {
+  constexpr double kSameHeading = 0.05;  // [rad]
+  return told.velocity == 0.0 &&
+         (told.turn_to_heading
+              ? std::abs(norm2_angle(told.heading_in_odom - heading_in_odom)) < kSameHeading
+              : told.rotation_velocity == 0.0);
 }
 
 bool drives(Role role) {
@@ -81,6 +91,52 @@ void Core::command(const DriveCommand& in, double now) {
 
 void Core::writer_lost(Role role, const authority::WriterId& writer, double now) {
   arbiter_.lost(role, writer, time(now));
+}
+
+Answer Core::stop(const Request& request, double now) {
+  const StopId id{request.asker, request.number != 0 ? request.number : ++numberless_stops_};
+  const Argument* const by = find(request.arguments, "by");
+  const std::string source =
+      by == nullptr || by->text.empty() ? request.source : by->text + ", through " + request.source;
+  std::string stopped;
+  for (const std::string& driver : arbiter_.stop(id, source, time(now), session_.stamp.cycle))
+    stopped += (stopped.empty() ? "" : ", ") + driver;
+  stopped = stopped.empty() ? "nobody drove" : "stopped: " + stopped;
+  info("stop by " + source + ": " + stopped);
+  grant_changed_ = true;
+  if (!in_session()) {
+    grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
+    publish_grant();
+    return {AnswerCode::done, stopped + "; no robot is connected"};
+  }
+  stops_.push_back({id, stopped, session_.stamp.cycle});
+  if (!settings_.lockstep) {
+    decide(now);
+    flush(now);
+  }
+  return {AnswerCode::underway, stopped};
+}
+
+void Core::end_stops(AnswerCode code, const std::string& how) {
+  for (const Stopping& each : std::exchange(stops_, {}))
+    put(StopEnded{each.id, {code, each.stopped + "; " + how}});
+}
+
+/// A packet came, and the driver was selected.
+void Core::mind_stops() {
+  if (stops_.empty() || session_.stamp.cycle < stops_.back().cycle + kStopCycles)
+    return;
+  const protocol::Information& shown = reflector_.state().information;
+  if (drives(grant_.role) && !stand(told_.setpoints, reflector_.state().pose_in_odom.th))
+    end_stops(AnswerCode::done, grant_.source + " has begun to drive since");
+  else if (std::abs(shown.velocity) <= kRestVelocity &&
+           std::abs(shown.rotation_velocity) <= kRestRotation)
+    end_stops(AnswerCode::done, "the robot is at rest");
+  else if (session_.stamp.cycle >= stops_.back().cycle + kMostStopCycles)
+    end_stops(AnswerCode::given_up,
+              format("the robot is told to stand and still moves after %.0f s, at %.2f m/s: is it "
+                     "pushed?",
+                     kCycle * kMostStopCycles, shown.velocity));
 }
 
 Answer Core::reset_estop(const std::string& source, double now) {
@@ -137,8 +193,10 @@ void Core::decide(double now) {
   reflector::Setpoints wanted = reflector_.motion().setpoints();
   told_ = {wanted, reflector_.motion().distance_left()};
   guard(wanted);
-  // A pressed emergency stop, and a robot that is not heard any more, need the hardest stop.
-  if (grant_.role == Role::estop || session_.silent)
+  // A stop, and a robot that is not heard any more, need the hardest brakes.
+  const bool stopping =
+      !stops_.empty() && stand(told_.setpoints, reflector_.state().pose_in_odom.th);
+  if (grant_.role == Role::estop || session_.silent || stopping)
     reflector_.emergency_stop();
   else
     reflector_.hold(wanted);
@@ -217,6 +275,7 @@ void Core::step(double now) {
       return;
     session_.stepped = true;
     decide(now);
+    mind_stops();
     flush(now);
     publish_grant();
   }

@@ -212,6 +212,8 @@ void Player::drive(Role role, bool strange) {
   in.command.number = ++number_;
   in.command.active = !strange || (what & 4U) == 0;
   in.command.hand_back = strange && (what & 8U) != 0;
+  if ((what & 16U) != 0)
+    in.command.heeds = core_.grant().stop;
   in.motion.translation = static_cast<reflector::Translation>(script_.choice(3));
   in.motion.rotation = static_cast<reflector::Rotation>(script_.choice(4));
   const std::size_t usual = strange ? speeds.size() : speeds.size() - 1;
@@ -375,6 +377,13 @@ void Player::event() {
     }
     case 19:
       return pass(0.05);
+    case 21: {
+      Request request{.functor = "stop", .source = "a person"};
+      request.number = ++number_;
+      core_.stop(request, now_);
+      rules_.stopped({0, number_});
+      return answer();
+    }
     case 20:  // the robot is not heard
       for (unsigned passes = script_.choice(16); passes > 0; --passes)
         pass(0.1);

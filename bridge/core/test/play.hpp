@@ -14,6 +14,7 @@ struct Played {
   int motions = 0;  ///< commands that move the robot
   int stops = 0;    ///< emergency stops that were pressed
   int resets = 0;   ///< releases of them
+  int stopped = 0;  ///< stops that are not latched
   int steps = 0;    ///< of a simulator
   int silences = 0;
   int gaps = 0;
@@ -26,6 +27,9 @@ struct Played {
 /// - Packets are whole, and of the kinds that the bridge sends.
 /// - No command moves the robot without a live command of a driver, of this session, later than the
 ///   last silence of the link and the last gap of the loop.
+/// - After a stop no command moves the robot but one of a driver that was silent before it, or has
+/// let
+///   go since, or heeds the stop.
 /// - Zero setpoints come first: in each session, after a silence and after a gap.
 /// - While an emergency stop is latched no command moves the robot, and it is told to stand.
 /// - When the link is closed, the robot was told to stand.

@@ -21,6 +21,7 @@ TEST(Plays, KeepEveryRule) {
     all.motions += played.motions;
     all.stops += played.stops;
     all.resets += played.resets;
+    all.stopped += played.stopped;
     all.steps += played.steps;
     all.silences += played.silences;
     all.gaps += played.gaps;
@@ -31,6 +32,7 @@ TEST(Plays, KeepEveryRule) {
   EXPECT_GT(all.motions, 2000);
   EXPECT_GT(all.stops, 1000);
   EXPECT_GT(all.resets, 300);
+  EXPECT_GT(all.stopped, 1000);
   EXPECT_GT(all.steps, 500);
   EXPECT_GT(all.silences, 300);
   EXPECT_GT(all.gaps, 300);

@@ -52,15 +52,21 @@ void Rules::command(const DriveCommand& in) {
   const bool repeated = !is_new && command.number <= newest->second;
   newest->second = std::max(newest->second, command.number);
   if (!command.active) {
-    if (!repeated)
+    if (!repeated) {
       wishes.clear();
+      must_heed_.erase(writer);
+    }
     return;
   }
   const bool sound = in.wrong.empty() && std::isfinite(in.motion.velocity) &&
                      std::isfinite(in.motion.rotation_velocity) &&
                      std::isfinite(in.motion.heading) && std::isfinite(in.motion.distance) &&
                      std::isfinite(in.contact_speed);
-  if (sound && !repeated)
+  if (!repeated && command.heeds == stop_)
+    must_heed_.erase(writer);
+  else if (command.role == Role::behaviors && stop_ != StopId{})
+    return;
+  if (sound && !repeated && !must_heed_.contains(writer))
     wishes.push_back({time(), command.epoch, command.cycle});
 }
 
@@ -79,6 +85,14 @@ void Rules::released(bool latched_now) {
     pressed_.clear();
   }
   latched_ = latched_now;
+}
+
+void Rules::stopped(const StopId& id) {
+  ++played_.stopped;
+  stop_ = id;
+  for (auto& [writer, wishes] : wishes_)
+    if (!std::exchange(wishes, {}).empty())
+      must_heed_.insert(writer);
 }
 
 void Rules::gap() {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ class Rules {
   void command(const DriveCommand& command);
   void writer_lost(authority::Role role, const authority::WriterId& writer);
   void released(bool latched_now);
+  void stopped(const StopId& id);
   void permit(std::uint64_t until) { permit_ = until; }
   void gap();
   /// The core is about to check the time.
@@ -65,6 +67,8 @@ class Rules {
 
   std::map<Writer, std::vector<Wish>> wishes_;  ///< of this session, since they were let go
   std::map<Writer, std::uint64_t> numbers_;     ///< the newest
+  StopId stop_;                                 ///< the newest
+  std::set<Writer> must_heed_;                  ///< drove before it, and have not let go since
   bool latched_ = false;
   std::map<authority::WriterId, double> pressed_;
   std::uint64_t permit_ = 0;

@@ -23,6 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
+constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
+constexpr double kStopsWithin = 10.0;     // [s] the robot, afterwards
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
 KnownGoal::State state_of(v1::GoalState state) {
@@ -53,6 +55,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       agent_(node, kName, "what the robot was told"),
       goals_(node, kName),
       registration_(node, bus::topics::kRegistrationRequest, kName),
+      stops_(node, bus::topics::kDriveStop, kName),
       heard_(node.reader(bus::topics::kHeard)),
       messages_(node.reader(bus::topics::kMessages)),
       beliefs_(node.reader(bus::topics::kBeliefs)),
@@ -119,7 +122,42 @@ void DialogueShell::reload() {
   }
 }
 
+/// The bridge ends whatever moves the robot, also where no other program works.
+void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
+  stopping_[stops_.send(bus::request("stop", {bus::text("by", wanted.requester())}))] = {wanted.tag,
+                                                                                         {}};
+}
+
+void DialogueShell::take_stops(double seconds) {
+  std::vector<Outcome> ended;
+  for (const v1::Answer& answer : stops_.poll()) {
+    const auto found = stopping_.find(answer.number());
+    if (found == stopping_.end())
+      continue;
+    found->second.until = seconds + kStopsWithin;
+    if (!bus::ended(answer.code()))
+      continue;
+    ended.push_back({found->second.tag, bus::well(answer.code()), answer.text()});
+    stopping_.erase(found);
+  }
+  for (auto one = stopping_.begin(); one != stopping_.end();) {
+    if (!one->second.until)
+      one->second.until = seconds + kConfirmsWithin;
+    if (seconds <= *one->second.until) {
+      ++one;
+      continue;
+    }
+    ended.push_back(
+        {one->second.tag, false, "no bridge has confirmed the stop: press the robot's own switch"});
+    one = stopping_.erase(one);
+  }
+  for (const Outcome& outcome : ended)
+    perform(dialogue_.ended(outcome));
+}
+
 void DialogueShell::want(const WantedGoal& wanted) {
+  if (wanted.functor == "stop" && !node_.options().lockstep)
+    return ask_to_stop(wanted);
   v1::Goal goal;
   goal.functor(wanted.functor);
   goal.arguments(to_bus(wanted.arguments));
@@ -328,6 +366,7 @@ void DialogueShell::step(double seconds, double now) {
       perform(dialogue_.says(sample.data.text(),
                              {sample.data.stamp().epoch(), sample.data.stamp().cycle()}));
   take_goals(seconds);
+  take_stops(seconds);
   take_utterances();
   agent_.poll();
 }

@@ -40,6 +40,8 @@ class DialogueShell {
   std::vector<KnownGoal> known_goals() const;
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
+  void ask_to_stop(const WantedGoal& wanted);
+  void take_stops(double seconds);
   void claim(const Claimed& claim);
   void remember();
   void publish();
@@ -51,6 +53,7 @@ class DialogueShell {
   bus::Agent agent_;
   bus::GoalClient goals_;
   bus::RequestClient registration_;
+  bus::RequestClient stops_;
   bus::Reader<v1::Utterance> heard_;
   bus::Reader<v1::Message> messages_;
   bus::Reader<v1::BeliefSet> beliefs_;
@@ -62,8 +65,13 @@ class DialogueShell {
   bus::Writer<v1::BeliefClaim> claims_;
   bus::Writer<v1::Knowledge> knows_;
   Situation situation_;
-  v1::Vision seen_;                                 ///< the newest
-  std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
+  v1::Vision seen_;                            ///< the newest
+  std::map<std::uint64_t, v1::GoalId> asked_;  ///< by the dialogue's tag
+  struct Stopping {
+    std::uint64_t tag = 0;
+    std::optional<double> until;  ///< [s] then no bridge has answered
+  };
+  std::map<std::uint64_t, Stopping> stopping_;      ///< by the request's number
   std::map<std::uint64_t, std::string> orphans_;    ///< goals of before the restart, by tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;

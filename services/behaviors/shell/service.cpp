@@ -51,6 +51,8 @@ void Service::step(const runtime::Turn& turn) {
   v1::MotorCommand command = command_to_bus(outputs.output);
   command.source(ports_.name());
   command.number(outputs.number);
+  if (const v1::Intentions* const intentions = intentions_.value())
+    command.heeds(intentions->heeds());
   commands_.write(command);
   const v1::BehaviorSet sample = to_bus(outputs.output);
   behaviors_.write(sample);

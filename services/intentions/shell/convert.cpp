@@ -45,6 +45,7 @@ constexpr EnumPairs<GoalCode, v1::GoalCode, 16> kCodes{{{
     {GoalCode::kDisposed, v1::CODE_DISPOSED},
     {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
     {GoalCode::kPreempted, v1::CODE_PREEMPTED},
+    {GoalCode::kStopped, v1::CODE_STOPPED},
 }}};
 constexpr EnumPairs<WriterLost, v1::WriterLost, 2> kPolicies{{{
     {WriterLost::kCancel, v1::WRITER_LOST_CANCEL},
@@ -175,6 +176,10 @@ Core::Heard::Grant from_bus(const v1::Grant& grant) {
     for (const v1::Refusal& refusal : grant.refused())
       if (refusal.role() == v1::ROLE_BEHAVIORS && result.refusal.empty())
         result.refusal = refusal.reason();
+  result.stop = {grant.stop().asker(), grant.stop().number()};
+  result.stop_source = grant.stop_source();
+  if (grant.role() == v1::ROLE_TELEOP || grant.role() == v1::ROLE_DIRECT)
+    result.driver = grant.source();
   if (grant.role() == v1::ROLE_TELEOP)
     result.person = grant.source().empty() ? "a person" : grant.source();
   result.waits_for_hand_back = grant.waits_for_hand_back();

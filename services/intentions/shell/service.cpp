@@ -59,6 +59,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       drawings_(ports.changes(bus::topics::kDrawings)),
       map_requests_(ports.asker(bus::topics::kRegistrationRequest)),
       servo_(ports.asker(bus::topics::kServo)),
+      stops_(ports.asker(bus::topics::kDriveStop)),
       agents_(ports.asker(bus::topics::kSolve)),
       answers_(ports.events(bus::topics::kSolved)),
       memory_(options.memory_file, kMostEndings, ports.files()),
@@ -100,6 +101,8 @@ std::string Service::missing() {
 void Service::step(const runtime::Turn& turn) {
   const Core::Outputs outputs = core_.step(inputs_of(turn));
   remember(outputs.intended.news);
+  if (const auto& by = outputs.intended.stop)
+    core_.executor().heed({ports_.instance(), stops_.ask({"stop", {{"by", *by}}})});
   publish(outputs.intended, outputs.limit);
   publish(outputs.intended.news);
   if (outputs.beliefs)
@@ -316,6 +319,8 @@ void Service::publish(const intentions::Outputs& outputs, const SpeedLimit& limi
   sample.behavior_control(outputs.behavior_control);
   sample.speed_limit(std::max(0.0, limit.speed));
   sample.limit_reason(limit.reason);
+  sample.heeds().asker(core_.executor().heeds().asker);
+  sample.heeds().number(core_.executor().heeds().number);
   const auto carried = [](const auto& each) { return to_bus(each); };
   sample.behaviors(converted(outputs.behaviors, carried));
   sample.nodes(converted(outputs.nodes, carried, kMostNodes));

@@ -82,6 +82,7 @@ class Service final : public runtime::Service {
   runtime::Output<v1::Drawing> drawings_;
   runtime::Asker map_requests_;
   runtime::Asker servo_;
+  runtime::Asker stops_;
   bool robot_turns_head_ = false;
   runtime::Asker agents_;
   bus::Reader<v1::Answer> answers_;

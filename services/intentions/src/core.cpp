@@ -56,8 +56,15 @@ Core::Outputs Core::step(Inputs inputs) {
   now.behaviors_cycle = inputs.behaviors_cycle;
   now.intent_age = inputs.intent_age;
   now.claims = claims_of(inputs.heard);
+  const bool first_grant = !newest_grant_;
   note_grants(inputs.heard.grants);
   now.estop = estop_;
+  if (newest_grant_) {
+    now.stop = newest_grant_->stop;
+    now.stop_source = newest_grant_->stop_source;
+    now.stop_was_before = first_grant;
+  }
+  now.confirms_stops = !lockstep_;
   if (!execution_.works())
     now.hold = execution_.name() + " is suspended";
   if (!lockstep_)
@@ -196,6 +203,8 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   while (answers_.size() > kMostAnswers)
     answers_.erase(answers_.begin());
   around.answers = &answers_;
+  if (!lockstep_ && newest_grant_)
+    around.other_driver = newest_grant_->driver;
 }
 
 /// Maps do not come with the cyclic topics. In lockstep the map is the one that registration used
@@ -367,7 +376,7 @@ std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
 }
 
 /// From any grant since the last time: a stop that was pressed and reset meanwhile counts as well.
-/// In lockstep only the stop is used, so that the time of arrival of a grant does not matter.
+/// In lockstep only stops are used, so that the time of arrival of a grant does not matter.
 void Core::note_grants(const std::vector<Heard::Grant>& grants) {
   bool pressed = false;
   for (const Heard::Grant& grant : grants) {
@@ -376,6 +385,7 @@ void Core::note_grants(const std::vector<Heard::Grant>& grants) {
     else if (!pressed)
       estop_.clear();
     pressed = pressed || grant.pressed;
+    newest_grant_ = grant;
     refusal_ = grant.refusal;
     person_ = why_to_wait(grant);
   }

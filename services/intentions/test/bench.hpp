@@ -49,6 +49,10 @@ class Bench {
     Inputs inputs{epoch, cycle, world.robot, world.levels, cycle - 1, std::exchange(events, {})};
     inputs.troubles = std::exchange(troubles, {});
     inputs.estop = estop;
+    inputs.stop = stop;
+    inputs.stop_source = "a person";
+    inputs.stop_was_before = stop_was_before;
+    inputs.confirms_stops = confirms_stops;
     inputs.around.registration = registration;
     inputs.around.robot_radius = radius;
     out = executor.step(inputs);
@@ -86,6 +90,9 @@ class Bench {
   Registered registration;                ///< the registration's output
   double radius = 0.0;                    ///< [m] of the robot; 0: unknown
   std::string estop;                      ///< program that pressed the emergency stop; empty: none
+  StopId stop;                            ///< the newest stop of the bridge
+  bool stop_was_before = false;
+  bool confirms_stops = false;
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
   std::size_t published = 0;

@@ -143,7 +143,7 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   bench.step();
   for (const std::uint64_t stopped : {1U, 2U, 3U}) {
     EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
-    EXPECT_EQ(bench.status(stopped).code, GoalCode::kPreempted);
+    EXPECT_EQ(bench.status(stopped).code, GoalCode::kStopped);
     EXPECT_EQ(bench.status(stopped).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
     EXPECT_EQ(bench.status(stopped).waits_for, (GoalId{1, 4}));
   }
@@ -158,6 +158,94 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   bench.ask(7, "go_to", kFar);
   bench.step();
   EXPECT_EQ(bench.state(7), GoalState::kUnderway);
+}
+
+constexpr StopId kFirst{7, 1};
+constexpr StopId kSecond{7, 2};
+
+TEST(Executor, AStopOfTheBridgeEndsAllGoalsThatDrive) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  bench.ask(2, "go_to", kFar, 9);
+  bench.step();
+  bench.stop = kFirst;
+  bench.step();
+  for (const std::uint64_t stopped : {1U, 2U}) {
+    EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
+    EXPECT_EQ(bench.status(stopped).code, GoalCode::kStopped);
+    EXPECT_EQ(bench.status(stopped).reason, "stopped by a person: ask anew to have it done");
+  }
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  EXPECT_EQ(bench.executor.heeds(), kFirst);
+  bench.ask(3, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(3), GoalState::kUnderway) << "the same stop ends nothing later";
+  bench.stop = kSecond;
+  bench.step();
+  EXPECT_EQ(bench.state(3), GoalState::kCanceled);
+}
+
+TEST(Executor, AStopFromBeforeTheStartEndsNothing) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  bench.stop = kFirst;
+  bench.stop_was_before = true;
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.executor.heeds(), kFirst);
+}
+
+TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
+  Memory memory;
+  memory.work.epoch = 100;
+  memory.work.heeds = kFirst;
+  for (const StopId& now : {kFirst, kSecond}) {
+    Bench bench(memory);
+    bench.ask(1, "drive", kSlow);
+    bench.stop = now;
+    bench.stop_was_before = true;
+    bench.step();
+    EXPECT_EQ(bench.state(1) == GoalState::kUnderway, now == kFirst);
+  }
+}
+
+// A goal "stop" asks the bridge, and ends when the bridge has confirmed it.
+TEST(Executor, AGoalStopWaitsForTheBridge) {
+  Bench bench;
+  bench.confirms_stops = true;
+  bench.ask(1, "drive", kSlow);
+  bench.step(5);
+  bench.ask(2, "stop", {});
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+  ASSERT_EQ(bench.out.stop, "somebody");
+  bench.executor.heed(kFirst);
+  bench.step(4);
+  EXPECT_EQ(bench.out.stop, std::nullopt);
+  bench.step();
+  ASSERT_EQ(bench.out.stop, "somebody") << "asked again";
+  bench.executor.heed(kSecond);
+  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+  bench.ask(3, "drive", kSlow);
+  bench.stop = kSecond;
+  bench.step(3);
+  EXPECT_EQ(bench.state(2), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(3), GoalState::kUnderway) << "it came after the stop";
+  EXPECT_EQ(bench.executor.heeds(), kSecond);
+}
+
+TEST(Executor, AGoalStopThatNoBridgeConfirmsFails) {
+  Bench bench;
+  bench.confirms_stops = true;
+  bench.stop = kFirst;
+  bench.stop_was_before = true;
+  bench.ask(2, "stop", {});
+  bench.step();
+  bench.executor.heed(kSecond);
+  bench.run(2, 1000);
+  EXPECT_EQ(bench.state(2), GoalState::kFailed);
+  bench.step();
+  EXPECT_EQ(bench.executor.heeds(), kFirst) << "as the bridge has it";
 }
 
 TEST(Executor, AStopEndsWhatAPersonHasInterrupted) {
@@ -182,7 +270,7 @@ TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
   bench.step();
   for (const std::uint64_t ended : {1U, 2U, 3U}) {
     EXPECT_EQ(bench.state(ended), GoalState::kCanceled);
-    EXPECT_EQ(bench.status(ended).code, GoalCode::kPreempted);
+    EXPECT_EQ(bench.status(ended).code, GoalCode::kStopped);
     EXPECT_EQ(bench.status(ended).reason,
               "emergency stop, pressed by \"button\": ask anew once it is released");
   }

@@ -51,7 +51,7 @@ TEST(Journal, ReadsEveryStateAndCodeThatAGoalCanEndWith) {
     ending.code = static_cast<GoalCode>(codes);
     EXPECT_EQ(read(write_line(ending)).endings, std::vector{ending});
   }
-  EXPECT_EQ(codes, static_cast<int>(GoalCode::kPreempted) + 1);
+  EXPECT_EQ(codes, static_cast<int>(GoalCode::kStopped) + 1);
 }
 
 TEST(Journal, TheNewestPlacementCountsAndAnEndingEndsIt) {

@@ -143,6 +143,7 @@ TEST(Work, ReadsWhatItWrote) {
                           Value(Point{{1.5, -2.0, 3.0}, Frame::map}),
                           Value(Value::List{Value(-4.0), Value(Reference{})})})}},
       {{"*speed*", Value(0.3), "patrol", -17}}};
+  work.heeds = {~0ULL, 5};
   EXPECT_EQ(read_work("work", write_work(work)), work);
 }
 

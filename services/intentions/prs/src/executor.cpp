@@ -17,6 +17,11 @@ constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
 constexpr int kBeginsPerCycle = 8;
 
+/// The bridge is asked again for a stop that it does not confirm.
+constexpr Ticks kAskAgain = 5;
+/// Own stops that may be on the way.
+constexpr std::size_t kMostOwnStops = 16;
+
 /// Cycles for the trend of a level, and the least difference.
 constexpr std::size_t kTrend = 20;
 constexpr double kTrendStep = 0.02;
@@ -88,6 +93,7 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
   for (const Placement& placement : memory.placements)
     remembered_places_[placement.id] = placement;
   remembered_work_ = memory.work;
+  heeds_ = saved_heeds_ = memory.work.heeds;
   for (const Ending& ending : memory.endings)
     remember(ending);
 }
@@ -152,10 +158,15 @@ Outputs Executor::step(const Inputs& inputs) {
   }
   check_deadlines(inputs.robot);
   replace();
-  obey_estop(inputs.estop);
+  obey_stop(inputs);
+  if (!inputs.estop.empty())
+    end_driving("emergency stop, pressed by " + quoted(inputs.estop) +
+                ": ask anew once it is released");
   for (const ClaimEvent& claim : inputs.claims)
     beliefs_->take(claim, now_);
-  const World world{inputs.robot, inputs.around, *beliefs_, now_};
+  Surroundings around = inputs.around;
+  around.stop_confirmed = !stop_by_ || !inputs.confirms_stops;
+  const World world{inputs.robot, around, *beliefs_, now_};
   beliefs_->look(world);
   if (inputs.behaviors_cycle > 0)
     forest_.hear(inputs.behaviors, now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle +
@@ -179,6 +190,9 @@ Outputs Executor::step(const Inputs& inputs) {
                   forest_.behavior_control(), forest_.take_said(), forest_.take_requests(),
                   forest_.take_questions()};
   outputs.news.work = take_work();
+  const Ticks since = now_ - stop_asked_;
+  if (stop_by_ && (since == 0 || (inputs.confirms_stops && since % kAskAgain == 0)))
+    outputs.stop = stop_by_;
   return outputs;
 }
 
@@ -510,11 +524,13 @@ void Executor::replace() {
     if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
       continue;
     stop.replaced = true;
+    stop_by_ = stop.goal.requester;
+    stop_asked_ = now_;
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
       if (open(other.status) && drives(other) && earlier) {
-        end(other, GoalState::kCanceled, GoalCode::kPreempted,
+        end(other, GoalState::kCanceled, GoalCode::kStopped,
             "stopped by " + name_of_goal(stop.goal));
         other.status.waits_for = id;
       }
@@ -522,16 +538,42 @@ void Executor::replace() {
   }
 }
 
-/// While an emergency stop is latched no goal may drive, now or after its reset: earlier goals do
-/// not continue by themselves.
-void Executor::obey_estop(const std::string& source) {
-  if (source.empty())
-    return;
-  for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && drives(entry))
-      end(entry, GoalState::kCanceled, GoalCode::kPreempted,
-          "emergency stop, pressed by " + quoted(source) + ": ask anew once it is released");
+/// A stop of the bridge ends every goal that drives, as a goal "stop" does, which asks the bridge
+/// for one. Without a memory, a stop from before the start says nothing about the goals.
+void Executor::obey_stop(const Inputs& inputs) {
+  if (inputs.stop != StopId{} && inputs.stop != seen_stop_) {
+    const bool own =
+        std::find(own_stops_.begin(), own_stops_.end(), inputs.stop) != own_stops_.end();
+    const bool old =
+        (!own && inputs.stop == heeds_) || (inputs.stop_was_before && heeds_ == StopId{});
+    if (!own && !old)
+      end_driving("stopped by " + inputs.stop_source + ": ask anew to have it done");
+    heeds_ = seen_stop_ = inputs.stop;
+    if (!old)
+      stop_by_.reset();
   }
+  const bool stops = std::any_of(entries_.begin(), entries_.end(), [](const auto& each) {
+    return open(each.second.status) && each.second.schema->replaces;
+  });
+  if (stop_by_ && !stops) {  // never confirmed
+    stop_by_.reset();
+    if (inputs.confirms_stops && seen_stop_ != StopId{})
+      heeds_ = seen_stop_;
+  }
+}
+
+void Executor::heed(const StopId& own) {
+  heeds_ = own;
+  own_stops_.push_back(own);
+  if (own_stops_.size() > kMostOwnStops)
+    own_stops_.pop_front();
+}
+
+/// Goals that have been stopped do not go on by themselves.
+void Executor::end_driving(const std::string& why) {
+  for (auto& [id, entry] : entries_)
+    if (open(entry.status) && drives(entry))
+      end(entry, GoalState::kCanceled, GoalCode::kStopped, why);
 }
 
 /// The present work of an intention, for people: an activity of the language uses the words of its
@@ -668,9 +710,11 @@ std::optional<Work> Executor::take_work() {
   const bool changed = forest_.take_changed();
   const bool set = set_revision_ != beliefs_->set_revision();
   set_revision_ = beliefs_->set_revision();
-  if (!options_.remembers_work || !odom_ || !(changed || set))
+  const bool stopped = std::exchange(saved_heeds_, heeds_) != heeds_;
+  if (!options_.remembers_work || !odom_ || !(changed || set || stopped))
     return std::nullopt;
   Work work{epoch_, cycle_, *odom_, now_, {}, {}};
+  work.heeds = heeds_;
   work.beliefs = beliefs_->set_by_activities();
   // Its setter saves that with its own progress.
   std::erase_if(work.beliefs, [&](const Belief& belief) {

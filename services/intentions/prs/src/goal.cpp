@@ -11,11 +11,11 @@ namespace {
 constexpr std::array<const char*, 7> kStates{"waiting",   "refused", "underway", "suspended",
                                              "succeeded", "failed",  "canceled"};
 static_assert(kStates.size() == static_cast<std::size_t>(GoalState::kCanceled) + 1);
-constexpr std::array<const char*, 16> kCodes{
+constexpr std::array<const char*, 17> kCodes{
     "none",     "unknown_functor", "bad_argument", "changed",     "too_many", "forgotten",
     "deadline", "blocked",         "no_robot",     "no_position", "no_route", "activity",
-    "timeout",  "disposed",        "writer_lost",  "preempted"};
-static_assert(kCodes.size() == static_cast<std::size_t>(GoalCode::kPreempted) + 1);
+    "timeout",  "disposed",        "writer_lost",  "preempted",   "stopped"};
+static_assert(kCodes.size() == static_cast<std::size_t>(GoalCode::kStopped) + 1);
 
 template <class Names, class Enum>
 const char* name_in(const Names& names, Enum value) {

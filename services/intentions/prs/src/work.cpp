@@ -53,8 +53,11 @@ void read_line(const Value& line, Work& work) {
   } else if (kind == "belief") {
     Belief& belief = work.beliefs.emplace_back();
     in(belief.name, belief.value, belief.said_by, belief.since);
+  } else if (kind == "heeds") {
+    in(first, second);
+    work.heeds = {read_whole(first), read_whole(second)};
   } else {
-    throw ActivityError("expected \"at\", \"goal\" or \"belief\"");
+    throw ActivityError("expected \"at\", \"goal\", \"belief\" or \"heeds\"");
   }
 }
 
@@ -67,6 +70,8 @@ std::string write_work(const Work& work) {
         line("goal", whole(goal.id.writer), whole(goal.id.number), goal.functor, goal.intentions);
   for (const Belief& belief : work.beliefs)
     text += line("belief", belief.name, belief.value, belief.said_by, belief.since);
+  if (work.heeds != StopId{})
+    text += line("heeds", whole(work.heeds.asker), whole(work.heeds.number));
   return text;
 }
 

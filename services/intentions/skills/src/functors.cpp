@@ -458,9 +458,20 @@ class Halt : public Activity {
     if (first_ > 0.0)
       self.progress(1.0 - velocity / first_);
     const Ticks passed = self.now() - begun_;
-    if (at_rest(self.robot()) && passed >= kOnTheWay)
+    const Surroundings& around = self.world().around;
+    const bool over = static_cast<double>(passed) * kTick >= kPatience;
+    if (!around.stop_confirmed)
+      return over ? self.fail(GoalCode::kBlocked,
+                              "the bridge has not confirmed the stop: the "
+                              "emergency stop is saphira estop")
+                  : self.say("asks the bridge to stop the robot");
+    if (passed < kOnTheWay)
+      return;
+    if (!around.other_driver.empty())
+      self.succeed("stopped; " + around.other_driver + " has begun to drive since");
+    else if (at_rest(self.robot()))
       self.succeed("the robot is at rest");
-    else if (static_cast<double>(passed) * kTick >= kPatience)
+    else if (over)
       self.fail(GoalCode::kBlocked,
                 format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
   }

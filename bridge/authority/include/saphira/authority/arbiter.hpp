@@ -10,6 +10,7 @@
 #include "saphira/authority/latches.hpp"
 #include "saphira/base/age.hpp"
 #include "saphira/base/stamp.hpp"
+#include "saphira/base/stop_id.hpp"
 
 namespace saphira::authority {
 
@@ -33,6 +34,7 @@ struct Command {
   bool active = false;       ///< the dead-man: false releases
   bool stop = false;         ///< active, and asks for zero speed and no turn
   bool hand_back = false;    ///< a person's release that lets autonomy drive again
+  StopId heeds;              ///< the newest stop that its intent comes after
   double received = 0.0;     ///< [s]
 };
 
@@ -70,6 +72,8 @@ struct Grant {
   bool estopped = false;             ///< an emergency stop is latched
   std::string estop_source;          ///< which program pressed it
   bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
+  StopId stop;                       ///< the newest stop
+  std::string stop_source;           ///< the person or program that asked for it
   Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
   std::uint64_t number = 0;  ///< of that command
 
@@ -87,9 +91,13 @@ struct Grant {
 /// the writer, or a new connection. The same writer has to let go first. Thus a robot does not jump
 /// off when a link comes back.
 ///
-/// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
-/// from the present driver, who has to let go before driving again. The stop keeps the role for
-/// stop_hold.
+/// A stop (stop()) ends the driving of every writer, in every role, also of those that are refused
+/// at that time. A stopped writer does not drive before it has released, or before a command heeds
+/// the stop. A command of the behaviors has to heed it: the release of a cycle says nothing about
+/// the intent of the next one.
+///
+/// A person's command of zero speed and no turn takes the role from the present person, who has to
+/// let go before driving again. It keeps the role for stop_hold.
 ///
 /// Two states are latched, over connections and, with latches() and restore(), over a restart:
 /// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
@@ -117,6 +125,9 @@ class Arbiter {
   /// Refuses a command for a reason that the caller found (such as NaN).
   void refuse(Role role, const std::string& source, const std::string& reason);
 
+  /// Stops every driver. Returns those that asked to move, strongest first, in words.
+  std::vector<std::string> stop(const StopId& id, const std::string& source, double now,
+                                std::uint64_t cycle);
   /// Releases the emergency stop. Returns the reason where it may not be released, in words; empty
   /// where it is released.
   std::string reset(const std::string& source, double now);
@@ -154,6 +165,7 @@ class Arbiter {
   void end_wait(double now);
   void watch_person(double now, std::uint64_t cycle);
   void must_let_go(const WriterId& person, const char* why);
+  std::string why_to_let_go(const Command& command) const;
 
   Settings settings_;
   std::uint64_t epoch_ = 0;
@@ -168,15 +180,25 @@ class Arbiter {
     bool stops = false;
     double began = 0.0;         ///< [s]
     double newest_at = -1e300;  ///< [s]
-    // A person's program, since its newest release:
-    double drove = -1e300;    ///< [s] newest time with a live command
+    std::string source;
+    // Since its newest release:
+    double drove = -1e300;    ///< [s] of a person's program: newest time with a live command
     std::string must_let_go;  ///< why a release has to come before driving [empty: it need not]
+    bool stopped = false;     ///< because of the newest stop, which a command may heed instead
   };
+
+  void must_heed(Numbers& said) const;
 
   /// Newest number by role and writer. Kept over connections, so that a repeated old command never
   /// drives.
   std::map<std::pair<Role, WriterId>, Numbers> numbers_;
   std::uint64_t offers_ = 0;
+
+  struct {
+    StopId id;
+    std::string source;
+  } stop_;                        ///< the newest
+  std::uint64_t stop_cycle_ = 0;  ///< of this epoch; a command that answers it was before the stop
 
   Latches latches_;
   struct Press {

@@ -80,6 +80,10 @@ class Core {
   void command(const DriveCommand& command, double now);
   /// A writer of motor commands is gone.
   void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
+  /// Stops every driver at once, with the hardest brakes; whoever drove has to let go, or to begin
+  /// anew. Returns the stopped drivers in words. An answer that is underway ends with StopEnded,
+  /// once the robot has been at rest.
+  Answer stop(const Request& request, double now);
   /// Releases the emergency stop, at the request of `source`.
   Answer reset_estop(const std::string& source, double now);
   /// Lockstep: the simulator may step while its cycle is less than this.
@@ -173,6 +177,8 @@ class Core {
   void flush(double now);
   void publish_grant();
   void keep_latches(double now);
+  void mind_stops();
+  void end_stops(AnswerCode code, const std::string& how);
 
   void mind_keeper(double now, const Surroundings& around);
   bool motors_off() const;
@@ -212,6 +218,13 @@ class Core {
   bool driver_spoke_ = false;  ///< the present driver, since the last answer
   double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
   double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
+  struct Stopping {
+    StopId id;
+    std::string stopped;      ///< the stopped drivers, in words
+    std::uint64_t cycle = 0;  ///< of the stop
+  };
+  std::vector<Stopping> stops_;  ///< until the robot is at rest
+  std::uint64_t numberless_stops_ = 0;
 
   std::size_t room_ = SIZE_MAX;
   std::optional<double> last_loop_;  ///< [s]

@@ -11,9 +11,11 @@
 #include "saphira/authority/guard.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/base/stamp.hpp"
+#include "saphira/base/stop_id.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
+#include "saphira/requests/request.hpp"
 
 namespace saphira::bridge {
 
@@ -72,6 +74,11 @@ struct Told {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position
 };
+/// The end of a stop (Core::stop).
+struct StopEnded {
+  StopId id;
+  Answer answer;
+};
 /// Any packet except an information packet, for devices and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
@@ -126,8 +133,8 @@ struct StatusReport {
   std::optional<Reaction> reaction;
 };
 
-using Output =
-    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, DevicesChanged,
-                 GrantDecided, WatchLink, CloseLink, KeepLatches, KeepOdometry, StatusReport, Note>;
+using Output = std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket,
+                            DevicesChanged, GrantDecided, StopEnded, WatchLink, CloseLink,
+                            KeepLatches, KeepOdometry, StatusReport, Note>;
 
 }  // namespace saphira::bridge

@@ -65,6 +65,9 @@ class Core {
       std::string refusal{};
       std::string person{};              ///< that drives by teleop [empty: nobody does]
       bool waits_for_hand_back = false;  ///< a person drove last
+      StopId stop{};                     ///< the newest stop
+      std::string stop_source{};         ///< its asker
+      std::string driver{};  ///< that drives in a stronger role than the behaviors [empty: nobody]
     };
     double running = 0.0;  ///< [s] since this start of the service
     std::vector<Writer> lost_requesters;
@@ -175,6 +178,7 @@ class Core {
   std::string refusal_;  ///< why the bridge does not let the behaviors drive
   std::string person_;   ///< why goals that drive wait for a person
   std::string estop_;    ///< the program that pressed the latched emergency stop
+  std::optional<Heard::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/stop_id.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
 #include "saphira/intentions/functions.hpp"
@@ -44,6 +45,10 @@ struct Inputs {
   std::string hold{};                       ///< the reason why all goals wait; empty: they do not
   std::string person{};  ///< why goals that drive are to wait for a person; empty: they are not
   std::string estop{};   ///< the program that pressed the latched emergency stop; empty: none
+  StopId stop{};         ///< the newest stop of the bridge
+  std::string stop_source{};     ///< its asker
+  bool stop_was_before = false;  ///< the service has just begun: the stop may be an old one
+  bool confirms_stops = false;   ///< live: the bridge's newest stop comes within some cycles
   /// [cycles] Age of the intent that the behaviors were computed from.
   std::uint64_t intent_age = 1;
 };
@@ -67,6 +72,8 @@ struct Outputs {
   std::vector<Said> said;            ///< to people, oldest first
   std::vector<Request> requests{};   ///< to registration, oldest first
   std::vector<Request> questions{};  ///< to agents, oldest first; each has its number
+  /// The requester of a stop for which the bridge is to be asked (Executor::heed); none: no stop.
+  std::optional<std::string> stop{};
 };
 
 struct ExecutorOptions {
@@ -97,6 +104,11 @@ class Executor {
   /// connected. Starts nothing: the next step is the same whether the events came before or with
   /// it.
   News hear(const std::vector<GoalEvent>& events);
+
+  /// The id of the stop that a step asked for: goals of afterwards may drive.
+  void heed(const StopId& own);
+  /// The stop that all goals that drive come after.
+  const StopId& heeds() const { return heeds_; }
 
   /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
   News robot_gone();
@@ -163,7 +175,8 @@ class Executor {
   void pass_changes();
   void check_deadlines(const Robot& robot);
   void replace();
-  void obey_estop(const std::string& source);
+  void obey_stop(const Inputs& inputs);
+  void end_driving(const std::string& why);
   std::string step_of(const IntentionNode& node) const;
   static bool drives(const Entry& entry);
   bool waits_for_person(const Entry& entry) const;
@@ -197,7 +210,13 @@ class Executor {
   std::uint64_t epoch_ = 0;
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
-  std::string person_;                 ///< of the newest inputs
+  std::string person_;  ///< of the newest inputs
+  StopId heeds_;
+  StopId saved_heeds_;
+  StopId seen_stop_;  ///< the bridge's
+  std::deque<StopId> own_stops_;
+  std::optional<std::string> stop_by_;  ///< requester of a stop that the bridge has not confirmed
+  Ticks stop_asked_ = 0;
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
   std::vector<GoalId> withdrawn_;
   std::vector<Placement> placed_;

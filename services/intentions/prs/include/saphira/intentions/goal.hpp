@@ -55,7 +55,8 @@ enum class GoalCode {
   kTimeout,   ///< a part took too long
   kDisposed,
   kWriterLost,
-  kPreempted
+  kPreempted,
+  kStopped
 };
 
 /// Of a goal's level, over the last seconds.

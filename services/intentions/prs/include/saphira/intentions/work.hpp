@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/stop_id.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
 #include "saphira/intentions/value.hpp"
@@ -29,6 +30,7 @@ struct Work {
   Ticks now = 0;  ///< the clock continues as well: activities may remember times
   std::vector<GoalWork> goals;
   std::vector<Belief> beliefs;
+  StopId heeds{};  ///< the newest stop that has ended goals
 
   bool operator==(const Work&) const = default;
 };
@@ -37,6 +39,7 @@ struct Work {
 ///   (at epoch cycle odom now)
 ///   (goal writer(hex) number functor intentions)
 ///   (belief name value said_by since)
+///   (heeds asker(hex) number)                    where there was a stop
 std::string write_work(const Work& work);
 /// FileError for any other text.
 Work read_work(const std::string& file, std::string_view text);

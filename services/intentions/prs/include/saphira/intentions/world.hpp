@@ -89,6 +89,9 @@ struct Surroundings {
   double head_reach = 0.0;    ///< [rad] turn of the cameras to either side; 0: they are fixed
   /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
+  bool stop_confirmed = true;  ///< the bridge has carried out the newest stop
+  std::string
+      other_driver{};  ///< a person or program that drives in a stronger role; empty: nobody
   /// The zones of the map and by advice, once somebody has asked for them (skills/src/zones.hpp).
   mutable std::shared_ptr<const KnownZones> zones;
 };

@@ -1,0 +1,128 @@
+// A stop in the core: at once, with the hardest brakes, and answered once the robot stands.
+#include <gtest/gtest.h>
+
+#include "scene.hpp"
+
+namespace saphira::bridge::test {
+namespace {
+
+using authority::Role;
+
+struct StopScene : Driven {
+  explicit StopScene(Role role = Role::direct) : Driven(role) { shows(0.3); }
+
+  /// The robot's packets show this speed [m/s].
+  void shows(double velocity) {
+    shown.left_velocity = shown.right_velocity = static_cast<std::int16_t>(velocity * 1000.0);
+  }
+  Answer stop() {
+    const Answer answer = core.stop(
+        {.functor = "stop", .arguments = {}, .source = "a person", .asker = 7, .number = ++asked},
+        now);
+    deliver();
+    return answer;
+  }
+  std::vector<Answer> ends() const {
+    std::vector<Answer> answers;
+    for (const StopEnded& ended : all<StopEnded>())
+      answers.push_back(ended.answer);
+    return answers;
+  }
+  std::uint64_t asked = 0;
+};
+
+TEST(Stop, BrakesAtOnceAndAsHardAsItCan) {
+  StopScene scene;
+  scene.cycle();
+  scene.drive(Role::direct, 0.3);
+  scene.forget();
+  const Answer answer = scene.stop();
+  EXPECT_EQ(answer, (Answer{AnswerCode::underway, "stopped: direct (direct)"}));
+  EXPECT_TRUE(scene.was_sent(protocol::EmergencyStop{}));
+  ASSERT_TRUE(scene.has<GrantDecided>());
+  EXPECT_EQ(scene.all<GrantDecided>().back().grant.stop, (StopId{7, 1}));
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+}
+
+TEST(Stop, IsDoneOnceTheRobotIsAtRest) {
+  StopScene scene;
+  scene.stop();
+  for (int i = 0; i < 5; ++i)
+    scene.cycles(1, Role::direct, 0.3);
+  EXPECT_EQ(scene.ends(), std::vector<Answer>{});
+  EXPECT_FALSE(scene.was_moved());
+  scene.shows(0.0);
+  scene.cycle();
+  EXPECT_EQ(
+      scene.ends(),
+      (std::vector<Answer>{{AnswerCode::done, "stopped: direct (direct); the robot is at rest"}}));
+  scene.cycles(20, Role::direct, 0.3);
+  EXPECT_FALSE(scene.was_moved()) << "its driver has not let go";
+}
+
+// The services hear of the stop before its asker goes on.
+TEST(Stop, TakesTwoCyclesAtLeast) {
+  StopScene scene;
+  scene.shows(0.0);
+  scene.cycle();
+  scene.stop();
+  scene.cycle();
+  EXPECT_EQ(scene.ends().size(), 0U);
+  scene.cycle();
+  EXPECT_EQ(scene.ends().size(), 1U);
+}
+
+TEST(Stop, FailsWhereTheRobotMovesOn) {
+  StopScene scene;
+  scene.stop();
+  for (int i = 0; i < 60; ++i)
+    scene.cycle();
+  ASSERT_EQ(scene.ends().size(), 1U);
+  EXPECT_EQ(scene.ends()[0].code, AnswerCode::given_up);
+}
+
+TEST(Stop, SaysWhereSomebodyElseHasBegunToDrive) {
+  StopScene scene;
+  scene.stop();
+  for (int i = 0; i < 3; ++i) {
+    scene.cycle();
+    scene.tell(scene.wish(Role::teleop, 0.2, 5));
+  }
+  ASSERT_EQ(scene.ends().size(), 1U);
+  EXPECT_EQ(scene.ends()[0], (Answer{AnswerCode::done,
+                                     "stopped: direct (direct); teleop has begun to drive since"}));
+}
+
+TEST(Stop, IsLostWithTheLink) {
+  StopScene scene;
+  scene.stop();
+  scene.core.link_closed("cut", scene.now);
+  scene.deliver();
+  ASSERT_EQ(scene.ends().size(), 1U);
+  EXPECT_EQ(scene.ends()[0].code, AnswerCode::lost);
+}
+
+TEST(Stop, WithoutARobotIsDoneAtOnceAndHoldsForLater) {
+  StopScene scene;
+  scene.core.link_closed("cut", scene.now);
+  scene.deliver();
+  EXPECT_EQ(scene.stop(),
+            (Answer{AnswerCode::done, "stopped: direct (direct); no robot is connected"}));
+  EXPECT_EQ(scene.core.grant().stop, (StopId{7, 1}));
+  scene.connect();
+  scene.forget();
+  scene.cycles(20, Role::direct, 0.3);
+  EXPECT_FALSE(scene.was_moved()) << "it drove before the stop";
+}
+
+TEST(Stop, NamesThePersonBehindTheProgram) {
+  StopScene scene;
+  Request request{
+      .functor = "stop", .arguments = {}, .source = "dialogue", .asker = 7, .number = 1};
+  request.arguments.push_back({"by", std::string("karen")});
+  scene.core.stop(request, scene.now);
+  EXPECT_EQ(scene.core.grant().stop_source, "karen, through dialogue");
+}
+
+}  // namespace
+}  // namespace saphira::bridge::test
