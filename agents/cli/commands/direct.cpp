@@ -57,6 +57,10 @@ void DirectDriver::poll() {
     robot_ = std::move(robot);
   for (const auto& sample : grants_.take()) {
     grant_ = sample.data;
+    if (!before_)
+      before_ = grant_->stop();
+    if (grant_->stop() != *before_)
+      stopped_by_ = grant_->stop_source();
     for (const v1::Refusal& refusal : grant_->refused())
       if (refusal.source() == source_)
         refusal_ = refusal.reason();
@@ -138,6 +142,10 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
       complain("saphira: %s\n", news->c_str());
     node.wait(kDrivePeriod, &stop);
     driver.poll();
+    if (!driver.stopped_by().empty()) {
+      end = "stopped by " + driver.stopped_by();
+      break;
+    }
     if (driver.drives() && driver.robot()) {
       const double left = left_of(wanted, *driver.grant(), *driver.robot());
       if (done(wanted, *driver.grant(), *driver.robot())) {

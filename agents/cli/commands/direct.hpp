@@ -30,6 +30,8 @@ class DirectDriver {
   const std::optional<v1::Grant>& grant() const { return grant_; }
   /// True where a command of this driver goes to the wheels.
   bool drives() const;
+  /// By whom it was stopped since it began; empty: nobody has.
+  const std::string& stopped_by() const { return stopped_by_; }
   /// A new trouble in words, each kind once: another driver, a refusal, the guard, no bridge.
   std::optional<std::string> news();
 
@@ -46,6 +48,8 @@ class DirectDriver {
   std::optional<v1::RobotState> robot_;
   std::optional<v1::Grant> grant_;
   std::string refusal_;
+  std::optional<v1::StopId> before_;  ///< the newest stop when it began
+  std::string stopped_by_;
   Clock::time_point began_ = Clock::now();
   Clock::time_point drove_ = began_;  ///< last, or the time of the first command
   std::string told_;

@@ -2,14 +2,15 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/printer.hpp"
-#include "saphira/teleop/pilot.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -18,7 +19,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kUnanswered = 15.0;  ///< [s] until a goal without any answer is given up
+constexpr double kAgain = 0.2;            ///< [s] between two requests, until one is answered
+constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
+constexpr double kUnanswered = 15.0;      ///< [s] until a goal without any answer is given up
 
 struct GoalOptions {
   std::vector<std::string> words;
@@ -65,48 +68,56 @@ class Follower {
   std::string last_;
 };
 
-/// Anybody's stop also ends a person's driving, who then has to let go before driving on. `source`
-/// names the stopping person.
-void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::Stop& stop) {
-  auto grants = node.reader(bus::topics::kGrant);
-  std::optional<bus::Writer<v1::MotorCommand>> commands;  // a writer needs a right
-  teleop::Pilot pilot(source);
-  const auto say = [&](bool active) {
-    teleop::Order stand;
-    stand.active = active;
-    const auto command = pilot.drive(stand, {});
-    if (!command)
-      return;
-    if (!commands)
-      commands = node.writer(bus::topics::kDriveTeleop);
-    commands->write(*command);
-  };
-  std::string driver;
-  for (const auto began = Clock::now(); !stop.requested() && seconds_since(began) < 1.0;) {
-    node.wait(milliseconds(50), &stop);
-    const auto grant = grants.take_newest();
-    if (grant && grant->role() == v1::ROLE_TELEOP && grant->source() != source)
-      driver = grant->source();
-    else if (grant && driver.empty())
-      return;
-    else if (grant) {
-      print("stopped, too: %s, who drove and may drive again after letting go\n", driver.c_str());
-      driver.clear();
-      break;
+/// The bridge's stop. It is no goal: it needs no other program than the bridge.
+int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  bus::Node node(node_options);
+  Processes processes(node);
+  bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
+  const v1::Request request = bus::request("stop");
+  const std::uint64_t number = stops.send(request);
+  const auto began = Clock::now();
+  const char* const robot = node_options.robot.c_str();
+  bool confirmed = false;
+  double again = kAgain;
+  double told = 0.0;
+  while (!stop.requested()) {
+    node.wait(milliseconds(20), &stop);
+    processes.poll();
+    for (const v1::Answer& answer : stops.poll()) {
+      if (!std::exchange(confirmed, true))
+        print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text().c_str(),
+              seconds_since(began));
+      if (!bus::ended(answer.code()))
+        continue;
+      if (!bus::well(answer.code())) {
+        complain("saphira: %s. The latched stop is saphira estop.\n", answer.text().c_str());
+        return bus::kExitFailed;
+      }
+      print("%s, after %.2f s\n", answer.text().c_str(), seconds_since(began));
+      return bus::kExitOk;
     }
-    if (!driver.empty())
-      say(true);
+    if (confirmed)
+      continue;
+    if (seconds_since(began) > again) {  // a bridge that is found late
+      stops.again(number, request);
+      again += kAgain;
+    }
+    if (seconds_since(began) > told + kConfirmPatience) {
+      told = seconds_since(began);
+      complain(
+          "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
+          "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
+          told, who_is_there(node_options, processes).c_str());
+    }
   }
-  for (int i = 0; commands && i < teleop::kReleases; ++i) {
-    say(false);
-    node.wait(milliseconds(20));
-  }
-  if (!driver.empty())
-    complain("saphira: %s still drives; saphira estop stops the robot\n", driver.c_str());
+  complain("saphira: ended before the robot was seen at rest\n");
+  return bus::kExitFailed;
 }
 
 int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   v1::Goal goal = parse_request(options.words);
+  if (goal.functor() == "stop")
+    return stop_robot(node_options, stop);
   goal.priority(options.priority);
   goal.deadline(options.deadline);
   goal.level(options.level);
@@ -119,13 +130,6 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
   const v1::GoalId id = goals.ask(goal);
   print("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
 
-  if (goal.functor() == "stop") {
-    try {
-      stop_whoever_drives(node, person("saphira goal stop"), stop);
-    } catch (const std::exception& error) {  // without the right to drive, it stops goals alone
-      complain("saphira: a person drives, and is not stopped: %s\n", error.what());
-    }
-  }
   Follower follower;
   Latches latches(node);
   const auto began = Clock::now();
@@ -309,6 +313,8 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   command->footer(
       "Values: 0.3 (SI units), 90deg, 30cm, 0.3m/s, x,y or x,y,th with @odom, @robot or @map, "
       "text.\n"
+      "stop ends whatever moves the robot, also a program or a person, and is done once it is at "
+      "rest.\n"
       "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
     if (!options->words.empty() && options->words[0] == "cancel")

@@ -94,6 +94,11 @@ int drive(const WriteOptions& options, const bus::Topic<v1::MotorCommand>& topic
       complain("saphira: %s\n", news->c_str());
     node.wait(kDrivePeriod, &stop);
     driver.poll();
+    if (!driver.stopped_by().empty()) {
+      driver.release();
+      complain("saphira: stopped by %s\n", driver.stopped_by().c_str());
+      return bus::kExitFailed;
+    }
   }
   driver.release();
   return bus::kExitOk;

@@ -110,6 +110,9 @@ void sfSetHeading(int head);     /* [deg] */
 void sfSetDHeading(int dhead);   /* [deg] */
 void sfSetPosition(int dist);    /* [mm] */
 void sfSetMaxVelocity(int vel);  /* [mm/s] */
+/* Ends whatever moves the robot: this program, others, people, goals. After a stop by anybody the
+ * motion commands of this program have no effect until sfSetVelocity(0), with no turn. */
+void sfStopRobot(void);
 int sfDonePosition(int dist);    /* [mm] */
 int sfDoneHeading(int ang);      /* [deg] */
 float sfTargetVel(void);         /* [mm/s] */

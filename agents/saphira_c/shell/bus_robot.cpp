@@ -104,6 +104,16 @@ v1::MotorCommand command_of(const reflector::Motion& motion) {
   return command;
 }
 
+/// True where the robot is to stay where it is.
+bool stands(const reflector::Motion& motion) {
+  using reflector::Rotation;
+  using reflector::Translation;
+  return (motion.translation == Translation::none ||
+          (motion.translation == Translation::velocity && motion.velocity == 0.0)) &&
+         (motion.rotation != Rotation::velocity || motion.rotation_velocity == 0.0) &&
+         motion.rotation != Rotation::relative_heading;
+}
+
 protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   protocol::VisionPacket seen;
   for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels().size()); ++i) {
@@ -248,9 +258,21 @@ class BusRobot final : public ServedRobot {
 
   void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
     const std::lock_guard lock(mutex_);
+    if (stopped_ && !stands(motion))
+      return;
+    stopped_ = false;
     wish_ = command_of(motion);
     wish_->stamp().epoch(epoch_);
     wish_->stamp().cycle(cycle);
+    wake();
+  }
+  bool take_stop() override {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(was_stopped_, false);
+  }
+  void stop() override {
+    const std::lock_guard lock(mutex_);
+    asks_to_stop_ = true;
     wake();
   }
   std::optional<Found> found() override {
@@ -292,7 +314,9 @@ class BusRobot final : public ServedRobot {
   /// The endpoints on the bus, for the thread alone.
   struct Ends {
     Ends(bus::Node& of, const std::string& source)
-        : node(of), registration(node, bus::topics::kRegistrationRequest, source) {}
+        : node(of),
+          registration(node, bus::topics::kRegistrationRequest, source),
+          stops(node, bus::topics::kDriveStop, source) {}
     bus::Node& node;
     bus::Reader<v1::RobotState> robots = node.reader(bus::topics::kRobotState);
     bus::Reader<v1::RobotDescription> descriptions = node.reader(bus::topics::kRobotDescription);
@@ -307,6 +331,7 @@ class BusRobot final : public ServedRobot {
     bus::Writer<v1::Drawing> drawings = node.writer(bus::topics::kDrawings);
     bus::Writer<v1::ProgramMind> minds = node.writer(bus::topics::kProgramMinds);
     bus::RequestClient registration;
+    bus::RequestClient stops;
   };
 
   void ask(const v1::Request& request) {
@@ -474,6 +499,7 @@ class BusRobot final : public ServedRobot {
     const auto grant = ends.grants.take_newest();
     if (!grant)
       return;
+    take_stop(ends, *grant);
     std::string news;
     for (const v1::Refusal& refusal : grant->refused())
       if (refusal.source() == source_)
@@ -485,6 +511,24 @@ class BusRobot final : public ServedRobot {
     if (kind != news_ && !news.empty())
       say_(news, false);
     news_ = kind;
+  }
+
+  /// A stop since this program joined the bus. It lets go; the program's commands are dropped until
+  /// one of them stands.
+  void take_stop(Ends& ends, const v1::Grant& grant) {
+    const bool first = !std::exchange(knows_stop_, true);
+    if (std::exchange(stop_, grant.stop()) == grant.stop() || first)
+      return;
+    {
+      const std::lock_guard lock(mutex_);
+      wish_.reset();
+      stopped_ = was_stopped_ = true;
+    }
+    say_("stopped by " + grant.stop_source() + ": sfSetVelocity(0) comes before driving again",
+         false);
+    v1::MotorCommand release;
+    release.stamp(stamp_);
+    write(ends.node, ends, release);
   }
 
   void write(bus::Node& node, Ends& ends, v1::MotorCommand command) {
@@ -503,8 +547,10 @@ class BusRobot final : public ServedRobot {
     std::vector<std::string> told;
     std::vector<Drawn> drawn;
     std::optional<SharedMind> mind;
+    bool asks_to_stop = false;
     {
       const std::lock_guard lock(mutex_);
+      asks_to_stop = std::exchange(asks_to_stop_, false);
       wish = std::exchange(wish_, std::nullopt);
       packets = std::exchange(packets_, {});
       requests = std::exchange(requests_, {});
@@ -520,7 +566,10 @@ class BusRobot final : public ServedRobot {
       call_device(node, packet);
     for (v1::Request& request : requests)
       ends.registration.send(std::move(request));
+    if (asks_to_stop)
+      ends.stops.send(bus::request("stop"));
     hear(ends.registration.poll());
+    hear(ends.stops.poll());
     for (auto& [name, client] : devices_)
       hear(client.poll());
     for (const std::string& text : told) {
@@ -626,6 +675,8 @@ class BusRobot final : public ServedRobot {
   double heard_ = 0.0;
   std::uint64_t number_ = 0;
   std::string news_;
+  bool knows_stop_ = false;
+  v1::StopId stop_;  ///< the newest
   std::map<std::string, bus::RequestClient> devices_;
 
   // Shared with the program's thread, as those of ServedRobot.
@@ -635,6 +686,9 @@ class BusRobot final : public ServedRobot {
   std::uint64_t odom_ = 0;
   std::map<int, reflector::Bucket> buckets_;
   std::optional<v1::MotorCommand> wish_;
+  bool stopped_ = false;      // and has not let go
+  bool was_stopped_ = false;  // since take_stop()
+  bool asks_to_stop_ = false;
   std::vector<v1::Request> requests_;
   std::vector<std::string> told_;
   std::vector<Drawn> drawn_;

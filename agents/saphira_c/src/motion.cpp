@@ -88,6 +88,10 @@ void sfSetMaxVelocity(int vel) {
     os.motion.velocity = os.max_velocity;
 }
 
+void sfStopRobot(void) {
+  Os::get().stop_robot();
+}
+
 int sfDonePosition(int dist) {
   const std::lock_guard lock(Os::get().mutex);
   const Os& os = Os::get();

@@ -221,6 +221,10 @@ void Os::step(const Reflected& now) {
     behaviors_said_ = {};
   }
   take_keys();
+  if (robot && robot->take_stop() && behaviors_drive_) {
+    sfBehaviorControl = 0;
+    say("the behaviors do not drive any more: sfBehaviorControl = 1 lets them drive again", false);
+  }
   if (robot)
     for (const Vec2& at : robot->pointed_out())
       click(relative(robot_in_odom, Pose{at.x(), at.y(), 0.0}).position());
@@ -288,6 +292,15 @@ bool Os::connect(const std::string& address) {
   say("no robot at " + address + ": " + robot->trouble(), true);
   disconnect();
   return false;
+}
+
+void Os::stop_robot() {
+  const std::lock_guard lock(mutex);
+  motion = {};
+  motion.translation = reflector::Translation::velocity;
+  motion.rotation = reflector::Rotation::velocity;
+  if (robot_)
+    robot_->stop();
 }
 
 void Os::disconnect() {

@@ -64,6 +64,8 @@ class Os {
   void startup(bool async);
   bool started() const { return started_; }
   bool connect(const std::string& address);
+  /// Ends whatever moves the robot.
+  void stop_robot();
   void disconnect();
   void pause(int milliseconds);
   bool connected() const { return connected_; }

@@ -94,6 +94,11 @@ class Robot {
   virtual std::vector<TaskRequest> share(std::vector<SharedTask>, std::optional<SharedMind>) {
     return {};
   }
+  /// True where somebody has stopped the robot since the last call. Motion commands are dropped
+  /// then until one of them stands: the program lets go.
+  virtual bool take_stop() { return false; }
+  /// Asks the bridge to end whatever moves the robot.
+  virtual void stop() {}
   /// For observers: the drawings of this cycle, and a line of text.
   virtual void draw(std::vector<Drawn>) {}
   virtual void tell(const std::string&) {}
