@@ -36,8 +36,66 @@ TEST(Stop, EndsAGoalOfAnyPriority) {
   const auto status = system.wait_end(goal);
   ASSERT_TRUE(status) << system.output();
   EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
-  EXPECT_EQ(status->reason().find("stopped by goal "), 0U) << status->reason();
+  EXPECT_EQ(status->code(), v1::CODE_STOPPED) << status->reason();
   EXPECT_TRUE(stays_still(system, 20)) << system.output();
+}
+
+// It ends itself, as any program in the role direct that hears of the stop.
+TEST(Stop, EndsAProgramThatDrives) {
+  System system;
+  system.start("saphira-sim");
+  system.start("saphira-bridge");
+  Process program = command_line(system, {"speed", "0.3"});
+  ASSERT_TRUE(system.wait_moving()) << program.output() << system.output();
+  Process stop = command_line(system, {"goal", "stop"});
+  EXPECT_EQ(stop.wait(), 0) << stop.output();
+  EXPECT_TRUE(system.truth().still()) << "it says that it is done once the robot is at rest";
+  EXPECT_EQ(program.wait(), 1) << program.output();
+  EXPECT_TRUE(stays_still(system, 20)) << system.output();
+  Process again = command_line(system, {"move", "0.3"});
+  EXPECT_EQ(again.wait(), 0) << again.output();
+}
+
+// A program that is stopped by a signal, and hears nothing, does not drive on when it wakes.
+TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
+  System system;
+  system.start("saphira-sim");
+  system.start("saphira-bridge");
+  bus::Writer<v1::MotorCommand> direct = system.node().writer(bus::topics::kDriveDirect);
+  auto robots = system.node().reader(bus::topics::kRobotState);
+  v1::MotorCommand command;
+  command.source("a program that hears nothing");
+  command.active(true);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(0.3);
+  const auto drive = [&] {
+    if (const auto robot = robots.take_newest())
+      command.stamp(robot->stamp());
+    command.number(command.number() + 1);
+    direct.write(command);
+    system.node().wait(std::chrono::milliseconds(50));
+  };
+  ASSERT_TRUE(wait_until([&] {
+    drive();
+    return !system.truth().still();
+  }));
+  Process stop = command_line(system, {"goal", "stop"});
+  EXPECT_EQ(stop.wait(), 0) << stop.output();
+  const long begin = system.truth().cycle;
+  bool still = true;
+  EXPECT_TRUE(wait_until([&] {
+    drive();
+    still = still && system.truth().still();
+    return system.truth().cycle >= begin + 30;
+  }));
+  EXPECT_TRUE(still);
+  command.active(false);
+  drive();
+  command.active(true);
+  EXPECT_TRUE(wait_until([&] {
+    drive();
+    return !system.truth().still();
+  })) << "it has let go";
 }
 
 TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {

@@ -1,4 +1,5 @@
 // The emergency stop, and its reset.
+#include "bridges.hpp"
 #include "commands.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
@@ -24,25 +25,34 @@ class Button {
         source_(person("saphira estop")),
         resets_(node_, bus::topics::kEstopReset, source_) {}
 
-  /// Presses until the bridge confirms the latch, without a time limit.
+  /// Presses until every bridge of this name confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
     double told = 0.0;
+    double after = 0.0;
     pilot_.press(source_);
     while (!stop.requested()) {
       write(false);
       node_.wait(kAgain, &stop);
       poll();
-      if (grant_ && grant_->estopped()) {
+      const bool all = bridges_.all([](const v1::Grant& one) { return one.estopped(); });
+      if (all && after == 0.0)
+        after = seconds_since(began_);
+      if (all && seconds_since(began_) >= kAllHeard) {
         // Latched: the bridge holds the stop without us.
         while (write(true))
           node_.wait(milliseconds(5));
-        print("robot %s: %s (confirmed by the bridge after %.2f s)\n",
-              node_.options().robot.c_str(), latched(*grant_).c_str(), seconds_since(began_));
+        print("robot %s: %s (confirmed by the bridge%s after %.2f s)\n",
+              node_.options().robot.c_str(), latched(*bridges_.newest()).c_str(),
+              bridges_.several().c_str(), after);
         return bus::kExitOk;
       }
       if (seconds_since(began_) < told + kConfirmPatience)
         continue;
       told = seconds_since(began_);
+      if (bridges_.count() > 1) {
+        complain("saphira: NOT CONFIRMED by each bridge%s\n", bridges_.several().c_str());
+        continue;
+      }
       complain(
           "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
           "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
@@ -67,13 +77,19 @@ class Button {
     }
     // The next grant shows the release of the stop, and autonomy's wait.
     while (!stop.requested() && seconds_since(began_) < kResetLimit &&
-           (!grant_ || grant_->estopped())) {
+           (seconds_since(began_) < kAllHeard || !released())) {
       node_.wait(kAgain, &stop);
       poll();
     }
-    print("the emergency stop is reset; the robot stands until a new command: %s\n",
-          grant_ && grant_->waits_for_hand_back() ? latched(*grant_).c_str()
-                                                  : "saphira goal ..., or saphira drive");
+    if (!released()) {
+      complain("saphira: not reset by each bridge%s\n", bridges_.several().c_str());
+      return bus::kExitFailed;
+    }
+    const v1::Grant& grant = *bridges_.newest();
+    print("the emergency stop%s is reset; the robot stands until a new command: %s\n",
+          bridges_.several().c_str(),
+          grant.waits_for_hand_back() ? latched(grant).c_str()
+                                      : "saphira goal ..., or saphira drive");
     return bus::kExitOk;
   }
 
@@ -88,8 +104,10 @@ class Button {
 
   void poll() {
     processes_.poll();
-    if (auto newest = grants_.take_newest())
-      grant_ = std::move(newest);
+    bridges_.poll();
+  }
+  bool released() const {
+    return bridges_.all([](const v1::Grant& one) { return !one.estopped(); });
   }
 
   std::string why_nobody() const { return who_is_there(node_.options(), processes_); }
@@ -97,12 +115,11 @@ class Button {
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
   bus::Writer<v1::MotorCommand> stops_ = node_.writer(bus::topics::kDriveEstop);
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  Bridges bridges_{node_};
   Processes processes_;
   std::string source_;
   bus::RequestClient resets_;
   teleop::Pilot pilot_{source_};
-  std::optional<v1::Grant> grant_;
 };
 
 }  // namespace

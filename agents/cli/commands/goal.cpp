@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "bridges.hpp"
 #include "commands.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/guess.hpp"
@@ -72,17 +73,20 @@ class Follower {
 int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
+  Bridges bridges(node);
   bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
   const v1::Request request = bus::request("stop");
   const std::uint64_t number = stops.send(request);
   const auto began = Clock::now();
   const char* const robot = node_options.robot.c_str();
   bool confirmed = false;
+  std::size_t done = 0;  // bridges
   double again = kAgain;
   double told = 0.0;
   while (!stop.requested()) {
     node.wait(milliseconds(20), &stop);
     processes.poll();
+    bridges.poll();
     for (const v1::Answer& answer : stops.poll()) {
       if (!std::exchange(confirmed, true))
         print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text().c_str(),
@@ -94,9 +98,14 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
         return bus::kExitFailed;
       }
       print("%s, after %.2f s\n", answer.text().c_str(), seconds_since(began));
+      ++done;
+    }
+    if (done > 0 && seconds_since(began) >= kAllHeard && done >= bridges.count()) {
+      if (bridges.count() > 1)
+        print("this was a stop%s\n", bridges.several().c_str());
       return bus::kExitOk;
     }
-    if (confirmed)
+    if (confirmed && (done == 0 || seconds_since(began) < kConfirmPatience))
       continue;
     if (seconds_since(began) > again) {  // a bridge that is found late
       stops.again(number, request);
@@ -104,10 +113,12 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     }
     if (seconds_since(began) > told + kConfirmPatience) {
       told = seconds_since(began);
+      const std::string who = confirmed ? "not every bridge" + bridges.several()
+                                        : who_is_there(node_options, processes);
       complain(
-          "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
-          "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
-          told, who_is_there(node_options, processes).c_str());
+          "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
+          "trying; Ctrl-C ends it.\n",
+          told, who.c_str());
     }
   }
   complain("saphira: ended before the robot was seen at rest\n");

@@ -109,6 +109,24 @@ TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
   EXPECT_EQ(system_.truth().contacts, 0);
 }
 
+TEST_F(OnBus, AStoppedProgramDoesNotDriveOn) {
+  Process program = example("direct");
+  ASSERT_TRUE(drives("program")) << program.output();
+  ASSERT_TRUE(system_.wait_moving()) << program.output();
+  bus::RequestClient client(system_.node(), bus::topics::kDriveStop, "test");
+  const v1::Answer answer = client.ask(bus::request("stop"), 10.0);
+  EXPECT_EQ(answer.code(), v1::ANSWER_DONE) << answer.text();
+  EXPECT_EQ(answer.text(), "stopped: program (direct); the robot is at rest");
+  const long begin = system_.truth().cycle;
+  bool still = true;
+  EXPECT_TRUE(wait_until([&] {
+    still = still && system_.truth().still();
+    return system_.truth().cycle >= begin + 40;
+  }));
+  EXPECT_TRUE(still) << "it commands on, and has not let go";
+  EXPECT_NE(program.output().find("stopped by test"), std::string::npos) << program.output();
+}
+
 TEST_F(OnBus, WhatSomebodyPointsOutIsAClick) {
   Process program = written(R"(
 #include <stdlib.h>
