@@ -26,6 +26,7 @@
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/trace.hpp"
 #include "serial_line.hpp"
+#include "stop_ways.hpp"
 #include "support/guarded.hpp"
 
 using namespace saphira;
@@ -200,18 +201,27 @@ nlohmann::json measure(const std::string& file, double wanted) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"How far each robot rolls when its driver, its bridge or its line is lost"};
+  CommandLine app{
+      "All ways to stop the robot times all ways to move it; and how far each robot rolls "
+      "when its driver, its bridge or its line is lost"};
   bool json = false;
   double velocity = 0.4;
   std::vector<std::string> names;
   app.add_flag("--json", json, "one JSON object on the last line");
+  bool ways = false;
+  app.add_flag("--ways", ways, "only the ways to stop, with a Pioneer 1");
   app.add_option("--velocity", velocity, "[m/s], or the robot's own limit").in_range(0.05, 2.0);
   app.add_option("robots", names, "names of config/robots, or files (usual: all)");
   if (const auto code = app.parse(argc, argv))
     return *code;
   return test::guarded([&] {
     const std::string folder = config_folder() + "/robots";
+    nlohmann::json result = nlohmann::json::object();
+    setenv("SAPHIRA_DOMAIN", kDomain, 1);
+    setenv("SAPHIRA_SOURCE_DIR", (config_folder() + "/..").c_str(), 0);
     if (names.empty())
+      result = bench::stop_ways();
+    if (names.empty() && !ways)
       names = names_in(folder, ".p");
     nlohmann::json robots = nlohmann::json::array();
     double worst[kLosses.size()] = {};
@@ -221,7 +231,7 @@ int main(int argc, char** argv) {
         worst[i] = std::max(worst[i], robots.back().at(kNames.at(i)).at("m").get<double>());
     }
     if (json) {
-      nlohmann::json result{{"robots", robots}};
+      result["robots"] = robots;
       for (std::size_t i = 0; i < kLosses.size(); ++i)
         result[std::string(kNames.at(i)) + "_m_max"] = worst[i];
       std::printf("%s\n", result.dump().c_str());

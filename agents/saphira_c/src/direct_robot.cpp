@@ -220,6 +220,7 @@ class DirectRobot final : public ServedRobot {
     const std::lock_guard lock(mutex_);
     session_lost(close.why);
   }
+  void perform(const bridge::StopEnded&) {}
   void perform(const bridge::KeepLatches&) {}
   void perform(const bridge::KeepOdometry&) {}
   void perform(const bridge::StatusReport& report) {

@@ -28,7 +28,7 @@ constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
     {GoalState::kFailed, v1::GOAL_FAILED},
     {GoalState::kCanceled, v1::GOAL_CANCELED},
 }}};
-constexpr EnumPairs<GoalCode, v1::GoalCode, 16> kCodes{{{
+constexpr EnumPairs<GoalCode, v1::GoalCode, 17> kCodes{{{
     {GoalCode::kNone, v1::CODE_NONE},
     {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
     {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
