@@ -114,20 +114,19 @@ class Site {
   }
   /// The cycle of the trace at which the bridge had the stop.
   const std::optional<long>& arrived() const { return arrived_; }
-  /// The example of direct motion control in C, compiled against the installed library.
+  /// The example of direct motion control in C.
   std::string c_program() {
     const std::string out = system_.folder().path("program");
     if (access(out.c_str(), X_OK) == 0)
       return out;
-    const std::string prefix = system_.folder().path("installed");
-    const std::string why = test::install_build(prefix, "saphira_c");
+    const std::string source = test::source("agents/saphira_c");
+    const std::string lib = test::program("../lib");
     Process compiler({"/bin/sh", "-c",
-                      "cc '" + test::source("agents/saphira_c/examples/direct.c") + "' -o '" + out +
-                          "' $(PKG_CONFIG_PATH=$(dirname $(find " + prefix +
-                          " -name saphira.pc)) pkg-config --cflags --libs saphira)"},
+                      "cc '" + source + "/examples/direct.c' -I '" + source + "/include' -L '" +
+                          lib + "' -lsfx -Wl,-rpath,'" + lib + "' -o '" + out + "'"},
                      system_.folder().path("compiler"));
-    if (!why.empty() || compiler.wait() != 0)
-      throw std::runtime_error("the C program cannot be built: " + why + compiler.output());
+    if (compiler.wait() != 0)
+      throw std::runtime_error("the C program cannot be built: " + compiler.output());
     return out;
   }
 

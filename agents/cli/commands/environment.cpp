@@ -7,6 +7,7 @@
 #include <random>
 #include <system_error>
 
+#include "saphira/bus/program.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -28,6 +29,16 @@ RunningBus bus_of(const std::string& what, const bus::NodeOptions& options) {
           options.domain, name_of(options.profile),
           options.peers,  options.interface,
           false,          options.security.empty() ? bus::kOpenBus : options.security};
+}
+
+bus::NodeOptions on_bus(const RunningBus& bus, bus::NodeOptions options) {
+  options.robot = bus.robot;
+  options.domain = bus.domain;
+  options.profile = bus::profile_of(bus.profile);
+  options.peers = bus.peers;
+  options.interface = bus.interface;
+  options.security = bus.security;
+  return options;
 }
 
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {

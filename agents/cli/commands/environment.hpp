@@ -15,6 +15,9 @@ std::map<std::string, std::string> as_environment(const bus::NodeOptions& option
 /// The bus of these options, for other commands (FoundBus).
 RunningBus bus_of(const std::string& what, const bus::NodeOptions& options);
 
+/// The options of a program on this bus.
+bus::NodeOptions on_bus(const RunningBus& bus, bus::NodeOptions options);
+
 /// A private bus: a robot name of its own, and unless a domain was given, a random one. name: of
 /// the command.
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name);

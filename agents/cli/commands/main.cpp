@@ -61,13 +61,7 @@ bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options
   if (commands.front()->get_name() != "complete")
     complain("saphira: of %s that runs here (%s)\n", meant->what.c_str(),
              options_of(*meant, usual).c_str());
-  options.robot = meant->robot;
-  options.domain = meant->domain;
-  options.profile = bus::profile_of(meant->profile);
-  options.peers = meant->peers;
-  options.interface = meant->interface;
-  options.security = meant->security;
-  return options;
+  return on_bus(*meant, options);
 }
 
 }  // namespace

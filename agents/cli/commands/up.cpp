@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <poll.h>
+#include <pwd.h>
 #include <sys/ioctl.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
@@ -23,6 +25,7 @@
 #include "saphira/cli/printer.hpp"
 #include "saphira/cli/service_manager.hpp"
 #include "saphira/cli/supervisor.hpp"
+#include "system/system.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -133,6 +136,66 @@ std::string other_contract(const std::string& program) {
     return {};
   return "the new one has " + (theirs.empty() ? "no contract" : "the contract " + theirs) +
          ", and what runs has " + ours + ": saphira stop, and up again, takes in all of it";
+}
+
+/// A deployment's robot that has its programs already.
+struct Taken {
+  std::string program;  ///< in words
+  bool here = false;    ///< on this machine
+};
+
+/// Looks for the deployment's programs on the bus. Those of this user are locked (ProgramLocks).
+std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions options,
+                           const bus::Stop& stop) {
+  const RunningBus bus = bus_of(deployment, options);
+  options = on_bus(bus, std::move(options));
+  options.name = "saphira";
+  options.lockstep = false;
+  const std::vector<Running> own = running_deployments();
+  if (std::any_of(own.begin(), own.end(), [&](const Running& one) {
+        return one.robot == bus.robot && one.domain == bus.domain;
+      }))
+    return std::nullopt;
+  // A console or an agent of another person is no second robot.
+  std::set<std::string> names{"all"};
+  for (const runtime::Unit& unit : system::units())
+    names.insert(unit.name);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::none_of(deployment.programs.begin(), deployment.programs.end(),
+                        [&](const Program& program) { return program.name == name; });
+  });
+  if (names.empty())
+    return std::nullopt;
+  bus::Node node(options);
+  Processes processes(node);
+  poll_for(node, listening_time(node), stop, [&] { processes.poll(); });
+  for (const auto& [status, age, namesake] : processes.all())
+    if (names.contains(status.name()) && age <= kLostAge)
+      return Taken{status.name() + " (process " + std::to_string(status.pid()) + " at " +
+                       status.host() + ")",
+                   status.host() == node.status().host()};
+  return std::nullopt;
+}
+
+/// Two robots of one name would share goals and stops. Where the name was not chosen and another
+/// user of this machine has it, the robot gets a name of its own; otherwise the words of a refusal.
+std::string take_robot(const std::string& name, bool named, bus::NodeOptions& options,
+                       const bus::Stop& stop) {
+  const Deployment deployment = load_deployment(find_deployment(name, find_places()));
+  std::optional<Taken> other = taken(deployment, options, stop);
+  if (other && other->here && !named && !deployment.bus.robot) {
+    const passwd* const user = getpwuid(getuid());
+    const std::string before = options.robot;
+    options.robot += "-" + (user == nullptr ? std::to_string(getuid()) : user->pw_name);
+    complain("saphira: another user's robot has the name \"%s\": this one is \"%s\"\n",
+             before.c_str(), options.robot.c_str());
+    other = taken(deployment, options, stop);
+  }
+  if (!other)
+    return {};
+  return "robot \"" + deployment.bus.robot.value_or(options.robot) + "\" has " + other->program +
+         " already: give this robot another name (robot: in " + deployment.file +
+         ", or --robot NAME)";
 }
 
 int up(const std::string& name, const std::vector<std::string>& set,
@@ -380,7 +443,12 @@ void add_up(CLI::App& app, Chosen& chosen) {
       ->take_all()
       ->type_size(1);
   command->add_flag("--detach,-d", options->detached, "in the background; saphira stop ends it");
-  chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+  chosen.when(command, [options, &app](bus::NodeOptions node, const bus::Stop& stop) -> int {
+    const bool named = app.get_option("--robot")->count() > 0;
+    if (const std::string why = take_robot(options->deployment, named, node, stop); !why.empty()) {
+      complain("saphira: %s\n", why.c_str());
+      return bus::kExitFailed;
+    }
     return (options->detached ? detach : up)(options->deployment, options->set, node, stop);
   });
 }

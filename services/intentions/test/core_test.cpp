@@ -143,7 +143,8 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   inputs_.heard.goals = {stop};
   EXPECT_EQ(step().intended.stop, stop.event.goal.requester);
   core_.executor().heed({7, 1});
-  inputs_.heard.grants = {{.stop = {7, 1}}};
+  inputs_.heard.grants.resize(1);
+  inputs_.heard.grants[0].stop = {7, 1};
   for (int i = 0; i < 5; ++i)
     step();
   EXPECT_EQ(state(1), GoalState::kCanceled);

@@ -142,8 +142,8 @@ TEST(Work, ReadsWhatItWrote) {
         Value(Value::List{Value(1.0 / 3.0), Value("a \"b\" ; c"), Value(), Value::truth(true),
                           Value(Point{{1.5, -2.0, 3.0}, Frame::map}),
                           Value(Value::List{Value(-4.0), Value(Reference{})})})}},
-      {{"*speed*", Value(0.3), "patrol", -17}}};
-  work.heeds = {~0ULL, 5};
+      {{"*speed*", Value(0.3), "patrol", -17}},
+      {~0ULL, 5}};
   EXPECT_EQ(read_work("work", write_work(work)), work);
 }
 
