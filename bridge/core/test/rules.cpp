@@ -17,6 +17,10 @@ bool is_any(const protocol::Command& command) {
   return (std::holds_alternative<Kinds>(command) || ...);
 }
 
+bool is_usable(double number) {
+  return std::isfinite(number) && std::abs(number) <= 1e4;
+}
+
 }  // namespace
 
 void Rules::wrong(const std::string& what) {
@@ -46,27 +50,26 @@ void Rules::command(const DriveCommand& in) {
     }
     return;
   }
+  const bool sound = in.wrong.empty() && is_usable(in.motion.velocity) &&
+                     is_usable(in.motion.rotation_velocity) && is_usable(in.motion.heading) &&
+                     is_usable(in.motion.distance) && is_usable(in.contact_speed);
+  if (command.active && !sound)
+    return;
   Writer writer{command.role, command.writer};
   std::vector<Wish>& wishes = wishes_[writer];
   const auto [newest, is_new] = numbers_.try_emplace(writer, command.number);
   const bool repeated = !is_new && command.number <= newest->second;
   newest->second = std::max(newest->second, command.number);
+  if (repeated)
+    return;
+  if (!command.active || command.heeds == stop_)
+    must_heed_.erase(writer);
   if (!command.active) {
-    if (!repeated) {
-      wishes.clear();
-      must_heed_.erase(writer);
-    }
+    wishes.clear();
     return;
   }
-  const bool sound = in.wrong.empty() && std::isfinite(in.motion.velocity) &&
-                     std::isfinite(in.motion.rotation_velocity) &&
-                     std::isfinite(in.motion.heading) && std::isfinite(in.motion.distance) &&
-                     std::isfinite(in.contact_speed);
-  if (!repeated && command.heeds == stop_)
-    must_heed_.erase(writer);
-  else if (command.role == Role::behaviors && stop_ != StopId{})
-    return;
-  if (sound && !repeated && !must_heed_.contains(writer))
+  const bool heeds = command.heeds == stop_ || command.role != Role::behaviors;
+  if (heeds && !must_heed_.contains(writer))
     wishes.push_back({time(), command.epoch, command.cycle});
 }
 
