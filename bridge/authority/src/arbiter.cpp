@@ -121,10 +121,6 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     said.stopped = false;
     return release(command, cycle);
   }
-  if (said.stopped && command.heeds == stop_.id) {
-    said.must_let_go.clear();
-    said.stopped = false;
-  }
   if (said.stops != command.stop || command.received - said.newest_at > settings_.lease + kTick)
     said.began = command.received;
   said.stops = command.stop;
@@ -158,6 +154,10 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     p.moved_on = command.received;
   p.held = true;
   p.newest = command;
+  if (said.stopped && command.heeds == stop_.id) {
+    said.must_let_go.clear();
+    said.stopped = false;
+  }
   return true;
 }
 

@@ -138,6 +138,18 @@ TEST(Stop, HoldsOverAConnectionAndALossOfTheWriter) {
   }
 }
 
+// Otherwise its command of before would drive.
+TEST(Stop, ARefusedCommandHeedsNothing) {
+  StopScene s;
+  s.offer(Role::direct, 1);
+  s.stop(1);
+  Command early = s.command(Role::direct, 1);
+  early.cycle = s.cycle + 1;
+  early.heeds = {7, 1};
+  EXPECT_FALSE(s.arbiter.offer(early, s.cycle));
+  EXPECT_EQ(s.driver(), Role::none);
+}
+
 TEST(Stop, LeavesTheEmergencyStopLatched) {
   StopScene s;
   s.offer(Role::estop, 1);
