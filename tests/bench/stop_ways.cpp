@@ -267,7 +267,7 @@ Result stop(Site& site, const Move& move, const Stop& way) {
                              (mover ? mover->output() : std::string()));
   site.arm();
   result.success = way.stop(site);
-  result.false_success = result.success && !site.system().truth().still();
+  const long claimed = site.system().truth().cycle;
   std::optional<long> stood;
   result.stopped = site.until([&] {
     if (site.arrived())
@@ -276,6 +276,7 @@ Result stop(Site& site, const Move& move, const Stop& way) {
   });
   if (!result.stopped)
     return result;
+  result.false_success = result.success && claimed < *stood;
   result.still = kCycle * static_cast<double>(*stood - *site.arrived());
   const test::Truth at = site.system().truth();
   site.until([&] { return site.system().truth().cycle >= at.cycle + kWatched; });
