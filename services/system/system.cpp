@@ -24,12 +24,12 @@ const runtime::Unit kBridge{
      {"drive/estop", Use::kEvents},     {"drive/estop/reset", Use::kEvents},
      {"drive/stop", Use::kEvents},      {"drive/teleop", Use::kEvents},
      {"drive/direct", Use::kEvents},    {"drive/behaviors", Use::kEvents},
-     {"lockstep/permit", Use::kNewest},
-     {"device/servo", Use::kEvents},    {"device/gripper", Use::kEvents},
-     {"device/output", Use::kEvents},   {"device/analog", Use::kEvents},
-     {"device/timer", Use::kEvents},    {"device/sonar", Use::kEvents},
-     {"device/sound", Use::kEvents},    {"device/server", Use::kEvents},
-     {"device/serial", Use::kEvents},   {"device/vision", Use::kEvents}}};
+     {"lockstep/permit", Use::kNewest}, {"device/servo", Use::kEvents},
+     {"device/gripper", Use::kEvents},  {"device/output", Use::kEvents},
+     {"device/analog", Use::kEvents},   {"device/timer", Use::kEvents},
+     {"device/sonar", Use::kEvents},    {"device/sound", Use::kEvents},
+     {"device/server", Use::kEvents},   {"device/serial", Use::kEvents},
+     {"device/vision", Use::kEvents}}};
 
 }  // namespace
 
