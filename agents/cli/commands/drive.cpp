@@ -105,6 +105,16 @@ class Joystick {
     if (fd_ >= 0)
       ask_layout();
   }
+  /// The device, for people: the button to hold, or that it does not drive. Empty: none is there.
+  std::string describe() const {
+    if (!there())
+      return "";
+    if (stick_.dead_man().empty())
+      return "the joystick does not drive: the kernel names no shoulder button, trigger or first "
+             "stick of " +
+             path_;
+    return "a joystick: hold " + stick_.dead_man() + ", and push the first stick";
+  }
   void read(double now) {
     std::array<char, 512> bytes{};
     const ssize_t n = ::read(fd_, bytes.data(), bytes.size());
@@ -117,7 +127,7 @@ class Joystick {
   }
 
  private:
-  /// A device that does not tell keeps the usual layout.
+  /// A device that does not tell does not drive.
   void ask_layout() {
     std::uint8_t axes = 0;
     std::uint8_t buttons = 0;
@@ -126,7 +136,7 @@ class Joystick {
     if (ioctl(fd_, JSIOCGAXES, &axes) < 0 || ioctl(fd_, JSIOCGBUTTONS, &buttons) < 0 ||
         ioctl(fd_, JSIOCGAXMAP, axis_codes.data()) < 0 ||
         ioctl(fd_, JSIOCGBTNMAP, button_codes.data()) < 0)
-      return;
+      return stick_.set_layout({}, {});
     axis_codes.resize(std::min<std::size_t>(axes, axis_codes.size()));
     button_codes.resize(std::min<std::size_t>(buttons, button_codes.size()));
     stick_.set_layout(axis_codes, button_codes);
@@ -239,6 +249,8 @@ class Teleop {
     if (!robot_)
       return joystick_.stick().let_go();  // a person must see the robot to drive it
     const bool is = joystick_.stick().order(now()).active;
+    if (!is && note_.empty())
+      note_ = joystick_.describe();
     if (is == was)
       return;
     if (is) {
@@ -319,7 +331,7 @@ class Teleop {
       joystick_.open();
       looked_ = Clock::now();
       if (joystick_.there())
-        note_ = "a joystick: hold " + joystick_.stick().dead_man() + ", and push the first stick";
+        note_ = joystick_.describe();
     }
     if (const auto grant = grants_.take_newest()) {
       grant_ = *grant;
@@ -434,7 +446,7 @@ class Teleop {
   std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;
   std::optional<v1::Grant> grant_;
-  std::string note_;
+  std::string note_ = joystick_.describe();
 };
 
 int drive(const std::string& joystick, const bus::NodeOptions& options, const bus::Stop& stop) {

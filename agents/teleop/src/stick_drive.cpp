@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <utility>
 
 namespace saphira::teleop {
 
@@ -28,19 +29,26 @@ void StickDrive::set_layout(const std::vector<std::uint8_t>& axes,
                             const std::vector<std::uint16_t>& buttons) {
   const std::set<unsigned> across = numbers_of(axes, {ABS_X});
   const std::set<unsigned> along = numbers_of(axes, {ABS_Y});
-  across_ = across.empty() ? 0 : *across.begin();
-  along_ = along.empty() ? 1 : *along.begin();
-  dead_man_ = "a shoulder button";
-  holding_ = numbers_of(buttons, {BTN_TL, BTN_TR, BTN_TL2, BTN_TR2});
-  if (holding_.empty()) {
-    dead_man_ = "the trigger";
-    holding_ = numbers_of(buttons, {BTN_TRIGGER});
+  lost();
+  holding_.clear();
+  dead_man_.clear();
+  if (across.empty() || along.empty())
+    return;
+  across_ = *across.begin();
+  along_ = *along.begin();
+  const std::initializer_list<std::pair<const char*, std::initializer_list<int>>> kinds{
+      {"a shoulder button", {BTN_TL, BTN_TR, BTN_TL2, BTN_TR2}},
+      {"the trigger", {BTN_TRIGGER}},
+      {"the dead-man button", {BTN_DEAD}}};
+  for (const auto& [name, codes] : kinds) {
+    holding_ = numbers_of(buttons, codes);
+    if (holding_.empty())
+      continue;
+    for (const unsigned number : holding_)
+      dead_man_ += (dead_man_.empty() ? std::string(name) + " (" : " or ") + std::to_string(number);
+    dead_man_ += ')';
+    return;
   }
-  if (holding_.empty()) {
-    dead_man_ = "the first button";
-    holding_ = {0};
-  }
-  held_.clear();
 }
 
 void StickDrive::take(std::string_view bytes, double now) {

@@ -25,8 +25,16 @@ std::string axis(unsigned number, int value) {
   return event(JS_EVENT_AXIS, number, value);
 }
 
-TEST(StickDrive, DrivesWhileAShoulderButtonIsHeld) {
+/// A gamepad whose shoulder buttons are 4 to 7.
+StickDrive gamepad() {
   StickDrive stick;
+  stick.set_layout({ABS_X, ABS_Y}, {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_TL, BTN_TR,
+                                    BTN_TL2, BTN_TR2, BTN_SELECT});
+  return stick;
+}
+
+TEST(StickDrive, DrivesWhileAShoulderButtonIsHeld) {
+  StickDrive stick = gamepad();
   stick.set_max_velocity(0.8);
   stick.take(axis(1, -32767) + axis(0, -32767), 1.0);
   EXPECT_FALSE(stick.order(1.0).active) << "the stick alone does not drive";
@@ -45,7 +53,7 @@ TEST(StickDrive, DrivesWhileAShoulderButtonIsHeld) {
 }
 
 TEST(StickDrive, OtherButtonsDoNotDrive) {
-  StickDrive stick;
+  StickDrive stick = gamepad();
   for (const unsigned number : {0U, 3U, 8U, 11U, 200U})
     stick.take(button(number, true), 1.0);
   EXPECT_FALSE(stick.order(1.0).active);
@@ -65,18 +73,27 @@ TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
        {ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ},
        {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_TL, BTN_TR, BTN_SELECT, BTN_START, BTN_MODE},
        {4, 5},
-       "a shoulder button"},
+       "a shoulder button (4 or 5)"},
       {"gamepad with four shoulder buttons, and axes the other way round",
        {ABS_Y, ABS_X},
        {BTN_SOUTH, BTN_C, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_Z, BTN_TL, BTN_TR, BTN_TL2, BTN_TR2},
        {6, 7, 8, 9},
-       "a shoulder button"},
+       "a shoulder button (6 or 7 or 8 or 9)"},
       {"joystick",
        {ABS_X, ABS_Y, ABS_RZ, ABS_THROTTLE},
        {BTN_TRIGGER, BTN_THUMB, BTN_THUMB2, BTN_TOP, BTN_TOP2, BTN_PINKIE, BTN_BASE},
        {0},
-       "the trigger"},
-      {"buttons without names", {ABS_X, ABS_Y}, {BTN_0, BTN_1, BTN_2}, {0}, "the first button"},
+       "the trigger (0)"},
+      {"joystick whose sixteenth button has the name of a dead-man by its number alone",
+       {ABS_X, ABS_Y},
+       {BTN_THUMB, BTN_TRIGGER, BTN_DEAD},
+       {1},
+       "the trigger (1)"},
+      {"a box with a dead-man", {ABS_X, ABS_Y}, {BTN_0, BTN_DEAD}, {1}, "the dead-man button (1)"},
+      {"buttons without names", {ABS_X, ABS_Y}, {BTN_0, BTN_1, BTN_2}, {}, ""},
+      {"face buttons alone", {ABS_X, ABS_Y}, {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST}, {}, ""},
+      {"no first stick", {ABS_Z, ABS_RZ}, {BTN_TL, BTN_TR}, {}, ""},
+      {"half a stick", {ABS_X, ABS_HAT0Y}, {BTN_TRIGGER}, {}, ""},
   };
   for (const Device& device : devices) {
     const auto number_of = [&](std::uint8_t code) {
@@ -99,8 +116,22 @@ TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
   }
 }
 
-TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
+TEST(StickDrive, ADeviceThatHasNotToldItsButtonsDoesNotDrive) {
   StickDrive stick;
+  for (unsigned i = 0; i < 16; ++i)
+    stick.take(button(i, true), 1.0);
+  EXPECT_FALSE(stick.order(1.0).active);
+  EXPECT_EQ(stick.dead_man(), "");
+  stick = gamepad();
+  stick.take(button(4, true), 1.0);
+  stick.set_layout({}, {});  // another device, which tells nothing
+  stick.take(button(4, true), 1.1);
+  EXPECT_FALSE(stick.order(1.1).active);
+  EXPECT_EQ(stick.dead_man(), "");
+}
+
+TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
+  StickDrive stick = gamepad();
   stick.take(event(JS_EVENT_BUTTON | JS_EVENT_INIT, 4, 1), 1.0);
   stick.take(event(JS_EVENT_AXIS | JS_EVENT_INIT, 1, -32767), 1.0);
   EXPECT_FALSE(stick.order(1.0).active);
@@ -109,7 +140,7 @@ TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
 }
 
 TEST(StickDrive, OneThatSaysNothingMayBeOutOfReach) {
-  StickDrive stick;
+  StickDrive stick = gamepad();
   stick.take(button(4, true) + axis(1, -30000), 1.0);
   EXPECT_TRUE(stick.order(5.9).active);
   EXPECT_FALSE(stick.order(6.1).active);
@@ -119,7 +150,7 @@ TEST(StickDrive, OneThatSaysNothingMayBeOutOfReach) {
 }
 
 TEST(StickDrive, AfterAStopTheButtonHasToBePressedAgain) {
-  StickDrive stick;
+  StickDrive stick = gamepad();
   stick.take(button(4, true) + axis(1, -32767), 1.0);
   stick.let_go();
   EXPECT_FALSE(stick.order(1.0).active);
@@ -130,14 +161,14 @@ TEST(StickDrive, AfterAStopTheButtonHasToBePressedAgain) {
 }
 
 TEST(StickDrive, ADeviceThatIsGoneHoldsNothing) {
-  StickDrive stick;
+  StickDrive stick = gamepad();
   stick.take(button(4, true) + axis(1, -30000), 1.0);
   stick.lost();
   EXPECT_FALSE(stick.order(1.0).active);
 }
 
 TEST(StickDrive, EventsMayComeInPieces) {
-  StickDrive stick;
+  StickDrive stick = gamepad();
   const std::string bytes = button(6, true) + axis(1, -32767);
   for (const char byte : bytes) {
     EXPECT_LT(stick.order(1.0).velocity, 0.1);

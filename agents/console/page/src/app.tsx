@@ -115,7 +115,8 @@ function Header({link, seen: s}: {link: Link; seen: Seen}) {
     </span>
     <span class="grow" />
     {info?.simulator && <a class="wide" href="/simulator.html">the simulator's own view</a>}
-    <button class="estop" onClick={() => link.estop()}
+    {/* At the touch, also of a second finger, which makes no click; the click is the keyboard's. */}
+    <button class="estop" onPointerDown={() => link.estop()} onClick={e => e.detail === 0 && link.estop()}
             aria-label="Emergency stop">{link.stopping ? 'STOP …' : 'STOP'}</button>
   </header>;
 }
@@ -409,20 +410,29 @@ function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDi
 }
 
 function Stick({drive}: {drive: Drive}) {
+  const {active, by, hands} = drive;
   const pad = useRef<SVGSVGElement>(null);
-  const move = (event: PointerEvent) => {
+  const place = (event: PointerEvent) => {
     const box = pad.current!.getBoundingClientRect();
-    let x = 2 * (event.clientX - box.left) / box.width - 1, y = 1 - 2 * (event.clientY - box.top) / box.height;
-    const r = Math.hypot(x, y) / 0.75;
-    if (r > 1) x /= r, y /= r;
-    drive.stick = {x: x / 0.75, y: y / 0.75};
+    const x = (2 * (event.clientX - box.left) / box.width - 1) / 0.75, y = (1 - 2 * (event.clientY - box.top) / box.height) / 0.75;
+    const r = Math.max(1, Math.hypot(x, y));
+    return {x: x / r, y: y / r};
   };
-  const end = () => drive.letGo();
-  const at = drive.stick ?? {x: 0, y: 0};
-  return <svg ref={pad} class={drive.active ? 'stick held' : 'stick'} viewBox="-100 -100 200 200" role="img"
-              aria-label="Stick: hold and move it to drive; or use the keys i m j l"
-              onPointerDown={e => { e.preventDefault(); pad.current!.setPointerCapture(e.pointerId); move(e); }}
-              onPointerMove={e => drive.stick && move(e)} onPointerUp={end} onPointerCancel={end} onLostPointerCapture={end}>
+  const end = (event: PointerEvent) => {
+    hands.drop(event.pointerId);
+    drive.sample();
+  };
+  const at = by === 'stick' ? hands.at : {x: 0, y: 0};
+  return <svg ref={pad} class={active ? 'stick held' : 'stick'} viewBox="-100 -100 200 200" role="img"
+              aria-label="Stick: hold and move it to drive; or use the keys"
+              onPointerDown={e => {
+                e.preventDefault();
+                if (e.button !== 0) return;
+                pad.current!.setPointerCapture(e.pointerId);
+                hands.grasp(e.pointerId, place(e));
+              }}
+              onPointerMove={e => hands.move(e.pointerId, place(e), e.buttons !== 0)}
+              onPointerUp={end} onPointerCancel={end} onLostPointerCapture={end} onContextMenu={e => e.preventDefault()}>
     <circle class="stick-ground" r="98" />
     <path class="stick-arrow" d="M0-90 8-78H-8ZM0 90 8 78H-8ZM-90 0-78 8V-8ZM90 0 78 8V-8Z" />
     <circle class="stick-knob" cx={75 * at.x} cy={-75 * at.y} r="26" />

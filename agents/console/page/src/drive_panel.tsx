@@ -59,6 +59,8 @@ function Mine({link, drive, grant, seen, control}: {link: Link; drive: Drive; gr
     : letGo ? 'let go first'
     : drive.active ? `asked ${drive.velocity.toFixed(2)} m/s, ${(drive.rotation * 180 / Math.PI).toFixed(0)} °/s`
     : autonomous ? 'it drives by itself until you hold something' : 'you hold nothing: the robot stands';
+  const {doubt, pad, padHint} = drive.hands;
+  const key = (code: string) => <kbd>{drive.letters?.get(code) ?? (code === 'Period' ? '.' : code.slice(3).toLowerCase())}</kbd>;
   const speed = (event: Event) => { drive.maxVelocity = Number((event.target as HTMLInputElement).value); };
   return <div class="drive mine">
     <div class="row"><strong>{gone ? 'You drove' : 'You drive'}</strong><span class={letGo || seen.state !== 'live' || !drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span></div>
@@ -73,7 +75,10 @@ function Mine({link, drive, grant, seen, control}: {link: Link; drive: Drive; gr
     {!gone && link.roundTrip > slow && <p class="told bad">Commands take {Math.round(link.roundTrip)} ms there and back: the robot is slowed down.</p>}
     <div class="row"><label for="speed" class="small">Fastest {drive.maxVelocity.toFixed(2)} m/s</label>
       <input id="speed" class="grow" type="range" min="0.05" max={most} step="0.05" value={drive.maxVelocity} onInput={speed} /></div>
-    <p class="small faint">Keys, held down: <kbd>i</kbd> faster <kbd>m</kbd> slower, back <kbd>j</kbd> left <kbd>l</kbd> right <kbd>.</kbd> go on; <kbd>k</kbd> stop
-      {' '}<kbd>g</kbd> constant speed, by the behaviors. {drive.pad ? `Gamepad ${drive.pad}${drive.padHint && ': ' + drive.padHint}.` : 'A gamepad shows once one of its buttons is pressed.'}</p>
+    {doubt && <p class="told" role="status">Let go, since {doubt}. Press again to drive.</p>}
+    <p class="small faint">Keys{drive.letters ? '' : ', at their places on a US keyboard'}, held down: {key('KeyI')} faster {key('KeyM')} slower, back {key('KeyJ')} left {key('KeyL')} right {key('Period')} go on; {key('KeyK')} stop
+      {' '}{key('KeyG')} constant speed, by the behaviors. {pad ? `Gamepad ${pad}${padHint && ': ' + padHint}.`
+        : (drive.hasPads ? 'A gamepad shows once one of its buttons is pressed' : 'This browser gives this page no gamepad')
+          + (isSecureContext ? '.' : '; some browsers give one only to a page by https. The command saphira drive takes one without.')}</p>
   </div>;
 }

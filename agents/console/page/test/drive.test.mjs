@@ -1,4 +1,4 @@
-// Driving by the page: keys, stick and gamepad, one hand after another, and what is lost on the way.
+// Driving by the page: one person after another, and what is lost on the way.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import net from 'node:net';
@@ -89,60 +89,6 @@ test('k stops a robot that drives by itself', async () => {
     return Math.abs(await speed(page)) < 0.02;
   });
   await page.getByRole('button', {name: 'End all'}).click();
-  await handBack(page);
-  await leave(page);
-});
-
-test('the stick drives, and letting it go or losing the window stops', async () => {
-  const page = await person();
-  await open(page);
-  await takeControl(page, 'ann');
-  const box = await page.locator('svg.stick').boundingBox();
-  const middle = [box.x + box.width / 2, box.y + box.height / 2];
-  const back = () => drive(page, async () => {
-    await page.mouse.move(...middle);
-    await page.mouse.down();
-    await page.mouse.move(middle[0], middle[1] + 40);
-  }, () => page.mouse.up(), false);
-  await back();
-  await page.mouse.up();
-  await stands(page);
-  await back();
-  await page.evaluate(() => dispatchEvent(new Event('blur')));
-  await stands(page);
-  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();  // it only watches now
-  await page.mouse.up();
-  await handBack(page);
-  await leave(page);
-});
-
-test('a gamepad drives with a shoulder button, one that is unplugged stops, and another takes over after that', async () => {
-  const page = await person();
-  await page.addInitScript(() => {
-    const pad = (index, id) => ({index, id, connected: true, axes: [0, 0], buttons: Array.from({length: 16}, () => ({pressed: false}))});
-    window.pads = [null, pad(1, 'Test pad (Vendor: 1)'), pad(2, 'Other pad (Vendor: 2)')];
-    window.shown = [];  // a browser hides gamepads until one of their buttons was pressed
-    navigator.getGamepads = () => window.shown;
-  });
-  await open(page);
-  await takeControl(page, 'ann');
-  await page.getByText('A gamepad shows once one of its buttons is pressed').waitFor();
-  await page.evaluate(() => { window.shown = window.pads; });
-  await page.getByText('hold a shoulder button').waitFor();
-  const shoulder = (pad, pressed) => page.evaluate(([n, is]) => { window.pads[n].buttons[4].pressed = is; }, [pad, pressed]);
-  await page.evaluate(() => { window.pads[1].axes[1] = window.pads[2].axes[1] = 1; });  // drift: move nothing
-  await drive(page, () => shoulder(2, true), () => shoulder(2, false), false);
-  // While one is held the other moves nothing, also after the first is gone.
-  await page.getByText('Gamepad Other pad.').waitFor();
-  await shoulder(1, true);
-  await page.evaluate(() => {
-    window.pads[2] = null;
-    dispatchEvent(new Event('gamepaddisconnected'));
-  });
-  await stands(page);
-  await page.getByText('let go of all gamepads first').waitFor();
-  await shoulder(1, false);
-  await page.getByText('Gamepad Test pad: hold a shoulder button').waitFor();
   await handBack(page);
   await leave(page);
 });

@@ -51,3 +51,17 @@ export function trace(file) {
     drivesOn: from => /00000+.*1/.test(rows().filter(row => row.cycle >= from).map(row => stands(row) ? '0' : '1').join('')),
   };
 }
+
+// A simulated robot with its bridge and gateway, and what is true of it; in `self`.
+export async function rig(self, folder, robot) {
+  const line = join(folder, robot), rows = `${line}.csv`;
+  Object.assign(self, trace(rows));
+  const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows);
+  const bridge = start('saphira-bridge', '--robot', robot, '--link', line);
+  self.gateway = start('saphira-console', '--robot', robot, '--port', '0');
+  self.children = [self.gateway, bridge, simulator];
+  let told = '';
+  self.gateway.stdout.on('data', data => { told += data; });
+  const [address, port, key] = await until('the address', () => told.match(/http:\/\/localhost:(\d+)\/#(\w+)/));
+  return Object.assign(self, {address, port: Number(port), key});
+}

@@ -7,7 +7,7 @@ import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, describe, test} from 'node:test';
-import {end, output, sleep, start, trace, until} from './processes.mjs';
+import {end, rig as robotRig, sleep, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
 const period = 50;           // [ms] of the samples
@@ -17,20 +17,10 @@ const resend = 200;          // [ms] until TCP sends again what was lost, beside
 const folder = mkdtempSync(join(tmpdir(), 'saphira-teleop-'));
 const table = [], rigs = [];
 
-// A simulated robot with its bridge and gateway: each test has its own, since all run at the same time.
-async function rig() {
-  const robot = `teleop-${process.pid}-${rigs.length}`, line = join(folder, robot), rows = `${line}.csv`;
-  const self = {forth: 1, people: [], ...trace(rows)};
-  rigs.push(self);
-  const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows);
-  const bridge = start('saphira-bridge', '--robot', robot, '--link', line);
-  self.gateway = start('saphira-console', '--robot', robot, '--port', '0');
-  self.children = [self.gateway, bridge, simulator];
-  let said = '';
-  self.gateway.stdout.on('data', data => { said += data; });
-  const address = await until('the address', () => said.match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
-  [self.port, self.key] = [Number(address[1]), address[2]];
-  return self;
+// Each test has its own robot, since all run at the same time.
+function rig() {
+  const self = {forth: 1, people: [], children: []};
+  return robotRig(self, folder, `teleop-${process.pid}-${rigs.push(self)}`);
 }
 after(async () => {
   for (const {people, children} of rigs) {

@@ -12,9 +12,9 @@ namespace saphira::teleop {
 
 /// From a joystick or gamepad to orders, with a dead-man: the robot is driven by the first stick
 /// while a button is held. That is a shoulder button; the trigger of a joystick without shoulder
-/// buttons; the first button of a device with neither. The device is the kernel's
-/// (linux/joystick.h): events of 8 bytes, time [ms], value, type and number. Times are seconds of
-/// any steady clock.
+/// buttons; the button that is named a dead-man where there is neither. A device without such names
+/// does not drive. The device is the kernel's (linux/joystick.h): events of 8 bytes, time [ms],
+/// value, type and number. Times are seconds of any steady clock.
 class StickDrive {
  public:
   struct Settings {
@@ -23,10 +23,11 @@ class StickDrive {
     double max_velocity = 0.4;  ///< [m/s] at full deflection
     double max_turn = 1.0;      ///< [rad/s] likewise
   };
-  /// The codes of the device's axes and buttons (linux/input-event-codes.h), in their order. A
-  /// device is a gamepad whose shoulder buttons are 4 to 7 until it has told them.
+  /// The codes of the device's axes and buttons (linux/input-event-codes.h), in their order.
+  /// Nothing drives before.
   void set_layout(const std::vector<std::uint8_t>& axes, const std::vector<std::uint16_t>& buttons);
-  /// The button to hold, for people: "a shoulder button".
+  /// The button to hold, for people, with its number from 0: "a shoulder button (4 or 5)". Empty:
+  /// the kernel names no such button, or no first stick, and the device does not drive.
   const std::string& dead_man() const { return dead_man_; }
   void set_max_velocity(double limit) { settings_.max_velocity = limit; }
   /// Bytes of the device, which may end within an event. A button that was held when the device was
@@ -45,13 +46,13 @@ class StickDrive {
 
   Settings settings_;
   std::string rest_;
-  std::string dead_man_ = "a shoulder button";
-  std::set<unsigned> holding_{4, 5, 6, 7};  ///< numbers of the buttons that count
-  unsigned across_ = 0;                     ///< number of the axis to the right
-  unsigned along_ = 1;                      ///< number of the axis to the person
-  double ahead_ = 0.0;                      ///< [-1..1]
-  double left_ = 0.0;                       ///< [-1..1]
-  std::set<unsigned> held_;                 ///< buttons of holding_
+  std::string dead_man_;
+  std::set<unsigned> holding_;  ///< numbers of the buttons that count
+  unsigned across_ = 0;         ///< number of the axis to the right
+  unsigned along_ = 0;          ///< number of the axis to the person
+  double ahead_ = 0.0;          ///< [-1..1]
+  double left_ = 0.0;           ///< [-1..1]
+  std::set<unsigned> held_;     ///< buttons of holding_
   double heard_ = -1e9;
 };
 
