@@ -189,7 +189,7 @@ void Gateway::poll() {
     any = take() || any;
   mind_.poll();
   goals_.poll();
-  for (bus::RequestClient* client : {&resets_, &registration_, &processes_})
+  for (bus::RequestClient* client : {&stops_, &resets_, &registration_, &processes_})
     take_answers(*client);
   if (const v1::RobotState* const robot = mind_.robot())
     stamp_ = robot->stamp();

@@ -116,6 +116,7 @@ class Gateway {
   teleop::Pilot pilot_{"console"};
   cli::Mind mind_{node_, false};
   bus::GoalClient goals_{node_, "console"};
+  bus::RequestClient stops_{node_, bus::topics::kDriveStop, "console"};
   bus::RequestClient resets_{node_, bus::topics::kEstopReset, "console"};
   bus::RequestClient registration_{node_, bus::topics::kRegistrationRequest, "console"};
   bus::RequestClient processes_{node_, bus::topics::kProcessRequest, "console"};

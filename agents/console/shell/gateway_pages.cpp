@@ -183,6 +183,9 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     press_estop();
     return;
   }
+  if (const auto* stop = std::get_if<StopRobot>(&message))
+    return send(stops_, bus::request("stop", {bus::text("by", operator_of(page.name))}), connection,
+                stop->reference);
   if (!page.trusted) {
     say(connection,
         "{\"type\":\"note\",\"text\":\"Without the key you may watch, and stop the robot. Open the "

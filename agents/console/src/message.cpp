@@ -75,6 +75,8 @@ Message read(const Json& json) {
     return ReleaseControl{};
   if (type == "hand_back")
     return HandBack{};
+  if (type == "stop")
+    return StopRobot{count(json, "reference")};
   if (type == "estop")
     return EmergencyStop{};
   if (type == "estop_reset")

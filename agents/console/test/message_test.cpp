@@ -40,6 +40,7 @@ TEST(Message, EachKindIsRead) {
   EXPECT_TRUE(std::holds_alternative<Wrong>(parse_message(R"({"type":"give"})")));
   EXPECT_TRUE(std::holds_alternative<ReleaseControl>(parse_message(R"({"type":"release"})")));
   EXPECT_TRUE(std::holds_alternative<HandBack>(parse_message(R"({"type":"hand_back"})")));
+  EXPECT_TRUE(std::holds_alternative<StopRobot>(parse_message(R"({"type":"stop","reference":1})")));
   EXPECT_TRUE(std::holds_alternative<EmergencyStop>(parse_message(R"({"type":"estop"})")));
   EXPECT_TRUE(
       std::holds_alternative<ResetEmergencyStop>(parse_message(R"({"type":"estop_reset"})")));

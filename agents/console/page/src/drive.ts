@@ -7,7 +7,6 @@ import type {ControlState, Grant, RobotDescription, RobotState} from './types';
 const firstStep = 0.05;      // [m/s] of one key
 const rate = 0.25;           // [m/s2] of a key that is held
 const keyTurn = 0.6;         // [rad/s]
-const stopHold = 2000;       // [ms] of the key k, as in the terminal
 const fields = 'input:not([type=range], [type=checkbox]), select, textarea, [contenteditable]';
 
 // The element with the focus uses this key itself.
@@ -35,8 +34,6 @@ export class Drive {
   hands = new Hands();
   hasPads = true;            // the browser has gamepads for this page
   letters?: {get(code: string): string | undefined};   // of the person's keyboard, where the browser tells
-
-  stoppedUntil = 0;          // [ms] a stop holds that long against autonomy, too
 
   private keyVelocity = 0;
   private sampled = 0;       // [ms]
@@ -93,14 +90,7 @@ export class Drive {
   // Nothing is held any more; the robot is told at once.
   letGo(why = '') {
     this.hands.letGo(why);
-    this.stoppedUntil = 0;
     if (this.mine()) this.sample();
-  }
-  // The robot stands, whoever drives it: a person has priority over autonomy.
-  stop() {
-    this.letGo();
-    this.stoppedUntil = performance.now() + stopHold;
-    this.sample();
   }
   release() {
     if (!this.mine()) return;
@@ -113,8 +103,9 @@ export class Drive {
     const shortcut = event.ctrlKey || event.altKey || event.metaKey || event.getModifierState('AltGraph') || /^(Control|Alt|AltGraph|Meta|OS)$/.test(key);
     const act = this.hands.press({code, key, repeat, shortcut, own: own(event), may: mine}, performance.now());
     if (act === 'stop') {
-      if (mine) this.stop();
-      else if (!repeat) this.stopForAll(key === ' ' ? 'space' : key);
+      // Whatever moves the robot ends; nobody needs control for that.
+      this.letGo();
+      if (!repeat) this.link.stop();
     } else if (!act || !mine) {
       if (mine && !repeat) this.sample();
       return;
@@ -127,12 +118,6 @@ export class Drive {
       this.sample();
     }
     event.preventDefault();
-  }
-
-  // Without control these keys are the emergency stop, as the button STOP is.
-  private stopForAll(key: string) {
-    if (!this.link.data<Grant>('drive/grant')?.estopped && this.link.estop())
-      this.link.note(`Emergency stop by the key ${key}. It stops the robot for everybody; a stop of 2 s needs control: Drive.`, false);
   }
 
   private faster(by: number) {
@@ -159,7 +144,7 @@ export class Drive {
       }
     }
     this.sampled = now;
-    this.active = this.by !== '' || now < this.stoppedUntil;
+    this.active = this.by !== '';
     if (this.active && !was) this.since = now;
     if (this.mine())
       this.link.sendSample({type: 'drive', number: ++this.number, at: now / 1000, active: this.active,

@@ -100,21 +100,24 @@ export class Link {
     this.send({type: 'rename', name: this.operator});
   }
 
-  // False: nothing was sent, because there is no connection, or a slow one has much to send still. An
-  // emergency stop is sent in any case.
+  // False: nothing was sent, because there is no connection, or a slow one has much to send still. A
+  // stop is sent in any case.
   send(message: Message): boolean {
     if (this.commands?.readyState !== WebSocket.OPEN) return false;
-    if (this.commands.bufferedAmount > 2000 && message.type !== 'estop') return false;
+    if (this.commands.bufferedAmount > 2000 && message.type !== 'estop' && message.type !== 'stop') return false;
     this.commands.send(JSON.stringify(message));
     return true;
   }
 
-  // Everybody's emergency stop.
-  estop(): boolean {
+  // Everybody's emergency stop, which is latched.
+  estop() {
     this.stopping = this.send({type: 'estop'});
     if (!this.stopping) this.note("NOT SENT: there is no connection. Stop the robot by its own switch.", false);
     this.tell();
-    return this.stopping;
+  }
+  // Everybody's stop of whatever moves the robot. One answer names who was stopped, a later one is a note.
+  stop() {
+    void this.ask({type: 'stop'}).then(answer => this.note(answer.text, answer.well));
   }
 
   // A sample of driving, by several connections in turn: where one waits for what was lost on its way, the

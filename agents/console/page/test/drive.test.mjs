@@ -76,21 +76,21 @@ test('keys drive while they are held, and somebody else waits for control', asyn
   await leave(bob);
 });
 
-test('k stops a robot that drives by itself', async () => {
-  const page = await person();
+test('k ends whatever moves the robot, also by somebody who has neither control nor key', async () => {
+  const page = await person(), guest = await person();
   await open(page);
-  await send(page, 'drive 0.2');
-  await moves(page);
-  await takeControl(page, 'ann');
-  await page.getByText('it drives by itself until you hold something').waitFor();
-  await until('the robot stands', async () => {
-    await page.keyboard.press('k');
-    await page.waitForTimeout(300);
-    return Math.abs(await speed(page)) < 0.02;
-  });
-  await page.getByRole('button', {name: 'End all'}).click();
-  await handBack(page);
+  await open(guest, false);
+  for (const stopper of [page, guest]) {
+    await send(page, 'drive 0.2');
+    await moves(page);
+    await stopper.locator('canvas').focus();
+    await stopper.keyboard.press('k');
+    await stopper.getByText('the robot is at rest').waitFor();
+    assert.ok(Math.abs(await speed(page)) < 0.02);
+    await page.getByText('stopped by').first().waitFor();
+  }
   await leave(page);
+  await leave(guest);
 });
 
 test('everybody may stop the robot, also without the key', async () => {
@@ -107,15 +107,6 @@ test('everybody may stop the robot, also without the key', async () => {
     await ann.getByRole('button', {name: 'Reset'}).click();
     await until('the reset', async () => !(await ann.getByRole('alert').count()));
   };
-  await reset();
-  // The keys of the stop, too: of a guest, and of somebody who has no control.
-  await guest.locator('canvas').focus();
-  await guest.keyboard.press(' ');
-  await guest.getByText('Emergency stop by the key space').waitFor();
-  await ann.getByRole('alert').filter({hasText: 'pressed by'}).waitFor();
-  await reset();
-  await ann.keyboard.press('k');
-  await guest.getByRole('alert').filter({hasText: 'pressed by'}).waitFor();
   await reset();
   if (await ann.getByRole('button', {name: 'Hand back'}).count()) await handBack(ann);
   await leave(ann);

@@ -36,6 +36,9 @@ struct GiveControl {
 };
 struct ReleaseControl {};
 struct HandBack {};
+struct StopRobot {
+  std::uint64_t reference = 0;
+};
 struct EmergencyStop {};
 struct ResetEmergencyStop {};
 struct AskGoal {
@@ -74,8 +77,8 @@ struct Wrong {
 
 using Message =
     std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, GiveControl, ReleaseControl,
-                 teleop::Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal, Say,
-                 CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
+                 teleop::Control::Sample, HandBack, StopRobot, EmergencyStop, ResetEmergencyStop,
+                 AskGoal, Say, CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
