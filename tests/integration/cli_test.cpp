@@ -455,9 +455,18 @@ TEST_F(CliTest, DriveIsADeadMan) {
     EXPECT_GT(command.number(), last);
     last = command.number();
   }
+  bus::Node bridge(test::node_options("bridge", robot_));
+  auto stops = bridge.reader(bus::topics::kDriveStop);
+  EXPECT_TRUE(test::wait_until([&] { return stops.matched() > 0; }));
   press('k');
-  EXPECT_TRUE(test::wait_until(
-      [&] { return scripted.newest().active() && scripted.newest().velocity() == 0.0; }));
+  std::string asked;
+  EXPECT_TRUE(test::wait_until([&] {
+    if (const auto request = stops.take_newest())
+      asked = request->functor();
+    return !asked.empty();
+  }));
+  EXPECT_EQ(asked, "stop");
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
   const auto handed_back = [&] {
     const auto all = scripted.teleop();
     return std::any_of(all.begin(), all.end(), [](const v1::MotorCommand& command) {

@@ -17,6 +17,7 @@
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/teleop/key_drive.hpp"
@@ -37,11 +38,12 @@ using teleop::StickDrive;
 constexpr milliseconds kPeriod{50};        ///< of the commands; the bridge's lease is 300 ms
 constexpr double kHandBackLimit = 5.0;     ///< [s]
 constexpr double kTellRefusal = 2.0;       ///< [s] that the reason is shown
+constexpr double kStopAgain = 0.5;         ///< [s] between two stops of a held key
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
 constexpr const char* kKeys =
     "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
-    "an all stop also stops another person, and gives you the robot\n"
+    "an all stop ends whatever moves the robot: another person, goals, programs\n"
     "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n"
     "joystick: hold a shoulder button or the trigger, and push the first stick\n";
 
@@ -281,6 +283,8 @@ class Teleop {
         pilot_.hand_back();
         note_ = "handed back: autonomy may drive";
         return;
+      case DriveKey::stop:
+        return stop_all();
       default:
         break;
     }
@@ -288,10 +292,21 @@ class Teleop {
     if (!robot_)
       return;  // a person must see the robot to drive it
     end_constant();
-    if (key == DriveKey::stop)
-      joystick_.stick().let_go();
     keys_.press(key, now());
     send();  // at once: a stop does not wait for the period
+  }
+
+  /// k: ends whatever moves the robot. A held key repeats.
+  void stop_all() {
+    keys_.release();
+    joystick_.stick().let_go();
+    end_constant();
+    send();
+    if (now() - stopped_at_ < kStopAgain)
+      return;
+    stopped_at_ = now();
+    stops_.send(bus::request("stop"));
+    note_ = "NOT CONFIRMED: asks the bridge to stop whatever moves the robot";
   }
 
   /// g: the goal drive, so that the behaviors keep the speed and avoid obstacles.
@@ -319,6 +334,8 @@ class Teleop {
   void take() {
     processes_.poll();
     goals_.poll();
+    for (const v1::Answer& answer : stops_.poll())
+      note_ = answer.text();
     if (const auto robot = robots_.take_newest()) {
       robot_ = *robot;
       robot_came_ = Clock::now();
@@ -433,6 +450,7 @@ class Teleop {
   bus::Node node_;
   Processes processes_;
   bus::GoalClient goals_;
+  bus::RequestClient stops_{node_, bus::topics::kDriveStop, person("keyboard")};
   bus::Writer<v1::MotorCommand> commands_ = node_.writer(bus::topics::kDriveTeleop);
   bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
   bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
@@ -442,6 +460,7 @@ class Teleop {
   std::string input_;
   teleop::Pilot pilot_{person("keyboard", true)};
   bool quit_ = false;
+  double stopped_at_ = -1e9;  ///< [s]
   std::optional<v1::GoalId> constant_;
   std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;

@@ -72,6 +72,8 @@ std::vector<DriveKey> take_keys(std::string& input) {
 }
 
 void KeyDrive::press(DriveKey key, double now) {
+  if (key == DriveKey::stop)
+    return release();
   if (key > DriveKey::keep)
     return;
   if (!order(now).active)
@@ -81,9 +83,7 @@ void KeyDrive::press(DriveKey key, double now) {
   // Simultaneous keys count as one: a slow line bundles them.
   if (gap > settings_.burst)
     slowest_ = gap > settings_.first_hold ? 0.0 : std::max(gap, settings_.forget * slowest_);
-  if (key == DriveKey::stop)
-    hold_until_ = now + settings_.stop_hold;
-  else if (slowest_ == 0.0)
+  if (slowest_ == 0.0)
     hold_until_ = now + settings_.first_hold;
   else
     hold_until_ =
@@ -115,10 +115,6 @@ void KeyDrive::press(DriveKey key, double now) {
       break;
     case DriveKey::right:
       turn(-settings_.turn_step);
-      break;
-    case DriveKey::stop:
-      order_.velocity = 0.0;
-      turn(0.0);
       break;
     default:
       break;

@@ -121,9 +121,6 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     said.stopped = false;
     return release(command, cycle);
   }
-  if (said.stops != command.stop || command.received - said.newest_at > settings_.lease + kTick)
-    said.began = command.received;
-  said.stops = command.stop;
   said.newest_at = command.received;
 
   if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
@@ -133,21 +130,14 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     return no(wrong);
   }
   Player& p = player(command.role);
-  const bool heard = p.held && p.newest.active && fresh(p, command.received) &&
-                     (command.role == Role::teleop || why_to_let_go(p.newest).empty());
+  // A driver that has to let go first holds nothing.
+  const bool heard =
+      p.held && p.newest.active && fresh(p, command.received) && why_to_let_go(p.newest).empty();
   const bool another = heard && p.newest.writer != command.writer;
-  if (another || (command.role == Role::teleop && !command.stop && command.writer != stopper_)) {
-    if (const std::string why = another || said.began <= stopped_at_
-                                    ? held_by_another(command, said.began)
-                                    : std::string();
-        !why.empty())
-      return no(why);
-  }
-  if (another && command.stop) {
-    stopper_ = command.writer;
-    stopper_name_ = command.source;
-    stopped_at_ = command.received;
-  }
+  if (another)
+    return no(command.role == Role::teleop
+                  ? p.newest.source + " drives: stop first (space), then drive"
+                  : "the role is held by " + p.newest.source);
   if (command.role == Role::teleop)
     quiet_heard_ = kNever;
   if (!heard || another || command.cycle == 0 || command.cycle > p.newest.cycle)
@@ -159,28 +149,6 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     said.stopped = false;
   }
   return true;
-}
-
-/// The reason why a command does not take the role from the writer that holds it; empty where it
-/// does. run_began: start of the writer's unbroken run of driving, or of stopping.
-std::string Arbiter::held_by_another(const Command& command, double run_began) const {
-  const Player& p = player(command.role);
-  if (command.role != Role::teleop)
-    return "the role is held by " + p.newest.source;
-  const bool over = command.received - run_began > settings_.stop_hold + kTick;
-  if (command.stop) {
-    if (p.newest.stop)
-      return p.newest.source + " has stopped the robot already";
-    return over ? p.newest.source + " drives since: stop again to stop the robot" : std::string();
-  }
-  if (run_began <= stopped_at_)
-    return stopper_name_ + " has stopped the robot: let go, then drive";
-  if (!p.newest.stop)
-    return p.newest.source + " drives: stop first (space), which takes the robot over";
-  const auto stop = numbers_.find({p.newest.role, p.newest.writer});
-  if (stop == numbers_.end() || run_began - stop->second.began > settings_.stop_hold + kTick)
-    return {};
-  return p.newest.source + " has just stopped the robot: let go, then drive in a moment";
 }
 
 /// A release by the present driver is never refused: even a faulty one means stop.

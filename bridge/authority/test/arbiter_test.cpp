@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <map>
-
 #include "scene.hpp"
 
 namespace saphira::authority {
@@ -128,77 +125,21 @@ TEST(Arbiter, ASecondWriterWaitsUntilTheFirstIsDone) {
   EXPECT_TRUE(s.offer(Role::direct, 1)) << "the lease of the second ended";
 }
 
-/// Two persons with keyboards, who send their wish ten times a second.
-struct Persons : Scene {
-  enum class Wish { none, drive, stop };
-  Persons() : Scene() {}
-
-  void say(int who, Wish wish) {
-    Command c = command(Role::teleop, who, wish != Wish::none);
-    c.stop = wish == Wish::stop;
-    arbiter.offer(c, cycle);
-  }
-  /// Runs the given cycles. Returns the last cycle's grant; keeps each person's newest refusal.
-  Grant go_on(int cycles, Wish first, Wish second) {
-    Grant last;
-    for (int i = 0; i < cycles; ++i) {
-      wait(1);
-      say(1, first);
-      say(2, second);
-      last = grant();
-      refused.clear();
-      for (const Refusal& refusal : arbiter.take_refused())
-        refused[refusal.source] = refusal.reason;
-    }
-    return last;
-  }
-  std::map<std::string, std::string> refused;
-};
-
-TEST(Arbiter, AnybodysStopStopsAndTakesTheRole) {
-  using Wish = Persons::Wish;
-  Persons s;
-  EXPECT_EQ(s.go_on(5, Wish::drive, Wish::none).source, "teleop1");
-  EXPECT_EQ(s.go_on(1, Wish::drive, Wish::stop).source, "teleop2") << "in the same cycle";
-  EXPECT_EQ(s.go_on(5, Wish::drive, Wish::stop).source, "teleop2");
-  EXPECT_EQ(s.refused["teleop1"], "teleop2 has stopped the robot: let go, then drive");
-  // The person who stopped the robot may drive it.
-  EXPECT_EQ(s.go_on(5, Wish::drive, Wish::drive).source, "teleop2");
-}
-
-TEST(Arbiter, ARobotThatWasStoppedDoesNotDriveOnWhileTheKeyIsStillHeld) {
-  using Wish = Persons::Wish;
-  Persons s;
-  s.go_on(5, Wish::drive, Wish::none);
-  s.go_on(3, Wish::drive, Wish::stop);
-  for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(s.go_on(1, Wish::drive, Wish::none).role, Role::none) << "the stopper has gone";
-  s.go_on(4, Wish::none, Wish::none);
-  EXPECT_EQ(s.go_on(1, Wish::drive, Wish::none).source, "teleop1");
-}
-
-TEST(Arbiter, AForgottenStopDoesNotKeepTheRole) {
-  using Wish = Persons::Wish;
-  Persons s;
-  s.go_on(5, Wish::drive, Wish::none);
-  s.go_on(5, Wish::none, Wish::stop);
-  EXPECT_EQ(s.go_on(2, Wish::drive, Wish::stop).source, "teleop2");
-  EXPECT_EQ(s.refused["teleop1"],
-            "teleop2 has just stopped the robot: let go, then drive in a moment");
-  s.go_on(20, Wish::none, Wish::stop);
-  EXPECT_EQ(s.go_on(20, Wish::drive, Wish::stop).source, "teleop1");
-  EXPECT_EQ(s.refused["teleop2"], "teleop1 drives since: stop again to stop the robot");
-  // A second press stops again.
-  s.go_on(4, Wish::drive, Wish::none);
-  EXPECT_EQ(s.go_on(1, Wish::drive, Wish::stop).source, "teleop2");
-}
-
-TEST(Arbiter, AnotherPersonsMotionIsRefusedAndHoldsNothing) {
-  using Wish = Persons::Wish;
-  Persons s;
-  s.go_on(5, Wish::drive, Wish::none);
-  EXPECT_EQ(s.go_on(20, Wish::drive, Wish::drive).source, "teleop1");
-  EXPECT_EQ(s.refused["teleop2"], "teleop1 drives: stop first (space), which takes the robot over");
+TEST(Arbiter, AnotherPersonDrivesOnlyAfterAStop) {
+  Scene s;
+  const auto both_drive = [&] {
+    s.wait(1);
+    s.offer(Role::teleop, 1);
+    s.offer(Role::teleop, 2);
+    return s.grant();
+  };
+  EXPECT_EQ(both_drive().source, "teleop1");
+  EXPECT_EQ(s.arbiter.take_refused().at(0).reason,
+            "teleop1 drives: stop first (space), then drive");
+  s.arbiter.stop({7, 1}, "teleop2", s.now, s.cycle);
+  EXPECT_EQ(both_drive().role, Role::none) << "nobody has let go";
+  s.offer(Role::teleop, 2, false);
+  EXPECT_EQ(both_drive().source, "teleop2");
 }
 
 TEST(Arbiter, ANewConnectionNeedsANewCommand) {

@@ -22,18 +22,6 @@ std::uint64_t driver_of(const authority::WriterId& writer) {
   return hash.value();
 }
 
-/// True where it asks for zero speed and no turn.
-bool is_stop(const reflector::Motion& motion) {
-  using reflector::Rotation;
-  using reflector::Translation;
-  const bool stands = motion.translation == Translation::none ||
-                      (motion.translation == Translation::velocity && motion.velocity == 0.0);
-  const bool holds = motion.rotation == Rotation::none ||
-                     (motion.rotation == Rotation::velocity && motion.rotation_velocity == 0.0) ||
-                     (motion.rotation == Rotation::relative_heading && motion.heading == 0.0);
-  return stands && holds;
-}
-
 /// Setpoints that keep a robot with this heading where it is.
 bool stand(const reflector::Setpoints& told, double heading_in_odom) {
   constexpr double kSameHeading = 0.05;  // [rad]
@@ -69,7 +57,6 @@ std::string trouble(const reflector::Motion& motion, double contact_speed) {
 void Core::command(const DriveCommand& in, double now) {
   authority::Command command = in.command;
   command.received = time(now);
-  command.stop = command.active && is_stop(in.motion);
   // Even a wrong command is an answer: lockstep could wait for ever for a better one.
   if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
       command.cycle == session_.stamp.cycle)

@@ -43,7 +43,6 @@ class KeyDrive {
     double burst = 0.02;          ///< [s] nearer keys came at once
     double margin = 1.5;          ///< factor on the slowest recent gap
     double forget = 0.8;          ///< factor on that gap for each key
-    double stop_hold = 2.0;       ///< [s] of a stop; then, without keys, it is a release
     double velocity_step = 0.05;  ///< [m/s] of one key
     double velocity_rate = 0.2;   ///< [m/s2] at most, of a held key
     double turn_step = 0.2;       ///< [rad] of one key; a held key stays this far ahead

@@ -32,7 +32,6 @@ struct Command {
   std::uint64_t cycle = 0;   ///< the same; 0 from a writer without cycles
   std::uint64_t number = 0;  ///< counts the writer's commands
   bool active = false;       ///< the dead-man: false releases
-  bool stop = false;         ///< active, and asks for zero speed and no turn
   bool hand_back = false;    ///< a person's release that lets autonomy drive again
   StopId heeds;              ///< the newest stop that its intent comes after
   double received = 0.0;     ///< [s]
@@ -47,7 +46,6 @@ struct Settings {
   /// program has reported without a pause for this long that it does not drive.
   double quiet = std::numeric_limits<double>::infinity();
   double oldest = kOldest;  ///< [s] a command that answers an older cycle is refused
-  double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for this long
   /// [s] A person who could not drive for longer, with the lease run out or the bridge deaf, has to
   /// let go before driving on.
   double interruption = 0.5;
@@ -95,9 +93,6 @@ struct Grant {
 /// at that time. A stopped writer does not drive before it has released, or before a command heeds
 /// the stop. A command of the behaviors has to heed it: the release of a cycle says nothing about
 /// the intent of the next one.
-///
-/// A person's command of zero speed and no turn takes the role from the present person, who has to
-/// let go before driving again. It keeps the role for stop_hold.
 ///
 /// Two states are latched, over connections and, with latches() and restore(), over a restart:
 /// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
@@ -155,7 +150,6 @@ class Arbiter {
   void let_go();
   void press(const Command& command);
   bool release(const Command& command, std::uint64_t cycle);
-  std::string held_by_another(const Command& command, double run_began) const;
   std::string stale(const Command& command, std::uint64_t cycle) const;
   bool fresh(const Player& p, double now) const;
   bool live(const Player& p, double now, std::uint64_t cycle) const;
@@ -175,11 +169,8 @@ class Arbiter {
   std::array<Player, 5> players_;
   struct Numbers {
     std::uint64_t newest = 0;
-    std::uint64_t used = 0;  ///< the number of that offer
-    // Active commands without a pause: all of them stops, or none.
-    bool stops = false;
-    double began = 0.0;         ///< [s]
-    double newest_at = -1e300;  ///< [s]
+    std::uint64_t used = 0;     ///< the number of that offer
+    double newest_at = -1e300;  ///< [s] of an active command, since its newest release
     std::string source;
     // Since its newest release:
     double drove = -1e300;    ///< [s] of a person's program: newest time with a live command
@@ -209,9 +200,6 @@ class Arbiter {
   WriterId person_{};                  ///< the person's program that drove last
   double quiet_since_ = 0.0;           ///< since then it reports that it does not drive
   double quiet_heard_ = -1e300;        ///< its newest such report
-  WriterId stopper_{};                 ///< the person who last stopped another one
-  std::string stopper_name_;
-  double stopped_at_ = -1e300;  ///< [s] time of that stop
 
   std::vector<Refusal> refused_;
   std::uint64_t refused_count_ = 0;
