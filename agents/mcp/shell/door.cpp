@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/cli/talk_words.hpp"
 #include "saphira/situation/words.hpp"
@@ -38,19 +39,11 @@ v1::Argument argument(const std::string& name, const Json& value) {
   return bus::text(name, value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-/// The first line of a text for the log, without control characters.
+/// The first line of a text for the log.
 std::string first_line(const std::string& text) {
-  std::string line = text.substr(0, text.find('\n'));
-  if (line.size() > kLongestNote) {
-    std::size_t end = kLongestNote;
-    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U)
-      --end;  // not within a letter
-    line = line.substr(0, end) + "...";
-  }
-  std::replace_if(
-      line.begin(), line.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
-  return line;
+  const std::string line = text.substr(0, text.find('\n'));
+  const std::string_view begin = first_letters(line, kLongestNote);
+  return one_line(std::string(begin)) + (begin.size() < line.size() ? "..." : "");
 }
 
 }  // namespace
@@ -127,8 +120,9 @@ void Door::turn(double now) {
   for (const std::uint64_t number : session_.take_given_up()) {
     std::erase_if(early_, [&](const Call& call) { return call.number == number; });
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
-      if (found->second.what == Waiting::For::goal && is_own(*found->second.goal))
-        withdraw(*found->second.goal);
+      if (found->second.what == Waiting::For::goal)
+        if (Own* const own_goal = own(*found->second.goal))
+          withdraw(*own_goal);
       if (found->second.what == Waiting::For::words)
         take_back_words();
       found->second.still = now_ + kStop;
@@ -217,6 +211,8 @@ void Door::begin(const Call& call) {
 }
 
 void Door::say(const Call& call) {
+  if (!may_begin(call))
+    return;
   v1::Utterance utterance = situation::typed(node_.instance(), bus::next_request_number(), who_,
                                              call.arguments.value("text", ""), unix_time());
   utterance.means(v1::UTTERANCE_PROGRAM);
@@ -275,16 +271,27 @@ void Door::request(const Call& call, const v1::Capability& capability) {
 
 /// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
 void Door::follow(const Call& call, const v1::GoalId& id) {
-  own_.push_back(id);
+  own_.push_back({id});
   const double wait = call.as_task ? kDeadline + kGrace : call.arguments.value("wait_s", kWait);
   waiting_[call.number] = {.goal = id, .until = now_ + wait, .is_task = call.as_task};
   if (call.as_task)
     session_.begin_task(call.number, bus::describe(id), outcome(id).text);
 }
 
-/// False: the client has too much underway, and the call is answered.
+/// False: others have too much underway, and the call is answered.
+bool Door::may_begin(const Call& call) {
+  if (!may_begin_)
+    session_.answer(call.number, {"not done: too many clients have goals underway; again when one "
+                                  "of them has ended, and a stop is always taken",
+                                  nullptr, true});
+  return may_begin_;
+}
+
+/// False: the client or others have too much underway, and the call is answered.
 bool Door::has_room(const Call& call) {
-  std::erase_if(own_, [this](const v1::GoalId& id) { return has_ended(id); });
+  if (!may_begin(call))
+    return false;
+  std::erase_if(own_, [this](const Own& each) { return has_ended(each.id); });
   if (own_.size() < kMostGoals)
     return true;
   session_.answer(call.number, {"not done: " + std::to_string(own_.size()) +
@@ -306,8 +313,11 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
   follow(call, goals_.ask(goal));
 }
 
-bool Door::is_own(const v1::GoalId& id) const {
-  return std::find(own_.begin(), own_.end(), id) != own_.end();
+/// Null: this client has not asked for it, or it has ended.
+Door::Own* Door::own(const v1::GoalId& id) {
+  const auto found =
+      std::find_if(own_.begin(), own_.end(), [&](const Own& each) { return each.id == id; });
+  return found == own_.end() ? nullptr : &*found;
 }
 
 bool Door::has_ended(const v1::GoalId& id) const {
@@ -321,9 +331,9 @@ bool Door::has_words_underway() const {
 }
 
 bool Door::is_busy() const {
-  return has_words_underway() ||
-         !std::all_of(own_.begin(), own_.end(),
-                      [this](const v1::GoalId& id) { return has_ended(id); });
+  return has_words_underway() || !std::all_of(own_.begin(), own_.end(), [this](const Own& each) {
+           return has_ended(each.id);
+         });
 }
 
 /// The dialogue ends what a writer's words began when that writer is gone.
@@ -334,28 +344,56 @@ void Door::take_back_words() {
   std::erase_if(words_, [](const auto& each) { return !each.second.acts; });
 }
 
-void Door::withdraw(const v1::GoalId& id) {
-  if (actions_.find(id) != nullptr)
-    actions_.withdraw(id);
+void Door::withdraw(Own& own, const std::string& why) {
+  if (std::exchange(own.withdrawn, true))
+    return;
+  if (actions_.find(own.id) != nullptr)
+    actions_.withdraw(own.id);
   else
-    goals_.cancel(id);
+    goals_.cancel(own.id, why);
+}
+
+/// The goal of another client of this program, while it has not ended; nothing: it is none.
+std::optional<v1::GoalStatus> Door::other(const v1::GoalId& id) const {
+  auto known = goals_.status(id);
+  if (known &&
+      (bus::ended(known->state()) || id.writer() != node_.instance() || known->requester() == who_))
+    known.reset();
+  return known;
+}
+
+/// Two clients are two persons: one ends the goal of the other after a question only.
+void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
+  const auto known = id ? other(*id) : std::nullopt;
+  if (!known)
+    return session_.answer(call.number,
+                           {"not done: this is no goal of yours that is underway; without a goal "
+                            "the tool cancel ends all of yours, and what you began with say",
+                            nullptr, true});
+  if (!call.arguments.value("sure", false))
+    return session_.answer(
+        call.number,
+        {"not done: this is " + known->functor() + " of " + known->requester() + ", " +
+             bus::describe(*known) +
+             ". Shall it end? Ask the person; after a yes call cancel again with sure: true",
+         nullptr, true});
+  goals_.cancel(*id, who_ + " was sure, after a question");
+  waiting_[call.number] = {.what = Waiting::For::cancel, .goal = id, .until = now_ + kStop};
 }
 
 void Door::cancel(const Call& call) {
   Waiting waiting{.what = Waiting::For::cancel, .until = now_ + kStop};
   if (call.arguments.contains("goal")) {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
-    if (!id || !is_own(*id))
-      return session_.answer(call.number,
-                             {"not done: this is no goal of yours that is underway; without a goal "
-                              "the tool cancel ends all of yours, and what you began with say",
-                              nullptr, true});
+    Own* const own_goal = id ? own(*id) : nullptr;
+    if (own_goal == nullptr)
+      return cancel_other(call, id);
     waiting.goal = id;
-    withdraw(*id);
+    withdraw(*own_goal);
   } else {
     waiting.had_any = is_busy();
-    for (const v1::GoalId& id : own_)
-      withdraw(id);
+    for (Own& each : own_)
+      withdraw(each);
     take_back_words();
     if (!waiting.had_any)
       waiting.until = now_;
@@ -491,16 +529,23 @@ Result Door::outcome(const v1::GoalId& id) const {
   std::string text = "goal " + bus::describe(id) + ": " + words(id, *known);
   if (!bus::ended(known->state()))
     text += "; it goes on: ask the tool goal for its end, or cancel it";
+  if (other(known->waits_for()))
+    text += "; the tool cancel ends " + bus::describe(known->waits_for()) +
+            " in front of it, once its person was asked";
   const Action* const action = actions_.find(id);
   return {text, action == nullptr ? json_of(*known) : json_of(*action), bad};
 }
 
 Json Door::goals() const {
   Json all = Json::array();
-  for (const v1::GoalStatus& status : goals_.statuses())
+  for (const v1::GoalStatus& status : goals_.statuses()) {
     all.push_back(json_of(status));
-  for (const Action& action : actions_.all())
+    all.back()["yours"] = status.id().writer() == node_.instance() && status.requester() == who_;
+  }
+  for (const Action& action : actions_.all()) {
     all.push_back(json_of(action));
+    all.back()["yours"] = true;
+  }
   return all;
 }
 
@@ -508,15 +553,15 @@ bool Door::leave() {
   if (!std::exchange(left_, true)) {
     close();
     for (auto& [number, waiting] : waiting_)
-      if (waiting.goal && is_own(*waiting.goal))
+      if (waiting.goal && own(*waiting.goal) != nullptr)
         waiting.until = std::min(waiting.until, now_ + kStop);
   }
   return session_.leave();
 }
 
-void Door::close() {
-  for (const v1::GoalId& id : own_)
-    withdraw(id);
+void Door::close(const std::string& why) {
+  for (Own& each : own_)
+    withdraw(each, why);
   write_due();
   if (has_words_underway())
     take_back_words();

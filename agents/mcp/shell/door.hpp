@@ -91,11 +91,16 @@ class Door {
   void turn(double now);
   /// A goal or an action of this client, or a task that its words began, has not ended.
   bool is_busy() const;
+  /// A call is not answered yet.
+  bool is_asked() const { return !waiting_.empty() || !early_.empty(); }
+  /// False: until further notice the client may not begin anything; others have too much underway.
+  void allow(bool begins) { may_begin_ = begins; }
+  const std::string& who() const { return who_; }
   /// The client sends no more: its goals, actions and words are withdrawn. True where calls are
   /// still unanswered; each is answered within its own limit.
   bool leave();
-  /// Withdraws every goal and action of this client, and its words.
-  void close();
+  /// Withdraws every goal and action of this client, and its words. why: for their status.
+  void close(const std::string& why = {});
   /// Waits until that is acknowledged, for a second at most.
   void close_and_wait();
 
@@ -119,19 +124,28 @@ class Door {
     double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
   };
 
+  /// A goal or an action that has not ended.
+  struct Own {
+    v1::GoalId id;
+    bool withdrawn = false;
+  };
+
   void hear();
   void hear_reply(const v1::Utterance& reply);
   void begin(const Call& call);
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
+  void cancel_other(const Call& call, const std::optional<v1::GoalId>& id);
+  std::optional<v1::GoalStatus> other(const v1::GoalId& id) const;
+  bool may_begin(const Call& call);
   bool has_room(const Call& call);
   void follow(const Call& call, const v1::GoalId& id);
-  bool is_own(const v1::GoalId& id) const;
+  Own* own(const v1::GoalId& id);
   bool has_ended(const v1::GoalId& id) const;
   bool has_words_underway() const;
   void take_back_words();
-  void withdraw(const v1::GoalId& id);
+  void withdraw(Own& own, const std::string& why = {});
   void write_due();
   void say(const Call& call);
   void wait_for(const Call& call);
@@ -156,8 +170,9 @@ class Door {
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
   std::vector<Call> early_;                   ///< whose facts may still come
   bool left_ = false;                         ///< the client sends no more
+  bool may_begin_ = true;
   Actions actions_;
-  std::vector<v1::GoalId> own_;  ///< goals and actions that have not ended
+  std::vector<Own> own_;
   /// The words that the robot may still act on.
   struct Words {
     double since = 0.0;  ///< [s]

@@ -1,5 +1,8 @@
 #include "http_door.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "key.hpp"
 #include "saphira/base/boot_clock.hpp"
 
@@ -7,7 +10,6 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr std::size_t kMostClients = 8;
 constexpr const char* kPath = "/mcp";
 constexpr const char* kJson = "application/json";
 
@@ -40,31 +42,57 @@ void HttpDoor::refuse(Exchange exchange, int status, const std::string& text) {
   server_.answer(exchange, status, "text/plain", text + "\n");
 }
 
-/// The session of a request. Null: the request is refused.
+/// The call of a tool that is always allowed.
+bool HttpDoor::is_stop(const Sender& sender) const {
+  return std::any_of(robot_.tools().begin(), robot_.tools().end(),
+                     [&](const Tool& tool) { return tool.always && tool.name == sender.tool; });
+}
+
+/// The client of a request. Null: the request is refused.
 HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& request,
-                                      std::string& id) {
-  const Sender sender = sender_of(request.body);
+                                      const Sender& sender, std::string& id) {
   const bool modern = sender.modern || request.version == Session::kModern;
   const bool begins = !modern && sender.begins;
   // The newer era has no sessions: clients are distinguished by their own identity.
   id = modern ? "client " + sender.client : begins ? console::new_key() : request.session;
-  if (const auto found = clients_.find(id); found != clients_.end())
+  if (const auto found = clients_.find(id); found != clients_.end() && id != Clients::kNobody)
     return found->second.get();
-  if (!modern && !begins) {
-    if (id.empty())
-      refuse(exchange, 400, "Mcp-Session-Id is missing: a session begins with initialize");
-    else
-      refuse(exchange, 404, "there is no such session any more: begin with initialize");
-    return nullptr;
-  }
-  if (clients_.size() >= kMostClients) {
-    refuse(exchange, 503, "8 clients are here; one that is silent for 30 s makes room");
-    return nullptr;
+  const auto place = modern || begins ? presence_.place() : std::nullopt;
+  if (!place) {
+    if (!is_stop(sender)) {
+      if (modern || begins)
+        refuse(exchange, 503,
+               "every place has a client with a goal underway; a stop is taken all the same, "
+               "without a session: tools/call of emergency_stop");
+      else if (id.empty())
+        refuse(exchange, 400, "Mcp-Session-Id is missing: a session begins with initialize");
+      else
+        refuse(exchange, 404, "there is no such session any more: begin with initialize");
+      return nullptr;
+    }
+    id = Clients::kNobody;
+    if (const auto found = clients_.find(id); found != clients_.end())
+      return found->second.get();
+  } else if (!place->empty()) {
+    node_.info(clients_.at(*place)->door.who() + " gives its place to a new client");
+    end(*place);
   }
   auto& client = clients_[id];
-  client = std::make_unique<Client>(node_, robot_, options_, now());
+  client =
+      std::make_unique<Client>(node_, robot_, options_, presence_.begin(id, sender.name, now()));
   client->is_new = begins;
   return client.get();
+}
+
+/// Its goals end, and its streams.
+std::map<std::string, std::unique_ptr<HttpDoor::Client>>::iterator HttpDoor::end(
+    const std::string& id) {
+  const auto found = clients_.find(id);
+  found->second->door.close();
+  for (const auto& [open, streams] : found->second->waits)
+    server_.event(open, "", true);
+  presence_.end(id);
+  return clients_.erase(found);
 }
 
 void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
@@ -77,23 +105,26 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   if (!given.starts_with(kBearer) || !console::right_key(access_, given.substr(kBearer.size())))
     return refuse(exchange, 401, "expected the header Authorization: Bearer TOKEN");
   if (request.method == "DELETE") {
-    const auto found = clients_.find(request.session);
-    if (found == clients_.end())
+    if (request.session == Clients::kNobody || !clients_.contains(request.session))
       return refuse(exchange, 404, "there is no such session");
-    found->second->door.close();
-    for (const auto& [open, streams] : found->second->waits)
-      server_.event(open, "", true);
-    clients_.erase(found);
+    end(request.session);
     return server_.answer(exchange, 200, "text/plain", "");
   }
   // The newer era has streams of a request alone.
   if (request.method != "POST" && (request.method != "GET" || request.version == Session::kModern))
     return refuse(exchange, 405, "messages come by POST");
+  const Sender sender = sender_of(request.body);
   std::string id;
-  Client* const client = client_of(exchange, request, id);
+  Client* const client = client_of(exchange, request, sender, id);
   if (client == nullptr)
     return;
-  client->lease.came(now());
+  for (const auto& [other, each] : clients_)
+    each->connections.erase(request.connection);
+  client->connections.insert(request.connection);
+  presence_.came(id, now());
+  if (sender.answers)
+    presence_.answered(id);
+  see(id, *client);
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;
   if (request.method == "GET")
@@ -137,10 +168,8 @@ void HttpDoor::tell(const std::string& id, Client& client) {
 
 void HttpDoor::lost(Exchange exchange) {
   for (const auto& [id, client] : clients_)
-    if (client->waits.erase(exchange) > 0) {
+    if (client->waits.erase(exchange) > 0)
       client->session.close(exchange);
-      client->lease.broke(now());
-    }
 }
 
 void HttpDoor::turn() {
@@ -151,16 +180,45 @@ void HttpDoor::turn() {
   }
 }
 
+/// Tells a client's state, and asks if it may begin anything.
+void HttpDoor::see(const std::string& id, Client& client) {
+  const double time = now();
+  Clients::State state;
+  for (auto each = client.connections.begin(); each != client.connections.end();) {
+    const auto silence = server_.silence(*each);
+    if (!silence) {
+      each = client.connections.erase(each);
+      continue;
+    }
+    ++state.connections;
+    state.heard = std::max(state.heard, time - *silence);
+    ++each;
+  }
+  state.streams = client.waits.contains(client.stream);
+  state.waits = client.door.is_asked();
+  state.busy = client.door.is_busy();
+  presence_.see(id, state, time);
+  client.door.allow(presence_.may_begin(id));
+}
+
 void HttpDoor::tick() {
   turn();
   for (auto each = clients_.begin(); each != clients_.end();) {
-    Client& client = *each->second;
-    if (!client.lease.is_over(now(), !client.waits.empty(), client.door.is_busy())) {
-      ++each;
+    const auto& [id, client] = *each;
+    see(id, *client);
+    if (presence_.is_gone(id, now())) {
+      each = end(std::string(id));
       continue;
     }
-    client.door.close();
-    each = clients_.erase(each);
+    if (presence_.loses_goals(id, now())) {
+      node_.info(client->door.who() + " is not there: its goals end");
+      client->door.close("there is no sign of its client");
+    }
+    if (presence_.is_pinged(id, now())) {
+      client->session.ping();
+      tell(id, *client);
+    }
+    ++each;
   }
 }
 

@@ -2,12 +2,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "door.hpp"
 #include "http.hpp"
-#include "saphira/mcp/lease.hpp"
+#include "saphira/mcp/clients.hpp"
 
 namespace saphira::mcp {
 
@@ -20,9 +22,7 @@ struct HttpDoorOptions {
   std::vector<std::string> described;  ///< agents, as of Robot
 };
 
-/// Streamable HTTP: up to 8 clients, each with a door of its own. A client without a request or a
-/// pending answer for 30 s has left, and its goals end; with a goal underway likewise a client that
-/// closes a connection or stream, and sends no request for 1.5 s.
+/// Streamable HTTP: each client has a door of its own. Clients decides who is there.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);
@@ -32,18 +32,19 @@ class HttpDoor {
 
  private:
   using Exchange = HttpServer::Exchange;
+  using Connection = HttpServer::Connection;
 
   struct Client {
-    Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options, double now)
+    Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options,
+           const std::string& name)
         : session("saphira", options.version, options.instructions),
-          door(node, robot, session, options.who),
-          lease(now) {}
+          door(node, robot, session, options.who + " " + name) {}
     Session session;
     Door door;
-    Lease lease;
-    bool is_new = false;             ///< its first answer will contain its session
-    std::map<Exchange, bool> waits;  ///< requests without an answer; true: it streams
-    Exchange stream = 0;             ///< the one for messages outside of an answer [0: none]
+    bool is_new = false;               ///< its first answer will contain its session
+    std::map<Exchange, bool> waits;    ///< requests without an answer; true: it streams
+    Exchange stream = 0;               ///< the one for messages outside of an answer [0: none]
+    std::set<Connection> connections;  ///< by which its newest messages came
   };
 
   HttpServer::Events events();
@@ -52,7 +53,11 @@ class HttpDoor {
   void open_stream(Exchange exchange, Client& client);
   void turn();
   void tick();
-  Client* client_of(Exchange exchange, const HttpRequest& request, std::string& id);
+  Client* client_of(Exchange exchange, const HttpRequest& request, const Sender& sender,
+                    std::string& id);
+  bool is_stop(const Sender& sender) const;
+  std::map<std::string, std::unique_ptr<Client>>::iterator end(const std::string& id);
+  void see(const std::string& id, Client& client);
   void tell(const std::string& id, Client& client);
   void refuse(Exchange exchange, int status, const std::string& text);
 
@@ -61,6 +66,7 @@ class HttpDoor {
   const console::AccessSettings access_;
   Robot robot_;
   std::map<std::string, std::unique_ptr<Client>> clients_;  ///< by session or identity
+  Clients presence_;                                        ///< of the same
   HttpServer server_;
 };
 

@@ -157,7 +157,10 @@ std::vector<Tool> fixed_tools() {
        "says "
        "whether the robot stands",
        object(
-           {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
+           {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}},
+            {"sure",
+             {{"type", "boolean"},
+              {"description", "true: also a goal of another client, whose person was asked"}}}}),
        false},
       {"say",
        "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "

@@ -58,6 +58,7 @@ Json goal_with(Json results) {
   return object({{"goal", text()},
                  {"what", text()},
                  {"asked_by", text()},
+                 {"yours", truth()},
                  {"state", state()},
                  {"step", text()},
                  {"reason", text()},
@@ -143,14 +144,18 @@ Json for_model(Json value) {
   return value;
 }
 
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+  return text;
+}
+
 std::string quotation(const std::string& text) {
   constexpr std::size_t kLongest = 200;
-  std::string line(first_letters(text, kLongest));
+  std::string line = one_line(std::string(first_letters(text, kLongest)));
   if (line.size() < text.size())
     line += "...";
-  std::replace_if(
-      line.begin(), line.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
   std::replace(line.begin(), line.end(), '"', '\'');
   return '"' + line + '"';
 }

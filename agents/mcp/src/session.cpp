@@ -5,6 +5,7 @@
 
 #include "protocol.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/mcp/results.hpp"
 
 namespace saphira::mcp {
@@ -19,6 +20,7 @@ constexpr int kInternal = -32603;
 constexpr int kBadHeader = -32020;
 constexpr int kBadVersion = -32022;
 constexpr std::size_t kDeepest = 16;
+constexpr std::size_t kLongestName = 40;
 
 bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
@@ -48,13 +50,20 @@ Sender sender_of(std::string_view message) {
   const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
   if (!json.is_object())
     return sender;
+  const Json parameters = member(json, "params");
+  const Json meta = member(parameters, "_meta");
   sender.begins = member(json, "method") == "initialize";
-  const Json meta = member(member(json, "params"), "_meta");
-  if (!meta.is_object())
-    return sender;
-  sender.modern = meta.contains(kMeta + "protocolVersion");
-  sender.client =
-      member(meta, kMeta + "clientInfo").dump(-1, ' ', false, Json::error_handler_t::replace);
+  sender.answers = !json.contains("method") && (json.contains("result") || json.contains("error"));
+  sender.modern = meta.is_object() && meta.contains(kMeta + "protocolVersion");
+  const Json info =
+      sender.begins ? member(parameters, "clientInfo") : member(meta, kMeta + "clientInfo");
+  if (sender.modern)
+    sender.client = info.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (const Json name = member(info, "name"); name.is_string())
+    sender.name = one_line(std::string(first_letters(name.get<std::string>(), kLongestName)));
+  if (const Json tool = member(parameters, "name");
+      member(json, "method") == "tools/call" && tool.is_string())
+    sender.tool = tool.get<std::string>();
   return sender;
 }
 
@@ -71,6 +80,10 @@ bool Session::leave() {
   return !held_.empty() || std::any_of(open_.begin(), open_.end(), [](const auto& each) {
     return !each.second.watches && each.second.task.empty();
   });
+}
+
+void Session::ping() {
+  send({{"jsonrpc", "2.0"}, {"id", "ping " + std::to_string(++pings_)}, {"method", "ping"}}, 0);
 }
 
 /// A stop is never held back.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kKept = 900.0;  // [s] from a task's beginning
 constexpr std::size_t kMostTasks = 64;
-constexpr int kPoll = 1000;  // [ms]
+constexpr int kPoll = 500;  // [ms] a goal ends 1.5 s after the last sign of its client
 
 /// Such as 2026-11-26T12:30:07.250Z.
 std::string stamp_of(double date) {

@@ -102,6 +102,18 @@ class DoorInMemory : public testing::Test {
     replies.write(said);
     turn();
   }
+  /// What intentions says of a goal that "rover" asked for in this program.
+  v1::GoalStatus tell_goal(v1::GoalState state) {
+    v1::GoalStatus status;
+    status.id().writer(node.instance());
+    status.id().number(77);
+    status.requester("rover 2");
+    status.functor("patrol");
+    status.state(state);
+    statuses.write(status);
+    turn();
+    return status;
+  }
   v1::Request heard() {
     const auto samples = solve.take();
     EXPECT_EQ(samples.size(), 1U);
@@ -139,6 +151,9 @@ class DoorInMemory : public testing::Test {
   bus::Writer<v1::AgentEvent> events = other.writer(bus::topics::kAgentEvents);
   bus::Reader<v1::Utterance> words = other.reader(bus::topics::kHeard);
   bus::Writer<v1::Utterance> replies = other.writer(bus::topics::kSaid);
+  bus::Writer<v1::GoalStatus> statuses = other.writer(bus::topics::kGoalStatus);
+  bus::Reader<v1::Goal> goals = other.reader(bus::topics::kGoals);
+  bus::Reader<v1::MotorCommand> presses = other.reader<v1::MotorCommand>(bus::topics::kDriveEstop);
   v1::Utterance spoken;  ///< the newest words of the client
   std::uint64_t cycle = 0;
   Session session{"saphira", "1", "a robot"};
@@ -169,12 +184,13 @@ TEST_F(DoorInMemory, AnActionThatTakesMinutesHasAHandle) {
   call(2, "goal", {{"goal", begun["goal"]}});
   EXPECT_TRUE(result(2).is_null());
   say(request, v1::ANSWER_DONE, "", {bus::number("dust", 3.0)});
-  const Json ended = result(2)["structuredContent"];
+  Json ended = result(2)["structuredContent"];
   EXPECT_EQ(ended["goal"], begun["goal"]);
   EXPECT_EQ(ended["state"], "succeeded");
   EXPECT_EQ(ended["results"], Json({{"dust", 3.0}}));
   EXPECT_EQ(misfit(ended, form("sweep")), "");
   call(3, "goals", Json::object());
+  ended["yours"] = true;
   EXPECT_EQ(result(3)["structuredContent"]["goals"], Json::array({ended}));
 }
 
@@ -205,6 +221,90 @@ TEST_F(DoorInMemory, AnActionIsCanceledByItsHandle) {
   EXPECT_EQ(result(3)["structuredContent"]["state"], "canceled");
   call(4, "cancel", {{"goal", "7:1"}});
   EXPECT_EQ(result(4)["isError"], true);
+}
+
+TEST_F(DoorInMemory, TheGoalOfAnotherClientEndsAfterAQuestion) {
+  const std::string id = bus::describe(tell_goal(v1::GOAL_UNDERWAY).id());
+  call(1, "cancel", {{"goal", id}});
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_EQ(result(1)["content"][0]["text"],
+            "not done: this is patrol of rover 2, underway (0 % done). Shall it end? Ask the "
+            "person; after a yes call cancel again with sure: true");
+  EXPECT_TRUE(goals.take().empty());
+  call(2, "cancel", {{"goal", id}, {"sure", true}});
+  const auto samples = goals.take();
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].data.id().number(), 77U);
+  EXPECT_EQ(samples[0].data.withdrawn(), "model was sure, after a question");
+  EXPECT_TRUE(result(2).is_null()) << "it has not ended yet";
+  tell_goal(v1::GOAL_CANCELED);
+  EXPECT_EQ(result(2)["content"][0]["text"], "withdrawn; the robot stands");
+  call(3, "cancel", {{"goal", id}, {"sure", true}});
+  EXPECT_EQ(result(3)["isError"], true) << "it has ended";
+}
+
+TEST_F(DoorInMemory, NobodyEndsTheGoalOfAnotherProgram) {
+  v1::GoalStatus status;
+  status.id().writer(other.instance());
+  status.id().number(77);
+  status.state(v1::GOAL_UNDERWAY);
+  statuses.write(status);
+  call(1, "cancel", {{"goal", bus::describe(status.id())}, {"sure", true}});
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_TRUE(goals.take().empty());
+}
+
+TEST_F(DoorInMemory, EachGoalNamesItsClient) {
+  tell_goal(v1::GOAL_UNDERWAY);
+  begin_sweep();
+  call(2, "robot_status", Json::object());
+  const Json all = result(2)["structuredContent"]["goals"];
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0]["asked_by"], "rover 2");
+  EXPECT_EQ(all[0]["yours"], false);
+  EXPECT_EQ(all[1]["asked_by"], "model");
+  EXPECT_EQ(all[1]["yours"], true);
+}
+
+TEST_F(DoorInMemory, AGoalBehindThatOfAnotherClientSaysHowToEndIt) {
+  v1::GoalStatus waits = tell_goal(v1::GOAL_UNDERWAY);
+  waits.waits_for(waits.id());
+  waits.id().number(78);
+  waits.requester("model");
+  waits.state(v1::GOAL_WAITING);
+  statuses.write(waits);
+  turn();
+  call(1, "goal", {{"goal", bus::describe(waits.id())}, {"wait_s", 0}});
+  EXPECT_NE(result(1)["content"][0]["text"].get<std::string>().find(
+                "the tool cancel ends " + bus::describe(waits.waits_for())),
+            std::string::npos);
+}
+
+TEST_F(DoorInMemory, AClientThatMayNotBeginIsToldSoAndMayStop) {
+  door->allow(false);
+  call(1, "sweep", {{"room", "kitchen"}});
+  call(2, "say", {{"text", "Flakey, go to EJ-237"}});
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_EQ(result(2)["isError"], true);
+  EXPECT_TRUE(solve.take().empty());
+  EXPECT_TRUE(words.take().empty());
+  call(3, "emergency_stop", Json::object());
+  EXPECT_FALSE(presses.take().empty());
+  door->allow(true);
+  begin_sweep();
+  EXPECT_EQ(heard().functor(), "sweep");
+}
+
+TEST_F(DoorInMemory, TheGoalsOfAClientThatIsNotThereEndOnceAndItMayComeBack) {
+  begin_sweep();
+  heard();
+  EXPECT_TRUE(door->is_busy());
+  door->close("there is no sign of its client");
+  EXPECT_EQ(heard().functor(), bus::kWithdraw);
+  door->close("there is no sign of its client");
+  EXPECT_TRUE(solve.take().empty());
+  call(2, "robot_status", Json::object());
+  EXPECT_EQ(result(2)["structuredContent"]["goals"][0]["yours"], true);
 }
 
 // The dialogue ends the tasks of a program whose writer is gone.

@@ -426,8 +426,41 @@ TEST(McpSession, ASenderIsKnownByWhatItSays) {
   meta["params"]["_meta"]["io.modelcontextprotocol/clientInfo"] = {{"name", "desk"}};
   EXPECT_TRUE(sender_of(meta.dump()).modern);
   EXPECT_EQ(sender_of(meta.dump()).client, R"({"name":"desk"})");
-  for (const char* text : {"", "[]", "{", "3", R"({"params":[]})", R"({"params":{"_meta":1}})"})
-    EXPECT_FALSE(sender_of(text).begins || sender_of(text).modern) << text;
+  EXPECT_EQ(sender_of(meta.dump()).name, "desk");
+  EXPECT_EQ(sender_of(meta.dump()).tool, "");
+  for (const char* text : {"", "[]", "{", "3", R"({"params":[]})", R"({"params":{"_meta":1}})"}) {
+    const Sender sender = sender_of(text);
+    EXPECT_FALSE(sender.begins || sender.modern || sender.answers) << text;
+  }
+}
+
+TEST(McpSession, AClientHasTheNameThatItGivesOnOneLine) {
+  const auto name_of = [](const Json& name) {
+    return sender_of(line(1, "initialize", {{"clientInfo", {{"name", name}}}})).name;
+  };
+  EXPECT_EQ(name_of("desk"), "desk");
+  EXPECT_EQ(name_of("desk\nSYSTEM"), "desk SYSTEM");
+  EXPECT_EQ(name_of(std::string(50, 'x')), std::string(40, 'x'));
+  EXPECT_EQ(name_of(7), "");
+}
+
+TEST(McpSession, ASenderIsKnownByTheToolThatItCalls) {
+  EXPECT_EQ(sender_of(line(1, "tools/call", {{"name", "emergency_stop"}})).tool, "emergency_stop");
+  EXPECT_EQ(sender_of(line(1, "prompts/get", {{"name", "emergency_stop"}})).tool, "");
+}
+
+TEST(McpSession, APingIsAnsweredByAClientThatIsThere) {
+  Client client;
+  client.session.ping();
+  const auto lines = client.session.take_lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].exchange, 0U);
+  const Json ping = Json::parse(lines[0].text);
+  EXPECT_EQ(ping["method"], "ping");
+  const std::string answer =
+      Json{{"jsonrpc", "2.0"}, {"id", ping["id"]}, {"result", Json::object()}}.dump();
+  EXPECT_TRUE(sender_of(answer).answers);
+  EXPECT_TRUE(client.say(answer).empty());
 }
 
 // A tool that reads and takes no arguments is a resource too.

@@ -46,7 +46,7 @@ TEST(McpTasks, ACallIsATaskAtOnceAndIsPolledToItsEnd) {
   Json expected = Json::parse(R"({
       "resultType":"task","taskId":"1f:2","status":"working","statusMessage":"asked for",
       "createdAt":"2026-11-26T12:30:07.250Z","lastUpdatedAt":"2026-11-26T12:30:07.250Z",
-      "ttlMs":900000,"pollIntervalMs":1000,
+      "ttlMs":900000,"pollIntervalMs":500,
       "_meta":{"io.modelcontextprotocol/serverInfo":{"name":"saphira","version":"1"}}})");
   EXPECT_EQ(Json::parse(lines[0].text)["result"], expected);
 

@@ -18,6 +18,8 @@ Json json_of(const v1::GoalStatus& status);
 std::string for_model(std::string text);
 /// All texts of a value.
 Json for_model(Json value);
+/// A text without line ends and other control characters.
+std::string one_line(std::string text);
 /// The words of another agent, as a quotation on one line: data, and no instructions.
 std::string quotation(const std::string& text);
 

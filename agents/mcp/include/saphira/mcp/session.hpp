@@ -64,9 +64,12 @@ struct Headers {
 
 /// The client of a message of HTTP, as far as the message identifies it.
 struct Sender {
-  bool begins = false;  ///< it is `initialize`
-  bool modern = false;  ///< the newer era, without sessions
-  std::string client;   ///< identity from the newer era's client, as JSON
+  bool begins = false;   ///< it is `initialize`
+  bool modern = false;   ///< the newer era, without sessions
+  bool answers = false;  ///< it is the answer to a ping
+  std::string client;    ///< identity from the newer era's client, as JSON
+  std::string name;      ///< of the client's program, on one line [empty: not given]
+  std::string tool;      ///< that it calls [empty: none]
 };
 Sender sender_of(std::string_view message);
 
@@ -100,6 +103,8 @@ class Session {
   bool take(std::string_view message, std::uint64_t exchange = 0, const Headers* headers = nullptr);
   /// The client has closed the connection of a request. In the newer era that cancels the request.
   void close(std::uint64_t exchange);
+  /// Asks the client for a sign, outside of an answer. For the older era.
+  void ping();
   /// The server ends: so does each request that listens.
   void end();
 
@@ -217,6 +222,7 @@ class Session {
   bool left_ = false;       ///< the client sends no more
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
+  std::uint64_t pings_ = 0;
   std::map<std::uint64_t, Open> open_;
   std::vector<Listener> listeners_;
   std::map<std::string, Watched> watched_;  ///< by uri
