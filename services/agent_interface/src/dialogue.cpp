@@ -390,7 +390,10 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
-  if (understood.meanings.empty() || utterance.confidence < kSure)
+  const bool stops =
+      understood.meanings.size() == 1 && understood.meanings.front().functor == "stop";
+  // A stop too many costs less than one that was missed.
+  if (understood.meanings.empty() || (utterance.confidence < kSure && !stops))
     refuse(utterance, "what?", out);
   else
     carry_out(std::move(understood), utterance, situation, out);

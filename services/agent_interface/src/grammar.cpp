@@ -22,7 +22,6 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kUnits{
 /// Short forms, and the words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
     {{"pls", "please"}, {"plz", "please"}, {"deg", "degrees"}}};
-constexpr const char* kComma = ",";
 
 bool is_number(const std::string& word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
@@ -37,11 +36,11 @@ std::string plain(std::string_view said) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{
       {{"\u2018", "'"},
        {"\u2019", "'"},
-       {"\u201c", " "},
-       {"\u201d", " "},
-       {"\u2013", " "},
-       {"\u2014", " "},
-       {"\u2026", " "},
+       {"\u201c", "\""},
+       {"\u201d", "\""},
+       {"\u2013", " - "},
+       {"\u2014", " - "},
+       {"\u2026", "! "},
        {"\u00a0", " "},
        {"\u00b0", " degrees "}}};
   std::string text = lowered(said);
@@ -71,18 +70,20 @@ std::string describe(const Meaning& meaning) {
   return text + ")";
 }
 
-namespace {
+namespace {}  // namespace
 
-/// The words, and the commas between them.
-std::vector<std::string> words_and_commas_of(std::string_view said) {
+std::vector<std::string> words_and_marks_of(std::string_view said) {
   const std::string text = plain(said);
   std::vector<std::string> words;
   std::string word;
   const auto end = [&] {
-    if (word.find_first_not_of('-') == std::string::npos)
-      word.clear();
     if (word.empty())
       return;
+    if (word.find_first_not_of('-') == std::string::npos) {
+      word.clear();
+      words.emplace_back(kMark);
+      return;
+    }
     // "2m" and "90deg", as people write them.
     const std::size_t unit = word.find_first_not_of("0123456789.");
     for (const auto& [written, spoken] : kUnits)
@@ -114,11 +115,26 @@ std::vector<std::string> words_and_commas_of(std::string_view said) {
       }
     } else {
       end();
-      if (c == ',' && !words.empty())
+      if (c == '"' && !words.empty() && words.back() == kComma)
+        words.pop_back();  // "He said, "stop"" is one clause
+      else if (c == ',')
         words.emplace_back(kComma);
+      else if (c == '.' || c == '!' || c == '?' || c == ';' || c == '\n')
+        words.emplace_back(kMark);
     }
   }
   end();
+  return words;
+}
+
+namespace {
+
+/// The words, and the commas between them.
+std::vector<std::string> words_and_commas_of(std::string_view said) {
+  std::vector<std::string> words = words_and_marks_of(said);
+  std::erase(words, kMark);
+  words.erase(words.begin(), std::find_if(words.begin(), words.end(),
+                                          [](const std::string& word) { return word != kComma; }));
   return words;
 }
 
@@ -285,6 +301,9 @@ std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<s
 
 Grammar::Understood Grammar::understand(std::string_view text, bool replies) const {
   Understood result;
+  const Urgent urgent = this->urgent(text);
+  if (urgent.meaning && urgent.alone)
+    return {true, false, {*urgent.meaning}};
   std::vector<std::string> said = words_and_commas_of(text);
   std::vector<std::string> words = without_commas(said);
   const auto is_among = [](const std::vector<std::string>& some) {
@@ -293,7 +312,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     };
   };
   const auto is_keyword = is_among(keywords_);
-  auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
+  const auto first = std::find_if_not(words.begin(), words.end(), is_among(greetings_));
   if (first != words.end() && is_keyword(*first) &&
       (first == words.begin() || first + 1 != words.end())) {
     result.addressed = true;
@@ -301,17 +320,11 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     said.erase(said.begin(), std::find_if(said.begin(), said.end(), is_keyword) + 1);
     if (!said.empty() && said.front() == kComma)
       said.erase(said.begin());
+  } else if (urgent.meaning) {
+    return {true, false, {*urgent.meaning}};  // "stop, Flakey!"
   } else if (words.size() > 1 && is_keyword(words.back())) {
-    // "Stop, Flakey!"; other words before the keyword at most answer the robot.
-    words.pop_back();
+    words.pop_back();  // the words before the keyword at most answer the robot
     said = words;
-    result.addressed = !look(words, true, false, Among::urgent).empty();
-  } else if (first = std::find_if(words.begin(), words.end(), is_keyword);
-             first != words.end() &&
-             !look({words.begin(), first}, true, false, Among::urgent).empty()) {
-    words.erase(first);  // "stop, Flakey, stop"
-    said = words;
-    result.addressed = true;
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
   const auto whole = [&](const std::vector<std::string>& sentence) {
@@ -350,8 +363,8 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
   }
   if (result.meanings.empty() && words.size() <= kLongestUtterance)
     result.meanings = look(words, result.addressed, replies, Among::reply);
-  if (result.meanings.empty())
-    result.meanings = look(words, result.addressed, replies, Among::urgent);
+  if (result.meanings.empty() && urgent.meaning)
+    result.meanings = {*urgent.meaning};
   if (result.meanings.empty() && result.addressed)
     result.bare = look(words, false, replies, Among::reply);
   return result;
@@ -389,6 +402,7 @@ std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool a
     const Among of = rule.use == Use::urgent  ? Among::urgent
                      : rule.use == Use::reply ? Among::reply
                      : rule.use == Use::later ? Among::later
+                     : rule.use == Use::alone ? Among::alone
                                               : Among::usual;
     if (of != among || (rule.use == Use::reply ? !replies : !addressed))
       continue;
@@ -534,7 +548,10 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
     if (rule.use != Use::typed && rule.use != Use::later && (rule.use != Use::reply || replies))
       for (const Node& pattern : rule.patterns)
         if (pattern.kind == Node::Kind::choice || !has_rest(pattern))
-          maker.lead(pattern, rule.use == Use::reply ? WordGraph::kStart : WordGraph::kAddressed,
+          maker.lead(pattern,
+                     rule.use == Use::reply   ? WordGraph::kStart
+                     : rule.use == Use::alone ? WordGraph::kAlone
+                                              : WordGraph::kAddressed,
                      WordGraph::kEnd);
   return std::move(maker.graph);
 }

@@ -76,33 +76,39 @@ class Grammar::Reader {
     return text;
   }
 
+  /// The list that such a line has, with blanks between its words; nullptr: none.
+  std::vector<std::string>* words_named(std::string_view first) {
+    return first == "no-names"     ? &grammar_.no_names_
+           : first == "greetings"  ? &grammar_.greetings_
+           : first == "alarms"     ? &grammar_.alarms_
+           : first == "not-behind" ? &grammar_.not_behind_
+           : first == "passed"     ? &grammar_.passed_
+           : first == "not-after"  ? &grammar_.not_after_
+                                   : nullptr;
+  }
+
   void header() {
     const std::size_t from = at_;
     const std::string first = word(
-        "keyword, greetings, names, no-names, steps, polite, list, typed, reply, urgent, later or "
-        "a functor");
-    if (first == "keyword") {
+        "keyword, greetings, names, no-names, alarms, not-behind, passed, not-after, steps, "
+        "polite, "
+        "list, typed, reply, urgent, alone, later or a functor");
+    if (std::vector<std::string>* const some = words_named(first)) {
+      expect(':');
+      while (at_ < line_.size()) {
+        some->push_back(heard_word());
+        skip();
+      }
+    } else if (first == "keyword") {
       expect(':');
       do
         grammar_.keywords_.push_back(heard_word());
       while (take('|'));
-    } else if (first == "no-names") {
-      expect(':');
-      while (at_ < line_.size()) {
-        grammar_.no_names_.push_back(heard_word());
-        skip();
-      }
     } else if (first == "names") {
       expect(':');
       do
         grammar_.names_.push_back(saphira::joined(phrase(), " "));
       while (take('|'));
-    } else if (first == "greetings") {
-      expect(':');
-      while (at_ < line_.size()) {
-        grammar_.greetings_.push_back(heard_word());
-        skip();
-      }
     } else if (first == "steps") {
       expect(':');
       do {
@@ -121,6 +127,7 @@ class Grammar::Reader {
       const Use use = first == "typed"    ? Use::typed
                       : first == "reply"  ? Use::reply
                       : first == "urgent" ? Use::urgent
+                      : first == "alone"  ? Use::alone
                       : first == "later"  ? Use::later
                                           : Use::command;
       rule(use == Use::command ? first : word("a functor"), use, from);

@@ -14,6 +14,12 @@ namespace saphira::agent_interface {
 inline constexpr std::string_view kInstead = "instead";
 inline constexpr std::string_view kChoice = "choice";
 
+/// The marks between clauses, as words of their own: a comma, and any other.
+inline constexpr const char* kComma = ",";
+inline constexpr const char* kMark = ".";
+/// The words of a text, with the marks between them.
+std::vector<std::string> words_and_marks_of(std::string_view text);
+
 /// Of a word: a letter, a digit, a hyphen, or a byte of a letter in UTF-8.
 bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.

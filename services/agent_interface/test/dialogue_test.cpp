@@ -29,6 +29,20 @@ TEST_F(DialogueTest, WhatIsNotUnderstoodIsAskedBackAndNotActedOn) {
   EXPECT_TRUE(last.goals.empty());
 }
 
+TEST_F(DialogueTest, AStopNeedsNeitherTheKeywordNorConfidence) {
+  for (const char* const sentence : {"stop", "Hey, stop!", "Flakey, a child! Stop!"}) {
+    EXPECT_EQ(said("Flakey, go forward 2 meters"), "I go forward 2 m") << sentence;
+    const std::uint64_t moves = last.goals.at(0).tag;
+    const Dialogue::Outputs out = dialogue.hear({{8, ++number}, "Bob", sentence, 0.1}, situation);
+    ASSERT_EQ(out.goals.size(), 1U) << sentence;
+    EXPECT_EQ(out.goals.at(0).functor, "stop");
+    EXPECT_EQ(out.canceled, std::vector{moves}) << sentence;
+    dialogue.ended({out.goals.at(0).tag, true, ""});
+  }
+  EXPECT_EQ(said("don't stop"), "");
+  EXPECT_TRUE(last.goals.empty());
+}
+
 TEST_F(DialogueTest, ANumberMayHaveItsUnit) {
   EXPECT_EQ(said("Flakey, go forward 2m"), "I go forward 2 m");
   EXPECT_EQ(goals(), "go_to position=(2, 0, 0)");

@@ -97,6 +97,44 @@ TEST(Grammar, UrgentWordsBeginASentenceThatNoOtherLineHas) {
   EXPECT_EQ(meaning("halt", true), "");
 }
 
+/// The grammar's words for stops: see also utterances.txt.
+TEST(Grammar, AnUrgentOrderAloneNeedsNoKeywordAndMayEndASentence) {
+  const Grammar one(
+      "keyword: flakey\ngreetings: hey no please\nalarms: help\nnot-behind: not the said\n"
+      "passed: ever\nnot-after: if\nsteps: go\n"
+      "urgent stop()\n  stop\nalone stop()\n  (stop | freeze) [now]\n"
+      "go(place)\n  go [to] {place}\ntell(what)\n  tell {what ...}\n",
+      "test");
+  const auto found = [&](const char* text) {
+    const Grammar::Urgent urgent = one.urgent(text);
+    return !urgent.meaning ? "none" : urgent.alone ? "alone" : "within";
+  };
+  for (const char* const text :
+       {"stop", "STOP!", "hey, stop now", "help! no, stop", "freeze please", "stooop", "stop stop",
+        "stopstop", "s-t-o-p", "sotp", "feeze", "the lab. Stop!", "flakey, tell it, stop",
+        "flakey the lab, stop, now", "flaky, stop", "stop, or else"})
+    EXPECT_STREQ(found(text), "alone") << text;
+  for (const char* const text :
+       {"flakey go there stop", "flakey, look, stop that", "flakey the lab no freeze now",
+        "out flakey stop", "stop that flakey", "stop that, flakey", "flakey stop if it moves"})
+    EXPECT_STREQ(found(text), "within") << text;
+  for (const char* const text :
+       {"", "!", "flakey", "the lab, stop", "stop that", "flakey do not ever stop",
+        "flakey the stop", "flakey if you can, stop", "flakey he said, \"stop\"", "not flakey stop",
+        "flakey stopped", "flakey go now", "flakey never"})
+    EXPECT_STREQ(found(text), "none") << text;
+  // An order by itself counts whatever the rest means, and any other where nothing else is meant.
+  const auto meant = [&](const char* text) {
+    const auto meanings = one.understand(text).meanings;
+    return meanings.size() == 1 ? describe(meanings.front()) : "";
+  };
+  EXPECT_EQ(meant("flakey tell all to stop"), "tell(what=all to stop)");
+  EXPECT_EQ(meant("flakey tell all, stop"), "stop()");
+  EXPECT_EQ(meant("flakey run stop"), "stop()");
+  EXPECT_TRUE(one.understand("stop").addressed);
+  EXPECT_FALSE(one.understand("the lab, stop").addressed);
+}
+
 TEST(Grammar, RepliesNeedNoKeywordAndCountWhereTheRobotHasAsked) {
   EXPECT_EQ(meaning("of course", true), "yes()");
   EXPECT_EQ(meaning("of course"), "");

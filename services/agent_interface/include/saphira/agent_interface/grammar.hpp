@@ -39,7 +39,8 @@ struct WordGraph {
   static constexpr int kStart = 0;
   static constexpr int kEnd = 1;
   static constexpr int kAddressed = 2;  ///< after the keyword
-  int states = 3;
+  static constexpr int kAlone = 3;      ///< before the words of a mere stop, which lead to the end
+  int states = 4;
   std::vector<Arc> arcs;
 };
 
@@ -63,6 +64,17 @@ class Grammar {
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
   /// asked a question. With the keyword a reply counts only where no other rule matches.
   Understood understand(std::string_view text, bool replies = false) const;
+
+  /// An order that does not wait for its place in a sentence, such as a stop.
+  struct Urgent {
+    std::optional<Meaning> meaning{};  ///< none: the text is no such order
+    /// It stands alone between punctuation, and counts whatever else the text means. Otherwise it
+    /// counts where no other rule has the text.
+    bool alone = false;
+  };
+  /// Finds it before the grammar proper is asked: the words of an `alone` rule by themselves, or at
+  /// the end of a sentence to the robot, or those of an `urgent` rule at the beginning of a clause.
+  Urgent urgent(std::string_view text) const;
 
   /// The meaning in words, for the robot to say before it acts; empty without one in the file.
   std::string paraphrase(const Meaning& meaning) const;
@@ -95,10 +107,11 @@ class Grammar {
   };
   enum class Use {
     command,
-    typed,  ///< a command that a recognizer of speech does not listen for
-    reply,  ///< without the keyword, after a question of the robot
-    later,  ///< a later step of a sequence
-    urgent  ///< where no other rule matches; more words may follow
+    typed,   ///< a command that a recognizer of speech does not listen for
+    reply,   ///< without the keyword, after a question of the robot
+    later,   ///< a later step of a sequence
+    urgent,  ///< where no other rule matches; more words may follow
+    alone    ///< an urgent order by itself: see urgent()
   };
   struct Rule {
     Meaning meaning;  ///< slots with their default values
@@ -113,6 +126,7 @@ class Grammar {
   };
   class Reader;
   class GraphMaker;
+  class UrgentFinder;
 
   bool make_plain_order(std::vector<std::string>& words) const;
   std::vector<Match> match(const Node& node, const std::vector<std::string>& words,
@@ -123,7 +137,7 @@ class Grammar {
                           const Match& from) const;
   std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
                            const Match& from) const;
-  enum class Among { usual, reply, urgent, later };  ///< the rules that may match
+  enum class Among { usual, reply, urgent, later, alone };  ///< the rules that may match
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
                             Among among) const;
   /// The ways to divide words and commas into sentences with one meaning each, all of them steps.
@@ -134,9 +148,15 @@ class Grammar {
 
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
-  std::vector<std::string> greetings_;            ///< words that may stand before the keyword
-  std::vector<std::string> no_names_;             ///< words that no name contains
-  std::vector<std::string> steps_;                ///< functors that a sequence may have
+  std::vector<std::string> greetings_;  ///< words that may stand before the keyword
+  std::vector<std::string> no_names_;   ///< words that no name contains
+  /// Words behind which an urgent order is none ("never stop"), before which they are looked for
+  /// ("never ever stop"), and after which no order of the sentence is urgent ("if").
+  std::vector<std::string> not_behind_;
+  std::vector<std::string> passed_;
+  std::vector<std::string> not_after_;
+  std::vector<std::string> alarms_;  ///< words that may stand around an urgent order: "help"
+  std::vector<std::string> steps_;   ///< functors that a sequence may have
   std::vector<std::vector<std::string>> polite_;  ///< words before an order, as "can you"
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;
