@@ -13,6 +13,9 @@ namespace saphira::mcp {
 
 namespace {
 
+constexpr double kStopPatience = 10.0;  // [s]
+constexpr const char* kNotConfirmed =
+    "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own";
 constexpr double kDeadline = 600.0;     // [s] of a goal or an action
 constexpr std::size_t kMostGoals = 4;   // underway at once
 constexpr double kNews = 1e-6;          // of progress, for new words alone
@@ -54,7 +57,8 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       session_(session),
       who_(who),
       goals_(node, who),
-      requests_(node, bus::topics::kSolve, who) {
+      requests_(node, bus::topics::kSolve, who),
+      stops_(node, bus::topics::kDriveStop, who) {
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
@@ -109,6 +113,13 @@ void Door::hear() {
         waiting.result = Result{cli::line_of(answer), values_of(answer.results(), waiting.declared),
                                 !bus::well(answer.code())};
   }
+  for (const v1::Answer& answer : stops_.poll())
+    for (auto& [number, waiting] : waiting_)
+      if (waiting.what == Waiting::For::stop && waiting.number == answer.number() &&
+          bus::ended(answer.code()))
+        waiting.result = Result{answer.text(),
+                                {{"stopped", bus::well(answer.code())}, {"moves", robot_.moves()}},
+                                !bus::well(answer.code())};
 }
 
 void Door::turn(double now) {
@@ -144,7 +155,7 @@ void Door::turn(double now) {
     }
   }
   if (std::any_of(waiting_.begin(), waiting_.end(),
-                  [](const auto& each) { return each.second.what == Waiting::For::stop; }))
+                  [](const auto& each) { return each.second.what == Waiting::For::estop; }))
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
@@ -171,12 +182,18 @@ void Door::note() {
 }
 
 void Door::begin(const Call& call) {
+  if (call.tool == "stop") {
+    waiting_[call.number] = {.what = Waiting::For::stop,
+                             .number = stops_.send(bus::request("stop")),
+                             .until = now_ + kStopPatience};
+    return;
+  }
   if (const v1::ActivitySchema* const activity = robot_.activity(call.tool)) {
     ask(call, *activity);
   } else if (const v1::Capability* const capability = robot_.capability(call.tool)) {
     request(call, *capability);
   } else if (call.tool == "emergency_stop") {
-    waiting_[call.number] = {.what = Waiting::For::stop, .until = now_ + 10.0};
+    waiting_[call.number] = {.what = Waiting::For::estop, .until = now_ + 10.0};
   } else if (call.tool == "cancel") {
     cancel(call);
   } else if (call.tool == "say") {
@@ -475,20 +492,25 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
            {{"said", waiting.said}},
            waiting.said.empty()});
       return true;
-    case Waiting::For::stop: {
+    case Waiting::For::stop:
+      if (!late && !waiting.result)
+        return false;
+      session_.answer(number,
+                      waiting.result.value_or(Result{
+                          kNotConfirmed, {{"stopped", false}, {"moves", robot_.moves()}}, true}));
+      return true;
+    case Waiting::For::estop: {
       const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
       if (!late && !latched)
         return false;
       if (latched)
         press();  // releases, so that a person can reset it
-      session_.answer(
-          number,
-          {latched ? "the emergency stop is latched, pressed by " +
-                         robot_.mind().grant()->estop_source() +
-                         "; a person releases it: saphira estop reset"
-                   : "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own",
-           {{"latched", latched}, {"moves", robot_.moves()}},
-           !latched});
+      session_.answer(number, {latched ? "the emergency stop is latched, pressed by " +
+                                             robot_.mind().grant()->estop_source() +
+                                             "; a person releases it: saphira estop reset"
+                                       : kNotConfirmed,
+                               {{"latched", latched}, {"moves", robot_.moves()}},
+                               !latched});
       return true;
     }
   }

@@ -107,7 +107,7 @@ class Door {
  private:
   /// A call without an answer yet.
   struct Waiting {
-    enum class For { goal, cancel, request, words, stop, event, belief } what = For::goal;
+    enum class For { goal, cancel, request, words, stop, estop, event, belief } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     double until = 0.0;        ///< [s]
@@ -163,6 +163,7 @@ class Door {
   const std::string who_;
   bus::GoalClient goals_;
   bus::RequestClient requests_;
+  bus::RequestClient stops_;
   bus::Reader<v1::Utterance> said_reader_ = node_.reader(bus::topics::kSaid);
   bus::Reader<v1::AgentEvent> event_reader_ = node_.reader(bus::topics::kAgentEvents);
   bus::Writer<v1::Utterance> heard_writer_ = node_.writer(bus::topics::kHeard);

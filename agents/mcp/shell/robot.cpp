@@ -177,6 +177,11 @@ std::vector<Tool> fixed_tools() {
                  {"description", "of the belief; any other value where it is not given"}}},
                {"wait_s", wait_of(kLongestWait)}}),
        true},
+      {.name = "stop",
+       .description = "Ends whatever moves the robot: goals, programs and people. Answers who was "
+                      "stopped, once the robot is at rest",
+       .input = object(nullptr),
+       .always = true},
       {.name = "emergency_stop",
        .description = "Stops the robot by the hardest means. Only a person can release it",
        .input = object(nullptr),

@@ -253,6 +253,8 @@ Json form_of(const std::string& tool) {
                    {"belief", text()},
                    {"value", text()}},
                   {"happened"});
+  if (tool == "stop")
+    return object({{"stopped", truth()}, {"moves", truth()}}, {"stopped", "moves"});
   if (tool == "emergency_stop")
     return object({{"latched", truth()}, {"moves", truth()}}, {"latched", "moves"});
   return nullptr;

@@ -295,6 +295,30 @@ TEST_F(DoorInMemory, AClientThatMayNotBeginIsToldSoAndMayStop) {
   EXPECT_EQ(heard().functor(), "sweep");
 }
 
+TEST_F(DoorInMemory, AStopIsTheBridges) {
+  auto stops = other.reader(bus::topics::kDriveStop);
+  auto answers = other.writer(bus::topics::kRobotAnswers);
+  for (const v1::AnswerCode code : {v1::ANSWER_DONE, v1::ANSWER_GIVEN_UP}) {
+    const int id = 1 + static_cast<int>(code);
+    call(id, "stop", Json::object());
+    const auto request = stops.take_newest();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->functor(), "stop");
+    v1::Answer answer;
+    answer.asker(request->asker());
+    answer.number(request->number());
+    answer.code(v1::ANSWER_UNDERWAY);
+    answers.write(answer);
+    turn();
+    answer.code(code);
+    answer.text("stopped: a program (direct)");
+    answers.write(answer);
+    turn();
+    EXPECT_EQ(result(id)["isError"], code != v1::ANSWER_DONE);
+    EXPECT_EQ(result(id)["structuredContent"]["stopped"], code == v1::ANSWER_DONE);
+  }
+}
+
 TEST_F(DoorInMemory, TheGoalsOfAClientThatIsNotThereEndOnceAndItMayComeBack) {
   begin_sweep();
   heard();
