@@ -421,6 +421,43 @@ TEST_F(CliTest, AGoalThatNobodyAnswersSaysWhoIsMissing) {
   EXPECT_EQ(goal.wait(), 1);
 }
 
+/// A bridge that latches an emergency stop once it hears.
+struct Button {
+  explicit Button(const std::string& robot) : node(test::node_options("bridge", robot)) {}
+  void turn() {
+    node.wait(milliseconds(20));
+    for (const auto& sample : presses.take())
+      latched = latched || (hears && sample.data.active());
+    v1::Grant grant;
+    grant.estopped(latched);
+    grants.write(grant);
+  }
+  bus::Node node;
+  bus::Reader<v1::MotorCommand> presses = node.reader(topics::kDriveEstop);
+  bus::Writer<v1::Grant> grants = node.writer(topics::kGrant);
+  bool hears = true;
+  bool latched = false;
+};
+
+TEST_F(CliTest, AnEmergencyStopIsConfirmedByEachBridgeOfItsRobotsName) {
+  Button one(robot_);
+  Button two(robot_);
+  two.hears = false;
+  test::Process estop(command({"estop"}), folder_.path("estop"));
+  const auto says = [&](const std::string& part) {
+    return test::wait_until([&] {
+      one.turn();
+      two.turn();
+      return has(estop.output(), part);
+    });
+  };
+  EXPECT_TRUE(says("NOT CONFIRMED by each bridge of 2 robots of this name")) << estop.output();
+  EXPECT_TRUE(one.latched && estop.running());
+  two.hears = true;
+  EXPECT_TRUE(says("confirmed by the bridge of 2 robots of this name")) << estop.output();
+  EXPECT_EQ(estop.wait(), 0);
+}
+
 TEST_F(CliTest, DriveIsADeadMan) {
   Scripted scripted(robot_);
   int terminal = -1;
