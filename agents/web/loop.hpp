@@ -15,8 +15,8 @@ std::string header(lws* wsi, lws_token_indexes which);
 std::string peer(lws* wsi);
 
 /// The return value of a callback that has sent a whole answer; its headers said "connection:
-/// close". A request that comes before the answer to the one in front of it is never read:
-/// libwebsockets 4.1 takes its first bytes for its body, and hangs.
+/// close". A second request on a connection is never read: libwebsockets 4.1 takes its first bytes
+/// for its body, and hangs.
 constexpr int kAnswered = -1;
 
 /// An event loop of libwebsockets, in one thread, with the further needs of our programs:

@@ -14,20 +14,18 @@
 #include <vector>
 
 #include "loop.hpp"
-#include "saphira/base/format.hpp"
 
 namespace saphira::mcp {
 
 namespace {
 
 constexpr unsigned kMostDescriptors = 1024;
-constexpr std::size_t kMostIdle = 64;  // connections that wait for a further request
-constexpr int kIdle = 600;             // [s] that such a connection stays open
-constexpr int kTick = 50'000;          // [us]
+constexpr int kTick = 50'000;         // [us]
+constexpr int kTicksOfSilence = 100;  // then a stream sends a sign of life
 constexpr std::size_t kLongestHeader = 1024;
 constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
 constexpr int kUnauthorized = 401;
-constexpr const char* kComment = ": \r\n";  // of a stream
+constexpr const char* kSign = ": \r\n";  // of life, in a stream
 
 using web::header;
 
@@ -50,22 +48,21 @@ std::string custom_header(lws* wsi, const char* name) {
   return size > 0 ? std::string(decoded.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
-/// The system asks the other side every second for a sign of life, as silence() promises.
+/// The system asks the client's side every second for a sign of life, as silence() promises.
 void ask_for_life(int fd) {
-  constexpr int kYes = 1;
-  constexpr int kSecond = 1;
+  constexpr int kOne = 1;
   constexpr int kMost = 3;
-  setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &kYes, sizeof kYes);
-  setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &kSecond, sizeof kSecond);
-  setsockopt(fd, IPPROTO_TCP, TCP_KEEPINTVL, &kSecond, sizeof kSecond);
+  setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &kOne, sizeof kOne);
+  setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &kOne, sizeof kOne);
+  setsockopt(fd, IPPROTO_TCP, TCP_KEEPINTVL, &kOne, sizeof kOne);
   setsockopt(fd, IPPROTO_TCP, TCP_KEEPCNT, &kMost, sizeof kMost);
 }
 
 /// As HttpServer::silence.
-std::optional<double> silence_of(int fd) {
+std::optional<double> silence_of(lws* wsi) {
   tcp_info info{};
   socklen_t size = sizeof info;
-  if (getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 ||
+  if (getsockopt(lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_INFO, &info, &size) != 0 ||
       info.tcpi_state != TCP_ESTABLISHED)
     return std::nullopt;
   return std::min(info.tcpi_last_ack_recv, info.tcpi_last_data_recv) / 1000.0;
@@ -74,16 +71,13 @@ std::optional<double> silence_of(int fd) {
 }  // namespace
 
 struct HttpServer::Impl {
-  /// A connection of a client.
-  struct Peer {
-    lws* wsi = nullptr;
-    Exchange exchange = 0;  // the request that is being answered [0: none]
+  /// The record of libwebsockets for each connection; it begins as zeros.
+  struct Connection {
+    Exchange exchange;
   };
   struct Open {
     lws* wsi = nullptr;
     HttpRequest request;
-    bool keeps = false;  // the connection is for further requests
-    bool chunks = false;
     bool too_long = false;
     bool has_come = false;
     int status = 0;  // of the answer [0: none yet]
@@ -93,59 +87,37 @@ struct HttpServer::Impl {
     bool streams = false;
     bool begun = false;  // the headers are sent
     bool complete = false;
+    int silent = 0;  // ticks
   };
 
   Events events;
   std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
   std::map<Exchange, Open> open;
-  std::map<Connection, Peer> peers;
   Exchange last = 0;
-  Connection last_connection = 0;
 
-  std::map<Connection, Peer>::iterator peer_of(lws* wsi);
-  Open* open_of(lws* wsi);
-  int begin(lws* wsi, const char* path);
-  int take(lws* wsi, const char* data, std::size_t size);
-  int complete(lws* wsi);
-  int send(lws* wsi);
-  int finish(lws* wsi, bool keeps);
+  int begin(lws* wsi, Connection& connection, const char* path);
+  int take(const Connection& connection, const char* data, std::size_t size);
+  int complete(const Connection& connection);
+  int send(lws* wsi, Connection& connection);
+  int finish(Connection& connection);
   static bool send_headers(lws* wsi, const Open& answer);
-  void closed(std::map<Connection, Peer>::iterator peer);
+  void closed(Exchange exchange);
   void tick();
 
   static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
   static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
 };
 
-std::map<HttpServer::Connection, HttpServer::Impl::Peer>::iterator HttpServer::Impl::peer_of(
-    lws* wsi) {
-  return std::find_if(peers.begin(), peers.end(),
-                      [&](const auto& each) { return each.second.wsi == wsi; });
-}
-
-/// The request of a connection that is not answered yet; null: there is none.
-HttpServer::Impl::Open* HttpServer::Impl::open_of(lws* wsi) {
-  const auto peer = peer_of(wsi);
-  const auto found = peer == peers.end() ? open.end() : open.find(peer->second.exchange);
-  return found == open.end() ? nullptr : &found->second;
-}
-
 /// The headers of a request have come.
-int HttpServer::Impl::begin(lws* wsi, const char* path) {
-  if (open_of(wsi) != nullptr)
+int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) {
+  if (connection.exchange != 0)
     return -1;  // a request behind another one: see web::kAnswered
-  auto peer = peer_of(wsi);
-  if (peer == peers.end()) {
-    peer = peers.emplace(++last_connection, Peer{wsi}).first;
-    ask_for_life(lws_get_socket_fd(wsi));
-  }
-  peer->second.exchange = ++last;
-  Open& exchange = open[last];
+  ask_for_life(lws_get_socket_fd(wsi));
+  connection.exchange = ++last;
+  Open& exchange = open[connection.exchange];
   exchange.wsi = wsi;
-  exchange.chunks = header(wsi, WSI_TOKEN_HTTP) == "HTTP/1.1";
   HttpRequest& request = exchange.request;
-  request.connection = peer->first;
   request.path = path;
   request.method = lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0     ? "POST"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
@@ -157,46 +129,38 @@ int HttpServer::Impl::begin(lws* wsi, const char* path) {
   request.version = custom_header(wsi, "mcp-protocol-version:");
   request.mcp_method = custom_header(wsi, "mcp-method:");
   request.mcp_name = custom_header(wsi, "mcp-name:");
-  const bool sends = header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) != "0" &&
-                     lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0;
-  const bool has_body = request.method == "POST" && sends;
-  // A body that is not read would be taken for the next request.
-  exchange.keeps = exchange.chunks && header(wsi, WSI_TOKEN_CONNECTION) != "close" &&
-                   sends == has_body &&
-                   lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) <= 0;
-  return has_body ? 0 : complete(wsi);
+  const bool has_body = request.method == "POST" &&
+                        header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) != "0" &&
+                        lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0;
+  return has_body ? 0 : complete(connection);
 }
 
-int HttpServer::Impl::take(lws* wsi, const char* data, std::size_t size) {
-  Open* const exchange = open_of(wsi);
-  if (exchange == nullptr)
+int HttpServer::Impl::take(const Connection& connection, const char* data, std::size_t size) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end())
     return -1;
-  std::string& body = exchange->request.body;
-  exchange->too_long = exchange->too_long || body.size() + size > kLongestBody;
-  if (!exchange->too_long)
+  std::string& body = found->second.request.body;
+  found->second.too_long = found->second.too_long || body.size() + size > kLongestBody;
+  if (!found->second.too_long)
     body.append(data, size);
   return 0;
 }
 
-int HttpServer::Impl::complete(lws* wsi) {
-  Open* const exchange = open_of(wsi);
-  if (exchange == nullptr)
-    return -1;
-  if (exchange->has_come) {  // a request behind another one: see web::kAnswered
-    exchange->keeps = false;
-    return exchange->status == 0 ? -1 : 0;
-  }
-  exchange->has_come = true;
-  lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0);  // its answer may take its time
-  if (exchange->too_long) {
-    exchange->status = HTTP_STATUS_REQ_ENTITY_TOO_LARGE;
-    exchange->type = "text/plain";
-    exchange->body = "a message has at most 65536 bytes\n";
-    exchange->complete = true;
-    lws_callback_on_writable(wsi);
+int HttpServer::Impl::complete(const Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end() || found->second.has_come)
+    return found == open.end() ? -1 : 0;
+  found->second.has_come = true;
+  lws_set_timeout(found->second.wsi, NO_PENDING_TIMEOUT, 0);  // its answer may take its time
+  if (found->second.too_long) {
+    found->second.status = HTTP_STATUS_REQ_ENTITY_TOO_LARGE;
+    found->second.type = "text/plain";
+    found->second.body = "a message has at most 65536 bytes\n";
+    found->second.complete = true;
+    lws_callback_on_writable(found->second.wsi);
     return 0;
   }
-  events.came(peer_of(wsi)->second.exchange, std::move(exchange->request));
+  events.came(connection.exchange, std::move(found->second.request));
   return 0;
 }
 
@@ -210,76 +174,53 @@ bool HttpServer::Impl::send_headers(lws* wsi, const Open& answer) {
                                        reinterpret_cast<const unsigned char*>(value.c_str()),
                                        static_cast<int>(value.size()), &at, end) == 0;
   };
-  return lws_add_http_header_status(wsi, static_cast<unsigned>(answer.status), &at, end) == 0 &&
-         add("content-type:", answer.type) &&
-         (answer.streams || add("content-length:", std::to_string(answer.body.size()))) &&
+  const lws_filepos_t length = answer.streams ? LWS_ILLEGAL_HTTP_CONTENT_LEN : answer.body.size();
+  return lws_add_http_common_headers(wsi, static_cast<unsigned>(answer.status), answer.type.c_str(),
+                                     length, &at, end) == 0 &&
          add("cache-control:", "no-cache") && add("x-accel-buffering:", "no") &&
-         add("x-content-type-options:", "nosniff") &&
-         add("connection:", answer.keeps ? "keep-alive" : "close") &&
-         (!answer.keeps || add("keep-alive:", "timeout=" + std::to_string(kIdle))) &&
-         (!answer.streams || !answer.chunks || add("transfer-encoding:", "chunked")) &&
+         add("x-content-type-options:", "nosniff") && add("connection:", "close") &&
          (answer.session.empty() || add("mcp-session-id:", answer.session)) &&
          (answer.status != kUnauthorized || add("www-authenticate:", "Bearer")) &&
          (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "GET, POST, DELETE")) &&
          lws_finalize_write_http_header(wsi, start, &at, end) == 0;
 }
 
-int HttpServer::Impl::send(lws* wsi) {
-  Open* const found = open_of(wsi);
-  if (found == nullptr || found->status == 0)
+int HttpServer::Impl::send(lws* wsi, Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end() || found->second.status == 0)
     return 0;
-  Open& answer = *found;
+  Open& answer = found->second;
   if (!answer.begun) {
     answer.begun = true;
-    answer.keeps = answer.keeps && answer.status < HTTP_STATUS_BAD_REQUEST;
     if (!send_headers(wsi, answer))
       return -1;
     if (!answer.complete || !answer.body.empty()) {
       lws_callback_on_writable(wsi);
       return 0;
     }
-    return finish(wsi, answer.keeps);
+    return finish(connection);
   }
   if (answer.body.empty() && !answer.complete)
     return 0;
-  std::string body = std::exchange(answer.body, {});
-  const bool final = answer.complete;
-  if (answer.streams && answer.chunks) {
-    if (!body.empty())
-      body = format("%zx\r\n", body.size()) + body + "\r\n";
-    body += final ? "0\r\n\r\n" : "";
-  }
+  const std::string body = std::exchange(answer.body, {});
   std::vector<unsigned char> buffer(LWS_PRE + body.size());
   std::memcpy(buffer.data() + LWS_PRE, body.data(), body.size());
+  const bool final = answer.complete;
   if (lws_write(wsi, buffer.data() + LWS_PRE, body.size(),
                 final ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(body.size()))
     return -1;
-  return final ? finish(wsi, answer.keeps) : 0;
+  return final ? finish(connection) : 0;
 }
 
 /// The answer is sent.
-int HttpServer::Impl::finish(lws* wsi, bool keeps) {
-  const auto peer = peer_of(wsi);
-  open.erase(peer->second.exchange);
-  peer->second.exchange = 0;
-  if (!keeps || lws_http_transaction_completed(wsi) != 0)
-    return web::kAnswered;
-  std::size_t idle = 0;
-  for (const auto& [connection, each] : peers)
-    idle += each.exchange == 0 ? 1 : 0;
-  if (idle <= kMostIdle)
-    return 0;
-  const auto oldest = std::find_if(peers.begin(), peers.end(),
-                                   [](const auto& each) { return each.second.exchange == 0; });
-  lws_set_timeout(oldest->second.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
-  return 0;
+int HttpServer::Impl::finish(Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  open.erase(found);
+  connection.exchange = 0;
+  return web::kAnswered;
 }
 
-void HttpServer::Impl::closed(std::map<Connection, Peer>::iterator peer) {
-  if (peer == peers.end())
-    return;
-  const Exchange exchange = peer->second.exchange;
-  peers.erase(peer);
+void HttpServer::Impl::closed(Exchange exchange) {
   const auto found = open.find(exchange);
   if (found == open.end())
     return;
@@ -289,33 +230,42 @@ void HttpServer::Impl::closed(std::map<Connection, Peer>::iterator peer) {
     events.lost(exchange);
 }
 
-/// libwebsockets does not notice the end of a client that it writes to: the socket says it.
+/// libwebsockets notices the end of a client when it writes; the socket knows it at once.
 void HttpServer::Impl::tick() {
-  for (auto each = peers.begin(); each != peers.end();) {
-    const auto peer = each++;
-    lws* const wsi = peer->second.wsi;
-    if (silence_of(lws_get_socket_fd(wsi)))
+  for (auto each = open.begin(); each != open.end();) {
+    const auto [exchange, wsi] = std::pair(each->first, each->second.wsi);
+    ++each;
+    if (silence_of(wsi))
       continue;
-    closed(peer);
     lws_set_timeout(wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    closed(exchange);
   }
   events.tick();
+  for (auto& [exchange, answer] : open) {
+    if (!answer.streams || answer.complete || !answer.body.empty() ||
+        ++answer.silent < kTicksOfSilence)
+      continue;
+    answer.silent = 0;
+    answer.body = kSign;  // clients give up a stream that is silent for minutes
+    lws_callback_on_writable(answer.wsi);
+  }
 }
 
 int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                            std::size_t size) {
+  auto* const connection = static_cast<Connection*>(user);
   switch (reason) {
     case LWS_CALLBACK_HTTP:
-      return of(wsi).begin(wsi, static_cast<const char*>(in));
+      return of(wsi).begin(wsi, *connection, static_cast<const char*>(in));
     case LWS_CALLBACK_HTTP_BODY:
-      return of(wsi).take(wsi, static_cast<const char*>(in), size);
+      return of(wsi).take(*connection, static_cast<const char*>(in), size);
     case LWS_CALLBACK_HTTP_BODY_COMPLETION:
-      return of(wsi).complete(wsi);
+      return of(wsi).complete(*connection);
     case LWS_CALLBACK_HTTP_WRITEABLE:
-      return of(wsi).send(wsi);
+      return of(wsi).send(wsi, *connection);
     case LWS_CALLBACK_CLOSED_HTTP:
-    case LWS_CALLBACK_WSI_DESTROY:
-      of(wsi).closed(of(wsi).peer_of(wsi));
+      if (connection != nullptr)
+        of(wsi).closed(connection->exchange);
       return 0;
     default:
       return lws_callback_http_dummy(wsi, reason, user, in, size);
@@ -324,16 +274,17 @@ int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, vo
 
 HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()) {
   impl_->events = std::move(events);
-  static const std::array<lws_protocols, 3> protocols{{{"http", Impl::http, 0, 0, 0, nullptr, 0},
-                                                       web::Loop::descriptors(),
-                                                       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  static const std::array<lws_protocols, 3> protocols{
+      {{"http", Impl::http, sizeof(Impl::Connection), 0, 0, nullptr, 0},
+       web::Loop::descriptors(),
+       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
   impl_->loop.emplace(impl_.get(), kMostDescriptors, false);
   lws_context_creation_info info{};
   info.protocols = protocols.data();
   info.iface = "127.0.0.1";
   info.port = port;
   info.timeout_secs = 5;  // for clients without a complete request
-  info.keepalive_timeout = kIdle + 10;
+  info.keepalive_timeout = 30;
   info.vhost_name = "mcp";
   impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
   if (impl_->vhost == nullptr)
@@ -375,17 +326,17 @@ void HttpServer::event(Exchange exchange, const std::string& message, bool last)
   answer.status = HTTP_STATUS_OK;
   answer.type = "text/event-stream";
   answer.streams = true;
+  answer.silent = 0;
   answer.complete = last;
-  answer.body += message.empty() ? kComment : "event: message\ndata: " + message + "\n\n";
+  answer.body += message.empty() ? kSign : "event: message\ndata: " + message + "\n\n";
   if (answer.body.size() > kLongestQueue)
     lws_set_timeout(answer.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
   lws_callback_on_writable(answer.wsi);
 }
 
-std::optional<double> HttpServer::silence(Connection connection) const {
-  const auto found = impl_->peers.find(connection);
-  return found == impl_->peers.end() ? std::nullopt
-                                     : silence_of(lws_get_socket_fd(found->second.wsi));
+std::optional<double> HttpServer::silence(Exchange exchange) const {
+  const auto found = impl_->open.find(exchange);
+  return found == impl_->open.end() ? std::nullopt : silence_of(found->second.wsi);
 }
 
 void HttpServer::run(int stop) {

@@ -12,8 +12,7 @@ namespace saphira::mcp {
 
 /// A complete request of HTTP.
 struct HttpRequest {
-  std::uint64_t connection = 0;  ///< by which it came; from 1
-  std::string method;            ///< GET, POST, DELETE [empty: another]
+  std::string method;  ///< GET, POST, DELETE [empty: another]
   std::string path;
   console::Caller caller;
   std::string authorization;
@@ -25,11 +24,10 @@ struct HttpRequest {
 };
 
 /// HTTP on this machine (127.0.0.1) by libwebsockets, in one thread. Bounded: connections, sizes,
-/// silences. A connection stays open after an answer, for the client's next request.
+/// silences.
 class HttpServer {
  public:
-  using Exchange = std::uint64_t;    ///< a request and its answer; from 1
-  using Connection = std::uint64_t;  ///< from 1
+  using Exchange = std::uint64_t;  ///< a request and its answer; from 1
 
   /// The callbacks for events. Each is called from run() alone.
   struct Events {
@@ -52,13 +50,12 @@ class HttpServer {
   /// A complete answer. session: becomes the header Mcp-Session-Id [empty: none].
   void answer(Exchange exchange, int status, const std::string& type, std::string body,
               const std::string& session = {});
-  /// A message of a stream of events, which begins with the first one. last: the stream ends. An
-  /// empty message is a comment, which no client reads.
+  /// A message of a stream of events, which begins with the first one. last: the stream ends.
+  /// An empty message is a sign of life, which no client reads.
   void event(Exchange exchange, const std::string& message, bool last);
-
-  /// [s] since the other side of a connection has acknowledged or sent anything: a second at most
+  /// [s] since the client's side of the connection has acknowledged anything: a second at most
   /// while it is there. Nothing: the connection is closed.
-  std::optional<double> silence(Connection connection) const;
+  std::optional<double> silence(Exchange exchange) const;
 
   /// Runs until `stop` is readable.
   void run(int stop);

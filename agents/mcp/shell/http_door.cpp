@@ -118,9 +118,6 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   Client* const client = client_of(exchange, request, sender, id);
   if (client == nullptr)
     return;
-  for (const auto& [other, each] : clients_)
-    each->connections.erase(request.connection);
-  client->connections.insert(request.connection);
   presence_.came(id, now());
   if (sender.answers)
     presence_.answered(id);
@@ -184,16 +181,11 @@ void HttpDoor::turn() {
 void HttpDoor::see(const std::string& id, Client& client) {
   const double time = now();
   Clients::State state;
-  for (auto each = client.connections.begin(); each != client.connections.end();) {
-    const auto silence = server_.silence(*each);
-    if (!silence) {
-      each = client.connections.erase(each);
-      continue;
+  for (const auto& [exchange, streams] : client.waits)
+    if (const auto silence = server_.silence(exchange)) {
+      ++state.connections;
+      state.heard = std::max(state.heard, time - *silence);
     }
-    ++state.connections;
-    state.heard = std::max(state.heard, time - *silence);
-    ++each;
-  }
   state.streams = client.waits.contains(client.stream);
   state.waits = client.door.is_asked();
   state.busy = client.door.is_busy();
@@ -212,7 +204,7 @@ void HttpDoor::tick() {
     }
     if (presence_.loses_goals(id, now())) {
       node_.info(client->door.who() + " is not there: its goals end");
-      client->door.close("there is no sign of its client");
+      client->door.close("its client had no stream and no call open");
     }
     if (presence_.is_pinged(id, now())) {
       client->session.ping();

@@ -2,8 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -32,7 +30,6 @@ class HttpDoor {
 
  private:
   using Exchange = HttpServer::Exchange;
-  using Connection = HttpServer::Connection;
 
   struct Client {
     Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options,
@@ -41,10 +38,9 @@ class HttpDoor {
           door(node, robot, session, options.who + " " + name) {}
     Session session;
     Door door;
-    bool is_new = false;               ///< its first answer will contain its session
-    std::map<Exchange, bool> waits;    ///< requests without an answer; true: it streams
-    Exchange stream = 0;               ///< the one for messages outside of an answer [0: none]
-    std::set<Connection> connections;  ///< by which its newest messages came
+    bool is_new = false;             ///< its first answer will contain its session
+    std::map<Exchange, bool> waits;  ///< requests without an answer; true: it streams
+    Exchange stream = 0;             ///< the one for messages outside of an answer [0: none]
   };
 
   HttpServer::Events events();

@@ -31,11 +31,12 @@ void Clients::came(const std::string& id, double now) {
 
 void Clients::see(const std::string& id, const State& state, double now) {
   Client& client = all_.at(id);
+  const bool closes = state.connections < client.state.connections;
   client.state = state;
   client.lost = client.lost && state.busy;
   const bool by_ping = client.answers && state.busy && state.streams;
-  if (!by_ping && state.connections > 0)
-    client.seen = std::clamp(state.heard, client.seen, std::max(client.seen, now));
+  if (!by_ping && (closes || state.connections > 0))
+    client.seen = std::max(client.seen, closes ? now : std::min(state.heard, now));
 }
 
 bool Clients::loses_goals(const std::string& id, double now) {

@@ -300,25 +300,42 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
                       "Mcp-Name: go_to",
                   modern);
   drive_and_break(session, go(5.0, 20));
-  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
 
-  // A client is killed between its calls: its stream closes.
-  session = begin();
-  const int held = listen();
+  // A client is killed between its calls: its stream closes. One that comes back hears of its
+  // goals.
+  int held = listen();
   call(go(5.0, 0));
   EXPECT_TRUE(system.wait_moving());
   close(held);
   EXPECT_TRUE(system.wait_still());
-  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
+  const json goals = call({{"name", "goals"}})["structuredContent"]["goals"];
+  EXPECT_EQ(goals.back()["yours"], true);
+  EXPECT_NE(goals.back()["reason"].get<std::string>().find("no stream and no call open"),
+            std::string::npos)
+      << goals.back();
 
   // A goal that outlasts its call ends with its session.
-  session = begin();
+  held = listen();
   call(go(5.0, 0));
   EXPECT_TRUE(system.wait_moving());
   std::string end = session;
   EXPECT_TRUE(http(port, end.replace(0, 4, "DELETE")).starts_with("HTTP/1.1 200"));
   EXPECT_TRUE(system.wait_still());
   EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
+  EXPECT_FALSE(comes(held, "its stream ends")) << "it has ended";
+  close(held);
+
+  // Sessions that are left open lock nobody out, and a stop needs none.
+  session = begin();
+  for (int others = 0; others < 12; ++others)
+    begin();
+  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
+  EXPECT_EQ(message_of(http(port, session,
+                            R"({"id":4,"method":"tools/call","params":{"name":"emergency_stop"}})"))
+                ["result"]["structuredContent"]["latched"],
+            true);
+  EXPECT_TRUE(http(port, post, R"({"id":4,"method":"tools/call","params":{"name":"robot_status"}})")
+                  .starts_with("HTTP/1.1 400"));
   EXPECT_EQ(system.truth().contacts, 0);
 }
 
