@@ -182,14 +182,14 @@ for (const hand of [keys, stick, finger, shoulder]) {
     await happens('blur');
     await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();   // it only watches now
   });
-  row(hand, 'a question of the browser stops the page', async () => {
-    page.once('dialog', async dialog => {
-      await sleep(1000);
-      await dialog.dismiss();
-    });
-    await page.evaluate(() => alert('a question'));
-  });
 }
+row(keys, 'a question of the browser stops the page', async () => {
+  page.once('dialog', async dialog => {
+    await sleep(1000);
+    await dialog.dismiss();
+  });
+  await page.evaluate(() => alert('a question'));
+});
 row(keys, 'the page is hidden', () => page.evaluate(() => {
   Object.defineProperty(document, 'hidden', {get: () => true, configurable: true});
   document.dispatchEvent(new Event('visibilitychange'));
