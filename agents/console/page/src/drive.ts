@@ -51,10 +51,7 @@ export class Drive {
       if (this.mine()) this.sample();
     });
     // A page that is hidden or without focus does not drive.
-    const leave = () => {
-      this.hands.leave();
-      this.release();
-    };
+    const leave = () => this.release();
     addEventListener('blur', leave);
     addEventListener('pagehide', leave);
     document.addEventListener('visibilitychange', () => document.hidden && leave());
