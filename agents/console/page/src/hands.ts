@@ -147,7 +147,7 @@ export class Hands {
   private choose(pads: Pad[], now: number): Pad | undefined {
     const name = (p: Pad) => `${p.index} ${p.id}`;
     const pressed = pads.filter(p => deadMan(p)?.buttons.some(i => p.buttons[i]?.pressed));
-    let pad = pressed.find(p => name(p) === this.driver) ?? pressed.find(p => this.free.has(name(p)));
+    const pad = pressed.find(p => name(p) === this.driver) ?? pressed.find(p => this.free.has(name(p)));
     const driver = pad ? name(pad) : '';
     this.free = new Set(pads.filter(p => !pressed.includes(p)).map(name));
     const shown = pad ?? pressed[0] ?? pads.find(deadMan) ?? pads[0];

@@ -267,6 +267,7 @@ test('a gamepad whose buttons have no names does not drive, and says so', async 
   await shoulder.drop();
   await page.getByText('Gamepad Some pad: hold a shoulder button').waitFor();
 });
+row(stick, 'the stick goes from the page', () => page.evaluate(() => document.querySelector('svg.stick').remove()));
 row(keys, 'the page is closed', () => page.close());
 
 test('the letters on the page are those of the keyboard; a page without gamepads says so', async () => {
