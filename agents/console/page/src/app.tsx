@@ -409,18 +409,13 @@ function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDi
   </div>;
 }
 
-function Stick({drive}: {drive: Drive}) {
-  const {active, by, hands} = drive;
+function Stick({drive: {active, by, hands}}: {drive: Drive}) {
   const pad = useRef<SVGSVGElement>(null);
   const place = (event: PointerEvent) => {
     const box = pad.current!.getBoundingClientRect();
     const x = (2 * (event.clientX - box.left) / box.width - 1) / 0.75, y = (1 - 2 * (event.clientY - box.top) / box.height) / 0.75;
     const r = Math.max(1, Math.hypot(x, y));
     return {x: x / r, y: y / r};
-  };
-  const end = (event: PointerEvent) => {
-    hands.drop(event.pointerId);
-    drive.sample();
   };
   const at = by === 'stick' ? hands.at : {x: 0, y: 0};
   return <svg ref={pad} class={active ? 'stick held' : 'stick'} viewBox="-100 -100 200 200" role="img"
@@ -432,7 +427,7 @@ function Stick({drive}: {drive: Drive}) {
                 hands.grasp(e.pointerId, place(e));
               }}
               onPointerMove={e => hands.move(e.pointerId, place(e), e.buttons !== 0)}
-              onPointerUp={end} onPointerCancel={end} onLostPointerCapture={end} onContextMenu={e => e.preventDefault()}>
+              onContextMenu={e => e.preventDefault()}>
     <circle class="stick-ground" r="98" />
     <path class="stick-arrow" d="M0-90 8-78H-8ZM0 90 8 78H-8ZM-90 0-78 8V-8ZM90 0 78 8V-8Z" />
     <circle class="stick-knob" cx={75 * at.x} cy={-75 * at.y} r="26" />

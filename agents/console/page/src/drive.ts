@@ -47,11 +47,14 @@ export class Drive {
       this.hands.release(event.code, performance.now());
       if (this.mine()) this.sample();
     });
+    // Heard by the window: the stick may be gone from the page, with its capture.
+    for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const)
+      addEventListener(end, event => {
+        this.hands.drop(event.pointerId);
+        if (this.mine()) this.sample();
+      });
     // A page that is hidden or without focus does not drive.
-    const leave = () => {
-      this.hands.leave();
-      this.release();
-    };
+    const leave = () => this.release();
     addEventListener('blur', leave);
     addEventListener('pagehide', leave);
     document.addEventListener('visibilitychange', () => document.hidden && leave());
@@ -125,7 +128,7 @@ export class Drive {
   }
 
   // Tells the robot; 20 times a second, and at once after an event.
-  sample() {
+  private sample() {
     const {hands} = this, state = () => `${this.active} ${hands.pad} ${hands.padHint} ${hands.doubt}`, before = state();
     const now = performance.now(), was = this.active, pads = gamepads();
     this.hasPads = !!pads;

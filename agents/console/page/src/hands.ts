@@ -118,13 +118,7 @@ export class Hands {
     if (this.held.size > 0 || this.pointer !== undefined || this.driver) this.doubt = why;
     this.held.clear();
     this.pointer = undefined;
-    this.free.clear();
     this.driver = '';
-  }
-  // Releases will not be heard.
-  leave() {
-    this.letGo();
-    this.down.clear();
   }
 
   holds(act: Act): boolean { return [...this.held].some(code => acts[code] === act); }
@@ -153,9 +147,9 @@ export class Hands {
   private choose(pads: Pad[], now: number): Pad | undefined {
     const name = (p: Pad) => `${p.index} ${p.id}`;
     const pressed = pads.filter(p => deadMan(p)?.buttons.some(i => p.buttons[i]?.pressed));
-    let pad = pressed.find(p => name(p) === this.driver) ?? pressed.find(p => this.free.has(name(p)));
+    const pad = pressed.find(p => name(p) === this.driver) ?? pressed.find(p => this.free.has(name(p)));
     const driver = pad ? name(pad) : '';
-    this.free = new Set(pads.filter(p => p === pad || !pressed.includes(p)).map(name));
+    this.free = new Set(pads.filter(p => !pressed.includes(p)).map(name));
     const shown = pad ?? pressed[0] ?? pads.find(deadMan) ?? pads[0];
     const sign = pad ? [pad.timestamp, ...pad.axes].join() : '';
     if (driver !== this.driver || sign !== this.sign) this.signAt = now;
