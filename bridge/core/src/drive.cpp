@@ -24,10 +24,9 @@ std::uint64_t driver_of(const authority::WriterId& writer) {
 
 /// Setpoints that keep a robot with this heading where it is.
 bool stand(const reflector::Setpoints& told, double heading_in_odom) {
-  constexpr double kSameHeading = 0.05;  // [rad]
   return told.velocity == 0.0 &&
          (told.turn_to_heading
-              ? std::abs(norm2_angle(told.heading_in_odom - heading_in_odom)) < kSameHeading
+              ? std::abs(norm2_angle(told.heading_in_odom - heading_in_odom)) < kRestHeading
               : told.rotation_velocity == 0.0);
 }
 

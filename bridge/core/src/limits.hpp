@@ -20,6 +20,7 @@ inline constexpr double kSlowLine = 0.25;     // [s] round trip of a slow line
 inline constexpr double kUsualLine = 0.1;     // [s] share of it that the guard includes anyway
 inline constexpr double kMeasureDelay = 2.0;  // [s] a slow line is measured again
 inline constexpr double kRestVelocity = 0.02;  // [m/s] with room for the packet's rounding
+inline constexpr double kRestHeading = 0.05;   // [rad] from its target
 inline constexpr double kRestRotation = 0.05;  // [rad/s] the same
 inline constexpr unsigned kStopCycles = 2;  // least time of a stop: every service has heard of it
 inline constexpr unsigned kMostStopCycles = 50;  // then it has failed
