@@ -193,6 +193,20 @@ TEST(Navigation, AroundAClosedDoorItReplans) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
+TEST(Ways, AreDrivenToATenthOfThemselves) {
+  for (const double way : {0.1, 0.2, 0.3, 0.5, 1.0}) {
+    Whole whole(office());
+    whole.advance();
+    const Pose before = whole.drive().seen().pose_in_odom;
+    const GoalStatus status =
+        whole.achieve("go_to", {saphira::point("position", {way, 0.0, 0.0}, Frame::robot)}, 600);
+    EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+    const Pose after = whole.drive().seen().pose_in_odom;
+    EXPECT_NEAR((after.position() - before.position()).norm(), way, std::max(0.02, 0.1 * way))
+        << way;
+  }
+}
+
 GoalStatus go_to(Whole& whole, double x, double y) {
   return whole.achieve("go_to", {saphira::point("position", {x, y, 0.0}, Frame::map)}, 1500);
 }

@@ -42,7 +42,7 @@ TEST(GoTo, IntendsTheBehaviorsAndArrives) {
 
 TEST(GoTo, SucceedsOnlyWhenTheRobotStands) {
   Bench bench;
-  bench.ask(1, "go_to", {point("position", {0.1, 0.0, 0.0})});
+  bench.ask(1, "go_to", {point("position", {0.01, 0.0, 0.0})});
   bench.world.robot.velocity = 0.3;
   bench.world.held = false;
   bench.step_without_moving();

@@ -21,7 +21,7 @@ TEST(Schema, FillsInTheDefaults) {
   Arguments complete;
   EXPECT_EQ(check_arguments(*registry.find("go_to"), {point("position", {3, 1, 0})}, complete), "");
   EXPECT_EQ(find(complete, "speed")->number, 0.3);
-  EXPECT_EQ(find(complete, "radius")->number, 0.15);
+  EXPECT_EQ(find(complete, "radius")->number, 0.0);
   EXPECT_EQ(find(complete, "patience")->number, 20.0);
   EXPECT_EQ(find(complete, "nothing"), nullptr);
 }

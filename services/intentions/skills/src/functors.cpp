@@ -160,6 +160,11 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
               format("the robot has not known where it is on the map for %.0f s", patience));
 }
 
+// A way counts as driven to a tenth of itself, within these limits.
+constexpr double kShareOfWay = 0.1;
+constexpr double kLeastRadius = 0.02;  // [m]
+constexpr double kWidestRadius = 0.15;     // [m]
+
 /// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop where none of them is
 /// active. At the point, Stop alone until the robot stands.
 class GoTo : public Activity {
@@ -189,8 +194,10 @@ class GoTo : public Activity {
     const double left = distance(self.robot().pose_in_odom, *target);
     const bool begun = new_target_ || begins(self);
     if (begun) {
-      if (new_target_)
+      if (new_target_) {
         whole_way_ = left;
+        near_ = radius_ > 0.0 ? radius_ : std::clamp(kShareOfWay * left, kLeastRadius, kWidestRadius);
+      }
       new_target_ = false;
       there_ = false;
       checking_since_.reset();
@@ -203,7 +210,7 @@ class GoTo : public Activity {
       keep_out_.restart();
     }
     // The behavior's own report, within limits: it may be satisfied a little before the radius.
-    if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
+    if (left <= near_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * near_))
       there_ = true;
     if (there_) {
       self.drop_behavior("AvoidCollision");
@@ -228,7 +235,7 @@ class GoTo : public Activity {
     self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
     self.intend_behavior(
         "GoToPos", "GoToPos", kTask,
-        {point("goal", *target), number("speed", speed_), number("radius", radius_)});
+        {point("goal", *target), number("speed", speed_), number("radius", near_)});
     self.intend_behavior("Stop", "Stop", kRest, {});
     self.say("driving to " + format_point(target_));
     if (whole_way_ > 0.0)
@@ -292,7 +299,8 @@ class GoTo : public Activity {
   std::optional<Ticks> waiting_since_;
   KeepOut keep_out_;
   double speed_ = 0.0;
-  double radius_ = 0.0;
+  double radius_ = 0.0;  ///< [m] as asked for; 0: a share of the way
+  double near_ = kNear;  ///< [m] counts as there
   Watchdog watchdog_;
   Motion motion_;
   Pose last_;
@@ -507,7 +515,7 @@ Registry built_in() {
   go_to.name = "go_to";
   go_to.summary = "drives to a position, around what is in the way";
   go_to.parameters = {place("position", true), quantity("speed", "m/s", 0.02, 2.0, 0.3),
-                      quantity("radius", "m", 0.02, 10.0, 0.15), patience()};
+                      quantity("radius", "m", 0.0, 10.0, 0.0), patience()};
   go_to.make = make<GoTo>;
   registry.add(std::move(go_to));
 
