@@ -301,7 +301,7 @@ bool Door::has_room(const Call& call) {
 }
 
 void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
-  if (!has_room(call))
+  if (call.tool != kStopTool && !has_room(call))
     return;
   v1::Goal goal;
   goal.functor(schema.name());

@@ -14,7 +14,8 @@
 
 namespace saphira::mcp {
 
-constexpr double kWait = 20.0;  ///< [s] longest wait of a call for the end of its goal
+constexpr const char* kStopTool = "stop";  ///< the activity that ends all goals that drive
+constexpr double kWait = 20.0;             ///< [s] longest wait of a call for the end of its goal
 
 /// The robot's state for all clients of this program, and the tools. For one thread.
 class Robot {

@@ -250,6 +250,7 @@ void Robot::make_tools() {
                       .description = schema.summary().empty() ? "The activity " + schema.name()
                                                               : schema.summary(),
                       .input = std::move(input),
+                      .always = name == kStopTool,
                       .output = goal_form(),
                       .lasts = true});
     activities_[name] = schema;

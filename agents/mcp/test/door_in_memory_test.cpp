@@ -295,6 +295,19 @@ TEST_F(DoorInMemory, AClientThatMayNotBeginIsToldSoAndMayStop) {
   EXPECT_EQ(heard().functor(), "sweep");
 }
 
+TEST_F(DoorInMemory, AStopIsTakenHoweverMuchIsUnderway) {
+  door->allow(false);
+  v1::ActivitySchema stop;
+  stop.name("stop");
+  v1::ActivitySchemas all;
+  all.schemas({stop});
+  schemas.write(all);
+  turn();
+  for (int id = 10; id < 40; ++id)
+    call(id, "stop", {{"wait_s", 0}});
+  EXPECT_EQ(goals.take().size(), 30U) << "as many as it likes";
+}
+
 TEST_F(DoorInMemory, TheGoalsOfAClientThatIsNotThereEndOnceAndItMayComeBack) {
   begin_sweep();
   heard();
