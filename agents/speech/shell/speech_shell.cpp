@@ -81,18 +81,17 @@ void SpeechShell::step() {
 void SpeechShell::tell(const Conversation::Outputs& out) {
   if (out.um)
     speaker_.play(um_);
-  for (const std::string& text : out.utterances) {
+  for (const Heard& heard : out.utterances) {
     v1::Utterance utterance;
     utterance.id().writer(node_.instance());
     utterance.id().number(++number_);
     utterance.speaker(options_.person);
-    utterance.text(text);
+    utterance.text(heard.text);
     utterance.means(v1::UTTERANCE_SPOKEN);
-    // A keyword alone: the rest was not understood.
-    utterance.confidence(text.find(' ') == std::string::npos ? 0.5 : 1.0);
+    utterance.confidence(heard.confidence);
     utterance.time(unix_time());
     heard_.write(utterance);
-    node_.info("heard: " + text);
+    node_.info("heard: " + heard.text + (heard.confidence < kCertain ? " (not certain)" : ""));
   }
 }
 

@@ -55,9 +55,10 @@ Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
     if (event.kind != Event::Kind::heard || event.heard.outcome == Outcome::not_for_it)
       continue;
     out.um = true;
-    out.utterances.push_back(event.heard.outcome == Outcome::command
-                                 ? event.heard.text
-                                 : event.heard.text.substr(0, event.heard.text.find(' ')));
+    out.utterances.push_back(event.heard);
+    if (event.heard.outcome == Outcome::addressed)
+      out.utterances.back().text.resize(
+          std::min(event.heard.text.size(), event.heard.text.find(' ')));
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <sphinxbase/fsg_model.h>
 
 #include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 
 // Phones after the keyword that are no word: breath, or room noise.
 constexpr int kBreath = 4;
+constexpr double kAddressed = 0.5;    // confidence of a keyword alone
 constexpr const char* kPhone = "p_";  // begins the token of a phone; words are w0, w1, ...
 
 Phones in_dictionary(ps_decoder_t* decoder, const std::string& word) {
@@ -44,6 +46,10 @@ const char* word(Outcome outcome) {
 struct Recognizer::Self {
   RecognizerSettings settings;
   std::unique_ptr<ps_decoder_t, FreeDecoder> decoder;
+  /// It hears the same sound otherwise: as a whole, and with the noise in it.
+  std::unique_ptr<ps_decoder_t, FreeDecoder> second;
+  Sound recent;  ///< of this utterance, and a little before it
+  std::set<std::string> keywords;
   std::unique_ptr<Pronunciations> pronunciations;
   std::map<std::string, std::string> tokens;  ///< of the words
   std::map<std::string, std::string> words;   ///< of the tokens
@@ -59,7 +65,8 @@ struct Recognizer::Self {
   }
   void take(const agent_interface::WordGraph& graph, bool continued);
   void search(bool continued);
-  Heard result() const;
+  Heard result(ps_decoder_t* from) const;
+  bool is_sure(const Heard& heard) const;
   void finish(std::vector<Event>& events);
   void give_up_attention(std::vector<Event>& events);
 };
@@ -69,22 +76,27 @@ Recognizer::Recognizer(RecognizerSettings settings, std::string_view text, const
   self_->settings = std::move(settings);
   err_set_logfp(nullptr);
   const std::string model = self_->settings.model;
-  cmd_ln_t* const config =
-      cmd_ln_init(nullptr, ps_args(), TRUE, "-hmm", (model + "/en-us").c_str(), "-dict",
-                  (model + "/cmudict-en-us.dict").c_str(), "-remove_silence", "yes",
-                  "-vad_threshold", std::to_string(self_->settings.least_voice).c_str(),
-                  "-vad_postspeech", std::to_string(self_->settings.pause).c_str(), nullptr);
-  if (config != nullptr)
-    self_->decoder.reset(ps_init(config));
-  cmd_ln_free_r(config);
-  if (!self_->decoder)
+  const auto decoder_with = [&](const char* remove) {
+    cmd_ln_t* const config = cmd_ln_init(
+        nullptr, ps_args(), TRUE, "-hmm", (model + "/en-us").c_str(), "-dict",
+        (model + "/cmudict-en-us.dict").c_str(), "-remove_silence", remove, "-remove_noise", remove,
+        "-vad_threshold", std::to_string(self_->settings.least_voice).c_str(), "-vad_postspeech",
+        std::to_string(self_->settings.pause).c_str(), nullptr);
+    ps_decoder_t* const made = config == nullptr ? nullptr : ps_init(config);
+    cmd_ln_free_r(config);
+    return made;
+  };
+  self_->decoder.reset(decoder_with("yes"));
+  self_->second.reset(decoder_with("no"));
+  if (!self_->decoder || !self_->second)
     throw std::runtime_error("the model of speech in " + model +
                              " cannot be read: install the Debian package pocketsphinx-en-us");
   ps_decoder_t* const decoder = self_->decoder.get();
   self_->pronunciations = std::make_unique<Pronunciations>(
       text, file, [decoder](const std::string& word) { return in_dictionary(decoder, word); });
   for (const std::string& phone : phones())
-    ps_add_word(decoder, (kPhone + phone).c_str(), phone.c_str(), FALSE);
+    for (ps_decoder_t* const one : {decoder, self_->second.get()})
+      ps_add_word(one, (kPhone + phone).c_str(), phone.c_str(), FALSE);
 }
 Recognizer::~Recognizer() {
   if (self_->listens)
@@ -105,7 +117,8 @@ std::string Recognizer::Self::token(const std::string& word) {
   for (const std::string& sound : pronunciations->of(word)) {
     ++number;
     const std::string each = number == 1 ? name : name + "(" + std::to_string(number) + ")";
-    if (ps_add_word(decoder.get(), each.c_str(), sound.c_str(), FALSE) < 0)
+    if (ps_add_word(decoder.get(), each.c_str(), sound.c_str(), FALSE) < 0 ||
+        ps_add_word(second.get(), each.c_str(), sound.c_str(), FALSE) < 0)
       throw std::runtime_error("\"" + word + "\" cannot be pronounced as " + sound);
   }
   tokens[word] = name;
@@ -147,18 +160,22 @@ void Recognizer::Self::take(const agent_interface::WordGraph& graph, bool contin
     fsg_model_trans_add(fsg, WordGraph::kAddressed, behind, likely(settings.behind_keyword), id);
     fsg_model_trans_add(fsg, behind, behind, likely(settings.each_phone), id);
   }
+  fsg_model_null_trans_add(fsg, WordGraph::kAddressed, WordGraph::kAlone, 0);
+  fsg_model_null_trans_add(fsg, behind, WordGraph::kAlone, likely(settings.alone_behind));
   for (const int state : {garbage, behind, WordGraph::kAddressed})
     fsg_model_null_trans_add(fsg, state, WordGraph::kEnd, 0);
   fsg_model_null_trans_add(fsg, instead, WordGraph::kAddressed, 0);
   glist_free(fsg_model_null_trans_closure(fsg, nullptr));
-  const bool taken = ps_set_fsg(decoder.get(), name.c_str(), fsg) == 0;
+  const bool taken = ps_set_fsg(decoder.get(), name.c_str(), fsg) == 0 &&
+                     ps_set_fsg(second.get(), name.c_str(), fsg) == 0;
   fsg_model_free(fsg);
   if (!taken)
     throw std::runtime_error("the recognizer of speech does not take the grammar");
 }
 
 void Recognizer::Self::search(bool continued) {
-  if (ps_set_search(decoder.get(), name_of(continued).c_str()) != 0)
+  if (ps_set_search(decoder.get(), name_of(continued).c_str()) != 0 ||
+      ps_set_search(second.get(), name_of(continued).c_str()) != 0)
     throw std::runtime_error("the recognizer of speech does not take the grammar");
 }
 
@@ -167,6 +184,11 @@ void Recognizer::listen_for(const agent_interface::WordGraph& graph) {
     ps_end_utt(self_->decoder.get());
   self_->listens = self_->in_speech = false;
   self_->keyword.clear();
+  self_->keywords.clear();
+  for (const auto& arc : graph.arcs)
+    if (arc.from == agent_interface::WordGraph::kStart &&
+        arc.to == agent_interface::WordGraph::kAddressed)
+      self_->keywords.insert(arc.word);
   const std::vector<std::string> old{self_->name_of(false), self_->name_of(true)};
   ++self_->grammars;
   self_->take(graph, true);
@@ -174,16 +196,18 @@ void Recognizer::listen_for(const agent_interface::WordGraph& graph) {
   self_->search(false);
   if (self_->grammars > 1)
     for (const std::string& name : old)
-      ps_unset_search(self_->decoder.get(), name.c_str());
+      for (ps_decoder_t* const one : {self_->decoder.get(), self_->second.get()})
+        ps_unset_search(one, name.c_str());
 }
 
-Heard Recognizer::Self::result() const {
-  const char* const hypothesis = ps_get_hyp(decoder.get(), nullptr);
+Heard Recognizer::Self::result(ps_decoder_t* from) const {
+  const char* const hypothesis = ps_get_hyp(from, nullptr);
   Heard heard;
   if (hypothesis == nullptr)
     return heard;
   std::istringstream parts(hypothesis);
   bool begins = false;
+  bool ends_with_word = false;
   int phones_too = 0;
   for (std::string part; parts >> part;) {
     part = part.substr(0, part.find('('));
@@ -191,18 +215,31 @@ Heard Recognizer::Self::result() const {
       if (!begins)
         return {};  // no keyword
       ++phones_too;
+      ends_with_word = false;
       continue;
     }
     const auto word = words.find(part);
     if (word == words.end())
       continue;
+    ends_with_word = phones_too > 0;  // an urgent order behind other words
     begins = true;
     const bool owner = word->second == "'s";
     heard.text += (heard.text.empty() || owner ? "" : " ") + word->second;
   }
   if (begins)
-    heard.outcome = phones_too > kBreath ? Outcome::addressed : Outcome::command;
+    heard.outcome = phones_too > kBreath && !ends_with_word ? Outcome::addressed : Outcome::command;
   return heard;
+}
+
+/// The second decoder hears the same command.
+bool Recognizer::Self::is_sure(const Heard& heard) const {
+  ps_decoder_t* const from = second.get();
+  if (ps_start_utt(from) < 0)
+    return false;
+  ps_process_raw(from, recent.data(), recent.size(), FALSE, TRUE);
+  ps_end_utt(from);
+  const Heard again = result(from);
+  return again.outcome == heard.outcome && again.text == heard.text;
 }
 
 /// The utterance has ended. A keyword alone waits for further words.
@@ -213,19 +250,24 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   listens = false;
   if (!std::exchange(in_speech, false))
     return;
-  Heard heard = result();
+  Heard heard = result(decoder.get());
+  if (heard.outcome == Outcome::command)
+    heard.confidence = is_sure(heard) ? kCertain : kUncertain;
+  recent.clear();
   if (!keyword.empty()) {
     heard.text = std::exchange(keyword, {}) + (heard.text.empty() ? "" : " ") + heard.text;
     if (heard.outcome == Outcome::not_for_it)
       heard.outcome = Outcome::addressed;
     search(false);
-  } else if (heard.outcome == Outcome::command && heard.text.find(' ') == std::string::npos) {
+  } else if (heard.outcome == Outcome::command && keywords.contains(heard.text)) {
     keyword = heard.text;
     attends = settings.attention;
     search(true);
     return;
   }
   events.push_back({Event::Kind::ends});
+  if (heard.outcome == Outcome::addressed)
+    heard.confidence = kAddressed;
   events.push_back({Event::Kind::heard, heard});
 }
 
@@ -238,7 +280,8 @@ void Recognizer::Self::give_up_attention(std::vector<Event>& events) {
   listens = false;
   search(false);
   events.push_back({Event::Kind::ends});
-  events.push_back({Event::Kind::heard, {Outcome::addressed, std::exchange(keyword, {})}});
+  events.push_back(
+      {Event::Kind::heard, {Outcome::addressed, std::exchange(keyword, {}), kAddressed}});
 }
 
 std::vector<Event> Recognizer::end() {
@@ -250,6 +293,7 @@ std::vector<Event> Recognizer::end() {
 
 std::vector<Event> Recognizer::hear(const Sound& sound) {
   constexpr std::size_t kBlock = kRate / 50;
+  constexpr std::ptrdiff_t kBefore = kRate / 2;  // heard before its beginning is noticed
   std::vector<Event> events;
   ps_decoder_t* const decoder = self_->decoder.get();
   for (std::size_t at = 0; at < sound.size(); at += kBlock) {
@@ -260,6 +304,9 @@ std::vector<Event> Recognizer::hear(const Sound& sound) {
       self_->listens = true;
     }
     ps_process_raw(decoder, sound.data() + at, count, FALSE, FALSE);
+    Sound& kept = self_->recent;
+    kept.insert(kept.end(), sound.begin() + static_cast<std::ptrdiff_t>(at),
+                sound.begin() + static_cast<std::ptrdiff_t>(at + count));
     const bool speaks = ps_get_in_speech(decoder) != 0;
     if (speaks && !self_->in_speech && self_->keyword.empty())
       events.push_back({Event::Kind::begins});
@@ -267,6 +314,8 @@ std::vector<Event> Recognizer::hear(const Sound& sound) {
       self_->finish(events);
     else
       self_->in_speech = speaks;
+    if (!self_->in_speech && kept.size() > 2U * kBefore)
+      kept.erase(kept.begin(), kept.end() - kBefore);
     self_->attends -= static_cast<double>(count) / kRate;
     if (!self_->in_speech && self_->attends <= 0.0)
       self_->give_up_attention(events);

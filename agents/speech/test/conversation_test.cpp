@@ -22,7 +22,8 @@ class ConversationTest : public WithRecognizer {
           conversation->hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
                                    sound.begin() + static_cast<std::ptrdiff_t>(end)),
                              speaking);
-      all.insert(all.end(), out.utterances.begin(), out.utterances.end());
+      for (const Heard& one : out.utterances)
+        all.push_back(one.text);
       ums += out.um ? 1 : 0;
     }
     return all;

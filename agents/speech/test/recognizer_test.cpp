@@ -77,6 +77,18 @@ TEST_F(RecognizerTest, InOneStreamEachUtteranceIsHeardOnceAndItsEndIsTold) {
                                   "not for it: ", "command: flakey turn right"}));
 }
 
+TEST_F(RecognizerTest, ACommandIsCertainWhereASecondHearingHasItToo) {
+  const auto confidence = [&](const Sound& sound) {
+    double newest = -1.0;
+    for (const Event& event : recognizer->hear(sound))
+      if (event.kind == Event::Kind::heard)
+        newest = event.heard.confidence;
+    return newest;
+  };
+  EXPECT_EQ(confidence(said_by("slt", "flakey turn left")), kCertain);
+  EXPECT_EQ(confidence(said_by("slt", "flakey sing a song about elephants")), 0.5);
+}
+
 TEST_F(RecognizerTest, SilenceIsNoUtterance) {
   EXPECT_EQ(heard(silence(5.0)), Texts{});
 }

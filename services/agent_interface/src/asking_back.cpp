@@ -95,6 +95,19 @@ void Dialogue::choices(const Grammar::Understood& understood, const Utterance& u
     ask(std::move(question), utterance);
 }
 
+/// A recognizer is not certain of the words.
+void Dialogue::ask_again(Grammar::Understood understood, const Utterance& utterance, Outputs& out) {
+  if (is_yes_or_no(understood.meanings.front())) {
+    refuse(utterance, "what?", out);
+    return;
+  }
+  refuse(utterance, "did you say " + quoted(utterance.text) + "?", out);
+  Question question;
+  question.yes = {std::move(understood)};
+  question.no = kLeft;
+  ask(std::move(question), utterance);
+}
+
 /// The end of a free text may be an order to the robot.
 void Dialogue::ask_for_order(Grammar::Understood understood, const Utterance& utterance,
                              Outputs& out) {

@@ -15,6 +15,7 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr double kSure = 0.5;         // a lower confidence of a recognizer is ignored
+constexpr double kCertain = 0.8;      // at a lower one the robot asks back before it acts
 constexpr double kAhead = 10.0;       // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;  // [m] that one command of motion may take
 constexpr double kOld = 60.0;         // [s] after which an utterance is too old to act on
@@ -366,14 +367,15 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const Question* const question = question_for(utterance);
   const bool corrects = question != nullptr && !question->asked && !asked;
   const bool answers = question != nullptr && question->asked;
-  const bool sure = utterance.confidence >= kSure && utterance.text.size() <= kLongestText;
+  const bool certain = utterance.confidence >= kCertain && utterance.text.size() <= kLongestText;
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
   if (corrects && understood.addressed && understood.meanings.empty()) {
     understood = grammar_.understand(utterance.text, true);
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
     understood.bare.clear();
   }
-  if ((answers || corrects) && sure && answered(*question, understood, utterance, situation, out))
+  if ((answers || corrects) && certain &&
+      answered(*question, understood, utterance, situation, out))
     return out;
   leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question.
@@ -395,6 +397,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   // A stop too many costs less than one that was missed.
   if (understood.meanings.empty() || (utterance.confidence < kSure && !stops))
     refuse(utterance, "what?", out);
+  else if (utterance.confidence < kCertain && !stops)
+    ask_again(std::move(understood), utterance, out);
   else
     carry_out(std::move(understood), utterance, situation, out);
   return out;

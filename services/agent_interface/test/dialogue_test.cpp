@@ -43,6 +43,25 @@ TEST_F(DialogueTest, AStopNeedsNeitherTheKeywordNorConfidence) {
   EXPECT_TRUE(last.goals.empty());
 }
 
+TEST_F(DialogueTest, WordsOfWhichARecognizerIsNotCertainAreReadBackBeforeItActs) {
+  const auto heard = [&](const std::string& text, double confidence) {
+    last = dialogue.hear({{7, ++number}, "Alice", text, confidence}, situation);
+    return last.said.empty() ? "" : last.said.at(0).text;
+  };
+  EXPECT_EQ(heard("flakey turn left", 0.79), "did you say \"flakey turn left\"?");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(heard("yes", 0.79), "what?");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(heard("yes", 0.8), "I turn 90 degrees to the left");
+  EXPECT_EQ(last.goals.size(), 1U);
+  heard("flakey turn right", 0.6);
+  EXPECT_EQ(heard("no", 1.0), "then I leave it");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(heard("flakey turn left", 0.49), "what?");
+  heard("flakey turn right", 0.8);
+  EXPECT_EQ(last.goals.size(), 1U);
+}
+
 TEST_F(DialogueTest, ANumberMayHaveItsUnit) {
   EXPECT_EQ(said("Flakey, go forward 2m"), "I go forward 2 m");
   EXPECT_EQ(goals(), "go_to position=(2, 0, 0)");

@@ -19,9 +19,13 @@ enum class Outcome {
 };
 const char* word(Outcome outcome);
 
+inline constexpr double kCertain = 1.0;
+inline constexpr double kUncertain = 0.6;  // the dialogue asks back before it acts
+
 struct Heard {
   Outcome outcome = Outcome::not_for_it;
   std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
+  double confidence = 0.0;  ///< [0..1] kCertain: a second hearing has the same text
 };
 
 /// The result for a stretch of sound.
@@ -45,6 +49,8 @@ struct RecognizerSettings {
   /// The same for other words in place of the keyword: "please follow me" is not far from "flakey
   /// follow me".
   double instead_of_keyword = -5.0;
+  /// The same for an urgent order, such as a stop, behind such words after the keyword.
+  double alone_behind = -4.0;
   double each_phone = -1.0;
   double least_voice = 3.0;  ///< [1] of the energy of the noise: -vad_threshold
   int pause = 40;            ///< [10 ms] of silence that ends an utterance

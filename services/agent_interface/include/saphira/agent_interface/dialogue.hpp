@@ -169,6 +169,7 @@ class Dialogue {
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
   void ask(Question question, const Utterance& utterance);
+  void ask_again(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
   void ask_for_order(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
   void note_name(Grammar::Understood understood, const Utterance& utterance, const Outputs& out);
   /// The question that this utterance may answer; nullptr: none.
