@@ -162,8 +162,8 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
 
 // A way counts as driven to a tenth of itself, within these limits.
 constexpr double kShareOfWay = 0.1;
-constexpr double kLeastRadius = 0.02;  // [m]
-constexpr double kWidestRadius = 0.15;     // [m]
+constexpr double kLeastRadius = 0.02;   // [m]
+constexpr double kWidestRadius = 0.15;  // [m]
 
 /// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop where none of them is
 /// active. At the point, Stop alone until the robot stands.
@@ -196,7 +196,8 @@ class GoTo : public Activity {
     if (begun) {
       if (new_target_) {
         whole_way_ = left;
-        near_ = radius_ > 0.0 ? radius_ : std::clamp(kShareOfWay * left, kLeastRadius, kWidestRadius);
+        near_ =
+            radius_ > 0.0 ? radius_ : std::clamp(kShareOfWay * left, kLeastRadius, kWidestRadius);
       }
       new_target_ = false;
       there_ = false;
