@@ -503,8 +503,31 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
                                           text("to", "EJ-250"), saphira::number("patience", 5.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
   EXPECT_EQ(status.state, GoalState::kFailed);
-  EXPECT_EQ(status.reason, "nobody at EJ-250 took the key");
+  EXPECT_EQ(status.reason, "nobody at EJ-250 took the key: the robot still has it");
   EXPECT_TRUE(people.all_answered());
+}
+
+TEST(People, WhoDoesNotKnowWhoHasItIsNobodysName) {
+  Whole whole(office());
+  People people({{"Please give me the key", "given", "no"}, {"Who has the key?", "who-has", "no"}});
+  const auto goal = whole.ask("deliver", {text("object", "the key"), text("from", "EJ-247"),
+                                          text("to", "EJ-250"), saphira::number("patience", 5.0)});
+  const GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.reason, "the key is not at EJ-247, and nobody there knows who has it");
+}
+
+TEST(People, APlaceThatWasNotReachedWasNotVisited) {
+  Whole whole(office_with_zones("OFFICE (901) 60000, 10000, 0, 3000, 3000 \"N3\""));
+  People people({{"Is bob here?", "answer", "no"}});
+  const auto search = [&](const std::string& places) {
+    const auto goal = whole.ask("find-person", {text("name", "bob"), text("places", places),
+                                                saphira::number("patience", 3.0)});
+    return among(whole, people, goal, 6000).reason;
+  };
+  EXPECT_TRUE(search("N3").starts_with("bob was not looked for: N3: ")) << search("N3");
+  EXPECT_TRUE(search("EJ-247, N3")
+                  .starts_with("bob is not to be found, neither at EJ-247; not reached: N3: "));
 }
 
 /// The result of a search among people who give these answers.
