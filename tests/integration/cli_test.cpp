@@ -201,6 +201,7 @@ TEST_F(CliTest, TriggersOfTwoShellsAreTwoAndTheListSaysWhoHoldsThem) {
   })) << listed;
 }
 
+// A stop needs no keyword.
 TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
   bus::Node node(test::node_options("dialogue", robot_));
   auto heard = node.reader(topics::kHeard);
@@ -227,7 +228,7 @@ TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
     return texts.size() == 3;
   })) << talk.output();
   EXPECT_EQ(talk.wait(), 0) << talk.output();
-  const std::vector<std::string> expected{"Alice: flakey, stop", "Alice: Robot, turn left",
+  const std::vector<std::string> expected{"Alice: stop", "Alice: Robot, turn left",
                                           "Alice: flakey, yes"};
   EXPECT_EQ(texts, expected);
   for (const std::string& text : expected) {
