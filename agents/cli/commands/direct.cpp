@@ -57,10 +57,8 @@ void DirectDriver::poll() {
     robot_ = std::move(robot);
   for (const auto& sample : grants_.take()) {
     grant_ = sample.data;
-    if (!before_)
-      before_ = grant_->stop();
-    if (grant_->stop() != *before_)
-      stopped_by_ = grant_->stop_source();
+    if (std::string who = stops_.hear(*grant_); !who.empty())
+      stopped_by_ = std::move(who);
     for (const v1::Refusal& refusal : grant_->refused())
       if (refusal.source() == source_)
         refusal_ = refusal.reason();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "saphira/bus/node.hpp"
+#include "saphira/bus/stop_notice.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -48,7 +49,7 @@ class DirectDriver {
   std::optional<v1::RobotState> robot_;
   std::optional<v1::Grant> grant_;
   std::string refusal_;
-  std::optional<v1::StopId> before_;  ///< the newest stop when it began
+  bus::StopNotice stops_;
   std::string stopped_by_;
   Clock::time_point began_ = Clock::now();
   Clock::time_point drove_ = began_;  ///< last, or the time of the first command

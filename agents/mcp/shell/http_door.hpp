@@ -20,7 +20,7 @@ struct HttpDoorOptions {
   std::vector<std::string> described;  ///< agents, as of Robot
 };
 
-/// Streamable HTTP: each client has a door of its own. Clients decides who is there.
+/// Streamable HTTP: one door for each client. `Clients` decides which clients are there.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);

@@ -18,6 +18,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/request_client.hpp"
+#include "saphira/bus/stop_notice.hpp"
 #include "saphira/runtime/processes.hpp"
 
 namespace saphira::c {
@@ -516,16 +517,15 @@ class BusRobot final : public ServedRobot {
   /// A stop since this program joined the bus. It lets go; the program's commands are dropped until
   /// one of them stands.
   void take_stop(Ends& ends, const v1::Grant& grant) {
-    const bool first = !std::exchange(knows_stop_, true);
-    if (std::exchange(stop_, grant.stop()) == grant.stop() || first)
+    const std::string who = notice_.hear(grant);
+    if (who.empty())
       return;
     {
       const std::lock_guard lock(mutex_);
       wish_.reset();
       stopped_ = was_stopped_ = true;
     }
-    say_("stopped by " + grant.stop_source() + ": sfSetVelocity(0) comes before driving again",
-         false);
+    say_("stopped by " + who + ": sfSetVelocity(0) comes before driving again", false);
     v1::MotorCommand release;
     release.stamp(stamp_);
     write(ends.node, ends, release);
@@ -675,8 +675,7 @@ class BusRobot final : public ServedRobot {
   double heard_ = 0.0;
   std::uint64_t number_ = 0;
   std::string news_;
-  bool knows_stop_ = false;
-  v1::StopId stop_;  ///< the newest
+  bus::StopNotice notice_;
   std::map<std::string, bus::RequestClient> devices_;
 
   // Shared with the program's thread, as those of ServedRobot.

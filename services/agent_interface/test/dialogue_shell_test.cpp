@@ -502,5 +502,39 @@ TEST_F(DialogueOnTheBus, AGrammarWithAMistakeIsRefusedAtTheStart) {
   EXPECT_THROW(start(), FileError);
 }
 
+/// The words of a stop go to the bridge itself, whatever other programs do.
+TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
+  bus::Node bridge{test::memory_options("bridge"), memory};
+  auto stops = bridge.reader(bus::topics::kDriveStop);
+  auto done = bridge.writer(bus::topics::kRobotAnswers);
+  const auto answer = [&](const v1::Request& request, v1::AnswerCode code) {
+    v1::Answer sample;
+    sample.asker(request.asker());
+    sample.number(request.number());
+    sample.code(code);
+    sample.text("stopped: a program (direct)");
+    done.write(sample);
+    dialogue->step();
+    return answers();
+  };
+  EXPECT_EQ(say("Flakey, stop"), "I stop");
+  auto request = stops.take_newest();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(bus::text_of(request->arguments(), "by"), "Alice (by words)");
+  EXPECT_EQ(answer(*request, v1::ANSWER_UNDERWAY), "");
+  EXPECT_EQ(answer(*request, v1::ANSWER_DONE), "done: stopped: a program (direct)");
+
+  say("Flakey, stop");
+  request = stops.take_newest();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(answer(*request, v1::ANSWER_GIVEN_UP), "I could not: stopped: a program (direct)");
+
+  say("Flakey, stop");
+  dialogue->step(100.0);
+  EXPECT_EQ(answers(), "");
+  dialogue->step(103.0);
+  EXPECT_TRUE(answers().starts_with("I could not: no bridge has confirmed the stop"));
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

@@ -68,13 +68,13 @@ Core::Outputs Core::step(Inputs inputs) {
   if (!execution_.works())
     now.hold = execution_.name() + " is suspended";
   if (!lockstep_)
-    now.person = person_;
+    now.person = newest_grant_ ? why_to_wait(*newest_grant_) : std::string();
 
   Outputs outputs;
   now.events = events_of(inputs.heard, outputs.notes);
   std::string gone = who_is_gone(inputs);
   if (gone.empty() && !lockstep_)
-    gone = refusal_;
+    gone = newest_grant_ ? newest_grant_->refusal : std::string();
   outputs.intended = executor_.step(now);
   if (!gone.empty())
     for (GoalStatus& status : outputs.intended.news.changed)
@@ -386,8 +386,6 @@ void Core::note_grants(const std::vector<Heard::Grant>& grants) {
       estop_.clear();
     pressed = pressed || grant.pressed;
     newest_grant_ = grant;
-    refusal_ = grant.refusal;
-    person_ = why_to_wait(grant);
   }
 }
 

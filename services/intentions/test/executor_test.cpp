@@ -234,6 +234,28 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
   EXPECT_EQ(bench.executor.heeds(), kSecond);
 }
 
+// Otherwise the time at which a grant comes would decide whether the behaviors drive.
+TEST(Executor, AnOverdueConfirmationDoesNotTakeBackALaterStop) {
+  Bench bench;
+  for (const StopId& own : {kFirst, kSecond}) {
+    bench.ask(own.number, "stop", {});
+    bench.step();
+    bench.executor.heed(own);
+  }
+  bench.stop = kFirst;
+  bench.step();
+  EXPECT_EQ(bench.executor.heeds(), kSecond);
+  bench.stop = kSecond;
+  bench.step();
+  EXPECT_EQ(bench.executor.heeds(), kSecond);
+  // A foreign stop between two of our own counts until the bridge shows ours.
+  for (const StopId& shown : {StopId{8, 1}, kSecond}) {
+    bench.stop = shown;
+    bench.step();
+    EXPECT_EQ(bench.executor.heeds(), shown);
+  }
+}
+
 TEST(Executor, AGoalStopThatNoBridgeConfirmsFails) {
   Bench bench;
   bench.confirms_stops = true;

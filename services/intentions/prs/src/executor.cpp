@@ -542,13 +542,17 @@ void Executor::replace() {
 /// for one. Without a memory, a stop from before the start says nothing about the goals.
 void Executor::obey_stop(const Inputs& inputs) {
   if (inputs.stop != StopId{} && inputs.stop != seen_stop_) {
-    const bool own =
-        std::find(own_stops_.begin(), own_stops_.end(), inputs.stop) != own_stops_.end();
+    const auto found = std::find(own_stops_.begin(), own_stops_.end(), inputs.stop);
+    const bool own = found != own_stops_.end();
+    // The bridge comes to a later one of our own by itself.
+    const bool overtaken = std::find(found, own_stops_.end(), heeds_) != own_stops_.end();
     const bool old =
         (!own && inputs.stop == heeds_) || (inputs.stop_was_before && heeds_ == StopId{});
     if (!own && !old)
       end_driving("stopped by " + inputs.stop_source + ": ask anew to have it done");
-    heeds_ = seen_stop_ = inputs.stop;
+    seen_stop_ = inputs.stop;
+    if (!overtaken)
+      heeds_ = inputs.stop;
     if (!old)
       stop_by_.reset();
   }

@@ -300,8 +300,8 @@ class GoTo : public Activity {
   std::optional<Ticks> waiting_since_;
   KeepOut keep_out_;
   double speed_ = 0.0;
-  double radius_ = 0.0;  ///< [m] as asked for; 0: a share of the way
-  double near_ = kNear;  ///< [m] counts as there
+  double radius_ = 0.0;          ///< [m] as asked for; 0: a share of the way
+  double near_ = kWidestRadius;  ///< [m] counts as there
   Watchdog watchdog_;
   Motion motion_;
   Pose last_;

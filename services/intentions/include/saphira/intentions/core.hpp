@@ -175,9 +175,7 @@ class Core {
   Process& centering_ = processes_.add(
       "center-cameras", "keeps the cameras on the person or point of the belief gaze");
   Gaze gaze_;
-  std::string refusal_;  ///< why the bridge does not let the behaviors drive
-  std::string person_;   ///< why goals that drive wait for a person
-  std::string estop_;    ///< the program that pressed the latched emergency stop
+  std::string estop_;  ///< the program that pressed the latched emergency stop
   std::optional<Heard::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
