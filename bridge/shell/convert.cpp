@@ -232,7 +232,7 @@ reflector::Motion to_motion(const v1::MotorCommand& command) {
 
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer) {
-  DriveCommand out{{}, to_motion(command), command.contact_speed(), trouble(command)};
+  DriveCommand out{{}, to_motion(command), command.contact_speed(), {}, trouble(command)};
   out.command.role = role;
   out.command.writer = writer;
   out.command.source = source_of(command);
@@ -242,6 +242,8 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
   out.command.active = command.active();
   out.command.hand_back = command.hand_back();
   out.command.heeds = {command.heeds().asker(), command.heeds().number()};
+  for (const v1::Edge& edge : command.edges())
+    out.edges.push_back({{edge.x1(), edge.y1()}, {edge.x2(), edge.y2()}});
   return out;
 }
 

@@ -16,7 +16,7 @@ constexpr double kSameThing = 0.1;   // [m] a wall this near to the point does n
 constexpr std::size_t kOneWall = 0;  // all walls count as one thing
 constexpr double kTouch = 0.002;     // [m] a smaller gap is a contact...
 constexpr double kParted = 0.05;     // [m] ...which has ended when the gap is larger than this
-constexpr double kTowards = 0.05;    // [m/s] a slower robot is not to blame
+constexpr double kTowards = 0.01;    // [m/s] a person feels a faster robot
 constexpr double kAtRest = 0.3;      // [s] nor one that has stood this long
 constexpr double kReaction = 0.6;    // [s] from the sound to the brakes, at worst
 // The true range for a sonar, heard or not.
@@ -118,8 +118,15 @@ void ContactWatch::judge(const Thing& thing) {
 }
 
 Contact ContactWatch::blame(const Thing& thing, double towards) const {
-  Contact contact{scene_->ticks(), thing.kind,   name_of(thing), Blame::kCaused,
-                  towards,         heard(thing), kReaction,      thing.nearest};
+  Contact contact;
+  contact.tick = scene_->ticks();
+  contact.kind = thing.kind;
+  contact.walks = thing.kind == ThingKind::kPerson && scene_->persons()[thing.number].way > 0.0;
+  contact.name = name_of(thing);
+  contact.towards = towards;
+  contact.heard = heard(thing);
+  contact.needed = kReaction;
+  contact.at_in_world = thing.nearest;
   contact.needed += std::max(0.0, towards) / parameters_.deceleration;
   if (stood_ >= kAtRest || towards <= kTowards)
     contact.blame = Blame::kWalkedInto;

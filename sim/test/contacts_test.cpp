@@ -52,6 +52,7 @@ TEST_F(Contacts, ARobotThatDrivesIntoWhatItCouldHearIsToBlame) {
   EXPECT_NEAR(contact.towards, 0.3, 0.02);
   EXPECT_GT(contact.heard, 3.0);
   EXPECT_GT(contact.needed, 0.6);
+  EXPECT_FALSE(contact.walks);
   EXPECT_LT(watch_->closest_person(), 0.002);
   robot_->set_velocity(-0.3);
   run(2.0);
@@ -91,6 +92,19 @@ TEST_F(Contacts, WhoStepsBeforeARobotIsHeardTooLate) {
   ASSERT_EQ(watch_->contacts().size(), 1U);
   EXPECT_EQ(watch_->contacts()[0].blame, Blame::kUnseen);
   EXPECT_GT(watch_->contacts()[0].heard, 0.0);
+  EXPECT_TRUE(watch_->contacts()[0].walks);
+}
+
+TEST_F(Contacts, ARobotThatCreepsIntoSomebodyIsToBlame) {
+  const auto blame_at = [&](double speed) {
+    make("person ann 5000 5000", with_front_sonar(), {4.4, 5.0, 0.0});
+    robot_->set_velocity(speed);
+    run(60.0);
+    return watch_->contacts().size() == 1 ? std::optional(watch_->contacts()[0].blame)
+                                          : std::nullopt;
+  };
+  EXPECT_EQ(blame_at(0.02), Blame::kCaused);
+  EXPECT_EQ(blame_at(0.009), Blame::kWalkedInto);
 }
 
 TEST_F(Contacts, WhoRunsIntoARobotThatStandsIsToBlame) {

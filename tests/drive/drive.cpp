@@ -72,6 +72,7 @@ Drive::Drive(const DriveOptions& options)
       bend_(options.bend),
       robot_in_odom_(robot_->pose_in_odom()),
       has_guard_(options.guard),
+      knows_walls_(options.knows_walls),
       body_(authority::body_of(parameters_)),
       echoes_(body_.sonar_range) {
   seen_.pose_in_odom = robot_in_odom_;
@@ -130,17 +131,37 @@ void Drive::obey(const behaviors::Output& output) {
   robot_->set_heading(radians(std::round(degrees(norm2_angle(heading - bent)))));
 }
 
+/// The walls near the robot, in odom, as its driver knows them.
+std::vector<Edge> Drive::edges() const {
+  if (by_hand_ || !knows_walls_)
+    return cores_.said().intentions.edges;
+  std::vector<Edge> edges;
+  const ToFrame to_robot(compose(seen_.true_pose_in_world, *knows_walls_));
+  const auto in_odom = [&](const Vec2& in_world) {
+    return transform(seen_.pose_in_odom, to_robot(in_world));
+  };
+  for (const sim::Segment& wall : world_.segments)
+    if ((sim::nearest_point(wall, seen_.true_pose_in_world.position()) -
+         seen_.true_pose_in_world.position())
+            .norm() < 3.0)
+      edges.push_back({in_odom(wall.from), in_odom(wall.to)});
+  return edges;
+}
+
 double Drive::guard(double speed) {
   std::vector<protocol::Sonar> sonars;
   for (const lps::SonarReading& reading : seen_.readings)
     sonars.push_back({static_cast<std::uint8_t>(reading.sonar), reading.range, reading.echo});
-  echoes_.update(seen_.cycle, seen_.pose_in_odom, authority::readings_of(sonars, parameters_));
+  const std::vector<Edge> edges = this->edges();
+  echoes_.update(seen_.cycle, seen_.pose_in_odom, authority::readings_of(sonars, parameters_),
+                 edges);
+  body_.knows_edges = !edges.empty();
   body_.sees_ahead = echoes_.sees(seen_.cycle, true);
   body_.sees_behind = echoes_.sees(seen_.cycle, false);
   authority::GuardSettings settings;
   settings.enabled = has_guard_;
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
-                              by_hand_ ? 0.0 : output().contact_speed);
+                              by_hand_ ? 0.0 : output().contact_speed, echoes_.edges());
   return guarded_.velocity;
 }
 

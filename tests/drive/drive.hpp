@@ -32,7 +32,10 @@ struct DriveOptions {
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
   bool guard = false;  ///< beside the robot, as in the bridge: it slows drives
-  double bend = 0.0;   ///< [rad/m] additional turn of dead reckoning
+  /// With the guard, and without intentions: the driver knows the world's walls, with this error of
+  /// its place.
+  std::optional<Pose> knows_walls;
+  double bend = 0.0;  ///< [rad/m] additional turn of dead reckoning
 
   // The services beside behaviors.
   std::optional<behaviors::Registry> behaviors;  ///< else the predefined ones
@@ -104,6 +107,7 @@ class Drive {
   void reckon();
   void obey(const behaviors::Output& output);
   double guard(double speed);
+  std::vector<Edge> edges() const;
 
   protocol::RobotParameters parameters_;
   sim::World world_;
@@ -115,6 +119,7 @@ class Drive {
   double bend_;
   Pose robot_in_odom_;  ///< by the robot's own odometry, without the bend
   bool has_guard_;
+  std::optional<Pose> knows_walls_;
   authority::Body body_;
   authority::EchoMap echoes_;
   authority::Guarded guarded_;

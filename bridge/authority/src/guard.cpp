@@ -13,8 +13,8 @@ namespace {
 constexpr double kCreep = 0.02;        // [m/s] counts as standing
 constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say its own
 constexpr double kSameWay = radians(3.0);
-// [m] A robot with a smaller sonar range keeps this share of the range as margin.
-constexpr double kShareOfReach = 0.25;
+// [m] A robot whose sonars reach less far keeps distances that are smaller in proportion.
+constexpr double kReach = 1.0;
 // An approaching obstacle takes at most this share of the range until the robot brakes.
 constexpr double kShareOfWay = 0.1;
 
@@ -79,20 +79,26 @@ struct Allowed {
   Vec2 beside_at{0.0, 0.0};
 };
 
-/// The hull passes an obstacle beside the path at the reach of a person, and approaches it closer
-/// only up to `touch_velocity`. The approach to an obstacle that is passed at an angle is slower
-/// than the robot's own motion.
-void pass(const GuardSettings& settings, const Body& body, double ahead, double aside,
+/// The hull passes an obstacle beside the path at its reach, and approaches it closer only up to
+/// `touch_velocity`. The approach to an obstacle that is passed at an angle is slower than the
+/// robot's own motion.
+void pass(const Clearance& clearance, const Body& body, double ahead, double aside,
           const Vec2& point, Allowed& allowed) {
   const double deceleration = body.deceleration;
-  const double room = body.radius + settings.person;
+  const double room = body.radius + clearance.reach;
   if (ahead <= 0.0 || aside >= room)
     return;
   const double away = std::hypot(ahead, aside);
+  if (away < body.radius + clearance.least) {
+    allowed.speed = 0.0;
+    allowed.beside = away - body.radius;
+    allowed.speed_at = point;
+    return;
+  }
   // The point where the hull reaches that distance, and the angle of its approach there.
   const double meets = std::min(ahead, std::sqrt(room * room - aside * aside));
   const double towards = meets / std::hypot(meets, aside);
-  const double at_last = settings.touch_velocity / std::max(towards, 1e-3);
+  const double at_last = clearance.touch_velocity / std::max(towards, 1e-3);
   const double speed = approach_speed(ahead - meets, at_last, body.reaction, deceleration);
   if (speed < allowed.speed) {
     allowed.speed = speed;
@@ -101,9 +107,9 @@ void pass(const GuardSettings& settings, const Body& body, double ahead, double 
   }
 }
 
-Allowed allow(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              bool forward, double turning) {
-  Allowed allowed;
+/// Adds the limits of one kind of echo. Nobody steps out of a wall: `steps` is for people alone.
+void allow(const Clearance& clearance, double steps, const Body& body,
+           const std::vector<Vec2>& points, bool forward, double turning, Allowed& allowed) {
   const auto look = [&](const std::vector<Vec2>& seen) {
     const auto take_nearest = [&](double margin, double& least, Vec2& at) {
       const Nearest found = nearest(seen, body.radius, margin, forward);
@@ -112,10 +118,11 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
       least = found.free;
       at = points[found.point];
     };
-    take_nearest(settings.beside, allowed.until_beside, allowed.beside_at);
-    take_nearest(settings.side_margin, allowed.free, allowed.free_at);
+    if (steps > 0.0)
+      take_nearest(steps, allowed.until_beside, allowed.beside_at);
+    take_nearest(clearance.side_margin, allowed.free, allowed.free_at);
     for (std::size_t i = 0; i < seen.size(); ++i)
-      pass(settings, body, forward ? seen[i].x() : -seen[i].x(), std::abs(seen[i].y()), points[i],
+      pass(clearance, body, forward ? seen[i].x() : -seen[i].x(), std::abs(seen[i].y()), points[i],
            allowed);
   };
   look(points);
@@ -129,7 +136,6 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
       seen.push_back(turned(point));
     look(seen);
   }
-  return allowed;
 }
 
 /// A motion and its limits, one by one. The tightest limit gives the reason.
@@ -140,7 +146,8 @@ class Cut {
         body_(body),
         wanted_(velocity),
         reach_(std::min(settings.dependable_range, body.sonar_range)),
-        margin_(std::min(settings.margin, kShareOfReach * reach_)),
+        scale_(std::min(1.0, reach_ / kReach)),
+        margin_(settings.margin * scale_),
         speed_(std::abs(velocity)) {
     if (body_.deceleration <= 0.0)
       body_.deceleration = kDeceleration;
@@ -172,7 +179,7 @@ class Cut {
   }
 
   void beside(const Allowed& allowed) {
-    cut(allowed.speed, GuardAction::slow,
+    cut(allowed.speed, allowed.speed > 0.0 ? GuardAction::slow : GuardAction::stop,
         format("something beside the path, %.2f m away: at most %.2f m/s", allowed.beside,
                allowed.speed),
         &allowed.speed_at);
@@ -211,6 +218,10 @@ class Cut {
   }
 
   const Body& body() const { return body_; }
+  Clearance scaled(const Clearance& clearance) const {
+    return {clearance.side_margin * scale_, clearance.reach * scale_, clearance.touch_velocity,
+            clearance.least * scale_};
+  }
   Guarded result() const {
     return {forward() ? speed_ : -speed_, turning_, action_, reason_, obstacle_};
   }
@@ -239,6 +250,7 @@ class Cut {
   Body body_;
   double wanted_;
   double reach_;   // [m] range at which a person is surely heard
+  double scale_;   // of the distances
   double margin_;  // [m]
   double speed_;
   double turning_ = 0.0;
@@ -250,7 +262,8 @@ class Cut {
 }  // namespace
 
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              double velocity, double rotation_velocity, double turning, double contact_speed) {
+              double velocity, double rotation_velocity, double turning, double contact_speed,
+              const std::vector<Vec2>& edges) {
   if (!settings.enabled)
     return {velocity, rotation_velocity, GuardAction::none, {}};
   Cut cut(settings, body, velocity);
@@ -258,7 +271,11 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   if (velocity == 0.0)
     return cut.result();
   cut.robot();
-  const Allowed allowed = allow(settings, cut.body(), points, velocity > 0.0, turning);
+  Allowed allowed;
+  const bool forward = velocity > 0.0;
+  allow(cut.scaled(body.knows_edges ? settings.person : settings.anything), settings.beside,
+        cut.body(), points, forward, turning, allowed);
+  allow(cut.scaled(settings.edge), 0.0, cut.body(), edges, forward, turning, allowed);
   cut.beside(allowed);
   cut.ahead(allowed);
   cut.contact(contact_speed, allowed);

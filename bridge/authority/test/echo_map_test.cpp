@@ -74,6 +74,44 @@ TEST(EchoMap, LooksThatHearNothingThereDeleteASpot) {
   EXPECT_FALSE(any_near(map.spots(), {1.16, 0.0}));
 }
 
+TEST(EchoMap, ForgetsWhatNoBeamLooksAtOnlyOnTheWay) {
+  EchoMap map;
+  map.update(1, {}, {echo(kAskew, 0.5)});
+  for (std::uint64_t cycle = 2; cycle < 3000; ++cycle)
+    map.update(cycle, {}, {silence({-0.16, 0.0, kPi})});
+  EXPECT_FALSE(map.spots().empty()) << "five minutes later";
+  for (std::uint64_t i = 0; i < 100; ++i)
+    map.update(3000 + i, {-0.03 * static_cast<double>(i), 0.0, 0.0}, {});
+  EXPECT_TRUE(map.spots().empty()) << "three metres off";
+}
+
+TEST(EchoMap, AnEchoAtTheDistanceOfAKnownEdgeIsTheEdges) {
+  const std::vector<Edge> wall{{{1.16, -2.0}, {1.16, 2.0}}};
+  const auto spots = [&](double range, const std::vector<Edge>& edges) {
+    EchoMap map;
+    map.update(1, {}, {echo(kAhead, range)}, edges);
+    EXPECT_NE(map.spots().empty(), map.edges().empty());
+    return map.spots().size();
+  };
+  EXPECT_EQ(spots(1.0, wall), 0U);
+  EXPECT_EQ(spots(0.9, wall), 0U) << "the robot's place on its map is not exact";
+  EXPECT_GT(spots(0.8, wall), 0U) << "something stands before the wall";
+  EXPECT_GT(spots(1.2, wall), 0U) << "the wall is not there";
+  EXPECT_GT(spots(1.0, {}), 0U);
+  EXPECT_EQ(spots(1.0, {{{1.16, 0.2}, {1.16, 0.2}}}), 0U) << "a door post";
+  EXPECT_GT(spots(1.0, {{{1.1, 0.4}, {1.1, 0.4}}}), 0U) << "the beam passes that one";
+}
+
+TEST(EchoMap, ABeamThatReachesTheWallFindsNobodyBeforeIt) {
+  const std::vector<Edge> wall{{{1.16, -2.0}, {1.16, 2.0}}};
+  EchoMap map;
+  map.update(1, {}, {echo(kAhead, 0.6)}, wall);
+  ASSERT_TRUE(any_near(map.spots(), {0.76, 0.0}));
+  for (std::uint64_t cycle = 2; cycle < 8; ++cycle)
+    map.update(cycle, {}, {echo(kAhead, 1.0)}, wall);
+  EXPECT_FALSE(any_near(map.spots(), {0.76, 0.0}));
+}
+
 TEST(EchoMap, SilenceSaysNothingOfWhatIsFar) {
   EchoMap map;
   map.update(1, {}, {echo(kAhead, 1.4)});

@@ -39,7 +39,7 @@ TEST(Guard, SlowsOnTheApproach) {
 TEST(Guard, LeavingIsFree) {
   EXPECT_EQ(guard({}, kPioneer, {{-0.23, 0.0}}, 0.3, 0.0).action, GuardAction::none);
   EXPECT_EQ(guard({}, kPioneer, {{0.23, 0.0}}, -0.1, 0.0).action, GuardAction::none);
-  EXPECT_EQ(guard({}, kPioneer, {{0.02, 0.225}}, 0.3, 0.0).action, GuardAction::none)
+  EXPECT_EQ(guard({}, kPioneer, {}, 0.3, 0.0, 0.0, 0.0, {{-0.02, 0.225}}).action, GuardAction::none)
       << "along a wall";
 }
 
@@ -85,11 +85,36 @@ TEST(Guard, ApproachesSlowlyWhereAPersonMayReachIntoThePath) {
   const Vec2 shin(0.15, 0.32);
   const Guarded out = guard({}, kPioneer, {shin}, 0.4, 0.0);
   EXPECT_EQ(out.action, GuardAction::slow);
-  EXPECT_NEAR(out.velocity * shin.x() / shin.norm(), GuardSettings{}.touch_velocity, 1e-9)
+  EXPECT_NEAR(out.velocity * shin.x() / shin.norm(), GuardSettings{}.anything.touch_velocity, 1e-9)
       << "towards it";
   EXPECT_NE(out.reason.find("beside the path"), std::string::npos) << out.reason;
   EXPECT_EQ(guard({}, kPioneer, {{0.15, 0.66}}, 0.4, 0.0).action, GuardAction::none);
   EXPECT_EQ(guard({}, kPioneer, {{-0.05, 0.34}}, 0.4, 0.0).action, GuardAction::none) << "passed";
+}
+
+TEST(Guard, DoesNotCreepIntoWhatIsHeardAtAnyAngle) {
+  Body body = kPioneer;
+  body.sees_behind = true;
+  for (const double bearing : {0.0, 30.0, 60.0, 83.0, 89.0}) {
+    const Vec2 way(std::cos(radians(bearing)), std::sin(radians(bearing)));
+    const Vec2 near = 0.31 * way;
+    EXPECT_EQ(guard({}, body, {near}, 0.1, 0.0).velocity, 0.0) << bearing;
+    EXPECT_EQ(guard({}, body, {-near}, -0.1, 0.0).velocity, 0.0) << bearing << " behind";
+    EXPECT_EQ(guard({}, body, {-near}, 0.1, 0.0).action, GuardAction::none) << bearing << " left";
+    EXPECT_EQ(guard({}, body, {near}, 0.0, 0.5).rotation_velocity, 0.5) << "turning is the way out";
+  }
+}
+
+TEST(Guard, PassesEdgesOfTheMapCloserThanPeople) {
+  // The posts of a door, 13 cm beside the hull on both sides.
+  const std::vector<Vec2> posts{{0.2, 0.35}, {0.2, -0.35}};
+  Body body = kPioneer;
+  body.knows_edges = true;
+  EXPECT_LT(guard({}, body, posts, 0.3, 0.0).velocity, 0.03);
+  EXPECT_GT(guard({}, body, {}, 0.3, 0.0, 0.0, 0.0, posts).velocity, 0.06);
+  EXPECT_GT(guard({}, kPioneer, posts, 0.3, 0.0).velocity, 0.06) << "without a map";
+  EXPECT_EQ(guard({}, kPioneer, {}, 0.3, 0.0, 0.0, 0.0, {{0.45, 0.0}}).velocity, 0.0)
+      << "ahead it is a wall";
 }
 
 // An object that reaches 0.14 m beyond its echo is never touched faster than allowed, at any place
@@ -110,7 +135,7 @@ TEST(Guard, TouchesNobodyFasterThanAllowed) {
       x += v * 0.01;
       const Vec2 way(shin.x() - x, shin.y());
       if (way.norm() - body.radius < 0.14) {
-        ASSERT_LE(v * way.x() / way.norm(), GuardSettings{}.touch_velocity + 1e-4)
+        ASSERT_LE(v * way.x() / way.norm(), GuardSettings{}.anything.touch_velocity + 1e-4)
             << run << ": " << shin.transpose();
       }
     }

@@ -358,9 +358,14 @@ void Core::finish_cycle(double now) {
     warn("the robot's position jumped: a new odom frame begins");
     arbiter_.forget(session_.stamp.cycle - 1, time(now));  // targets were in the old frame
     session_.echoes.clear();
+    session_.edges.clear();
   }
+  if (session_.stamp.cycle > session_.edges_cycle + kEdgesKept)
+    session_.edges.clear();
   session_.echoes.update(session_.stamp.cycle, state.pose_in_odom,
-                         authority::readings_of(state.information.sonars, reflector_.parameters()));
+                         authority::readings_of(state.information.sonars, reflector_.parameters()),
+                         session_.edges);
+  session_.body.knows_edges = !session_.edges.empty();
   session_.body.sees_ahead = session_.echoes.sees(session_.stamp.cycle, true);
   session_.body.sees_behind = session_.echoes.sees(session_.stamp.cycle, false);
   put(DevicesChanged{session_.stamp});

@@ -30,6 +30,13 @@ bool stand(const reflector::Setpoints& told, double heading_in_odom) {
               : told.rotation_velocity == 0.0);
 }
 
+/// [m] No robot's odometry goes farther.
+bool is_usable(const Edge& edge) {
+  return (Eigen::Vector4d(edge.from.x(), edge.from.y(), edge.to.x(), edge.to.y()).array().abs() <
+          1e6)
+      .all();
+}
+
 bool drives(Role role) {
   return role != Role::none && role != Role::estop;
 }
@@ -68,6 +75,11 @@ void Core::command(const DriveCommand& in, double now) {
   }
   if (!arbiter_.offer(command, session_.stamp.cycle))
     return;
+  if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
+      std::all_of(in.edges.begin(), in.edges.end(), is_usable)) {
+    session_.edges = in.edges;
+    session_.edges_cycle = session_.stamp.cycle;
+  }
   driver_spoke_ = driver_spoke_ || (command.role == grant_.role && command.writer == grant_.writer);
   if (!command.active || !drives(command.role))
     return;
@@ -204,7 +216,7 @@ void Core::guard(reflector::Setpoints& wanted) {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant_.role)], session_.body,
                                 session_.echoes.spots(), wanted.velocity, wanted.rotation_velocity,
                                 reflector_.state().information.rotation_velocity,
-                                driver(grant_.role).contact_speed);
+                                driver(grant_.role).contact_speed, session_.echoes.edges());
     if (guarded_.obstacle)
       if (const auto echo = session_.echoes.heard(*guarded_.obstacle))
         guarded_.reason += format("; sonar %d ", echo->sonar) +

@@ -161,6 +161,28 @@ TEST(Drive, TheGuardStopsBeforeWhatIsHeardAndSaysSo) {
   EXPECT_TRUE(scene.was_sent(protocol::Velocity{0.0}));
 }
 
+TEST(Drive, TheGuardTakesAnEchoForAnEdgeOfTheDriversMap) {
+  Driven scene;
+  const auto pass_a_post = [&](std::vector<Edge> edges) {
+    for (int i = 0; i < 4; ++i) {
+      // A post 0.5 m from the sonar that looks to the left.
+      scene.shown.sonars = {{1, static_cast<std::uint16_t>(0.3 / scene.robot.range_unit)}};
+      scene.cycle();
+      DriveCommand command = scene.wish(Role::behaviors, 0.3);
+      command.motion.rotation_velocity = 0.0;
+      command.edges = edges;
+      scene.tell(command);
+    }
+    return scene.all<GrantDecided>().back().guarded.velocity;
+  };
+  const Pose robot = scene.all<CycleBegan>().back().state.pose_in_odom;
+  const Vec2 post = transform(robot, {0.15 + 0.3 * std::sqrt(0.5), 0.3 * std::sqrt(0.5)});
+  const double strange = pass_a_post({});
+  EXPECT_GT(pass_a_post({{post, post}}), strange + 0.02);
+  const double broken = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(pass_a_post({{post, {broken, 0.0}}}), pass_a_post({})) << "no usable number";
+}
+
 TEST(Drive, ADriverThatIsSlowIsSlowed) {
   Driven scene;
   for (int i = 0; i < 10; ++i) {

@@ -51,8 +51,10 @@ void Service::step(const runtime::Turn& turn) {
   v1::MotorCommand command = command_to_bus(outputs.output);
   command.source(ports_.name());
   command.number(outputs.number);
-  if (const v1::Intentions* const intentions = intentions_.value())
+  if (const v1::Intentions* const intentions = intentions_.value()) {
     command.heeds(intentions->heeds());
+    command.edges(intentions->edges());
+  }
   commands_.write(command);
   const v1::BehaviorSet sample = to_bus(outputs.output);
   behaviors_.write(sample);

@@ -27,6 +27,11 @@ constexpr double kMargin = 0.05;         // [m] by which a sonar's obstacle may 
 constexpr double kMarginOfRange = 0.03;  // and that per metre
 // The bearing of a contact that stalls one wheel.
 constexpr double kTouchBearing = radians(60.0);
+// A robot that wants to drive but is held turns to and fro, so that its beams sweep the gaps
+// between them: the guard beside the robot forgets an echo only where a beam looks.
+constexpr double kHeld = 0.015;       // [m/s] slower than this it stands
+constexpr std::uint64_t kSweep = 20;  // [cycles] until it turns, and in each direction
+constexpr double kSwing = radians(20.0);
 constexpr const char* kSlow = "the network, or a computer, is slow: ";
 
 std::string number(const char* format, double value) {
@@ -166,7 +171,17 @@ Output Executive::step(const Inputs& inputs) {
     limit_speed(inputs, output);
   obey_limit(inputs, output);
   backwards_ = output.speed < 0.0;
+  sweep(inputs.robot, output);
   return output;
+}
+
+void Executive::sweep(const RobotNow& robot, Output& output) {
+  const bool held = output.active && output.contact_speed == 0.0 &&
+                    std::abs(output.speed) > kHeld && std::abs(robot.velocity) < kHeld;
+  held_ = held ? held_ + 1 : 0;
+  if (held_ >= kSweep)
+    output.heading_in_odom =
+        norm2_angle(output.heading_in_odom + ((held_ / kSweep) % 2 == 1 ? kSwing : -kSwing));
 }
 
 double Executive::contact_speed(const std::vector<Blended>& blended) const {

@@ -111,6 +111,17 @@ TEST_F(ExecutiveTest, ContactIsMeantWhereAllMeanIt) {
   EXPECT_FALSE(step({bump(0.5)}).missing.empty()) << "that is no creeping";
 }
 
+TEST_F(ExecutiveTest, HeldItTurnsItsSonarsToAndFro) {
+  const auto swing = [&] { return step({{"p", "Probe", 0, true, {}}}).heading_in_odom; };
+  for (int cycle = 0; cycle < 19; ++cycle)
+    EXPECT_EQ(swing(), 0.0);
+  for (int cycle = 0; cycle < 20; ++cycle)
+    EXPECT_DOUBLE_EQ(swing(), radians(20.0));
+  EXPECT_DOUBLE_EQ(swing(), -radians(20.0));
+  robot_.velocity = 0.1;
+  EXPECT_EQ(swing(), 0.0) << "it drives again";
+}
+
 TEST_F(ExecutiveTest, AnotherSchemaIsAnotherBehavior) {
   step({{"p", "Probe", 0, true, {}}});
   const Output output = step({{"p", "Stop", 0, true, {}}});

@@ -103,7 +103,7 @@ void Service::step(const runtime::Turn& turn) {
   remember(outputs.intended.news);
   if (const auto& by = outputs.intended.stop)
     core_.executor().heed({ports_.instance(), stops_.ask({"stop", {{"by", *by}}})});
-  publish(outputs.intended, outputs.limit);
+  publish(outputs);
   publish(outputs.intended.news);
   if (outputs.beliefs)
     publish(*outputs.beliefs);
@@ -308,7 +308,9 @@ void Service::publish(const News& news) {
   ports_.say(notes.lines());
 }
 
-void Service::publish(const intentions::Outputs& outputs, const SpeedLimit& limit) {
+void Service::publish(const Core::Outputs& said) {
+  const intentions::Outputs& outputs = said.intended;
+  const SpeedLimit& limit = said.limit;
   for (const Request& request : outputs.requests)
     map_requests_.ask(request);
   for (const Request& question : outputs.questions)
@@ -324,6 +326,14 @@ void Service::publish(const intentions::Outputs& outputs, const SpeedLimit& limi
   const auto carried = [](const auto& each) { return to_bus(each); };
   sample.behaviors(converted(outputs.behaviors, carried));
   sample.nodes(converted(outputs.nodes, carried, kMostNodes));
+  sample.edges(converted(said.edges, [](const Edge& edge) {
+    v1::Edge result;
+    result.x1(edge.from.x());
+    result.y1(edge.from.y());
+    result.x2(edge.to.x());
+    result.y2(edge.to.y());
+    return result;
+  }));
   intentions_.write(sample);
   recall_.write(std::move(sample));
   for (const Said& one : outputs.said) {

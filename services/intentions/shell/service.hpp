@@ -56,7 +56,7 @@ class Service final : public runtime::Service {
   /// To the disk, before it is published: nothing reported or done is done again.
   void remember(const News& news);
   void publish(const News& news);
-  void publish(const intentions::Outputs& outputs, const SpeedLimit& limit);
+  void publish(const Core::Outputs& said);
   void publish(const std::vector<Belief>& beliefs);
   void draw_way(const std::vector<Vec2>& way);
 

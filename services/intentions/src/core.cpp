@@ -22,6 +22,7 @@ constexpr double kStarting = 10.0;
 /// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
 /// start together.
 constexpr double kStartsTogether = 3.0;
+constexpr std::size_t kMostEdges = 32;      // of the contract
 constexpr std::uint64_t kVisionLease = 10;  // [cycles] an older result counts as missing
 
 /// Why goals that drive wait: a person drives, or has not handed the robot back.
@@ -81,6 +82,7 @@ Core::Outputs Core::step(Inputs inputs) {
       if (status.state == GoalState::kFailed)
         status.reason += "; " + gone;
   outputs.limit = limit_of(now, outputs.intended);
+  outputs.edges = edges_near(now);
   if (estop_.empty() && centering_.works())
     outputs.look = gaze_.step({now.robot, now.around, executor_.beliefs(), 0});
   nodes_ = outputs.intended.nodes;
@@ -107,6 +109,19 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
         return each.running && speed != nullptr && speed->number < 0.0;
       });
   return speed_limit({now.robot, now.around, executor_.beliefs(), 0}, backwards);
+}
+
+/// The nearest edges of the map, for the guard beside the robot.
+std::vector<Edge> Core::edges_near(const intentions::Inputs& now) const {
+  std::vector<Edge> edges;
+  if (lines_ == nullptr || !now.robot.odom_in_map ||
+      now.around.registration.state != Localization::kTracking)
+    return edges;
+  const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();
+  const ToFrame to_odom(*now.robot.odom_in_map);
+  for (const Edge& edge : lines_->edges_near(robot_in_map, kMostEdges))
+    edges.push_back({to_odom(edge.from), to_odom(edge.to)});
+  return edges;
 }
 
 /// The points of the path of a running follow-path intention, where they have changed.
@@ -221,6 +236,7 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
       executor_.know_places(topology_);
     }
     map_ = std::move(news.map);
+    lines_ = std::make_shared<const maps::LineMap>(*map_);
     map_revision_ = news.revision;
     newer_maps_.pop_front();
   }

@@ -521,6 +521,21 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
   EXPECT_EQ(refusal(4, "EJ-241").find(unknown), 0U) << "no activity goes there";
 }
 
+TEST_F(CoreTest, TellsTheEdgesOfTheMapNearTheRobotInOdom) {
+  core_.know_map({1, std::make_shared<const maps::Map>(
+                         maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
+                                         "OFFICE (2) 5000, 30000, 0, 4000, 4000\n",
+                                         "a.map"))});
+  inputs_.robot.odom_in_map = Pose{2.0, 0.5, 0.0};
+  inputs_.registered.state = Localization::kLost;
+  EXPECT_TRUE(step().edges.empty()) << "its place is not sure";
+  inputs_.registered.state = Localization::kTracking;
+  const std::vector<Edge> edges = step().edges;
+  ASSERT_EQ(edges.size(), 8U);
+  EXPECT_NEAR(edges[0].from.y(), 0.5, 1e-9) << "the nearest first, in odom";
+  EXPECT_NEAR(edges[0].to.y(), 0.5, 1e-9);
+}
+
 class InLockstep : public CoreTest {
  protected:
   InLockstep() : CoreTest(true) {}

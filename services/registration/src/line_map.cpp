@@ -1,13 +1,11 @@
 #include "saphira/registration/line_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
-#include "saphira/geometry/clip.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::registration {
@@ -16,60 +14,12 @@ namespace {
 using lps::PointType;
 using maps::Feature;
 
-constexpr double kOnWall = 0.25;   // [m] largest distance of a door from its wall
-constexpr double kBeyond = 0.1;    // [m] a region this near behind a side is open to it
-constexpr double kShortest = 0.1;  // [m] of surfaces that are kept
 // Of a field, which has a 16-bit number for each surface and up to 24 bytes for each cell of 0.1 m.
 constexpr std::size_t kMostSurfaces = 65000;
 constexpr double kMostArea = 250e3;  // [m2]
 
 bool is_region(const Feature& feature) {
   return maps::traits(feature.type).region.has_value();
-}
-
-bool is_way(const Feature& feature) {
-  return is_region(feature) && maps::traits(feature.type).region != maps::RegionKind::room;
-}
-
-/// True where there is a free passage between two touching features.
-bool open_to(const Feature& a, const Feature& b) {
-  if (is_way(a) && is_way(b))
-    return true;
-  return a.type == PointType::office && b.type == PointType::office && !a.name.empty() &&
-         a.name == b.name;
-}
-
-/// The part of the line from `start` along `way` that lies in the rectangle.
-std::optional<Stretch> part_in(const Feature& box, const Vec2& start, const Vec2& way,
-                               double length) {
-  const ToFrame to_box(box.pose_in_map);
-  const Vec2 a = to_box(start);
-  const auto part =
-      clip(a, to_box(start + way) - a, {box.length / 2.0, box.width / 2.0}, {0.0, length});
-  if (!part || part->to - part->from < 1e-6)
-    return std::nullopt;
-  return part;
-}
-
-/// [0, length] without the holes.
-std::vector<Stretch> without(double length, std::vector<Stretch> holes) {
-  std::sort(holes.begin(), holes.end(),
-            [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
-  std::vector<Stretch> left;
-  double at = 0.0;
-  for (const Stretch& hole : holes) {
-    if (hole.from - at > kShortest)
-      left.push_back({at, hole.from});
-    at = std::max(at, hole.to);
-  }
-  if (length - at > kShortest)
-    left.push_back({at, length});
-  return left;
-}
-
-Surface surface(const Vec2& from, const Vec2& to, const Vec2& free, std::size_t feature) {
-  const Vec2 way = to - from;
-  return {from, to, std::atan2(way.y(), way.x()), way.norm(), free, feature, false, false};
 }
 
 /// The lower and the upper corner of all surfaces.
@@ -86,102 +36,7 @@ std::pair<Vec2, Vec2> extent(const LineMap& lines) {
   return {low, high};
 }
 
-struct Side {
-  Vec2 start;
-  Vec2 way;  // unit vector; the free side is to its left
-  double length;
-};
-
-std::array<Side, 4> sides(const Feature& box) {
-  const double l = box.length / 2.0;
-  const double w = box.width / 2.0;
-  const Vec2 along = box.pose_in_map.direction();
-  const Vec2 across{-along.y(), along.x()};
-  return {{{transform(box.pose_in_map, {-l, -w}), along, box.length},
-           {transform(box.pose_in_map, {l, -w}), across, box.width},
-           {transform(box.pose_in_map, {l, w}), -along, box.length},
-           {transform(box.pose_in_map, {-l, w}), -across, box.width}}};
-}
-
 }  // namespace
-
-LineMap::LineMap(const maps::Map& map) {
-  for (std::size_t i = 0; i < map.features.size(); ++i) {
-    const Feature& feature = map.features[i];
-    // An artifact that was placed by the pose cannot correct the pose.
-    if (feature.type == PointType::object && feature.learned)
-      continue;
-    if (feature.type == PointType::wall) {
-      const Vec2 half = feature.pose_in_map.direction() * feature.length / 2.0;
-      const Vec2 middle = feature.pose_in_map.position();
-      surfaces_.push_back(surface(middle - half, middle + half, {0.0, 0.0}, i));
-    } else if (feature.type == PointType::object) {
-      for (const Side& side : sides(feature))
-        surfaces_.push_back(surface(side.start, side.start + side.way * side.length,
-                                    {side.way.y(), -side.way.x()}, i));
-    } else if (is_region(feature) && feature.type != PointType::junction) {
-      add_region(map, i);
-    }
-  }
-}
-
-void LineMap::add_region(const maps::Map& map, std::size_t index) {
-  const Feature& region = map.features[index];
-  for (const Side& side : sides(region)) {
-    const Vec2 inwards{-side.way.y(), side.way.x()};
-    std::vector<Stretch> holes;
-    // Doors and breaks first, so that a corridor behind one does not become another opening.
-    for (std::size_t i = 0; i < map.features.size(); ++i) {
-      const Feature& door = map.features[i];
-      if (!maps::traits(door.type).gate)
-        continue;
-      const Vec2 off = door.pose_in_map.position() - side.start;
-      const double at = off.dot(side.way);
-      if (std::abs(off.dot(inwards)) > kOnWall || at < 0.0 || at > side.length ||
-          std::abs(door.pose_in_map.direction().dot(inwards)) < std::cos(radians(30.0)))
-        continue;
-      holes.push_back({at - door.width / 2.0, at + door.width / 2.0});
-      const Vec2 middle = side.start + side.way * at;
-      openings_.push_back(
-          {{middle.x(), middle.y(), std::atan2(inwards.y(), inwards.x())}, door.width, i});
-    }
-    std::vector<Stretch> gaps;
-    for (std::size_t i = 0; i < map.features.size(); ++i) {
-      const Feature& other = map.features[i];
-      if (i == index || !is_region(other) || !open_to(region, other))
-        continue;
-      const auto part = part_in(other, side.start - inwards * kBeyond, side.way, side.length);
-      if (!part)
-        continue;
-      holes.push_back(*part);
-      const double width = part->to - part->from;
-      // A corridor that meets this side from the side is an opening in it.
-      if (is_way(other) && part->from > 0.05 && part->to < side.length - 0.05 && width > 0.5) {
-        const bool there = std::any_of(gaps.begin(), gaps.end(), [&](const Stretch& gap) {
-          return std::abs(gap.from - part->from) < 0.2 && std::abs(gap.to - part->to) < 0.2;
-        });
-        if (!there) {
-          gaps.push_back(*part);
-          const Vec2 middle = side.start + side.way * (part->from + part->to) / 2.0;
-          std::size_t what = i;
-          for (std::size_t j = 0; j < map.features.size(); ++j)
-            if (map.features[j].type == PointType::junction &&
-                maps::contains(map.features[j], middle + inwards * 0.2))
-              what = j;
-          openings_.push_back(
-              {{middle.x(), middle.y(), std::atan2(inwards.y(), inwards.x())}, width, what});
-        }
-      }
-    }
-    for (const Stretch& part : without(side.length, holes)) {
-      Surface piece = surface(side.start + side.way * part.from, side.start + side.way * part.to,
-                              inwards, index);
-      piece.from_is_end = part.from > 0.0;
-      piece.to_is_end = part.to < side.length;
-      surfaces_.push_back(piece);
-    }
-  }
-}
 
 std::optional<std::string> problem(const LineMap& lines) {
   if (lines.surfaces().size() > kMostSurfaces)

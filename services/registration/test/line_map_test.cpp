@@ -34,6 +34,17 @@ TEST(LineMap, ACorridorIsItsSidesWithoutDoorsAndJunctions) {
   EXPECT_NEAR(lines.openings()[1].width, 2.0, 1e-9);
 }
 
+TEST(LineMap, ListsTheNearestEdges) {
+  const LineMap lines(maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n", "m"));
+  const std::vector<Edge> edges = lines.edges_near({0.4, -0.1}, 3);
+  ASSERT_EQ(edges.size(), 3U);
+  EXPECT_DOUBLE_EQ(edges[0].from.x(), 0.0);
+  EXPECT_DOUBLE_EQ(edges[0].to.x(), 0.0);
+  EXPECT_DOUBLE_EQ(edges[1].from.y(), -1.0);
+  EXPECT_DOUBLE_EQ(edges[2].from.y(), 1.0);
+  EXPECT_EQ(lines.edges_near({0.4, -0.1}, 1), std::vector<Edge>{edges[0]});
+}
+
 TEST(Field, IsOfMapsOfASensibleSize) {
   const auto of = [](const std::string& text) { return LineMap(maps::parse_map(text, "a.map")); };
   EXPECT_FALSE(problem(of("")));

@@ -12,10 +12,9 @@
 
 namespace saphira::test {
 
-constexpr double kCell = 0.1;     // [m]
-constexpr double kRoom = 0.15;    // [m] beside the hull
-constexpr double kComfort = 0.7;  // [m] more room has no further value
-constexpr double kPersonRadius = 0.25;
+constexpr double kCell = 0.1;         // [m]
+constexpr double kRoom = 0.15;        // [m] beside the hull
+constexpr double kComfort = 0.7;      // [m] more room has no further value
 constexpr double kPersonRoom = 0.15;  // [m] in addition to that beside a wall
 constexpr double kShortest = 2.0;     // [m] of a way worth driving
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -23,6 +22,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kPatience = 20.0;  // [s]
 constexpr double kNearer = 0.05;    // [m]
 constexpr double kBefore = 0.25;    // [m] distance of the robot from the obstacle
+// The error of the robot's place on the map: p95 of registration.
+constexpr Pose kPlaceError{0.06, -0.06, radians(1.0)};
 
 /// Room round each cell of a world, and the cheapest ways from one cell.
 class Ways {
@@ -51,11 +52,10 @@ class Ways {
     return nearest_of(at, [this](int cell) { return length_.empty() || length(cell) < kNever; });
   }
 
-  /// A person stands here. Ways pass him like walls.
-  void block(const Vec2& at) {
+  /// A person of that radius stands here. Ways pass him like walls.
+  void block(const Vec2& at, double body) {
     for (int i = 0; i < columns_ * rows_; ++i)
-      room_[static_cast<std::size_t>(i)] =
-          std::min(room(i), (centre(i) - at).norm() - kPersonRadius);
+      room_[static_cast<std::size_t>(i)] = std::min(room(i), (centre(i) - at).norm() - body);
   }
 
   /// From here to all cells: cost, length [m] and the cell before.
@@ -142,12 +142,12 @@ class Ways {
 
 namespace {
 
-sim::PersonPlan person_at(const Vec2& at, const std::string& name) {
+sim::PersonPlan person_at(const Vec2& at, double body, const std::string& name) {
   sim::PersonPlan person;
   person.look.name = name;
   person.look.height = sim::kPersonHeight;
   person.at = at;
-  person.radius = kPersonRadius;
+  person.radius = body;
   return person;
 }
 
@@ -169,11 +169,11 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
     const Vec2 place = crossing.way[at] + aside * Vec2(-ahead.y(), ahead.x());
     if ((place - crossing.start_in_world.position()).norm() < needed + 1.0 ||
         (place - crossing.way.back()).norm() < needed + 1.0 ||
-        sim::Scene(crossing.world).distance(place) < kPersonRadius + 0.05)
+        sim::Scene(crossing.world).distance(place) < options.body + 0.05)
       continue;
     sim::World with = crossing.world;
     with.movable.persons.push_back(
-        person_at(place, "standing" + std::to_string(with.movable.persons.size())));
+        person_at(place, options.body, "standing" + std::to_string(with.movable.persons.size())));
     // The distance to people is larger than to walls.
     sim::World wide = with;
     for (sim::PersonPlan& person : wide.movable.persons)
@@ -190,7 +190,9 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
 }
 
 /// A person walks to and fro along the way, to one side of it, where two can pass.
-void add_walking(Crossing& crossing, double needed, Random& random) {
+void add_walking(Crossing& crossing, const CrossingOptions& options, double needed,
+                 Random& random) {
+  const double body = options.body;
   const std::vector<Vec2>& way = crossing.way;
   const Ways ways(crossing.world, needed);
   for (int tries = 0; tries < 20; ++tries) {
@@ -211,9 +213,9 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
       for (double s = 0.0; s <= line.norm() && fits; s += kCell) {
         const Vec2 mine = way[from] + s * ahead + side * off * aside;
         const Vec2 robots = way[from] + s * ahead;
-        fits = ways.room(mine) >= kPersonRadius + 0.05 &&
-               ways.room(Vec2(robots - side * std::max(0.0, needed + kPersonRadius + 0.3 - off) *
-                                           aside)) >= needed;
+        fits = ways.room(mine) >= body + 0.05 &&
+               ways.room(Vec2(robots - side * std::max(0.0, needed + body + 0.3 - off) * aside)) >=
+                   needed;
       }
     }
     if (!fits)
@@ -226,7 +228,7 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
         (a - way.back()).norm() < needed + 0.6 || (b - way.back()).norm() < needed + 0.6)
       continue;
     sim::PersonPlan person =
-        person_at(a, "walking" + std::to_string(crossing.world.movable.persons.size()));
+        person_at(a, body, "walking" + std::to_string(crossing.world.movable.persons.size()));
     const double speed = std::clamp(1.3 + 0.25 * random.normal(), 0.6, 1.9);
     const double pause = random.uniform(0.5, 4.0);
     person.script = {{b, speed, 0.0}, {b, 0.0, pause}, {a, speed, 0.0}, {a, 0.0, pause}};
@@ -236,12 +238,55 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
   }
 }
 
+/// One person stands at such a place of the way. False where it has none.
+bool add_in_the_way(Crossing& crossing, const CrossingOptions& options, double needed,
+                    Random& random) {
+  constexpr std::size_t kEnds = 12;  // cells at both ends of the way without a person
+  constexpr double kDoor = 0.6;      // [m] less room on both sides is a doorway
+  const std::vector<Vec2>& way = crossing.way;
+  const Ways ways(crossing.world, needed);
+  std::vector<Vec2> places;
+  for (std::size_t i = kEnds; i + kEnds < way.size(); ++i) {
+    const Vec2 ahead = along(way, i);
+    const Vec2 aside = Vec2(-ahead.y(), ahead.x()) * (random.chance(0.5) ? 1.0 : -1.0);
+    const double room = ways.room(way[i]);
+    const bool door = room < kDoor && room <= ways.room(way[i - 1]) && room < ways.room(way[i + 1]);
+    if (options.crowd == Crowd::kCorridor && room > 0.8 && room < 1.3)
+      places.push_back(way[i]);
+    else if (options.crowd == Crowd::kDoorway && door)
+      places.push_back(way[i]);
+    else if (options.crowd == Crowd::kInside && door)
+      places.push_back(way[i] + 0.6 * ahead);
+    else if (options.crowd == Crowd::kBeside && door)
+      places.push_back(way[i] - 0.5 * ahead + 0.7 * aside);
+  }
+  std::erase_if(places, [&](const Vec2& place) {
+    return (place - crossing.start_in_world.position()).norm() < needed + 1.0 ||
+           ways.room(place) < options.body + 0.02;
+  });
+  if (places.empty())
+    return false;
+  const Vec2 place = places[static_cast<std::size_t>(
+      random.uniform(0.0, static_cast<double>(places.size()) - 1e-6))];
+  crossing.world.movable.persons.push_back(person_at(place, options.body, "standing"));
+  sim::World wide = crossing.world;
+  wide.movable.persons.back().radius += kPersonRoom;
+  Ways past(wide, needed);
+  past.spread(*past.cell_at(crossing.start_in_world.position()));
+  crossing.has_way = past.length(*past.cell_at(way.back())) <= 2.0 * options.most;
+  return true;
+}
+
 /// The robot's way to the goal. Without progress a person stands in the way, and another way is
 /// taken. People move on: only the newest such place counts, and none without a way around it.
 class Navigator {
  public:
-  Navigator(const Crossing& crossing, double radius)
-      : at_first_(*crossing.ways), ways_(at_first_), goal_(crossing.way.back()), radius_(radius) {}
+  Navigator(const Crossing& crossing, double radius, double body)
+      : at_first_(*crossing.ways),
+        ways_(at_first_),
+        goal_(crossing.way.back()),
+        radius_(radius),
+        body_(body) {}
 
   /// The present target.
   Vec2 carrot(const Vec2& robot, double seconds) {
@@ -263,7 +308,7 @@ class Navigator {
   void close(const Vec2& robot) {
     const Vec2 way = ways_.back_from(robot, kAhead) - robot;
     ways_ = at_first_;
-    ways_.block(robot + way.normalized() * (radius_ + kBefore + kPersonRadius));
+    ways_.block(robot + way.normalized() * (radius_ + kBefore + body_), body_);
     const int goal = *ways_.nearest(goal_);
     ways_.spread(goal);
     if (ways_.centre(goal) != goal_ || ways_.left(robot) == kNever)
@@ -274,6 +319,7 @@ class Navigator {
   Ways ways_;
   Vec2 goal_;
   double radius_;
+  double body_;
   double nearest_ = kNever;  // [m] least remaining way so far
   double since_ = 0.0;       // [s] of that
 };
@@ -317,10 +363,15 @@ std::optional<Crossing> plan_crossing(const CrossingOptions& options,
   crossing.start_in_world = {crossing.way.front().x(), crossing.way.front().y(),
                              std::atan2(ahead.y(), ahead.x())};
   Random random(options.seed, 71);
-  for (int i = 0; i < options.standing; ++i)
-    add_standing(crossing, options, needed, random);
-  for (int i = 0; i < options.walking; ++i)
-    add_walking(crossing, needed, random);
+  if (options.crowd == Crowd::kUsual) {
+    for (int i = 0; i < 2; ++i)
+      add_standing(crossing, options, needed, random);
+    for (int i = 0; i < 2; ++i)
+      add_walking(crossing, options, needed, random);
+  } else if (options.crowd != Crowd::kNobody &&
+             !add_in_the_way(crossing, options, needed, random)) {
+    return std::nullopt;
+  }
   return crossing;
 }
 
@@ -333,16 +384,18 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   drive_options.start_in_world = crossing.start_in_world;
   drive_options.sonar = sonar;
   drive_options.guard = true;
+  drive_options.knows_walls = kPlaceError;
   Drive drive(drive_options);
   const double radius = drive.parameters().radius;
   sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());
   drive.scene().set_watch([&watch] { watch.tick(); });
-  Navigator navigator(crossing, radius);
+  Navigator navigator(crossing, radius, options.body);
   std::size_t told = 0;
   CrossingResult result;
   // A Khepera creeps, since its sonars have a short range.
   const double slow = std::min(1.0, drive.parameters().sonar_max_range / 1.0);
-  const double limit = 120.0 + 20.0 * crossing.length / std::max(0.2, slow);
+  const double limit =
+      crossing.has_way ? 120.0 + 20.0 * crossing.length / std::max(0.2, slow) : 120.0;
   const double near = std::max(0.15, 0.5 * radius);
   while (result.seconds < limit) {
     const Pose pose = drive.seen().true_pose_in_world;
@@ -359,13 +412,14 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   }
   result.closest = watch.closest_person();
   for (const sim::Contact& contact : watch.contacts()) {
-    const bool caused = contact.blame == sim::Blame::kCaused;
-    if (contact.kind != sim::ThingKind::kPerson)
-      ++(caused ? result.things : result.other_things);
-    else if (caused)
-      ++result.caused;
+    const bool person = contact.kind == sim::ThingKind::kPerson;
+    if (contact.blame == sim::Blame::kWalkedInto)
+      result.walked_into += person ? 1 : 0;
+    else if (!person)
+      ++result.things;
     else
-      ++(contact.blame == sim::Blame::kUnseen ? result.unseen : result.walked_into);
+      ++(contact.walks ? result.walking : result.standing);
+    result.unheard += person && contact.blame == sim::Blame::kUnseen ? 1 : 0;
   }
   result.end_in_world = drive.seen().true_pose_in_world.position();
   return result;

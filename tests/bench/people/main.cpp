@@ -1,8 +1,11 @@
-// Every robot with sonars crosses every world, with people standing and walking in it.
+// Every robot with sonars crosses every world, past people who stand and walk in it.
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -10,7 +13,6 @@
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "support/guarded.hpp"
-#include "support/quantile.hpp"
 
 namespace saphira::test {
 namespace {
@@ -18,6 +20,7 @@ namespace {
 struct Run {
   CrossingOptions options;
   bool possible = false;
+  bool has_way = true;
   double length = 0.0;
   CrossingResult result;
 };
@@ -26,29 +29,95 @@ protocol::RobotParameters parameters_of(const std::string& robot) {
   return protocol::load_parameters(find_file(config_folder() + "/robots", robot, ".p"));
 }
 
+Crowd crowd_of(const std::string& name) {
+  const auto* const found = std::find(std::begin(kCrowdNames), std::end(kCrowdNames), name);
+  if (found == std::end(kCrowdNames))
+    throw std::invalid_argument("--people " + name + ": nobody, usual, corridor, doorway, inside " +
+                                "or beside");
+  return static_cast<Crowd>(found - std::begin(kCrowdNames));
+}
+
 void drive(Run& run, const sim::SonarModel& sonar, bool trace) {
   const auto crossing = plan_crossing(run.options, parameters_of(run.options.robot));
   if (!crossing)
     return;
   run.possible = true;
   run.length = crossing->length;
+  run.has_way = crossing->has_way;
   run.result = drive_crossing(*crossing, run.options, sonar, trace);
 }
 
 void print(const Run& run) {
   const CrossingResult& result = run.result;
-  std::printf("%-12s %-12s seed %2llu: ", run.options.robot.c_str(), run.options.world.c_str(),
+  std::printf("%-12s %-12s %-8s seed %2llu: ", run.options.robot.c_str(), run.options.world.c_str(),
+              kCrowdNames[static_cast<int>(run.options.crowd)],
               static_cast<unsigned long long>(run.options.seed));
   if (!run.possible)
-    std::printf("no way for this robot\n");
+    std::printf("no such way for this robot\n");
   else
     std::printf(
-        "%s %4.1f m in %5.1f s, nearest to a person %5.2f m, contacts: %d caused, %d walked into "
-        "the robot, %d unseen, %d with things (%d caused); ended at (%.1f, %.1f)\n",
-        result.arrived ? "arrived   " : "NOT THERE ", run.length, result.seconds, result.closest,
-        result.caused, result.walked_into, result.unseen, result.things + result.other_things,
-        result.things, result.end_in_world.x(), result.end_in_world.y());
+        "%s %4.1f m in %5.1f s, nearest to a person %5.2f m, touched %d who stood, %d who walked "
+        "(%d unheard), %d walked into the robot, %d things; ended at (%.1f, %.1f)\n",
+        result.arrived ? "arrived   "
+        : run.has_way  ? "NOT THERE "
+                       : "no way    ",
+        run.length, result.seconds, result.closest, result.standing, result.walking, result.unheard,
+        result.walked_into, result.things, result.end_in_world.x(), result.end_in_world.y());
 }
+
+/// The runs of one robot, or of one crowd.
+struct Sum {
+  int runs = 0;
+  int with_way = 0;
+  int arrived = 0;  ///< of those with a way
+  int standing = 0;
+  int walking = 0;
+  int unheard = 0;
+  int things = 0;
+  int walked_into = 0;
+  double seconds = 0.0;  ///< of those who arrived...
+  double alone = 0.0;    ///< ...and of the same robots in the same worlds without people
+
+  void add(const Run& run, double seconds_alone) {
+    const CrossingResult& result = run.result;
+    ++runs;
+    standing += result.standing;
+    walking += result.walking;
+    unheard += result.unheard;
+    things += result.things;
+    walked_into += result.walked_into;
+    if (!run.has_way)
+      return;
+    ++with_way;
+    if (!result.arrived)
+      return;
+    ++arrived;
+    if (seconds_alone > 0.0) {
+      seconds += result.seconds;
+      alone += seconds_alone;
+    }
+  }
+  double slower() const { return alone > 0.0 ? seconds / alone : 0.0; }
+  double in_100(int count) const { return runs == 0 ? 0.0 : 100.0 * count / runs; }
+  double arrived_percent() const { return with_way == 0 ? 0.0 : 100.0 * arrived / with_way; }
+  nlohmann::json json() const {
+    return {{"runs", runs},
+            {"arrived_percent", arrived_percent()},
+            {"touched_standing", in_100(standing)},
+            {"touched_walking", in_100(walking)},
+            {"unheard", in_100(unheard)},
+            {"things", in_100(things)},
+            {"walked_into", in_100(walked_into)},
+            {"slower", slower()}};
+  }
+  void print(const std::string& name) const {
+    std::printf(
+        "%-12s %4d runs: %3.0f %% arrived; in 100 runs touched %5.1f who stood, %5.1f who "
+        "walked (%.1f unheard), %.1f things; %.2f times as long as alone\n",
+        name.c_str(), runs, arrived_percent(), in_100(standing), in_100(walking), in_100(unheard),
+        in_100(things), slower());
+  }
+};
 
 }  // namespace
 }  // namespace saphira::test
@@ -59,6 +128,7 @@ int main(int argc, char** argv) {
   CommandLine app{"Robots cross worlds in which people stand and walk"};
   std::vector<std::string> robots;
   std::vector<std::string> worlds;
+  std::vector<std::string> crowds;
   int seeds = 10;
   std::uint64_t first = 1;
   CrossingOptions usual;
@@ -71,8 +141,8 @@ int main(int argc, char** argv) {
   app.add_option("--world", worlds, "of config/worlds; without it: all");
   app.add_option("--seeds", seeds, "runs of each robot in each world").in_range(1, 1000);
   app.add_option("--first", first, "the first seed");
-  app.add_option("--standing", usual.standing, "people who stand on the way or beside it");
-  app.add_option("--walking", usual.walking, "people who walk along the way");
+  app.add_option("--people", crowds,
+                 "nobody, usual, corridor, doorway, inside, beside; without it: all");
   app.add_option("--most", usual.most, "[m] length of the way");
   app.add_option("--jobs", jobs, "runs at the same time").in_range(1, 64);
   app.add_option("--strength", sonar.strength, "[dB] of the sonars: real ones have 36 to 47");
@@ -89,17 +159,23 @@ int main(int argc, char** argv) {
           robots.push_back(name);
     if (worlds.empty())
       worlds = names_in(config_folder() + "/worlds", ".wld");
+    if (crowds.empty())
+      crowds.assign(std::begin(kCrowdNames), std::end(kCrowdNames));
     std::vector<Run> runs;
     for (const std::string& robot : robots)
       for (const std::string& world : worlds)
-        for (int i = 0; i < seeds; ++i) {
-          Run run;
-          run.options = usual;
-          run.options.robot = robot;
-          run.options.world = world;
-          run.options.seed = first + static_cast<std::uint64_t>(i);
-          runs.push_back(run);
-        }
+        for (const std::string& crowd : crowds)
+          for (int i = 0; i < seeds; ++i) {
+            Run run;
+            run.options = usual;
+            run.options.robot = robot;
+            run.options.world = world;
+            run.options.crowd = crowd_of(crowd);
+            run.options.seed = first + static_cast<std::uint64_t>(i);
+            // Every other person is wider than the shins that a sonar hears.
+            run.options.body = run.options.seed % 2 == 0 ? 0.3 : 0.25;
+            runs.push_back(run);
+          }
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> workers;
     std::vector<std::string> troubles(static_cast<std::size_t>(jobs));
@@ -118,51 +194,58 @@ int main(int argc, char** argv) {
       if (!trouble.empty())
         throw std::runtime_error(trouble);
 
-    int possible = 0;
-    int arrived = 0;
-    CrossingResult sum;
-    std::vector<double> closest;
+    // [s] and runs without people, by robot and world
+    std::map<std::pair<std::string, std::string>, std::pair<double, int>> alone;
+    for (const Run& run : runs)
+      if (run.options.crowd == Crowd::kNobody && run.result.arrived) {
+        auto& [seconds, count] = alone[{run.options.robot, run.options.world}];
+        seconds += run.result.seconds;
+        ++count;
+      }
+    Sum all;
+    std::map<std::string, Sum> by_robot;
+    std::array<Sum, std::size(kCrowdNames)> by_crowd;
+    double alone_s = 0.0;
     for (const Run& run : runs) {
       const CrossingResult& result = run.result;
-      const bool bad =
-          run.possible && (!result.arrived || result.caused + result.walked_into + result.unseen +
-                                                      result.things + result.other_things >
-                                                  0);
+      const bool bad = run.possible && ((run.has_way && !result.arrived) ||
+                                        result.standing + result.walking + result.things > 0);
       if (!quiet || bad)
         print(run);
       if (!run.possible)
         continue;
-      ++possible;
-      arrived += result.arrived ? 1 : 0;
-      sum.caused += result.caused;
-      sum.walked_into += result.walked_into;
-      sum.unseen += result.unseen;
-      sum.things += result.things;
-      sum.other_things += result.other_things;
-      if (std::isfinite(result.closest))
-        closest.push_back(result.closest);
+      const auto found = alone.find({run.options.robot, run.options.world});
+      const double seconds_alone =
+          found == alone.end() ? 0.0 : found->second.first / found->second.second;
+      by_crowd[static_cast<std::size_t>(run.options.crowd)].add(run, seconds_alone);
+      if (run.options.crowd == Crowd::kNobody) {
+        alone_s += result.seconds;
+        continue;
+      }
+      all.add(run, seconds_alone);
+      by_robot[run.options.robot].add(run, seconds_alone);
     }
-    const double closest_p50 = closest.empty() ? 0.0 : quantile(closest, 0.5);
-    std::printf(
-        "%d of %d arrived (%zu planned; the others have no way of 2 m for the robot). Contacts "
-        "with people: %d caused by the robot, %d walked into it, %d unseen; with things: %d "
-        "caused, %d others. Nearest to a person, median %.2f m\n",
-        arrived, possible, runs.size(), sum.caused, sum.walked_into, sum.unseen, sum.things,
-        sum.other_things, closest_p50);
-    if (json)
-      std::printf("%s\n", nlohmann::json{{"runs", possible},
-                                         {"arrived", arrived},
-                                         {"contacts_caused", sum.caused + sum.things},
-                                         {"contacts_other",
-                                          sum.walked_into + sum.unseen + sum.other_things},
-                                         {"people_caused", sum.caused},
-                                         {"people_walked_into", sum.walked_into},
-                                         {"people_unseen", sum.unseen},
-                                         {"things_caused", sum.things},
-                                         {"things_other", sum.other_things},
-                                         {"closest_m_p50", closest_p50}}
-                              .dump()
-                              .c_str());
-    return sum.caused == 0 && sum.things == 0 && arrived == possible ? 0 : 1;
+    for (const auto& [robot, sum] : by_robot)
+      sum.print(robot);
+    for (std::size_t i = 0; i < by_crowd.size(); ++i)
+      if (by_crowd[i].runs > 0)
+        by_crowd[i].print(kCrowdNames[i]);
+    all.print("all");
+    if (alone_s > 0.0)
+      std::printf("without people: %.0f s in all\n", alone_s);
+    if (json) {
+      nlohmann::json object = all.json();
+      for (const auto& [robot, sum] : by_robot)
+        object["robots"][robot] = sum.json();
+      for (std::size_t i = 0; i < by_crowd.size(); ++i)
+        if (by_crowd[i].runs > 0)
+          object["people"][kCrowdNames[i]] = by_crowd[i].json();
+      object["alone_s"] = alone_s;
+      std::printf("%s\n", object.dump().c_str());
+    }
+    return all.in_100(all.standing) <= 1.0 && all.in_100(all.walking) <= 5.0 &&
+                   all.arrived_percent() >= 90.0
+               ? 0
+               : 1;
   });
 }

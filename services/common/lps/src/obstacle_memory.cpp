@@ -54,7 +54,11 @@ void ObstacleMemory::clear() {
 }
 
 void ObstacleMemory::move_to(const Pose& robot_in_odom) {
-  scale(beliefs_, settings_.fading);
+  const double way = placed_ ? (robot_in_odom.position() - robot_in_odom_).norm() : 0.0;
+  robot_in_odom_ = robot_in_odom.position();
+  const double kept = settings_.fading * std::pow(settings_.fading_a_metre, way);
+  if (kept < 1.0)
+    scale(beliefs_, kept);
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
@@ -133,7 +137,7 @@ void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt)
 }
 
 void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
-  pass(sonar_in_odom, range - 2.0 * settings_.thickness, settings_.passed);
+  free_before(sonar_in_odom, range);
   // The likeliest arc cell so far takes the echo in full, the others in proportion.
   const auto on_arc = [&](double distance) {
     return std::abs(distance - range) <= settings_.thickness;
@@ -151,6 +155,10 @@ void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
     if (on_arc(distance))
       belief = std::min(belief + settings_.seen * likely(belief, off) / likeliest, settings_.most);
   });
+}
+
+void ObstacleMemory::free_before(const Pose& sonar_in_odom, double range) {
+  pass(sonar_in_odom, range - 2.0 * settings_.thickness, settings_.passed);
 }
 
 void ObstacleMemory::silence(const Pose& sonar_in_odom) {

@@ -50,6 +50,23 @@ TEST_F(ObstacleMemoryTest, ForgetsInTime) {
   EXPECT_TRUE(memory.points().empty());
 }
 
+TEST(ObstacleMemory, MayForgetOnTheWayAlone) {
+  MemorySettings settings;
+  settings.fading = 1.0;
+  settings.fading_a_metre = 0.5;
+  ObstacleMemory memory(settings);
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  for (int cycle = 0; cycle < 2000; ++cycle)
+    memory.move_to({0.0, 0.0, 0.01 * (cycle % 7)});
+  memory.collect(kOrigin);
+  EXPECT_FALSE(memory.points().empty()) << "it only turned";
+  memory.move_to({0.5, 0.0, 0.0});
+  memory.move_to({1.0, 0.0, 0.0});
+  memory.collect({1.0, 0.0, 0.0});
+  EXPECT_TRUE(memory.points().empty());
+}
+
 TEST_F(ObstacleMemoryTest, GoesWithTheRobot) {
   memory.echo(kOrigin, 1.0);
   Pose robot;

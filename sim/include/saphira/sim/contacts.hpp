@@ -15,7 +15,7 @@ namespace saphira::sim {
 /// The cause of a contact.
 enum class Blame {
   kCaused,      ///< the robot moved towards the thing, and could have heard it in time
-  kWalkedInto,  ///< the robot stood, or moved away: the other one came
+  kWalkedInto,  ///< the robot stood, or did not move towards it: the other one came
   kUnseen,      ///< the robot moved towards the thing, but no sonar could have heard it in time
 };
 
@@ -24,7 +24,8 @@ enum class ThingKind { kPerson, kPost, kBox, kDoor, kRobot, kWall };
 struct Contact {
   std::uint64_t tick = 0;  ///< of the scene
   ThingKind kind = ThingKind::kWall;
-  std::string name;  ///< as in the world file; of a robot its number, of a wall none
+  bool walks = false;  ///< a person who walked then; else it stood
+  std::string name;    ///< as in the world file; of a robot its number, of a wall none
   Blame blame = Blame::kCaused;
   double towards = 0.0;  ///< [m/s] of the robot's hull towards the thing
   double heard = 0.0;    ///< [s] before, with the object in the main lobe of some sonar

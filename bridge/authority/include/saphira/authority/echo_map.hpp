@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/geometry/edge.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/lps/obstacle_memory.hpp"
 
@@ -19,19 +20,25 @@ struct Reading {
 
 /// Echoes of the sonars round the robot. An echo comes from somewhere on an arc across its sonar's
 /// axis, and an object that enters the gap between two beams is still there. The memory is that of
-/// the behaviors (saphira/lps), with slower forgetting.
+/// the behaviors (saphira/lps). It forgets only where a beam looks, and while the robot drives
+/// away. An echo at the distance of a known edge is the edge's; any other may be a person's.
 class EchoMap {
  public:
   /// Of sonars that hear up to `sonar_range` [m]. Echoes from farther away than 2.5 m do not
   /// matter.
   explicit EchoMap(double sonar_range = 5.0);
 
-  /// A packet came, with these new readings in firing order and this pose of the robot.
-  void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings);
+  /// A packet came, with these new readings in firing order, this pose of the robot, and the edges
+  /// [odom] that its driver knows.
+  void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings,
+              const std::vector<Edge>& edges = {});
   void clear();
 
-  /// Positions of the remembered echoes, in the robot's frame as of the last update.
+  /// Positions of the remembered echoes, in the robot's frame as of the last update: those that may
+  /// be a person's...
   const std::vector<Vec2>& spots() const { return memory_.points(); }
+  /// ...and those of known edges.
+  const std::vector<Vec2>& edges() const { return edges_.points(); }
   /// True where some sonar within 60 degrees of straight ahead (or back) has fired in the last
   /// second (a Pioneer's sonars fire every third cycle). At first no sonar has had its turn.
   bool sees(std::uint64_t cycle, bool ahead) const;
@@ -53,6 +60,7 @@ class EchoMap {
 
   double range_;
   lps::ObstacleMemory memory_;
+  lps::ObstacleMemory edges_;
   Pose robot_in_odom_;
   std::uint64_t cycle_ = 0;
   std::deque<Echo> echoes_;        ///< oldest first

@@ -19,6 +19,17 @@ struct Body {
   double sonar_range = 5.0;  ///< [m] no echo beyond
   bool sees_behind = false;  ///< some sonar within 60 degrees of straight back fires
   bool sees_ahead = true;    ///< the same of straight ahead
+  bool knows_edges = false;  ///< the driver's map tells walls and door posts from people
+};
+
+/// The distances that the guard keeps from one kind of echo.
+struct Clearance {
+  double side_margin = 0.0;  ///< [m] width beside the hull's path that counts as ahead
+  /// [m] An obstacle may reach this far beyond its echo. Nearer than this the hull approaches at
+  /// `touch_velocity` at most...
+  double reach = 0.0;
+  double touch_velocity = 0.0;  ///< [m/s]
+  double least = 0.0;           ///< [m] ...and nearer than this not at all, at any angle
 };
 
 /// The guard's limits for one role. They come from the shape of a person: a sonar hears a shin, and
@@ -31,12 +42,10 @@ struct GuardSettings {
   /// [m] The way counts as free no farther than this, even without echoes: a standing person is
   /// heard dependably up to 1.5 m.
   double dependable_range = 1.5;
-  double margin = 0.25;       ///< [m] distance at which the hull stops before an obstacle ahead
-  double side_margin = 0.08;  ///< [m] width beside the hull's path that counts as ahead
-  /// [m] A person may reach this far beyond the shin that was heard. Nearer than this the hull
-  /// approaches at `touch_velocity` at most.
-  double person = 0.15;
-  double touch_velocity = 0.035;  ///< [m/s]
+  double margin = 0.25;  ///< [m] distance at which the hull stops before an obstacle ahead
+  Clearance person{0.10, 0.25, 0.01, 0.10};     ///< from an echo that is of no edge of the map
+  Clearance anything{0.10, 0.15, 0.035, 0.10};  ///< from any echo, without a map
+  Clearance edge{0.08, 0.15, 0.035, 0.0};       ///< from an edge of the map
   /// [m/s] An obstacle ahead may approach at this speed, so the robot slows early...
   double closing_velocity = 0.4;
   double careful_velocity = 0.05;  ///< [m/s] ...down to this speed
@@ -66,12 +75,12 @@ double approach_speed(double distance, double end, double reaction, double decel
                       double closing = 0.0);
 
 /// Limits a wanted motion to a safe one, for a robot that turns at `turning` [rad/s] meanwhile.
-/// `points` are the echoes, in the robot's frame. Pure. Not for the emergency stop, which stops
-/// anyway. Rotation on the spot is never stopped: the hull is round, and turning is the way out.
-/// `contact_speed`: the driver wants to touch an obstacle ahead, forward and at no more than this
-/// [m/s]; 0: no contact is wanted.
+/// `points` are the echoes that may be a person's, `edges` those of the driver's map, in the
+/// robot's frame. Pure. Not for the emergency stop, which stops anyway. Rotation on the spot is
+/// never stopped: the hull is round, and turning is the way out. `contact_speed`: the driver wants
+/// to touch an obstacle ahead, forward and at no more than this [m/s]; 0: no contact is wanted.
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
               double velocity, double rotation_velocity, double turning = 0.0,
-              double contact_speed = 0.0);
+              double contact_speed = 0.0, const std::vector<Vec2>& edges = {});
 
 }  // namespace saphira::authority

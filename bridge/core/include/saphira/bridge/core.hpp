@@ -141,6 +141,8 @@ class Core {
     bool answered = false;                     ///< lockstep: the behaviors answered this cycle
     bool stepping = false;                     ///< lockstep: a STEP is under way
     bool stepped = false;                      ///< lockstep: this cycle was decided and sent
+    std::vector<Edge> edges;        ///< [odom] of the behaviors' map near the robot, whoever drives
+    std::uint64_t edges_cycle = 0;  ///< in which they came
   };
   /// The newest accepted command of a role.
   struct Driver {

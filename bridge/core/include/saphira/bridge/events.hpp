@@ -26,6 +26,7 @@ struct DriveCommand {
   authority::Command command;  ///< without the time: the core sets it
   reflector::Motion motion;    ///< without the driver: the core sets it
   double contact_speed = 0.0;  ///< [m/s] for wanted contact; 0: none
+  std::vector<Edge> edges;     ///< [odom] of the map of the behaviors, near the robot
   std::string wrong;           ///< the parts that could not be converted; empty: none
 };
 

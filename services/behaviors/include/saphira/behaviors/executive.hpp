@@ -118,6 +118,7 @@ class Executive {
   /// Contact is wanted where every behavior that contributes to the speed wants it: the least of
   /// their limits. An active avoiding behavior forbids contact.
   double contact_speed(const std::vector<Blended>& blended) const;
+  void sweep(const RobotNow& robot, Output& output);
   /// True where no newer intent has come for the lease.
   bool silent(const Inputs& inputs) const;
   /// The error from the intent's age; empty: none.
@@ -147,6 +148,7 @@ class Executive {
   std::vector<Missing> missing_;
   std::uint64_t newest_intent_ = 0;  ///< its cycle
   std::uint64_t intent_came_ = 0;    ///< the cycle of its arrival
+  std::uint64_t held_ = 0;           ///< [cycles] without motion, though it wants to drive
   bool backwards_ = false;           ///< the robot was told to go backwards in the cycle before
   PeakAge intent_age_;               ///< beyond the ordinary
 };

@@ -19,6 +19,7 @@
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
 #include "saphira/lps/seen_thing.hpp"
+#include "saphira/maps/line_map.hpp"
 
 namespace saphira::intentions {
 
@@ -121,6 +122,7 @@ class Core {
     /// none.
     std::optional<std::vector<Vec2>> way;
     SpeedLimit limit;            ///< for the intended behaviors
+    std::vector<Edge> edges;     ///< [odom] of the map near the robot
     std::optional<double> look;  ///< [rad] the direction that the head has to turn to
     Notes notes;
   };
@@ -159,6 +161,7 @@ class Core {
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
+  std::vector<Edge> edges_near(const intentions::Inputs& now) const;
   SpeedLimit limit_of(const intentions::Inputs& now, const intentions::Outputs& intended) const;
   void tell(const News& news, Notes& notes);
   std::string who_is_gone(const Inputs& inputs);
@@ -183,6 +186,7 @@ class Core {
   std::vector<lps::SonarReading> readings_;
   std::shared_ptr<const maps::Map> map_;
   std::shared_ptr<const maps::Topology> topology_;
+  std::shared_ptr<const maps::LineMap> lines_;  ///< of the map
   std::uint64_t map_revision_ = 0;
   std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
   std::deque<MapNews> newer_maps_;     ///< lockstep: newer than the present cycle

@@ -22,6 +22,7 @@ struct MemorySettings {
   double least = -4.0;          ///< ...or below this
   double obstacle = 0.8;        ///< belief that makes an obstacle
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
+  double fading_a_metre = 1.0;  ///< of all beliefs, for each metre that the robot drives
 };
 
 /// The settings for sonars that hear up to `range` [m]. Below 1 m the grid is finer, since a cone
@@ -47,6 +48,8 @@ class ObstacleMemory {
   void echo(const Pose& sonar_in_odom, double range);
   /// A beam met nothing.
   void silence(const Pose& sonar_in_odom);
+  /// A beam was free up to an echo at `range` [m], which another memory takes.
+  void free_before(const Pose& sonar_in_odom, double range);
   /// The robot has hit an obstacle here.
   void touch(const Vec2& at_in_odom);
   /// A cycle has passed, with this pose of the robot: before the beams of the cycle.
@@ -67,7 +70,8 @@ class ObstacleMemory {
 
   MemorySettings settings_;
   bool placed_ = false;
-  long column0_ = 0;  ///< of the grid's corner, in cells of odom
+  Vec2 robot_in_odom_{0.0, 0.0};  ///< of the last move_to
+  long column0_ = 0;              ///< of the grid's corner, in cells of odom
   long row0_ = 0;
   std::vector<double> beliefs_;  ///< by rows
   std::vector<Vec2> points_;
