@@ -53,7 +53,7 @@ set(CPACK_DEBIAN_CORE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_CORE_PACKAGE_DEPENDS "adduser")
 set(CPACK_DEBIAN_CORE_PACKAGE_RECOMMENDS "bash-completion")
 set(CPACK_DEBIAN_CORE_PACKAGE_SUGGESTS "chromium, saphira-doc")
-set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${package}/postinst;${package}/postrm")
+set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${package}/postinst;${package}/prerm;${package}/postrm")
 set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_COMPONENT_CORE_DESCRIPTION
   "Programs that control a mobile robot: a bridge to its controller, a

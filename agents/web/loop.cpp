@@ -1,8 +1,14 @@
 #include "loop.hpp"
 
+#include <arpa/inet.h>
+#include <net/if.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstring>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -12,6 +18,10 @@ namespace saphira::web {
 namespace {
 
 constexpr const char* kDescriptor = "descriptor";
+constexpr lws_usec_t kRenewal = 2'000'000;  // [us] between two looks at the certificates
+constexpr std::size_t kLongestHeader = 1024;
+constexpr unsigned short kLongestHeaders =
+    16384;  // of a request: cookies of others, behind a proxy
 
 int readable(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
              std::size_t /*size*/) {
@@ -21,12 +31,89 @@ int readable(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/
   return 0;
 }
 
+/// Changes with each change of the file.
+std::string state_of(const std::string& file) {
+  struct stat state {};
+  if (stat(file.c_str(), &state) != 0)
+    return {};
+  return std::to_string(state.st_ino) + " " + std::to_string(state.st_size) + " " +
+         std::to_string(state.st_mtim.tv_sec) + "." + std::to_string(state.st_mtim.tv_nsec);
+}
+
 }  // namespace
 
+/// Two files, as they were when they were read last.
+struct Loop::Certificate {
+  std::string file;
+  std::string key_file;
+  std::string seen;  ///< state of the files
+  std::string read;  ///< likewise, when they were read last
+  std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> renewed{nullptr, SSL_CTX_free};
+
+  std::string state() const { return state_of(file) + " " + state_of(key_file); }
+  bool renew();
+  static int serve(SSL* ssl, void* certificate);
+};
+
+/// False: the files do not fit.
+bool Loop::Certificate::renew() {
+  std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> next(SSL_CTX_new(TLS_server_method()),
+                                                         SSL_CTX_free);
+  const bool fits =
+      next != nullptr && SSL_CTX_use_certificate_chain_file(next.get(), file.c_str()) == 1 &&
+      SSL_CTX_use_PrivateKey_file(next.get(), key_file.c_str(), SSL_FILETYPE_PEM) == 1 &&
+      SSL_CTX_check_private_key(next.get()) == 1;
+  ERR_clear_error();  // libwebsockets would take it for its own
+  if (fits)
+    renewed = std::move(next);
+  return fits;
+}
+
+/// Before each handshake. Its key may be of another kind than that of the first certificate.
+int Loop::Certificate::serve(SSL* ssl, void* certificate) {
+  SSL_CTX* const renewed = static_cast<Certificate*>(certificate)->renewed.get();
+  if (renewed == nullptr)
+    return 1;
+  STACK_OF(X509)* chain = nullptr;
+  SSL_CTX_get0_chain_certs(renewed, &chain);
+  SSL_certs_clear(ssl);
+  return SSL_use_cert_and_key(ssl, SSL_CTX_get0_certificate(renewed),
+                              SSL_CTX_get0_privatekey(renewed), chain, 1);
+}
+
 std::string header(lws* wsi, lws_token_indexes which) {
-  std::array<char, 1024> text{};
+  std::array<char, kLongestHeader> text{};
   const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+std::string custom_header(lws* wsi, const char* name) {
+  std::array<char, kLongestHeader> text{};
+  if (lws_hdr_custom_copy(wsi, text.data(), static_cast<int>(text.size()), name,
+                          static_cast<int>(std::strlen(name))) <= 0)
+    return {};
+  const std::string_view value = text.data();
+  const std::size_t first = value.find_first_not_of(" \t");
+  if (first == std::string_view::npos)
+    return {};
+  return std::string(value.substr(first, value.find_last_not_of(" \t") - first + 1));
+}
+
+std::string host(lws* wsi) {
+  const std::string asked = custom_header(wsi, "x-forwarded-host:");
+  return asked.empty() ? header(wsi, WSI_TOKEN_HOST) : asked.substr(0, asked.find(','));
+}
+
+bool is_here(lws* wsi) {
+  const std::string address = peer(wsi);
+  const auto has = [wsi](std::string_view name) {
+    return lws_hdr_custom_length(wsi, name.data(), static_cast<int>(name.size())) >= 0;
+  };
+  return (address.starts_with("127.") || address == "::1") &&
+         lws_hdr_total_length(wsi, WSI_TOKEN_X_FORWARDED_FOR) <= 0 &&
+         lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_X_REAL_IP) <= 0 &&
+         lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_VIA) <= 0 && !has("forwarded:") &&
+         !has("x-forwarded-host:") && !has("x-forwarded-proto:");
 }
 
 std::string peer(lws* wsi) {
@@ -47,6 +134,7 @@ Loop::Loop(void* owner, unsigned most, bool encrypts) {
   if (encrypts)
     info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   info.fd_limit_per_thread = most;
+  info.max_http_header_data = kLongestHeaders;
   info.user = owner;
   info.gid = static_cast<gid_t>(-1);
   info.uid = static_cast<uid_t>(-1);
@@ -57,6 +145,59 @@ Loop::Loop(void* owner, unsigned most, bool encrypts) {
 
 Loop::~Loop() {
   lws_context_destroy(context_);
+}
+
+lws_vhost* Loop::listen(lws_context_creation_info info, const Place& place) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  const bool is_ipv4 = inet_pton(AF_INET, place.address.c_str(), bytes.data()) == 1;
+  // libwebsockets reports no error for another word, and listens nowhere.
+  if (!is_ipv4 && inet_pton(AF_INET6, place.address.c_str(), bytes.data()) != 1 &&
+      if_nametoindex(place.address.c_str()) == 0)
+    throw std::invalid_argument(
+        "--listen: expected an address or an interface of this machine, such as 0.0.0.0, found \"" +
+        place.address + "\"");
+  // With IPv6, libwebsockets 4.1 takes an IPv4 address for every address of this machine.
+  if (is_ipv4)
+    info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  info.options |= LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
+  info.iface =
+      place.address == "0.0.0.0" ? nullptr : addresses_.emplace_back(place.address).c_str();
+  info.port = place.port;
+  if (!place.certificate.empty()) {
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    info.ssl_cert_filepath = place.certificate.c_str();
+    info.ssl_private_key_filepath = place.certificate_key.c_str();
+    Certificate& certificate = certificates_.emplace_back();
+    certificate.file = place.certificate;
+    certificate.key_file = place.certificate_key;
+    certificate.seen = certificate.read = certificate.state();
+    info.user = &certificate;
+  }
+  return lws_create_vhost(context_, &info);
+}
+
+int Loop::otherwise(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  if (reason != LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS)
+    return lws_callback_http_dummy(wsi, reason, user, in, size);
+  SSL_CTX_set_cert_cb(static_cast<SSL_CTX*>(user), Certificate::serve,
+                      lws_vhost_user(static_cast<lws_vhost*>(in)));
+  return 0;
+}
+
+void Loop::serve_renewed(std::function<void(const std::string&)> say) {
+  every(kRenewal, [this, say = std::move(say)] {
+    for (Certificate& each : certificates_) {
+      const std::string state = each.state();
+      // Two files: they may be in the middle of their change.
+      if (std::exchange(each.seen, state) != state || each.read == state)
+        continue;
+      each.read = state;
+      say(each.file + (each.renew() ? " has changed, and is served from now on"
+                                    : " or " + each.key_file +
+                                          " has changed, and they do not fit: the certificate "
+                                          "from before is still served"));
+    }
+  });
 }
 
 void Loop::watch(lws_vhost* vhost, int fd, std::function<void()> readable) {

@@ -48,6 +48,7 @@ class StatusView {
       text += "trouble: " + trouble + "\n";
     if (const std::string second = second_deployment(all); !second.empty())
       text += second + "\n";
+    text += situation::clocks_apart(all);
     for (const auto& [instance, words] : started_again_)
       text += words + "\n";
     return text + silent_peers();
@@ -68,6 +69,13 @@ class StatusView {
     for (const auto& [id, status] : statuses_)
       now.statuses.push_back(status);
     return now;
+  }
+
+  /// Rises with all that is noticed, and again when it is heard.
+  std::size_t news() const {
+    const auto heard = [](const v1::Stamp& stamp) { return stamp.cycle() > 0 ? 1U : 0U; };
+    return processes_.news() + robots_.matched() + behaviors_.matched() + intentions_.matched() +
+           heard(robot_) + heard(behaved_) + heard(intended_);
   }
 
   bool anybody() const { return !processes_.all().empty(); }
@@ -103,7 +111,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   bus::Node node(options);
   StatusView view(node);
   const auto refresh = [&view] { view.poll(); };
-  poll_for(node, listening_time(node), stop, refresh);
+  listen(node, stop, refresh, [&view] { return view.news(); });
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
     return view.anybody() ? bus::kExitOk : bus::kExitFailed;

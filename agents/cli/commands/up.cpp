@@ -168,12 +168,13 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
     return std::nullopt;
   bus::Node node(options);
   Processes processes(node);
-  poll_for(node, listening_time(node), stop, [&] { processes.poll(); });
-  for (const auto& [status, age, namesake] : processes.all())
-    if (names.contains(status.name()) && age <= kLostAge)
-      return Taken{status.name() + " (process " + std::to_string(status.pid()) + " at " +
-                       status.host() + ")",
-                   status.host() == node.status().host()};
+  listen(
+      node, stop, [&] { processes.poll(); }, [&] { return processes.news(); });
+  for (const SeenProcess& each : processes.all())
+    if (names.contains(each.status.name()) && each.age <= kLostAge)
+      return Taken{each.status.name() + " (process " + std::to_string(each.status.pid()) + " at " +
+                       each.status.host() + ")",
+                   each.status.host() == node.status().host()};
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <string_view>
@@ -18,18 +19,23 @@ void Processes::poll() {
     Entry& entry = entries_[sample.data.instance()];
     entry.gone = sample.info.disposed;
     if (!sample.info.disposed) {
+      entry.age = entry.samples++ == 0 ? sample.info.age : std::min(entry.age, sample.info.age);
       entry.status = sample.data;
       entry.came = Clock::now();
     }
   }
+  if (news() > news_)
+    changed_ = Clock::now();
+  news_ = news();
 }
 
 std::vector<SeenProcess> Processes::all() const {
   std::vector<SeenProcess> processes;
   for (const auto& [instance, entry] : entries_)
     if (!entry.gone && !entry.status.name().empty())
-      processes.push_back(
-          {entry.status, seconds_since(entry.came), bus::has_namesake(entry.status)});
+      // The first sample may be that of a program which hangs: old, and kept for late readers.
+      processes.push_back({entry.status, seconds_since(entry.came), bus::has_namesake(entry.status),
+                           entry.samples > 1 || entry.age < 0.0 ? entry.age : 0.0});
   return processes;
 }
 
@@ -126,10 +132,26 @@ std::chrono::milliseconds listening_time(const bus::Node& node) {
   return std::chrono::milliseconds(node.identity() ? 2600 : 1300);
 }
 
+void listen(bus::Node& node, const bus::Stop& stop, const std::function<void()>& poll,
+            const std::function<std::size_t()>& news) {
+  constexpr std::chrono::seconds kMost{10};
+  const auto began = Clock::now();
+  auto changed = began;
+  std::size_t before = news();
+  while (!stop.requested() && Clock::now() - changed < listening_time(node) &&
+         Clock::now() - began < kMost) {
+    node.wait(std::chrono::milliseconds(50), &stop);
+    poll();
+    if (news() > before)
+      changed = Clock::now();
+    before = news();
+  }
+}
+
 std::string absence(const bus::Node& node, const Processes& processes, const std::string& program) {
   const situation::Situation known = processes.situation();
   const std::chrono::duration<double> needed = listening_time(node);
-  if (is_heard(known.programs, program) || known.listened < needed.count())
+  if (is_heard(known.programs, program) || processes.quiet() < needed.count())
     return {};
   if (known.programs.empty())
     return who_is_there(node.options(), processes);

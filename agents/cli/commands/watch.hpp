@@ -48,6 +48,10 @@ class Processes {
 
   void poll();
   std::vector<SeenProcess> all() const;
+  /// Rises with each program that is noticed, and again when it is heard.
+  std::size_t news() const { return reader_.matched() + entries_.size(); }
+  /// [s] since that has changed.
+  double quiet() const { return seconds_since(changed_); }
   /// The part of the robot's situation that comes from the status, without cyclic topics.
   situation::Situation situation() const;
   /// Of all seen processes, including ended ones.
@@ -58,10 +62,14 @@ class Processes {
     v1::ServiceStatus status;
     Clock::time_point came;
     bool gone = false;  ///< after a clean end
+    int samples = 0;
+    double age = 0.0;  ///< [s] least age of a sample, by the clocks of both machines
   };
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
   Clock::time_point began_ = Clock::now();
+  std::size_t news_ = 0;
+  Clock::time_point changed_ = began_;
 };
 
 /// Warns once when two deployments have this robot, in any command.
@@ -95,8 +103,13 @@ std::string who_is_there(const bus::NodeOptions& options, const Processes& proce
 /// The program that answers requests on agents/solve.
 inline constexpr const char* kFacilitator = "facilitator";
 
-/// The time after which every living program has reported: the status comes once a second.
+/// The time after which every living program has reported that was noticed: the status comes once a
+/// second.
 std::chrono::milliseconds listening_time(const bus::Node& node);
+/// Polls until `news`, which rises with all that is noticed and heard, has stayed the same for that
+/// time: on a slow network later. For 10 s at most.
+void listen(bus::Node& node, const bus::Stop& stop, const std::function<void()>& poll,
+            const std::function<std::size_t()>& news);
 
 /// That this program is not heard, in words. Empty: it is, or may not have reported yet.
 std::string absence(const bus::Node& node, const Processes& processes, const std::string& program);

@@ -4,11 +4,13 @@ namespace saphira::cli {
 
 std::string second_deployment(const std::vector<SeenProcess>& processes) {
   std::string programs;
-  for (const auto& [status, age, namesake] : processes)
-    if (namesake && age <= kLostAge)
+  for (const SeenProcess& process : processes) {
+    const v1::ServiceStatus& status = process.status;
+    if (process.namesake && process.age <= kLostAge)
       programs += (programs.empty() ? "" : ", ") + status.name() +
                   (status.state() == v1::SERVICE_WAITING ? " (waits, process " : " (process ") +
                   std::to_string(status.pid()) + " at " + status.host() + ")";
+  }
   if (programs.empty())
     return {};
   return "two deployments have this robot; a second time there are: " + programs +

@@ -51,7 +51,9 @@ std::string status_table(std::vector<SeenProcess> processes) {
   std::vector<std::vector<std::string>> rows{{"NAME", "STATE", "AGE s", "EPOCH", "CYCLE", "LATE",
                                               "STEP ms", "MAX", "CPU %", "MB", "HOST", "PID",
                                               "REASON"}};
-  for (const auto& [status, age, namesake] : processes) {
+  for (const SeenProcess& process : processes) {
+    const v1::ServiceStatus& status = process.status;
+    const double age = process.age;
     const bool lost = age > kLostAge;
     rows.push_back(
         {status.name(), lost ? "lost" : name_of(status.state()), format("%.1f", age),

@@ -1,5 +1,6 @@
 #include "dialer.hpp"
 
+#include <openssl/x509_vfy.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "loop.hpp"
+#include "server.hpp"
 #include "splice.hpp"
 
 namespace saphira::console {
@@ -51,6 +53,7 @@ struct Dialer::Impl {
   Leg dial{this, 0};
   int pause = 1;  // [s]
   bool is_lost = false;
+  std::string distrust;  // the reason against the relay's certificate
   struct Timer {
     lws_sorted_usec_list_t list{};
     Impl* impl = nullptr;
@@ -61,6 +64,7 @@ struct Dialer::Impl {
   bool connect(const std::string& path, const char* protocol, Leg& leg);
   void dial_now();
   void dial_later(const std::string& why);
+  std::string words_of(std::string_view error);
   void heard(std::string_view line);
   void fetch(const std::string& ticket);
   void ended(std::uint64_t visitor, Splice::Side side);
@@ -75,6 +79,17 @@ struct Dialer::Impl {
   static int on_server(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                        std::size_t size);
 };
+
+/// Of a failure to dial, from the words of libwebsockets.
+std::string Dialer::Impl::words_of(std::string_view error) {
+  if (!distrust.empty())
+    return "its certificate is not accepted: " + std::exchange(distrust, {}) +
+           "; --dial-authority has to be that certificate, or its authority's, with HOST as a name "
+           "in it";
+  if (error.find("unauthorized") != std::string_view::npos)
+    return "it has no robot " + options.address.robot + " with the token of --dial-token-file";
+  return error.empty() ? "no answer" : std::string(error);
+}
 
 /// A WebSocket to the relay.
 bool Dialer::Impl::connect(const std::string& path, const char* protocol, Leg& leg) {
@@ -132,9 +147,8 @@ void Dialer::Impl::fetch(const std::string& ticket) {
   lws_client_connect_info local{};
   local.context = loop->context();
   local.vhost = vhost;
-  local.address = "127.0.0.1";
+  local.address = kRelayed;
   local.port = options.port;
-  local.iface = kRelayed;
   local.method = "RAW";
   local.local_protocol_name = "server";
   local.opaque_user_data = &visitor.leg;
@@ -165,7 +179,7 @@ bool Dialer::Impl::authorize(lws* wsi, void* in, std::size_t size) const {
                                       static_cast<int>(value.size()), at, *at + size) == 0;
 }
 
-int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
+int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                           std::size_t size) {
   const auto text = [&] {
     return in == nullptr ? std::string_view() : std::string_view(static_cast<char*>(in), size);
@@ -177,7 +191,12 @@ int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* /*user*/,
       leg_of(wsi).impl->heard(text());
       return 0;
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-      leg_of(wsi).impl->dial_later(text().empty() ? "no answer" : std::string(text()));
+      leg_of(wsi).impl->dial_later(leg_of(wsi).impl->words_of(text()));
+      return 0;
+    case LWS_CALLBACK_OPENSSL_PERFORM_SERVER_CERT_VERIFICATION:
+      if (size == 0)  // it is not accepted
+        leg_of(wsi).impl->distrust = X509_verify_cert_error_string(
+            X509_STORE_CTX_get_error(static_cast<X509_STORE_CTX*>(user)));
       return 0;
     case LWS_CALLBACK_CLIENT_CLOSED:
       leg_of(wsi).impl->dial_later("the connection has ended");

@@ -8,15 +8,11 @@
 
 namespace saphira::console {
 
-/// The dialer connects to the server from this address: a connection from there counts as remote,
-/// not as from this machine.
-constexpr const char* kRelayed = "127.0.0.77";
-
 struct DialOptions {
   relay::Address address;
   std::string token;
   std::string authority;  ///< PEM file to check the relay's certificate; empty: the system's
-  int port = 0;           ///< of our server
+  int port = 0;           ///< of our server, at kRelayed
 };
 
 /// Keeps a connection to a relay, and opens one to our server for each visitor of the relay. In a

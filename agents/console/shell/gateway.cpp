@@ -31,11 +31,12 @@ std::string host_name() {
 ServerOptions server_of(const GatewayOptions& options, const Kept& kept) {
   ServerOptions server = options.server;
   server.before = kept.port;
+  server.relayed = options.dial.has_value();
   return server;
 }
 
 AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
-  AccessSettings access{kept.key, options.names};
+  AccessSettings access{kept.key, options.names, 0, options.always_key};
   access.names.push_back(host_name());
   access.names.push_back(host_name() + ".local");
   if (options.dial)
@@ -43,10 +44,14 @@ AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
   return access;
 }
 
-/// The address for people, without the port.
-std::string origin_of(const ServerOptions& options) {
-  return (options.certificate.empty() ? "http://" : "https://") +
-         (options.address == "127.0.0.1" ? "localhost" : host_name());
+/// The address for people, without the port. A certificate has the name of this machine.
+std::string origin_of(const web::Place& place) {
+  const std::string& address = place.address;
+  const bool in_digits = address.find_first_not_of("0123456789.") == std::string::npos;
+  return (place.certificate.empty() ? "http://" : "https://") +
+         (address == "127.0.0.1" || address == "::1"                       ? "localhost"
+          : in_digits && address != "0.0.0.0" && place.certificate.empty() ? address
+                                                                           : host_name());
 }
 
 }  // namespace
@@ -69,10 +74,11 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options)
 
 Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept)
     : access_(access_of(options, kept)),
-      origin_(origin_of(options.server)),
+      origin_(origin_of(options.server.place)),
       node_(node),
       server_(server_of(options, kept), access_, page_files(), events()) {
-  keep_port(options.key_file, kept, server_.port());
+  access_.port = server_.port();
+  keep_port(options.key_file, kept, access_.port);
   feed_all();
   board_.put(board_.topic("console"), "",
              "{\"robot\":" + quoted(node.robot) + ",\"host\":" + quoted(host_name()) +
@@ -84,7 +90,8 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
   server_.watch(node_.wake_fd());
   if (options.dial)
     dialer_.emplace(
-        DialOptions{*options.dial, options.dial_token, options.dial_authority, server_.port()},
+        DialOptions{*options.dial, options.dial_token, options.dial_authority,
+                    server_.relayed_port()},
         [host = options.dial->host, key = access_.key](int port) {
           std::printf("open https://%s:%d/#%s\n", host.c_str(), port, key.c_str());
           std::fflush(stdout);

@@ -25,6 +25,7 @@ namespace saphira::console {
 struct GatewayOptions {
   ServerOptions server;
   std::vector<std::string> names;      ///< further host names of this machine
+  bool always_key = false;             ///< for watching from this machine, too
   std::string simulator;               ///< socket of a simulator's own view; empty: none
   std::optional<relay::Address> dial;  ///< a relay for further access
   std::string dial_token;              ///< our token there

@@ -45,20 +45,24 @@ int main(int argc, char** argv) {
   return bus::run_program(
       argc, argv, "console", "Shows the robot in a browser, and lets people drive it from there.",
       [&](CommandLine& app) {
-        app.add_option("--listen", options.server.address,
-                       "address to listen on; 0.0.0.0: every one of this machine");
-        app.add_option("--port", options.server.port,
+        app.add_option("--listen", options.server.place.address,
+                       "address to listen on; 0.0.0.0: every one of IPv4, :: of IPv6, too");
+        app.add_option("--port", options.server.place.port,
                        "the first port to try, of 20; 0: any that is free")
             .in_range(0, 65500);
-        const Option key = app.add_option("--certificate-key", options.server.certificate_key,
+        const Option key = app.add_option("--certificate-key", options.server.place.certificate_key,
                                           "PEM file, of the certificate")
                                .existing_file();
-        const Option certificate = app.add_option("--certificate", options.server.certificate,
+        const Option certificate = app.add_option("--certificate", options.server.place.certificate,
                                                   "PEM file: the page is served by HTTPS")
                                        .existing_file()
                                        .needs(key);
         key.needs(certificate);
-        app.add_option("--host-name", options.names, "a further name of this machine");
+        app.add_option("--host-name", options.names,
+                       "a further name of this machine, or of a proxy before it");
+        app.add_flag("--always-key", options.always_key,
+                     "the key is needed for watching from this machine, too: where a tunnel ends "
+                     "here that says nothing of who comes by it");
         const Option token =
             app.add_option("--dial-token-file", token_file,
                            "file with the token that the relay knows this robot by")
@@ -93,17 +97,17 @@ int main(int argc, char** argv) {
         }
         if (!options.dial_authority.empty())
           security::check_dial_authority(options.dial_authority);
-        if (!options.server.certificate.empty()) {
-          const std::string trouble =
-              security::check_pair(options.server.certificate, options.server.certificate_key,
-                                   static_cast<std::int64_t>(unix_time()));
+        if (!options.server.place.certificate.empty()) {
+          const std::string trouble = security::check_pair(options.server.place.certificate,
+                                                           options.server.place.certificate_key,
+                                                           static_cast<std::int64_t>(unix_time()));
           if (!trouble.empty())
             std::fprintf(stderr, "saphira-console: %s\n", trouble.c_str());
         }
         if (node.dry_run)  // its files were checked
           return static_cast<int>(bus::kExitOk);
         if (!screenshot.file.empty())
-          options.server.port = 0;
+          options.server.place.port = 0;
         console::Gateway gateway(node, options);
         if (!screenshot.file.empty())
           return picture(gateway, screenshot);

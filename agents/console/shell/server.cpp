@@ -1,18 +1,14 @@
 #include "server.hpp"
 
-#include <arpa/inet.h>
-#include <net/if.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <map>
 #include <stdexcept>
 #include <utility>
-
-#include "dialer.hpp"
-#include "loop.hpp"
 
 namespace saphira::console {
 
@@ -23,9 +19,10 @@ using web::header;
 constexpr std::size_t kMostConnections = 96;  // WebSockets; a page has two, one that drives four
 constexpr unsigned kMostDescriptors = 192;
 constexpr std::size_t kLongestMessage = 4096;
-constexpr int kSendBuffer = 128 * 1024;  // the kernel's buffer for a slow browser
-constexpr int kTick = 50'000;            // [us]
-constexpr int kTogether = 10'000;        // [us]
+constexpr int kSendBuffer = 128 * 1024;          // the kernel's buffer for a slow browser
+constexpr int kTick = 50'000;                    // [us]
+constexpr int kTogether = 10'000;                // [us]
+constexpr std::string_view kAccess = "/access";  // why a page may not connect; empty: it may
 constexpr const char* kTelemetry = "saphira.telemetry";
 constexpr const char* kCommands = "saphira.commands";
 constexpr const char* kSimulator = "saphira.simulator";
@@ -34,23 +31,10 @@ constexpr const char* kSecurityPolicy =
     "img-src 'self' data:; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
 
-Caller caller_of(lws* wsi) {
-  const std::string address = web::peer(wsi);
-  return {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN),
-          address != kRelayed && (address.starts_with("127.") || address == "::1")};
-}
-
 Channel channel_of(const char* protocol) {
   return std::strcmp(protocol, kCommands) == 0    ? Channel::commands
          : std::strcmp(protocol, kSimulator) == 0 ? Channel::simulator
                                                   : Channel::telemetry;
-}
-
-/// libwebsockets reports no error for another word, and listens nowhere.
-bool is_address(const std::string& text) {
-  std::array<unsigned char, sizeof(in6_addr)> bytes{};
-  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
-         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1 || if_nametoindex(text.c_str()) != 0;
 }
 
 }  // namespace
@@ -73,6 +57,7 @@ struct Server::Impl {
   Events events;
   std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
+  lws_vhost* relayed = nullptr;  // null: nobody comes by a relay
   std::map<Connection, Open> open;
   Connection last = 0;
   bool soon = false;
@@ -84,7 +69,10 @@ struct Server::Impl {
   };
   Timer together;
 
-  int answer_http(lws* wsi, Http& http, const char* path);
+  Caller caller_of(lws* wsi) const;
+  static bool begin_answer(lws* wsi, unsigned status, const std::string& type, std::size_t size);
+  static int say(lws* wsi, unsigned status, const std::string& text);
+  int answer_http(lws* wsi, Http& http, std::string_view path);
   int send_http(lws* wsi, Http& http) const;
   int filter(lws* wsi) const;
   void established(lws* wsi, Socket& socket, Channel channel);
@@ -100,24 +88,13 @@ struct Server::Impl {
   static Impl& of(lws_sorted_usec_list_t* list) { return *reinterpret_cast<Timer*>(list)->impl; }
 };
 
-int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
-  // A request behind another one, which is being answered, or one with a body: see web::kAnswered.
-  if (http.file != nullptr || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 ||
-      lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0)
-    return -1;
-  const std::string why = refusal(access, caller_of(wsi));
-  if (!why.empty()) {
-    lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why.c_str());
-    return -1;
-  }
-  const std::string name = std::string(path) == "/" ? "/index.html" : path;
-  const auto file =
-      std::find_if(files.begin(), files.end(), [&](const PageFile& f) { return f.path == name; });
-  if (file == files.end()) {
-    lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND, "There is only the page: /");
-    return web::kAnswered;
-  }
-  http.file = &*file;
+Caller Server::Impl::caller_of(lws* wsi) const {
+  return {web::host(wsi), header(wsi, WSI_TOKEN_ORIGIN),
+          lws_get_vhost(wsi) != relayed && web::is_here(wsi)};
+}
+
+bool Server::Impl::begin_answer(lws* wsi, unsigned status, const std::string& type,
+                                std::size_t size) {
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
   unsigned char* const begin = buffer.data() + LWS_PRE;
   unsigned char* at = begin;
@@ -127,12 +104,51 @@ int Server::Impl::answer_http(lws* wsi, Http& http, const char* path) {
                                        reinterpret_cast<const unsigned char*>(value.c_str()),
                                        static_cast<int>(value.size()), &at, end) == 0;
   };
-  if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, file->type.c_str(), file->content.size(),
-                                  &at, end) != 0 ||
-      !add("content-security-policy:", kSecurityPolicy) ||
-      !add("x-content-type-options:", "nosniff") || !add("referrer-policy:", "no-referrer") ||
-      !add("cache-control:", "no-cache") || !add("connection:", "close") ||
-      lws_finalize_write_http_header(wsi, begin, &at, end) != 0)
+  return lws_add_http_common_headers(wsi, status, type.c_str(), size, &at, end) == 0 &&
+         add("content-security-policy:", kSecurityPolicy) &&
+         add("x-content-type-options:", "nosniff") && add("referrer-policy:", "no-referrer") &&
+         add("cache-control:", "no-cache") && add("connection:", "close") &&
+         lws_finalize_write_http_header(wsi, begin, &at, end) == 0;
+}
+
+int Server::Impl::say(lws* wsi, unsigned status, const std::string& text) {
+  if (!begin_answer(wsi, status, "text/plain; charset=utf-8", text.size()))
+    return -1;
+  std::vector<unsigned char> buffer(LWS_PRE + text.size());
+  std::memcpy(buffer.data() + LWS_PRE, text.data(), text.size());
+  lws_write(wsi, buffer.data() + LWS_PRE, text.size(), LWS_WRITE_HTTP_FINAL);
+  return web::kAnswered;
+}
+
+int Server::Impl::answer_http(lws* wsi, Http& http, std::string_view path) {
+  // A request behind another one, which is being answered, or one with a body: see web::kAnswered.
+  if (http.file != nullptr || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 ||
+      lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0)
+    return -1;
+  Caller caller = caller_of(wsi);
+  // A proxy may pass its own path on.
+  const std::string_view name = path.substr(std::min(path.rfind('/'), path.size()));
+  // A page cannot read why its WebSocket was refused.
+  if (name == kAccess) {
+    std::array<char, 300> argument{};
+    const char* const origin =
+        lws_get_urlarg_by_name(wsi, "origin=", argument.data(), static_cast<int>(argument.size()));
+    caller.origin = origin == nullptr ? "" : origin;
+    return say(wsi, HTTP_STATUS_OK, refusal(access, caller));
+  }
+  // A browser names the origin of a script too, and it is the script that asks for the reason.
+  if (name != "/")
+    caller.origin.clear();
+  if (const std::string why = refusal(access, caller); !why.empty())
+    return say(wsi, HTTP_STATUS_FORBIDDEN, why + "\n");
+  const auto file = std::find_if(files.begin(), files.end(), [&](const PageFile& f) {
+    return f.path == (name == "/" ? "/index.html" : name);
+  });
+  if (file == files.end())
+    return say(wsi, HTTP_STATUS_NOT_FOUND,
+               "There is only the page; its address ends with a slash: /\n");
+  http.file = &*file;
+  if (!begin_answer(wsi, HTTP_STATUS_OK, file->type, file->content.size()))
     return -1;
   lws_callback_on_writable(wsi);
   return 0;
@@ -212,7 +228,7 @@ int Server::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, void* 
     case LWS_CALLBACK_HTTP_WRITEABLE:
       return of(wsi).send_http(wsi, *static_cast<Http*>(user));
     default:
-      return lws_callback_http_dummy(wsi, reason, user, in, size);
+      return web::Loop::otherwise(wsi, reason, user, in, size);
   }
 }
 
@@ -240,10 +256,6 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
 Server::Server(const ServerOptions& options, const AccessSettings& access,
                std::vector<PageFile> files, Events events)
     : impl_(std::make_unique<Impl>()) {
-  if (!is_address(options.address))
-    throw std::invalid_argument(
-        "--listen: expected an address or an interface of this machine, such as 0.0.0.0, found \"" +
-        options.address + "\"");
   impl_->access = access;
   impl_->files = std::move(files);
   impl_->events = std::move(events);
@@ -257,38 +269,39 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
   // A sleeping or disconnected browser is dropped after half a minute.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 10, 30, 0};
 
-  const bool encrypts = !options.certificate.empty();
+  web::Place place = options.place;
+  const bool encrypts = !place.certificate.empty();
   impl_->loop.emplace(impl_.get(), kMostDescriptors, encrypts);
+  impl_->loop->serve_renewed(
+      [](const std::string& text) { std::fprintf(stderr, "saphira-console: %s\n", text.c_str()); });
   lws_context_creation_info info{};
-  if (encrypts)
-    info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   info.protocols = protocols.data();
-  info.iface = options.address == "0.0.0.0" ? nullptr : options.address.c_str();
   info.timeout_secs = 5;  // for clients without a complete request
   info.keepalive_timeout = 5;
   info.retry_and_idle_policy = &patience;
   info.vhost_name = "console";
   info.alpn = "http/1.1";  // with HTTP/2, a browser has other headers and WebSockets
-  if (encrypts) {
-    info.ssl_cert_filepath = options.certificate.c_str();
-    info.ssl_private_key_filepath = options.certificate_key.c_str();
-  }
-  const int count = options.port == 0 ? 1 : std::max(1, options.ports);
+  const int first = place.port;
+  const int count = first == 0 ? 1 : std::max(1, options.ports);
   const auto listen = [&](int port) {
-    info.port = port;
-    impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
+    place.port = port;
+    return impl_->loop->listen(info, place);
   };
-  if (options.before > options.port && options.before < options.port + count)
-    listen(options.before);
+  if (options.before > first && options.before < first + count)
+    impl_->vhost = listen(options.before);
   for (int i = 0; i < count && impl_->vhost == nullptr; ++i)
-    listen(options.port + i);
-  if (impl_->vhost == nullptr)
+    impl_->vhost = listen(first + i);
+  if (options.relayed && impl_->vhost != nullptr) {
+    place.address = kRelayed;
+    info.vhost_name = "relayed";
+    impl_->relayed = listen(0);
+  }
+  if (impl_->vhost == nullptr || (options.relayed && impl_->relayed == nullptr))
     throw std::runtime_error(
-        "cannot listen on " + options.address + " port " + std::to_string(options.port) +
+        "cannot listen on " + place.address + " port " + std::to_string(first) +
         (count > 1 ? " or the " + std::to_string(count - 1) + " after it" : "") +
-        (options.certificate.empty()
-             ? ": another program has it, or it is no address of this machine"
-             : ": another program has it, or certificate and key do not fit"));
+        (!encrypts ? ": another program has it, or it is no address of this machine"
+                   : ": another program has it, or certificate and key do not fit"));
 }
 
 Server::~Server() {
@@ -297,6 +310,10 @@ Server::~Server() {
 
 int Server::port() const {
   return lws_get_vhost_listen_port(impl_->vhost);
+}
+
+int Server::relayed_port() const {
+  return lws_get_vhost_listen_port(impl_->relayed);
 }
 
 void Server::watch(int fd) {

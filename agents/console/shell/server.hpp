@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "loop.hpp"
 #include "saphira/console/access.hpp"
 
 namespace saphira::console {
@@ -20,13 +21,15 @@ struct PageFile {
 };
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< to listen on; 0.0.0.0: every one
-  int port = 8642;                    ///< the first to try; 0: any that is free
-  int ports = 20;                     ///< how many to try
-  int before = 0;                     ///< tried before them, if in their range
-  std::string certificate;            ///< a file; empty: HTTP
-  std::string certificate_key;        ///< a file
+  /// To listen on. port: the first to try.
+  web::Place place{"127.0.0.1", 8642, {}, {}};
+  int ports = 20;        ///< how many to try
+  int before = 0;        ///< tried before them, if in their range
+  bool relayed = false;  ///< visitors of a relay come too, to kRelayed
 };
+
+/// The address for visitors of a relay, who count as remote.
+constexpr const char* kRelayed = "127.0.0.77";
 
 /// The kinds of a page's connections: so that telemetry never delays a command. simulator: both
 /// ways, of the page of the simulator's own view.
@@ -58,6 +61,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   int port() const;
+  /// At kRelayed.
+  int relayed_port() const;
   /// From now on Events::readable is called when this is readable.
   void watch(int fd);
   /// There may be something to send: next() is called soon.

@@ -5,11 +5,12 @@
 namespace saphira::console {
 namespace {
 
-const AccessSettings kSettings{"0123456789abcdef", {"robot", "robot.local"}};
+const AccessSettings kSettings{"0123456789abcdef", {"robot", "Robot.local."}, 8642, false};
 
 TEST(Access, OwnNamesAndAddressesMayConnect) {
-  for (const char* host : {"localhost:8642", "127.0.0.1:8642", "[::1]:8642", "192.168.1.7:8642",
-                           "robot:8642", "robot.local", "localhost"})
+  for (const char* host :
+       {"localhost:8642", "127.0.0.1:8642", "[::1]:8642", "192.168.1.7:8642", "robot:8642",
+        "robot.local", "localhost", "LOCALHOST:8642", "Robot.Local.:8642", "localhost."})
     EXPECT_EQ(refusal(kSettings, {host, "", true}), "") << host;
 }
 
@@ -28,10 +29,44 @@ TEST(Access, APageOfSomebodyElseIsRefused) {
     EXPECT_NE(refusal(kSettings, {"localhost:8642", origin, true}), "") << origin;
 }
 
+TEST(Access, TheNameOfAProxyMayBeAnOrigin) {
+  for (const char* host : {"127.0.0.1:8642", "robot", "localhost", "192.168.1.7"})
+    for (const char* origin : {"https://robot", "http://ROBOT:8080", "https://robot.local:8443"})
+      EXPECT_EQ(refusal(kSettings, {host, origin, true}), "") << host << " " << origin;
+  // Without the port of the proxy's address.
+  EXPECT_EQ(refusal(kSettings, {"192.168.1.7", "https://192.168.1.7:8443", true}), "");
+  EXPECT_NE(refusal(kSettings, {"192.168.1.7:8642", "https://192.168.1.7:8443", true}), "");
+}
+
+TEST(Access, ARefusalNamesTheRemedyAndNothingOfAPage) {
+  const auto ends = [](const std::string& text, const char* end) { return text.ends_with(end); };
+  EXPECT_TRUE(
+      ends(refusal(kSettings, {"Proxy.example.:80", "", true}), "--host-name proxy.example"));
+  EXPECT_TRUE(ends(refusal(kSettings, {"robot", "https://proxy.example:8443", true}),
+                   "--host-name proxy.example"));
+  EXPECT_EQ(refusal(kSettings, {"<b>&", "", true}).find_first_of("<>&"), std::string::npos);
+}
+
 TEST(Access, WatchingFromThisMachineNeedsNoKey) {
-  EXPECT_TRUE(may_watch(kSettings, {"localhost", "", true}, ""));
-  EXPECT_FALSE(may_watch(kSettings, {"robot", "", false}, ""));
+  for (const char* host : {"localhost:8642", "LocalHost.:8642", "127.0.0.1:8642", "[::1]:8642"})
+    EXPECT_TRUE(may_watch(kSettings, {host, "", true}, "")) << host;
+  EXPECT_TRUE(may_watch(kSettings, {"localhost:8642", "http://localhost:8642", true}, ""));
+  EXPECT_FALSE(may_watch(kSettings, {"localhost:8642", "", false}, ""));
   EXPECT_TRUE(may_watch(kSettings, {"robot", "", false}, kSettings.key));
+  AccessSettings always = kSettings;
+  always.always = true;
+  EXPECT_FALSE(may_watch(always, {"localhost:8642", "", true}, ""));
+  EXPECT_TRUE(may_watch(always, {"localhost:8642", "", true}, kSettings.key));
+  AccessSettings usual = kSettings;
+  usual.port = 80;
+  EXPECT_TRUE(may_watch(usual, {"localhost", "http://localhost", true}, ""));
+}
+
+TEST(Access, AHostOrAnOriginOfAProxyNeedsTheKey) {
+  for (const char* host : {"robot:8642", "robot", "localhost", "localhost:8080", "192.168.1.7:8642",
+                           "[::2]:8642", "127.0.0.1", ""})
+    EXPECT_FALSE(may_watch(kSettings, {host, "", true}, "")) << host;
+  EXPECT_FALSE(may_watch(kSettings, {"127.0.0.1:8642", "https://robot", true}, ""));
 }
 
 TEST(Access, OnlyTheWholeKeyIsRight) {

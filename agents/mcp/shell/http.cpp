@@ -10,9 +10,11 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "chunks.hpp"
 #include "loop.hpp"
 
 namespace saphira::mcp {
@@ -29,17 +31,9 @@ constexpr const char* kSign = ": \r\n";  // of life, in a stream
 
 using web::header;
 
-/// Without surrounding blanks. Text that is not ASCII comes as =?base64?...?=.
-std::string custom_header(lws* wsi, const char* name) {
-  std::array<char, kLongestHeader> text{};
-  if (lws_hdr_custom_copy(wsi, text.data(), static_cast<int>(text.size()), name,
-                          static_cast<int>(std::strlen(name))) <= 0)
-    return {};
-  std::string value = text.data();
-  const std::size_t first = value.find_first_not_of(" \t");
-  if (first == std::string::npos)
-    return {};
-  value = value.substr(first, value.find_last_not_of(" \t") - first + 1);
+/// Text that is not ASCII comes as =?base64?...?=.
+std::string decoded_header(lws* wsi, const char* name) {
+  std::string value = web::custom_header(wsi, name);
   if (!value.starts_with("=?base64?") || !value.ends_with("?=") || value.size() < 11)
     return value;
   std::array<char, kLongestHeader> decoded{};
@@ -78,6 +72,8 @@ struct HttpServer::Impl {
   struct Open {
     lws* wsi = nullptr;
     HttpRequest request;
+    std::optional<web::Chunks> chunks;  // nothing: the body comes whole
+    bool is_admitted = false;           // its body is kept
     bool too_long = false;
     bool has_come = false;
     int status = 0;  // of the answer [0: none yet]
@@ -97,7 +93,7 @@ struct HttpServer::Impl {
   Exchange last = 0;
 
   int begin(lws* wsi, Connection& connection, const char* path);
-  int take(const Connection& connection, const char* data, std::size_t size);
+  int take(const Connection& connection, std::string_view data);
   int complete(const Connection& connection);
   int send(lws* wsi, Connection& connection);
   int finish(Connection& connection);
@@ -123,27 +119,41 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
                    : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0    ? "GET"
                                                                          : "";
-  request.caller = {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN), true};
+  request.caller = {web::host(wsi), header(wsi, WSI_TOKEN_ORIGIN), true};
   request.authorization = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
-  request.session = custom_header(wsi, "mcp-session-id:");
-  request.version = custom_header(wsi, "mcp-protocol-version:");
-  request.mcp_method = custom_header(wsi, "mcp-method:");
-  request.mcp_name = custom_header(wsi, "mcp-name:");
-  const bool has_body = request.method == "POST" &&
-                        header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) != "0" &&
-                        lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0;
-  return has_body ? 0 : complete(connection);
+  request.session = decoded_header(wsi, "mcp-session-id:");
+  request.version = decoded_header(wsi, "mcp-protocol-version:");
+  request.mcp_method = decoded_header(wsi, "mcp-method:");
+  request.mcp_name = decoded_header(wsi, "mcp-name:");
+  exchange.is_admitted = events.admits(request);
+  if (request.method != "POST")
+    return complete(connection);
+  if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0) {
+    exchange.chunks.emplace();
+    return 0;
+  }
+  const std::string length = header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH);
+  return length.empty() || length == "0" ? complete(connection) : 0;
 }
 
-int HttpServer::Impl::take(const Connection& connection, const char* data, std::size_t size) {
+int HttpServer::Impl::take(const Connection& connection, std::string_view data) {
   const auto found = open.find(connection.exchange);
   if (found == open.end())
     return -1;
-  std::string& body = found->second.request.body;
-  found->second.too_long = found->second.too_long || body.size() + size > kLongestBody;
-  if (!found->second.too_long)
-    body.append(data, size);
-  return 0;
+  Open& exchange = found->second;
+  if (exchange.has_come)
+    return 0;  // more than the request
+  std::string& body = exchange.request.body;
+  std::string piece;
+  if (exchange.chunks) {
+    if (!exchange.chunks->take(data, piece))
+      return -1;
+    data = piece;
+  }
+  exchange.too_long = exchange.too_long || body.size() + data.size() > kLongestBody;
+  if (!exchange.too_long && exchange.is_admitted)
+    body.append(data);
+  return exchange.chunks && exchange.chunks->ended() ? complete(connection) : 0;
 }
 
 int HttpServer::Impl::complete(const Connection& connection) {
@@ -155,7 +165,7 @@ int HttpServer::Impl::complete(const Connection& connection) {
   if (found->second.too_long) {
     found->second.status = HTTP_STATUS_REQ_ENTITY_TOO_LARGE;
     found->second.type = "text/plain";
-    found->second.body = "a message has at most 65536 bytes\n";
+    found->second.body = "a message has at most " + std::to_string(kLongestBody) + " bytes\n";
     found->second.complete = true;
     lws_callback_on_writable(found->second.wsi);
     return 0;
@@ -258,7 +268,7 @@ int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, vo
     case LWS_CALLBACK_HTTP:
       return of(wsi).begin(wsi, *connection, static_cast<const char*>(in));
     case LWS_CALLBACK_HTTP_BODY:
-      return of(wsi).take(*connection, static_cast<const char*>(in), size);
+      return of(wsi).take(*connection, {static_cast<const char*>(in), size});
     case LWS_CALLBACK_HTTP_BODY_COMPLETION:
       return of(wsi).complete(*connection);
     case LWS_CALLBACK_HTTP_WRITEABLE:
@@ -281,12 +291,10 @@ HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()
   impl_->loop.emplace(impl_.get(), kMostDescriptors, false);
   lws_context_creation_info info{};
   info.protocols = protocols.data();
-  info.iface = "127.0.0.1";
-  info.port = port;
   info.timeout_secs = 5;  // for clients without a complete request
   info.keepalive_timeout = 30;
   info.vhost_name = "mcp";
-  impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
+  impl_->vhost = impl_->loop->listen(info, {"127.0.0.1", port, {}, {}});
   if (impl_->vhost == nullptr)
     throw std::runtime_error("cannot listen on 127.0.0.1 port " + std::to_string(port) +
                              ": another program has it");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "saphira/console/access.hpp"
+#include "saphira/mcp/session.hpp"
 
 namespace saphira::mcp {
 
@@ -31,6 +32,8 @@ class HttpServer {
 
   /// The callbacks for events. Each is called from run() alone.
   struct Events {
+    /// The headers of a request have come: true for one whose body is of interest.
+    std::function<bool(const HttpRequest&)> admits;
     std::function<void(Exchange, HttpRequest)> came;
     /// The connection was lost before the complete answer.
     std::function<void(Exchange)> lost;
@@ -60,7 +63,7 @@ class HttpServer {
   /// Runs until `stop` is readable.
   void run(int stop);
 
-  static constexpr std::size_t kLongestBody = 65536;
+  static constexpr std::size_t kLongestBody = Session::kLongestLine;
 
  private:
   struct Impl;

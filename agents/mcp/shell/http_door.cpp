@@ -22,14 +22,15 @@ double now() {
 HttpDoor::HttpDoor(bus::Node& node, HttpDoorOptions options)
     : node_(node),
       options_(std::move(options)),
-      access_{options_.token, {}},
+      access_{options_.token, options_.names},
       robot_(node, options_.described),
       server_(options_.port, events()) {
   server_.watch(node.wake_fd());
 }
 
 HttpServer::Events HttpDoor::events() {
-  return {[this](Exchange exchange, const HttpRequest& request) { came(exchange, request); },
+  return {[this](const HttpRequest& request) { return has_token(request); },
+          [this](Exchange exchange, const HttpRequest& request) { came(exchange, request); },
           [this](Exchange exchange) { lost(exchange); },
           [this] {
             node_.clear_wake();
@@ -95,15 +96,21 @@ std::map<std::string, std::unique_ptr<HttpDoor::Client>>::iterator HttpDoor::end
   return clients_.erase(found);
 }
 
+bool HttpDoor::has_token(const HttpRequest& request) const {
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view given = request.authorization;
+  return given.starts_with(kBearer) && console::right_key(access_, given.substr(kBearer.size()));
+}
+
 void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   if (const std::string why = console::refusal(access_, request.caller); !why.empty())
     return refuse(exchange, 403, why);
-  if (request.path != kPath)
+  if (!request.path.ends_with(kPath))  // a proxy may pass its own path on
     return refuse(exchange, 404, "there is only /mcp");
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string_view given = request.authorization;
-  if (!given.starts_with(kBearer) || !console::right_key(access_, given.substr(kBearer.size())))
-    return refuse(exchange, 401, "expected the header Authorization: Bearer TOKEN");
+  if (!has_token(request))
+    return refuse(exchange, 401,
+                  "expected the header Authorization: Bearer TOKEN, with the first line of " +
+                      options_.token_file + " as TOKEN");
   if (request.method == "DELETE") {
     if (request.session == Clients::kNobody || !clients_.contains(request.session))
       return refuse(exchange, 404, "there is no such session");

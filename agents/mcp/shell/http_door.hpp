@@ -14,10 +14,12 @@ namespace saphira::mcp {
 struct HttpDoorOptions {
   int port = 0;       ///< 0: any that is free
   std::string token;  ///< required in every request
-  std::string who;    ///< the asker, as shown to others
+  std::string token_file;
+  std::string who;  ///< the asker, as shown to others
   std::string version;
   std::string instructions;
   std::vector<std::string> described;  ///< agents, as of Robot
+  std::vector<std::string> names;      ///< host names of proxies before it
 };
 
 /// Streamable HTTP: one door for each client. `Clients` decides which clients are there.
@@ -44,6 +46,7 @@ class HttpDoor {
   };
 
   HttpServer::Events events();
+  bool has_token(const HttpRequest& request) const;
   void came(Exchange exchange, const HttpRequest& request);
   void lost(Exchange exchange);
   void open_stream(Exchange exchange, Client& client);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,12 +38,14 @@ struct Options {
   std::optional<int> port;
   std::string token_file;
   std::vector<std::string> described{"dialogue"};
+  std::vector<std::string> names;
 };
 
 int serve_http(const bus::NodeOptions& options, const Options& own, const bus::Stop& stop) {
   bus::Node node(options);
-  mcp::HttpDoor door(node, {*own.port, console::keep(own.token_file).key, own.who, bus::version(),
-                            kInstructions, own.described});
+  mcp::HttpDoor door(node, {*own.port, console::keep(own.token_file).key,
+                            std::filesystem::absolute(own.token_file).lexically_normal().string(),
+                            own.who, bus::version(), kInstructions, own.described, own.names});
   std::fprintf(stderr, "http://127.0.0.1:%d/mcp, with the token in %s\n", door.port(),
                own.token_file.c_str());
   door.run(stop);
@@ -109,10 +112,15 @@ int main(int argc, char** argv) {
             app.add_option("--token-file", own.token_file,
                            "with --http: keeps what a client has to send as its bearer token; "
                            "written where it does not exist");
-        app.add_option("--http", own.port,
-                       "a port of this machine (127.0.0.1) to serve /mcp on; 0: any that is free")
-            .in_range(0, 65535)
-            .needs(token);
+        const Option http =
+            app.add_option("--http", own.port,
+                           "a port of this machine (127.0.0.1) to serve /mcp on; 0: any that is "
+                           "free")
+                .in_range(0, 65535)
+                .needs(token);
+        app.add_option("--host-name", own.names,
+                       "with --http: the name of a proxy on this machine, by which clients come")
+            .needs(http);
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         return own.port ? serve_http(options, own, stop) : serve(options, own, stop);

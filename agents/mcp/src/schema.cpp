@@ -89,6 +89,23 @@ std::string misfit_at(const std::string& where, const Json& value, const Json& s
 
 }  // namespace
 
+void drop_nulls(Json& arguments, const Json& schema) {
+  const Json properties = member(schema, "properties");
+  const Json required = member(schema, "required");
+  if (!arguments.is_object() || !properties.is_object())
+    return;
+  for (auto each = arguments.begin(); each != arguments.end();) {
+    const Json form = member(properties, each.key());
+    const bool needed = std::find(required.begin(), required.end(), each.key()) != required.end();
+    if (each->is_null() && !needed && !form.is_null() && !misfit(nullptr, form).empty()) {
+      each = arguments.erase(each);
+      continue;
+    }
+    drop_nulls(*each, form);
+    ++each;
+  }
+}
+
 std::string misfit(const Json& arguments, const Json& schema) {
   return misfit_at({}, arguments, schema);
 }

@@ -13,7 +13,8 @@ namespace saphira::mcp {
 namespace {
 
 constexpr const char* kStructured = "2025-06-18";  // the first with structured results
-constexpr std::array kRevisions{Session::kLegacy, kStructured, "2025-03-26", "2024-11-05"};
+constexpr const char* kBatches = "2025-03-26";     // the only one with batches
+constexpr std::array kRevisions{Session::kLegacy, kStructured, kBatches, "2024-11-05"};
 constexpr int kParseError = -32700;
 constexpr int kNoMethod = -32601;
 constexpr int kInternal = -32603;
@@ -24,6 +25,11 @@ constexpr std::size_t kLongestName = 40;
 
 bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
+}
+
+bool is_answer(const Json& message) {
+  return message.is_object() && !message.contains("method") &&
+         (message.contains("result") || message.contains("error"));
 }
 
 bool is_task_method(const std::string& method) {
@@ -48,12 +54,13 @@ Sender sender_of(std::string_view message) {
   if (message.size() > Session::kLongestLine)
     return sender;
   const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
+  sender.answers =
+      is_answer(json) || (json.is_array() && std::any_of(json.begin(), json.end(), is_answer));
   if (!json.is_object())
     return sender;
   const Json parameters = member(json, "params");
   const Json meta = member(parameters, "_meta");
   sender.begins = member(json, "method") == "initialize";
-  sender.answers = !json.contains("method") && (json.contains("result") || json.contains("error"));
   sender.modern = meta.is_object() && meta.contains(kMeta + "protocolVersion");
   const Json info =
       sender.begins ? member(parameters, "clientInfo") : member(meta, kMeta + "clientInfo");
@@ -110,8 +117,30 @@ void Session::reply(const Request& request, Json result) {
     result.emplace("resultType", "complete");
     result["_meta"][kMeta + "serverInfo"] = {{"name", name_}, {"version", version_}};
   }
-  send({{"jsonrpc", "2.0"}, {"id", request.id}, {"result", std::move(result)}}, request.exchange,
-       true);
+  respond(request, {{"jsonrpc", "2.0"}, {"id", request.id}, {"result", std::move(result)}}, 200);
+}
+
+bool Session::structures(const Request& request) const {
+  return request.modern || revision_ >= kStructured;
+}
+
+/// The last message of a request.
+void Session::respond(const Request& request, Json message, int status) {
+  const auto batch = batches_.find(request.batch);
+  if (batch == batches_.end())
+    return send(message, request.exchange, true, status);
+  batch->second.answers.push_back(std::move(message));
+  settle(request.batch, request.exchange);
+}
+
+/// A message of a batch gets no further answer.
+void Session::settle(std::uint64_t number, std::uint64_t exchange) {
+  const auto batch = batches_.find(number);
+  if (batch == batches_.end() || --batch->second.waits > 0)
+    return;
+  if (!batch->second.answers.empty())
+    send(batch->second.answers, exchange, true);
+  batches_.erase(batch);
 }
 
 void Session::error(const Request& request, int code, const std::string& text, Json data) {
@@ -122,11 +151,11 @@ void Session::error(const Request& request, int code, const std::string& text, J
   // A client of the newer era expects no id where none was readable.
   if (!request.modern || !request.id.is_null())
     message["id"] = request.id;
-  send(message, request.exchange, true,
-       request.id.is_null() ? 400
-       : !request.modern    ? 200
-       : code == kNoMethod  ? 404
-                            : 400);
+  respond(request, std::move(message),
+          request.id.is_null() ? 400
+          : !request.modern    ? 200
+          : code == kNoMethod  ? 404
+                               : 400);
 }
 
 bool Session::take(std::string_view text, std::uint64_t exchange, const Headers* headers) {
@@ -152,15 +181,40 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
                  deep ? "nested too deeply"
                       : "this is no JSON: one message is expected, and numbers must be finite "
                         "(no NaN, Infinity or 1e400)");
+  if (message.is_array() && revision_ == kBatches && !request.modern && !message.empty())
+    return take_batch(message, exchange, headers);
+  return take_message(message, request, headers);
+}
+
+bool Session::take_batch(const Json& messages, std::uint64_t exchange, const Headers* headers) {
+  const std::uint64_t number = ++batch_count_;
+  batches_[number].waits = messages.size() + 1;
+  bool answers = false;
+  for (const Json& message : messages)
+    if (take_message(message, {nullptr, exchange, false, number}, headers))
+      answers = true;
+    else
+      settle(number, exchange);
+  settle(number, exchange);
+  return answers;
+}
+
+bool Session::take_message(const Json& message, Request request, const Headers* headers) {
+  const auto wrong = [&](int code, const std::string& why) {
+    error(request, code, why);
+    return true;
+  };
   const Json method = message.is_object() ? member(message, "method") : Json();
   if (const Json id = message.is_object() ? member(message, "id") : Json(); is_id(id))
     request.id = id;
   const bool has_id = message.is_object() && message.contains("id");
   if (!method.is_string()) {
-    // An answer to a request: this server sends no requests.
-    if (message.is_object() && (message.contains("result") || message.contains("error")))
+    if (is_answer(message))
       return false;
-    return wrong(kBadRequest, "expected a request with a method");
+    return wrong(kBadRequest,
+                 message.is_array()
+                     ? std::string("a batch of messages is of the revision ") + kBatches + " alone"
+                     : "expected a request with a method");
   }
   Json parameters = member(message, "params");
   if (parameters.is_null())
@@ -169,7 +223,7 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
     return wrong(kBadParameters, "params: expected an object");
   if (!has_id || message["id"].is_null()) {
     if (method == "notifications/cancelled")
-      give_up(parameters, exchange);
+      give_up(parameters, request.exchange);
     return false;
   }
   if (request.id.is_null())
@@ -193,13 +247,14 @@ bool Session::fits(const std::string& method, const Request& request, const Json
     if (headers.version.empty() ||
         std::find(kRevisions.begin(), kRevisions.end(), headers.version) != kRevisions.end())
       return true;
-    send({{"jsonrpc", "2.0"},
-          {"id", request.id},
-          {"error",
-           {{"code", kBadRequest},
-            {"message",
-             "MCP-Protocol-Version: there is no version " + headers.version.substr(0, 40)}}}},
-         request.exchange, true, 400);
+    respond(request,
+            {{"jsonrpc", "2.0"},
+             {"id", request.id},
+             {"error",
+              {{"code", kBadRequest},
+               {"message",
+                "MCP-Protocol-Version: there is no version " + headers.version.substr(0, 40)}}}},
+            400);
     return false;
   }
   const auto wrong = [&](const std::string& header, const std::string& found,
@@ -228,8 +283,8 @@ void Session::ask(const std::string& method, const Request& request, const Json&
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     older().tools = true;
-    structures_ = !known || asked.get<std::string>() >= kStructured;
-    return reply(request, {{"protocolVersion", known ? asked : Json(kLegacy)},
+    revision_ = known ? asked.get<std::string>() : kLegacy;
+    return reply(request, {{"protocolVersion", revision_},
                            {"capabilities", capabilities(false)},
                            {"serverInfo", {{"name", name_}, {"version", version_}}},
                            {"instructions", instructions_}});
@@ -370,6 +425,9 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   const auto refuse = [&](const std::string& why) {
     answer(number, {"not done: " + why, nullptr, true});
   };
+  drop_nulls(arguments, tool->input);
+  if (arguments.dump(-1, ' ', false, Json::error_handler_t::replace).size() > kLongestArguments)
+    return refuse("the arguments have at most " + std::to_string(kLongestArguments) + " bytes");
   if (const std::string why = misfit(arguments, tool->input); !why.empty())
     return refuse(why);
   if (left_ && tool->lasts)
@@ -393,6 +451,7 @@ void Session::note(const std::string& tool, const std::string& text, bool is_err
 void Session::erase(std::uint64_t number) {
   if (const auto found = open_.find(number); found != open_.end()) {
     note(found->second.tool, "given up by the client", false);
+    settle(found->second.request.batch, found->second.request.exchange);
     open_.erase(found);
   }
   std::erase_if(calls_, [&](const Call& each) { return each.number == number; });
@@ -414,9 +473,13 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
   });
   if (found != open_.end())
     return erase(found->first);
-  std::erase_if(held_, [&](const Held& each) {
+  const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& each) {
     return each.request.id == id && (!each.request.modern || each.request.exchange == exchange);
   });
+  if (held == held_.end())
+    return;
+  settle(held->request.batch, held->request.exchange);
+  held_.erase(held);
 }
 
 void Session::close(std::uint64_t exchange) {

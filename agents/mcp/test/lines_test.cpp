@@ -17,7 +17,7 @@ TEST(McpLines, ALineMayComeInPiecesAndSeveralAtOnce) {
 TEST(McpLines, OfALineThatIsTooLongOneComesAndTheNextIsWhole) {
   Lines lines;
   std::vector<std::string> all;
-  for (int i = 0; i < 20; ++i)
+  for (std::size_t size = 0; size <= Session::kLongestLine; size += 4096)
     for (std::string& line : lines.take(std::string(4096, 'x')))
       all.push_back(std::move(line));
   ASSERT_EQ(all.size(), 1U);
@@ -26,7 +26,7 @@ TEST(McpLines, OfALineThatIsTooLongOneComesAndTheNextIsWhole) {
   EXPECT_EQ(lines.take(std::string(Session::kLongestLine, 'x') + "\n"),
             All{std::string(Session::kLongestLine, 'x')})
       << "the longest";
-  EXPECT_EQ(lines.take(std::string(70000, 'x') + "\nnext\n").size(), 2U);
+  EXPECT_EQ(lines.take(std::string(Session::kLongestLine + 1, 'x') + "\nnext\n").size(), 2U);
 }
 
 }  // namespace

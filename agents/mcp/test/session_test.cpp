@@ -163,6 +163,68 @@ TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {
   EXPECT_EQ(client.one(R"({"id":2,"method":"ping"})")["id"], 2);
 }
 
+TEST(McpSession, ABatchIsAnsweredInOneMessageInTheRevisionThatHasThem) {
+  Client client;
+  const std::string batch =
+      "[" + line(1, "ping") + "," +
+      line(2, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}) +
+      R"(,{"jsonrpc":"2.0","method":"notifications/initialized"},{"id":9,"result":{}},3])";
+  EXPECT_EQ(client.one(batch)["error"]["code"], -32600) << "no revision is agreed upon";
+  client.say(line(0, "initialize", {{"protocolVersion", "2025-03-26"}}));
+  EXPECT_TRUE(client.session.take(batch, 7));
+  EXPECT_TRUE(client.session.take_lines().empty());
+  client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
+  const auto lines = client.session.take_lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].exchange, 7U);
+  EXPECT_TRUE(lines[0].last);
+  const Json answers = Json::parse(lines[0].text);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[0]["id"], 1);
+  EXPECT_EQ(answers[1]["error"]["code"], -32600);
+  EXPECT_EQ(answers[2]["result"]["content"][0]["text"], "there");
+  EXPECT_EQ(client.one("[]")["error"]["code"], -32600);
+  EXPECT_FALSE(client.session.take(R"([{"jsonrpc":"2.0","method":"notifications/initialized"}])"));
+  EXPECT_TRUE(client.heard().empty());
+  client.say(line(3, "initialize", {{"protocolVersion", "2025-06-18"}}));
+  EXPECT_EQ(client.one(batch)["error"]["code"], -32600);
+}
+
+TEST(McpSession, ABatchWaitsForNoCallThatWasGivenUp) {
+  Client client;
+  client.say(line(0, "initialize", {{"protocolVersion", "2025-03-26"}}));
+  const Json call{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+  client.say("[" + line(1, "ping") + "," + line(2, "tools/call", call) + "]");
+  const auto answers = client.say(
+      R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":2}})");
+  ASSERT_EQ(answers.size(), 1U);
+  ASSERT_EQ(answers[0].size(), 1U);
+  EXPECT_EQ(answers[0][0]["id"], 1);
+}
+
+TEST(McpSession, AnOptionalArgumentMayBeNull) {
+  Client client;
+  client.say(
+      line(1, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}, {"frame", nullptr}}}}));
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_EQ(calls[0].arguments, Json({{"x", 1}}));
+  client.say(line(2, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", nullptr}}}}));
+  client.say(line(3, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}, {"y", nullptr}}}}));
+  EXPECT_TRUE(client.session.take_calls().empty()) << "needed, and unknown";
+}
+
+TEST(McpSession, AMessageMayBeLongAndTheArgumentsOfACallMayNot) {
+  Client client;
+  const std::string padded = R"({"jsonrpc":"2.0","id":1,"method":"ping","params":{"_meta":{"x":")" +
+                             std::string(200000, 'x') + R"("}}})";
+  EXPECT_EQ(client.one(padded)["id"], 1);
+  const Json told = client.one(
+      line(2, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", std::string(70000, 'x')}}}}));
+  EXPECT_EQ(told["result"]["content"][0]["text"],
+            "not done: the arguments have at most 65536 bytes");
+}
+
 TEST(McpSession, TheNewerEraNeedsNoBeginning) {
   Client client;
   const Json discovered = client.one(modern("d", "server/discover"))["result"];

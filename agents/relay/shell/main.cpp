@@ -39,15 +39,16 @@ int main(int argc, char** argv) {
   app.add_option("--robots", robots, "file with a line for each robot: NAME PORT TOKEN")
       .required()
       .existing_file();
-  app.add_option("--dial-port", options.dial_port, "where the robots' consoles dial in")
+  app.add_option("--dial-port", options.place.port, "where the robots' consoles dial in")
       .required()
       .in_range(1, 65535);
-  app.add_option("--listen", options.address, "address to listen on; 0.0.0.0: every one");
-  const Option key =
-      app.add_option("--certificate-key", options.certificate_key, "PEM file, of the certificate")
-          .existing_file();
+  app.add_option("--listen", options.place.address,
+                 "address to listen on; 0.0.0.0: every one of IPv4, :: of IPv6, too");
+  const Option key = app.add_option("--certificate-key", options.place.certificate_key,
+                                    "PEM file, of the certificate")
+                         .existing_file();
   const Option certificate =
-      app.add_option("--certificate", options.certificate,
+      app.add_option("--certificate", options.place.certificate,
                      "PEM file, of the dial port; without it robots of this machine alone dial in")
           .existing_file()
           .needs(key);
@@ -56,14 +57,15 @@ int main(int argc, char** argv) {
     return *code;
   return exit_code_of("saphira-relay", [&] {
     if (certificate.given()) {
-      const std::string trouble = security::check_pair(options.certificate, options.certificate_key,
-                                                       static_cast<std::int64_t>(unix_time()));
+      const std::string trouble =
+          security::check_pair(options.place.certificate, options.place.certificate_key,
+                               static_cast<std::int64_t>(unix_time()));
       if (!trouble.empty())
         std::fprintf(stderr, "saphira-relay: %s\n", trouble.c_str());
     }
     const int stop = stop_on_signals();
     relay::Relay server(options, read_robots(robots));
-    relay::say("listens for robots on port " + std::to_string(options.dial_port));
+    relay::say("listens for robots on port " + std::to_string(options.place.port));
     server.run(stop);
     return kExitOk;
   });

@@ -2,6 +2,7 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <openssl/ssl.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -21,7 +22,8 @@ namespace saphira::relay {
 namespace {
 
 constexpr unsigned kMostDescriptors = 1024;
-constexpr int kTick = 500'000;  // [us]
+constexpr int kTick = 500'000;     // [us]
+constexpr double kSilence = 60.0;  // [s]
 constexpr const char* kDial = "saphira.dial";
 constexpr const char* kCarry = "saphira.carry";
 constexpr std::string_view kBearer = "Bearer ";
@@ -36,6 +38,33 @@ void say(const std::string& text) {
 }
 
 namespace {
+
+/// Once a minute the same words: a gateway that is refused dials again and again.
+void complain(const std::string& text) {
+  static std::string last;
+  static double said = 0.0;
+  if (text == last && BootClock::seconds() - said < kSilence)
+    return;
+  last = text;
+  said = BootClock::seconds();
+  say(text);
+}
+
+/// A gateway that does not trust this certificate ends the handshake with an alert.
+void note_alert(const SSL* ssl, int where, int alert) {
+  if ((where & SSL_CB_READ_ALERT) != SSL_CB_READ_ALERT || SSL_is_init_finished(ssl) != 0)
+    return;
+  std::array<char, 64> address{};
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  const bool is_known =
+      getpeername(SSL_get_fd(ssl), reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
+      lws_get_peer_simple_fd(SSL_get_fd(ssl), address.data(), address.size()) != nullptr;
+  complain(std::string(is_known ? address.data() : "somebody") +
+           " does not accept this relay's certificate (" + SSL_alert_desc_string_long(alert) +
+           "): a gateway needs it, or that of its authority, as --dial-authority, and dials the "
+           "name that it has");
+}
 
 /// The path of a gateway's request; empty for any other.
 Path path_of(lws* wsi) {
@@ -102,6 +131,10 @@ bool Relay::Impl::refuses(lws* wsi, bool dials) const {
   if (given.starts_with(kBearer) && path.ticket.empty() == dials &&
       rendezvous.knows(path.robot, std::string_view(given).substr(kBearer.size())))
     return false;
+  complain(robot_of(path.robot) == nullptr
+               ? web::peer(wsi) + " is refused: it dials for a robot that has no line in --robots"
+               : web::peer(wsi) + " is refused: its token is another one than that of " +
+                     path.robot + " in --robots");
   lws_return_http_status(wsi, HTTP_STATUS_UNAUTHORIZED, "no such robot, or another token");
   return true;
 }
@@ -225,8 +258,11 @@ int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void
       lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND,
                              "a relay: gateways of robots dial in here");
       return -1;
+    case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS:
+      SSL_CTX_set_info_callback(static_cast<SSL_CTX*>(user), note_alert);
+      [[fallthrough]];
     default:
-      return lws_callback_http_dummy(wsi, reason, user, in, size);
+      return web::Loop::otherwise(wsi, reason, user, in, size);
   }
 }
 
@@ -284,19 +320,16 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
   // A gateway without an answer is dropped: it dials in again.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
 
-  const bool encrypts = !options.certificate.empty();
+  const bool encrypts = !options.place.certificate.empty();
   impl_->loop.emplace(impl_.get(), kMostDescriptors, encrypts);
+  impl_->loop->serve_renewed(say);
   lws_context_creation_info info{};
-  if (encrypts)
-    info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-  const auto listen = [&](int port, const char* name, const std::string& address) {
-    info.iface = address == "0.0.0.0" ? nullptr : address.c_str();
-    info.port = port;
+  const auto listen = [&](const char* name, const web::Place& place) {
     info.vhost_name = name;
-    lws_vhost* const vhost = lws_create_vhost(impl_->loop->context(), &info);
+    lws_vhost* const vhost = impl_->loop->listen(info, place);
     if (vhost == nullptr)
-      throw std::runtime_error("cannot listen on " + address + " port " + std::to_string(port) +
-                               " (" + name +
+      throw std::runtime_error("cannot listen on " + place.address + " port " +
+                               std::to_string(place.port) + " (" + name +
                                "): another program has it, it is no address of this machine, or "
                                "certificate and key do not fit");
     return vhost;
@@ -308,19 +341,18 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
   info.listen_accept_protocol = "visitor";
   info.protocols = door_protocols.data();
   for (const Robot& robot : impl_->rendezvous.robots())
-    impl_->doors[listen(robot.port, robot.name.c_str(), options.address)] = &robot;
+    impl_->doors[listen(robot.name.c_str(), {options.place.address, robot.port, {}, {}})] = &robot;
   info.options &= ~static_cast<std::uint64_t>(LWS_SERVER_OPTION_ADOPT_APPLY_LISTEN_ACCEPT_CONFIG);
   info.listen_accept_role = nullptr;
   info.listen_accept_protocol = nullptr;
   info.protocols = dial_protocols.data();
   info.timeout_secs = 5;
   info.retry_and_idle_policy = &patience;
-  if (encrypts) {
-    info.ssl_cert_filepath = options.certificate.c_str();
-    info.ssl_private_key_filepath = options.certificate_key.c_str();
-  }
   // Without a certificate the tokens would cross the network in clear.
-  impl_->dial = listen(options.dial_port, "dial", encrypts ? options.address : "127.0.0.1");
+  web::Place place = options.place;
+  if (!encrypts)
+    place.address = "127.0.0.1";
+  impl_->dial = listen("dial", place);
 }
 
 Relay::~Relay() {

@@ -3,15 +3,15 @@
 #include <memory>
 #include <string>
 
+#include "loop.hpp"
 #include "saphira/relay/rendezvous.hpp"
 
 namespace saphira::relay {
 
 struct RelayOptions {
-  std::string address = "0.0.0.0";  ///< to listen on
-  int dial_port = 0;                ///< where gateways dial in
-  std::string certificate;          ///< files, of the dial port; empty: this machine only
-  std::string certificate_key;
+  /// Where gateways dial in, and the address of all ports. Without a certificate gateways of this
+  /// machine alone.
+  web::Place place{"0.0.0.0", 0, {}, {}};
 };
 
 /// Prints a line of the relay's log, to stdout.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "saphira/idl/goal_words.hpp"
@@ -137,11 +139,27 @@ nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
   json["rss_mb"] = status.rss_mb();
   json["uptime"] = status.uptime();
   json["host"] = status.host();
+  json["clock_behind"] = program.clock_behind;
   json["pid"] = status.pid();
   return json;
 }
 
 }  // namespace
+
+std::string clocks_apart(const std::vector<Program>& programs) {
+  constexpr double kApart = 1.5;  // [s] a status may be a second old
+  std::map<std::string, double> machines;
+  for (const Program& program : programs)
+    if (std::abs(program.clock_behind) > kApart)
+      machines.emplace(program.status.host(), program.clock_behind);
+  std::string text;
+  for (const auto& [host, behind] : machines)
+    text += "clock: that of " + host + " is " + seconds_text(std::abs(behind)) +
+            (behind > 0.0 ? " behind" : " ahead of") +
+            " this machine's: times of logs and of certificates do not fit; a time server (NTP) on "
+            "both sides helps\n";
+  return text;
+}
 
 bool is_doubtful(const v1::Registration& registration) {
   constexpr double kDoubtful = 0.5;  // the confidence of an unconfirmed place is no greater

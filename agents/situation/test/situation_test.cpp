@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "office.hpp"
@@ -21,6 +22,23 @@ TEST(Condition, OfTwoInstancesTheOneThatIsHeardCounts) {
   test::find(s, "behaviors").age = 9.0;
   EXPECT_EQ(condition(s, "behaviors").health, Health::lost);
   EXPECT_NE(condition(s, "behaviors").words.find("8.0 s"), std::string::npos);
+}
+
+TEST(Condition, AMachineWithAnotherTimeIsNamedOnce) {
+  Situation s = driving();
+  EXPECT_EQ(clocks_apart(s.programs), "");
+  for (Program& each : s.programs) {
+    each.status.host("board");
+    each.clock_behind = 3.04;
+  }
+  s.programs.back().status.host("laptop");
+  s.programs.back().clock_behind = -1.4;
+  const std::string text = clocks_apart(s.programs);
+  EXPECT_TRUE(text.starts_with("clock: that of board is 3.0 s behind this machine's")) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+  s.programs.back().clock_behind = -60.0;
+  EXPECT_NE(clocks_apart(s.programs).find("laptop is 60 s ahead of"), std::string::npos)
+      << clocks_apart(s.programs);
 }
 
 TEST(Condition, TheWaitingCopyOfASecondDeploymentDoesNotCount) {

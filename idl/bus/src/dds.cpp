@@ -170,6 +170,9 @@ class DdsWriter : public RawWriter, public DdsEnd<WriterPart> {
     fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
     set_common_qos(qos, policies_, policies_.writer_depth);
     qos.reliability().max_blocking_time = milliseconds(100);
+    // Of the writer alone: a reader would compare the clocks of two machines.
+    if (policies_.lifespan_ms > 0)
+      qos.lifespan().duration = milliseconds(policies_.lifespan_ms);
     qos.publish_mode().kind = fdds::SYNCHRONOUS_PUBLISH_MODE;
     // dispose() is to withdraw and to forget. A writer that ends withdraws nothing by that (Fast
     // DDS does not unregister then).
@@ -349,7 +352,7 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     SampleInfo info;
     bool malformed = false;
     while (take_next(part, dds_info, info, malformed)) {
-      if (malformed || was_taken(dds_info.sample_identity)) {
+      if (malformed || was_taken(dds_info.sample_identity) || has_waited_too_long(dds_info)) {
         continue;
       } else if (dds_info.valid_data) {
         if (type_.keyed)
@@ -398,6 +401,12 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
       taken_.clear();
     taken_[sample.writer_guid()] = number;
     return false;
+  }
+
+  // By this machine's clock alone.
+  bool has_waited_too_long(const fdds::SampleInfo& sample) const {
+    return policies_.lifespan_ms > 0 && age_of(sample.reception_timestamp.to_ns()) >
+                                            1e-3 * static_cast<double>(policies_.lifespan_ms);
   }
 
   // get_key_value() is not supported: this map alone gives the key of a withdrawn instance.

@@ -25,8 +25,6 @@ void set_common_qos(Q& qos, const Policies& policies, int depth) {
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   // AUTO would leave files in /dev/shm after a kill, even with UDP as the only transport.
   qos.data_sharing().off();
-  if (policies.lifespan_ms > 0)
-    qos.lifespan().duration = milliseconds(policies.lifespan_ms);
 }
 
 }  // namespace saphira::bus::internal

@@ -16,6 +16,7 @@
 #include "dds_network.hpp"
 #include "motionPubSubTypes.h"
 #include "node_options.hpp"
+#include "requestPubSubTypes.h"
 
 namespace saphira::bus::test {
 
@@ -107,14 +108,37 @@ bool RawWriter::write(Bytes bytes) {
   return impl_->writer->write(&bytes);
 }
 
+bool RawWriter::write(Bytes bytes, double ahead) {
+  eprosima::fastrtps::Time_t now;
+  eprosima::fastrtps::Time_t::now(now);
+  const double time = static_cast<double>(now.to_ns()) * 1e-9 + ahead;
+  return impl_->writer->write_w_timestamp(&bytes, fdds::HANDLE_NIL, eprosima::fastrtps::Time_t(time)) ==
+         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+
+namespace {
+
+template <class Type, class Sample>
+Bytes bytes_of(Sample& sample) {
+  Type type;
+  rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&sample)());
+  type.serialize(&sample, &payload);
+  return {payload.data, payload.data + payload.length};
+}
+
+}  // namespace
+
+Bytes bytes_of_request(const std::string& functor) {
+  v1::Request request;
+  request.functor(functor);
+  return bytes_of<v1::RequestPubSubType>(request);
+}
+
 Bytes bytes_of_motor_command(double velocity, bool active) {
   v1::MotorCommand command;
   command.velocity(velocity);
   command.active(active);
-  v1::MotorCommandPubSubType type;
-  rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&command)());
-  type.serialize(&command, &payload);
-  return {payload.data, payload.data + payload.length};
+  return bytes_of<v1::MotorCommandPubSubType>(command);
 }
 
 }  // namespace saphira::bus::test

@@ -19,13 +19,17 @@ class RawWriter {
 
   bool matched() const;
   bool write(std::vector<std::uint8_t> bytes);
+  /// By a clock that is ahead of this machine's [s].
+  bool write(std::vector<std::uint8_t> bytes, double ahead);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// The bytes of a MotorCommand, with encapsulation.
+/// The bytes of a Request, with encapsulation.
+std::vector<std::uint8_t> bytes_of_request(const std::string& functor);
+/// Of a MotorCommand.
 std::vector<std::uint8_t> bytes_of_motor_command(double velocity, bool active);
 
 }  // namespace saphira::bus::test

@@ -110,15 +110,14 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
   found.files.permissions = own + kPermissions;
 
   const std::string certificate = read(found.files.certificate);
+  std::int64_t from = 0;
   checked(found.files.certificate, kCopy, [&] {
     check_signed(certificate, found.authority);
     const CertificateText text = read_certificate(certificate);
     const auto subject = parse_subject(text.subject);
     if (!subject)
       throw std::runtime_error("\"" + text.subject + "\" is no member of a site");
-    if (now < text.validity.from)
-      fail(found.files.certificate, "it holds from " + day_text(text.validity.from) + " on",
-           "the clock of this machine says " + day_text(now) + ": is that right?");
+    from = text.validity.from;
     if (now >= text.validity.until)
       fail(found.files.certificate, "it has expired on " + day_text(text.validity.until),
            "`saphira security renew " + subject->name +
@@ -126,6 +125,10 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
     found.subject = *subject;
     found.until = text.validity.until;
   });
+  if (now < from)
+    throw NotYet(found.files.certificate + ": it holds from " + day_text(from) +
+                 " on; the clock of this machine says " + day_text(now) +
+                 ": is that right? A board without a clock gets the time from the network");
   const std::string key = read(found.files.key);
   checked(found.files.key, kCopy, [&] { check_key(key, certificate); });
   const auto document = [&](const std::string& file) {

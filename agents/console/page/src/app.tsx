@@ -114,7 +114,7 @@ function Header({link, seen: s}: {link: Link; seen: Seen}) {
       {link.roundTrip > 0 && s.state !== 'gone' && <span class="wide">, there and back {Math.round(link.roundTrip)} ms</span>}
     </span>
     <span class="grow" />
-    {info?.simulator && <a class="wide" href="/simulator.html">the simulator's own view</a>}
+    {info?.simulator && <a class="wide" href="simulator.html">the simulator's own view</a>}
     {/* At the touch, also of a second finger, which makes no click; the click is the keyboard's. */}
     <button class="estop" onPointerDown={() => link.estop()} onClick={e => e.detail === 0 && link.estop()}
             aria-label="Emergency stop">{link.stopping ? 'STOP …' : 'STOP'}</button>
@@ -257,7 +257,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
     <div class="map">
       <canvas ref={canvas} class={stale ? 'stale' : ''} role="application" tabIndex={0}
               aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonar echoes and percepts. Arrow keys choose a place, Enter goes to its buttons, Escape leaves it.`} />
-      {stale && <p class="banner" role="status">{bannerText(s)}</p>}
+      {stale && <p class="banner" role="status">{bannerText(s, link.barrier)}</p>}
       <div class="tools" role="group" aria-label="View">
         <button aria-pressed={!!v?.local} title="the robot in the middle, pointing up" onClick={() => act(() => { v!.local = !v!.local; v!.whole = false; })}>Local</button>
         <button aria-pressed={!!v?.follow && !v.local} title="the map moves with the robot" onClick={() => act(() => { v!.local = v!.whole = false; v!.follow = !v!.follow; })}>Follow</button>
@@ -271,7 +271,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
           <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
         <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
         {/* In the header where that has room. */}
-        {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="/simulator.html">the simulator's own view</a></p>}
+        {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="simulator.html">the simulator's own view</a></p>}
       </details>}
     </div>
     {driving && s.state !== 'gone' && <Stick drive={drive} />}
@@ -297,11 +297,11 @@ function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
 }
 const layerWords: {[name in keyof Layers]: string} =
   {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', route: 'the route', drawings: 'drawings of programs', percepts: 'percepts', areas: 'sensitive areas of behaviors', wake: 'wake (10 s)'};
-function bannerText(s: Seen): string {
+function bannerText(s: Seen, barrier: string): string {
   const age = Number.isFinite(s.age) ? `The picture is ${seconds(s.age)} old. ` : '';
   switch (s.state) {
-    case 'locked': return 'The key is needed to watch from here: open the address that the console has printed.';
-    case 'gone': return `${age}There is no connection to the console, so STOP does not work from here: use the robot's own switch. Trying again …`;
+    case 'locked': return 'The key is needed to watch from here: open the address that the console has printed, or put its # and what follows behind the address of this page.';
+    case 'gone': return barrier || `${age}There is no connection to the console, so STOP does not work from here: use the robot's own switch. Trying again …`;
     case 'silent': return 'No robot is heard.';
     default: return `${age}The robot says nothing.`;
   }

@@ -1,4 +1,5 @@
 // The two connections to the gateway, and what has come by them.
+import {barrier, socketOf, store, stored, storedKey} from './address';
 import type {ControlState, Goal, Grant, ServiceStatus} from './types';
 
 export interface Item<T> {
@@ -13,29 +14,14 @@ const drift = 0.001;     // of two clocks, at the most
 const settled = 1000;    // [ms] after a cut, until what was on its way has come
 const mostGoals = 200;   // that are remembered
 export const gone = 2000;   // [ms] nothing heard for so long: the connection is gone
-const keyName = 'saphira key';
 const operatorName = 'saphira operator';
-
-function stored(name: string): string {
-  try {
-    return localStorage.getItem(name) ?? '';
-  } catch {
-    return '';
-  }
-}
-function store(name: string, value: string) {
-  try {
-    localStorage.setItem(name, value);
-  } catch {
-    // A browser that keeps nothing: the key holds for as long as the page is open.
-  }
-}
 
 interface Message { type: string; [member: string]: unknown }
 
 export class Link {
   connected = false;         // the telemetry
   commanding = false;        // the commands
+  barrier = '';              // why no connection of this page gets through
   mayWatch = true;
   mayDrive = false;
   id = 0;                    // of our operator, by the gateway
@@ -56,7 +42,8 @@ export class Link {
   private lanes: WebSocket[] = [];   // further ones for samples
   private lane = 0;
   private ticket = '';
-  private key = '';
+  private key = storedKey();
+  private barred = 0;        // attempts in turn that something let not through
   private offset = NaN;      // [ms] our clock less the gateway's, with the quickest frame
   private offsetAt = 0;
   private quickest = Infinity;
@@ -64,12 +51,6 @@ export class Link {
   private waiting = new Map<number, (answer: Answer) => void>();
 
   constructor() {
-    const given = location.hash.slice(1);
-    if (given) {
-      store(keyName, given);
-      history.replaceState(null, '', location.pathname);
-    }
-    this.key = given || stored(keyName);
     this.openTelemetry();
     this.openCommands();
     setInterval(() => this.ping(), 500);
@@ -129,7 +110,7 @@ export class Link {
     free[++this.lane % free.length]?.send(JSON.stringify(sample));
   }
   private openLane(i: number) {
-    const socket = this.lanes[i] = this.open('saphira.commands');
+    const socket = this.lanes[i] = socketOf('saphira.commands');
     const ticket = this.ticket;
     socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator, ticket}));
     socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
@@ -148,16 +129,14 @@ export class Link {
     });
   }
 
-  private open(protocol: string): WebSocket {
-    return new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/`, protocol);
-  }
-
   private openTelemetry() {
-    const socket = this.open('saphira.telemetry');
+    const socket = socketOf('saphira.telemetry');
     socket.onopen = () => {
       this.topics.clear();
       this.offset = NaN;
       this.connected = true;
+      this.barred = 0;
+      this.barrier = '';
       socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator}));
     };
     socket.onmessage = event => {
@@ -167,14 +146,23 @@ export class Link {
       this.take(frame);
     };
     socket.onclose = () => {
+      if (!this.connected) void this.askForBarrier();
       this.connected = false;
       this.tell();
       setTimeout(() => this.openTelemetry(), retry);
     };
   }
 
+  // A gateway that has just come answers too: the second time counts.
+  private async askForBarrier() {
+    const why = await barrier();
+    if (this.connected) return;
+    this.barred = why ? this.barred + 1 : 0;
+    this.barrier = this.barred > 1 ? why : '';
+  }
+
   private openCommands() {
-    const socket = this.commands = this.open('saphira.commands');
+    const socket = this.commands = socketOf('saphira.commands');
     socket.onopen = () => {
       socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator}));
     };

@@ -1,6 +1,7 @@
 // The simulator's own view: what is true, for people; and what they do to it (saphira-sim --view-socket).
 import {render} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
+import {socketOf, storedKey} from './address';
 import {type Kind, type Robot, type Scene, SimulatorView, type Thing, thingsOf, type World} from './simulator_view';
 import {keyless} from './words';
 
@@ -10,17 +11,6 @@ const stepAside = 0.1;        // [m] of an arrow key
 const stepAround = 15;        // [degrees]
 const zoomStep = 1.3;
 const rates = [0.25, 0.5, 1, 2, 5, 10];
-
-function storedKey(): string {
-  const given = location.hash.slice(1);
-  try {
-    if (given) localStorage.setItem('saphira key', given);
-    if (given) history.replaceState(null, '', location.pathname);
-    return given || localStorage.getItem('saphira key') || '';
-  } catch {
-    return given;
-  }
-}
 
 // The pins and ports for the user's devices (manual 5.3), by hand instead of by hardware.
 interface InputProps { robot: Robot; port: number; setPort: (port: number) => void; disabled: boolean; why?: string; set: (what: object) => void }
@@ -86,7 +76,7 @@ function App() {
     let ended = false;
     const open = () => {
       if (ended) return;
-      const line = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/`, 'saphira.simulator');
+      const line = socketOf('saphira.simulator');
       socket.current = line;
       line.onopen = () => line.send(JSON.stringify({type: 'hello', key, name: ''}));
       line.onclose = () => {
@@ -154,7 +144,7 @@ function App() {
     <header>
       <h1>Simulator</h1>
       <span class={`chip link ${connected && !still ? 'good' : 'bad'}`}>{!connected ? 'link gone' : !scene ? 'no simulator' : scene.paused ? 'paused' : still ? 'time stands still' : 'runs'}</span>
-      <span class="grow small faint"><span class="wide">The robot does not know this truth. Its own view is </span><a href="/">the console</a></span>
+      <span class="grow small faint"><span class="wide">The robot does not know this truth. Its own view is </span><a href=".">the console</a></span>
     </header>
     <main>
       <section class="picture" aria-label="World">

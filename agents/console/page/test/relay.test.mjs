@@ -32,7 +32,7 @@ function startRelay() {
 function startGateway(robot, secret, ...more) {
   return start('saphira-console', '--robot', robot, '--port', '0', '--certificate', file('robot.pem'),
     '--certificate-key', file('robot.key'), '--dial', `wss://localhost:${ports[0]}/pioneer`,
-    '--dial-token-file', file(secret), '--dial-authority', file('relay.pem'), ...more);
+    '--dial-token-file', file(secret), ...(more.length > 0 ? more : ['--dial-authority', file('relay.pem')]));
 }
 
 const robot = `relay-${process.pid}`;
@@ -113,8 +113,17 @@ test('a gateway with another token is not let in, and says so', async () => {
   relay = startRelay();
   await until('the relay', () => output().includes('listens for robots'));
   gateway = startGateway(robot, 'wrong');
-  await until('the refusal', () => output().includes('is not reached'));
+  await until('the refusal', () => output().includes('it has no robot pioneer with the token of --dial-token-file'));
+  await until('the other side', () => /127\.0\.0\.1 is refused: its token is another one than that of pioneer/.test(output()));
   assert.doesNotMatch(output(), /has dialled in/);
+  gateway.kill('SIGTERM');
+  await ended(gateway);
+});
+
+test('a gateway that does not trust the relay is named on both sides', async () => {
+  gateway = startGateway(robot, 'token', '--dial-authority', file('robot.pem'));
+  await until('the refusal', () => /its certificate is not accepted: .*; --dial-authority has to be/.test(output()));
+  await until('the other side', () => /127\.0\.0\.1 does not accept this relay's certificate/.test(output()));
   gateway.kill('SIGTERM');
   await ended(gateway);
 });

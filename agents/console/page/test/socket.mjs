@@ -4,9 +4,9 @@ import https from 'node:https';
 
 // A WebSocket by hand: what it sends need not be right. `texts` has what came, until somebody takes it. tls: what
 // https takes; without it the connection is plain.
-export function socketTo(port, protocol, headers = {}, tls = undefined) {
+export function socketTo(port, protocol, headers = {}, tls = undefined, path = '/') {
   return new Promise((resolve, reject) => {
-    const request = (tls ? https : http).request({...tls, host: '127.0.0.1', port, path: '/', agent: false, headers: {
+    const request = (tls ? https : http).request({...tls, host: '127.0.0.1', port, path, agent: false, headers: {
       Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13',
       'Sec-WebSocket-Key': randomBytes(16).toString('base64'), 'Sec-WebSocket-Protocol': protocol, ...headers}});
     request.on('upgrade', (response, socket) => {

@@ -10,24 +10,28 @@ namespace saphira::console {
 /// the origin of a request is checked before anything else.
 struct AccessSettings {
   std::string key;                 ///< required for everything except watching from this machine
-  std::vector<std::string> names;  ///< host names of this machine
+  std::vector<std::string> names;  ///< host names of this machine, and of proxies before it
+  int port = 0;                    ///< of this program
+  bool always = false;             ///< the key is required for watching from this machine, too
 };
 
 /// The headers of a browser's connection.
 struct Caller {
-  std::string host;       ///< the header Host, such as localhost:8642
-  std::string origin;     ///< the header Origin [empty: no browser, or a page's own request]
-  bool loopback = false;  ///< from this machine
+  std::string host;    ///< the header Host, such as localhost:8642; of a proxy, the one asked for
+  std::string origin;  ///< the header Origin [empty: no browser, or a page's own request]
+  bool loopback = false;  ///< from this machine, by no proxy that is to be seen in the headers
 };
 
 /// The reason for a refusal of a caller, in words; empty: allowed. A foreign host name means DNS
-/// rebinding: another name leads here. An origin other than the host means a page of another site.
+/// rebinding: another name leads here. An origin other than the host means a page of another site;
+/// a proxy may have changed host or port, so the names of `settings` may be origins.
 std::string refusal(const AccessSettings& settings, const Caller& caller);
 
 /// True for the right key. A wrong one takes as long.
 bool right_key(const AccessSettings& settings, std::string_view key);
 
-/// Watching from this machine needs no key.
+/// Watching from this machine needs no key. A host or an origin that this program does not have on
+/// this machine is that of a proxy or a tunnel: anybody may be behind it.
 bool may_watch(const AccessSettings& settings, const Caller& caller, std::string_view key);
 
 }  // namespace saphira::console

@@ -125,10 +125,11 @@ class Session {
   /// Messages for the client since the last call.
   std::vector<Line> take_lines();
 
-  static constexpr std::size_t kLongestLine = 65536;
-  static constexpr std::size_t kMostOpen = 64;          ///< calls without an answer
-  static constexpr double kMostASecond = 5.0;           ///< calls, over some seconds
-  static constexpr double kMostAtOnce = 20.0;           ///< calls, after a silence
+  static constexpr std::size_t kLongestLine = 1024 * 1024;
+  static constexpr std::size_t kLongestArguments = 65536;  ///< of a call, as JSON
+  static constexpr std::size_t kMostOpen = 64;             ///< calls without an answer
+  static constexpr double kMostASecond = 5.0;              ///< calls, over some seconds
+  static constexpr double kMostAtOnce = 20.0;              ///< calls, after a silence
   static constexpr const char* kLegacy = "2025-11-25";  ///< the newest revision with `initialize`
   static constexpr const char* kModern = "2026-07-28";
 
@@ -138,6 +139,12 @@ class Session {
     Json id;
     std::uint64_t exchange = 0;
     bool modern = false;
+    std::uint64_t batch = 0;  ///< the batch that it came in [0: none]
+  };
+  /// Requests that came in one message, and are answered in one.
+  struct Batch {
+    std::size_t waits = 0;  ///< messages without an answer yet
+    Json answers = Json::array();
   };
   /// A request that is held back until the tools are known.
   struct Held {
@@ -177,6 +184,10 @@ class Session {
     lines_.push_back(
         {message.dump(-1, ' ', false, Json::error_handler_t::replace), exchange, last, status});
   }
+  bool take_batch(const Json& messages, std::uint64_t exchange, const Headers* headers);
+  bool take_message(const Json& message, Request request, const Headers* headers);
+  void respond(const Request& request, Json message, int status);
+  void settle(std::uint64_t batch, std::uint64_t exchange);
   void reply(const Request& request, Json result);
   void error(const Request& request, int code, const std::string& text, Json data = nullptr);
   void ask(const std::string& method, const Request& request, const Json& parameters);
@@ -205,7 +216,7 @@ class Session {
   void ask_task(const std::string& method, const Request& request, const Json& parameters);
   void change_task(const std::string& id, const std::string& status, const std::string& text);
   void end_task(const std::string& id, Json json, const Result& result);
-  bool structures(const Request& request) const { return request.modern || structures_; }
+  bool structures(const Request& request) const;
   void list(const Request& request, Json result);
   void call(const Request& request, const Json& parameters, const Json& uri = nullptr);
   double too_soon();
@@ -217,13 +228,15 @@ class Session {
   const std::string version_;
   const std::string instructions_;
   std::vector<Tool> tools_;
-  bool structures_ = true;  ///< the client's revision has structured results
+  std::string revision_ = kLegacy;
   bool waits_ = false;      ///< for the tools
   bool left_ = false;       ///< the client sends no more
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::uint64_t pings_ = 0;
   std::map<std::uint64_t, Open> open_;
+  std::map<std::uint64_t, Batch> batches_;
+  std::uint64_t batch_count_ = 0;
   std::vector<Listener> listeners_;
   std::map<std::string, Watched> watched_;  ///< by uri
   std::map<std::string, Task> tasks_;       ///< by id
@@ -239,6 +252,8 @@ class Session {
   double counted_ = 0.0;          ///< [s] time of `allowed_`
 };
 
+/// Takes out of the arguments what is null and may be left out.
+void drop_nulls(Json& arguments, const Json& schema);
 /// The reason why arguments do not fit a schema, in words, with the argument's name; empty where
 /// they do. Of JSON Schema: type, properties, required, additionalProperties, items, anyOf, enum,
 /// minimum, maximum.

@@ -22,6 +22,9 @@ struct Program {
   v1::ServiceStatus status;
   double age = 0.0;       ///< [s] since its arrival
   bool namesake = false;  ///< it reports that another program of its name has this robot
+  /// [s] that the clock of its machine is behind this one's, as far as samples show it [0: not
+  /// known]
+  double clock_behind = 0.0;
 };
 
 /// The cycles with known samples of a program; 0: none.
@@ -61,6 +64,10 @@ struct Situation {
   std::vector<Program> programs;            ///< at present
   std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
 };
+
+/// The machines whose clocks differ from this one's by seconds, in words, a line each; empty: none.
+/// Nothing depends on it but the times of logs, of people's words and of certificates.
+std::string clocks_apart(const std::vector<Program>& programs);
 
 /// The robot has a place on the map that its readings hardly fit: it may have been carried away.
 bool is_doubtful(const v1::Registration& registration);

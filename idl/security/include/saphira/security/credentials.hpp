@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,16 @@ struct Credentials {
   std::string authority;   ///< its certificate, PEM
 };
 
+/// Credentials that will hold, or a clock that is behind: no mistake of a person, so a program that
+/// is started again takes them in time.
+class NotYet : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// The credentials in a folder for a program. Where the roles of the site name it, those of that
 /// role; for any other program the first of operator, agent, observer and recorder in the folder.
-/// std::invalid_argument that names the file, the fault and the remedy. `now`: [s since 1970].
+/// std::invalid_argument that names the file, the fault and the remedy; NotYet. `now`: [s since 1970].
 Credentials load_credentials(const std::string& folder, const std::string& program,
                              std::int64_t now);
 
