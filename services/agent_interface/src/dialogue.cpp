@@ -27,7 +27,8 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
 /// Questions of activities whether something was handed over.
-constexpr std::array kHandovers{"given", "taken"};
+constexpr const char* kTaken = "taken";
+constexpr std::array kHandovers{"given", kTaken};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
 constexpr const char* kSaidLine = "said\t";
@@ -196,7 +197,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     else
       want(meaning, utterance, "deliver",
            {text("object", "the " + slot(meaning, "object")), text("from", whom("person")),
-            text("to", to)});
+            text("to", to), text("receiver", lowered(utterance.speaker))});
   } else {
     return false;
   }
@@ -239,8 +240,12 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
                                                   situation.asked_about) != kHandovers.end()))
       return true;
   }
+  const bool takes = situation.asked_about == kTaken;
   if (meaning.functor == "yes" || meaning.functor == "handed") {
-    value = "yes";
+    value = takes && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
+    told.about.clear();
+  } else if (takes && meaning.functor == "somebody") {
+    value = called;
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
     value = "no";
@@ -340,7 +345,11 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
   } else if (!goes_on) {
     std::erase_if(questions_, [](const Question& one) { return !one.drops.empty(); });
   }
+  const bool dropped = !begun.canceled.empty();
   add(std::move(begun), out);
+  if (dropped)
+    for (const auto& [object, to] : situation.carried)
+      say(utterance, "I still have " + object, false, out);
   note_begin(situation, out);
   if (!out.goals.empty() && out.goals.back().functor == "stop")
     stop_ = out.goals.back().tag;
@@ -390,6 +399,11 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       return out;
     }
   }
+  // A word alone may be to somebody else.
+  if (asked && understood.meanings.empty() && utterance.confidence >= kSure &&
+      words_of(utterance.text).size() > 1)
+    out.claims.push_back({kNotUnderstood, named_person(utterance.speaker) + ": " + utterance.text,
+                          claim_source(utterance)});
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   const bool stops =

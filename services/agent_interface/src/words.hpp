@@ -14,6 +14,9 @@ namespace saphira::agent_interface {
 inline constexpr std::string_view kInstead = "instead";
 inline constexpr std::string_view kChoice = "choice";
 
+/// The claim about a reply that is no answer to the question of an activity.
+inline constexpr const char* kNotUnderstood = "not-understood";
+
 /// The marks between clauses, as words of their own: a comma, and any other.
 inline constexpr const char* kComma = ",";
 inline constexpr const char* kMark = ".";

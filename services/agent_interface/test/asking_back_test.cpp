@@ -300,7 +300,8 @@ TEST_F(DialogueTest, AnOrderAtTheEndOfAMessageIsAskedBack) {
   hear("Flakey, ask John for the report and then go home");
   EXPECT_EQ(last.said.back().text,
             "I get the report from john and bring it here, and then I go home, to start");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"john\" to=\"upper corridor\"");
+  EXPECT_EQ(goals(),
+            "deliver object=\"the report\" from=\"john\" to=\"upper corridor\" receiver=\"alice\"");
 }
 
 TEST_F(DialogueTest, ANameAloneMayCallAPersonWhileTheRobotWaits) {

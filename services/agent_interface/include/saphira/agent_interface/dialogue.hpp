@@ -74,6 +74,8 @@ struct Situation {
   /// Persons of whom an activity or another program believes a place, or who knows it; in small
   /// letters.
   std::vector<std::string> findable{};
+  /// Objects on the robot's back, such as "the report", and where each was to go.
+  std::vector<std::pair<std::string, std::string>> carried{};
   double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
   bool turns_cameras = false;  ///< the robot has a head
 };
