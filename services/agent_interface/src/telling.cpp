@@ -63,6 +63,7 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
   situation.asked_for.clear();
   situation.findable.clear();
   situation.carried.clear();
+  situation.is_slow = false;
   std::vector<Find> finds;
   for (const Belief& belief : beliefs) {
     const std::string value = text_of(belief.value);
@@ -70,6 +71,8 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
       situation.asked_about = value;
     else if (belief.name == kPerson)
       situation.asked_for = value;
+    else if (belief.name == kPace)
+      situation.is_slow = value == "slow";
     else if (belief.name.starts_with(kCarries) && !value.empty())
       situation.carried.emplace_back(belief.name.substr(kCarries.size()), value);
     for (const std::string_view about : {kPlaceOf, kKnowers})
