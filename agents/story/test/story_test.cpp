@@ -34,7 +34,7 @@ struct AStory : testing::Test {
       utterance.answers(sample.data.id());
       utterance.text(text);
       utterance.end(true);
-      said.write(utterance);
+      answers_.write(utterance);
     }
   }
 
@@ -46,7 +46,7 @@ struct AStory : testing::Test {
   bus::Writer<v1::Registration> registrations = robot.writer(bus::topics::kRegistration);
   bus::Reader<v1::Utterance> heard = robot.reader(bus::topics::kHeard);
   bus::Node people{test::memory_options("people"), memory};
-  bus::Writer<v1::Utterance> said = robot.writer(bus::topics::kSaid);
+  bus::Writer<v1::Utterance> answers_ = robot.writer(bus::topics::kSaid);
   Story story{people, Cast(cast, "test.people"), {}};
 };
 
