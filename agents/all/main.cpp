@@ -141,6 +141,7 @@ class Talkers {
   /// The result of the story, as one line of JSON.
   void report() const {
     const nlohmann::json result{{"well", story_->well()},
+                                {"handed_over", story_->handed_over()},
                                 {"outcome", story_->outcome()},
                                 {"time_s", std::round(10.0 * story_->time()) / 10.0},
                                 {"utterances", story_->utterances()},

@@ -207,6 +207,18 @@ TEST(Ways, AreDrivenToATenthOfThemselves) {
   }
 }
 
+TEST(Mapping, AFloorThatTheRobotDoesNotUnderstandIsNotBuilt) {
+  for (const char* const world : {"cluttered", "visitors"}) {
+    WholeOptions options;
+    options.drive.world = world;
+    options.map = "none";
+    Whole whole(options);
+    const GoalStatus status = whole.achieve("build-map", {}, 6000);
+    EXPECT_EQ(status.state, GoalState::kFailed) << world << ": " << status.reason;
+    EXPECT_NE(status.reason.find("no corridor was found in "), std::string::npos) << status.reason;
+  }
+}
+
 GoalStatus go_to(Whole& whole, double x, double y) {
   return whole.achieve("go_to", {saphira::point("position", {x, y, 0.0}, Frame::map)}, 1500);
 }
@@ -505,6 +517,65 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   EXPECT_EQ(status.state, GoalState::kFailed);
   EXPECT_EQ(status.reason, "nobody at EJ-250 took the key: the robot still has it");
   EXPECT_TRUE(people.all_answered());
+}
+
+/// The end of a delivery to Alice in EJ-247, of something that is given to the robot here; somebody
+/// takes it, and others say whether she has it.
+GoalStatus delivered_to_alice(const intentions::Value& taker, const std::string& she_has_it) {
+  Whole whole(office());
+  People people({{"Please give me the report", "given", kYes},
+                 {"Here is the report from karen for alice, please take it", "taken", taker},
+                 {"Does alice have the report?", "answer", she_has_it}});
+  const auto goal = whole.ask(
+      "deliver", {text("object", "the report"), text("to", "EJ-247"), text("sender", "karen"),
+                  text("receiver", "alice"), saphira::number("patience", 5.0)});
+  GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(said(whole, "Does alice have"), taker != intentions::Value("alice"));
+  return status;
+}
+
+TEST(People, ADeliveryIsDoneWhenTheOneWhomItWasForHasIt) {
+  EXPECT_EQ(delivered_to_alice("alice", "no").reason,
+            "the report was brought from karen to alice at EJ-247");
+  EXPECT_EQ(delivered_to_alice("karen", "yes").state, GoalState::kSucceeded);
+  const GoalStatus taken = delivered_to_alice("karen", "no");
+  EXPECT_EQ(taken.state, GoalState::kFailed);
+  EXPECT_EQ(taken.reason, "karen took the report, which was for alice");
+  EXPECT_EQ(delivered_to_alice(kYes, "no").reason, "somebody took the report, which was for alice");
+}
+
+TEST(People, AReplyThatIsNoAnswerIsAskedOnceMoreAndTold) {
+  Whole whole(office());
+  People people({{"Is bob here?", "not-understood", "karen: what do you want?"},
+                 {"Is bob here?", "not-understood", "karen: pardon me?"}});
+  const auto goal = whole.ask("find-person", {text("name", "bob"), text("places", "EJ-247"),
+                                              saphira::number("patience", 3.0)});
+  const GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.reason,
+            "bob is not to be found, neither at EJ-247; not understood: karen: pardon me?");
+  EXPECT_EQ(std::count(whole.said().begin(), whole.said().end(), "I do not understand that"), 1);
+  EXPECT_EQ(std::count(whole.said().begin(), whole.said().end(), "Is bob here?"), 3);
+}
+
+TEST(People, WhatNobodyTookIsOnItsBack) {
+  Whole whole(office());
+  People people({{"Please give me the report", "given", kYes}});
+  const auto goal = whole.ask("deliver", {text("object", "the report"), text("to", "EJ-247"),
+                                          saphira::number("patience", 3.0)});
+  std::string carried;
+  whole.advance_until(
+      [&] {
+        people.listen(whole);
+        if (const auto& beliefs = whole.drive().cores().said().intentions.beliefs)
+          for (const intentions::Belief& one : *beliefs)
+            if (one.name == "carries-the report")
+              carried = to_text(one.value);
+        return whole.ended(goal);
+      },
+      6000);
+  EXPECT_EQ(whole.status(goal).reason, "nobody at EJ-247 took the report: the robot still has it");
+  EXPECT_EQ(carried, "EJ-247");
 }
 
 TEST(People, WhoDoesNotKnowWhoHasItIsNobodysName) {

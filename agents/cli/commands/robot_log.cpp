@@ -125,7 +125,7 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
                        {"way_m", log.odometry.length()},
                        {"walls", mapped.walls.features.size()},
                        {"reckoned_ate_m", result.dead_reckoning.ate},
-                       {"tracking", share(run.tracking)},
+                       {"tracking", share(run.tracked.size())},
                        {"lost", share(run.lost)},
                        {"unplaced", share(run.unplaced)},
                        {"matches", run.accepted}};
@@ -136,6 +136,7 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
     };
     out["ate_m"] = known(at.ate);
     out["within_half_a_metre"] = known(at.within);
+    out["tracking_within_half_a_metre"] = known(result.tracked.within);
     out["per_10m_m"] = known(at.drift);
     out["per_10m_deg"] = known(degrees(at.drift_heading));
     std::cout << out.dump() << '\n';
@@ -150,10 +151,11 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
   }
   tell("by sonars", result.localized);
   std::printf(
-      "%-16s %.1f %% of the steps, takes itself for lost in %.1f %%, has no pose in %.1f %%; "
-      "%zu matches\n",
-      "has a pose in", 100.0 * share(run.tracking), 100.0 * share(run.lost),
-      100.0 * share(run.unplaced), run.accepted);
+      "%-16s sure of its pose in %.1f %% of the steps, and then within %.1f m of the laser in %.1f "
+      "%%; lost in %.1f %%, without a pose in %.1f %%; %zu matches\n",
+      "by its own word", 100.0 * share(run.tracked.size()), logs::kWithin,
+      100.0 * result.tracked.within, 100.0 * share(run.lost), 100.0 * share(run.unplaced),
+      run.accepted);
   return bus::kExitOk;
 }
 

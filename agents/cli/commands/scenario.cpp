@@ -54,15 +54,13 @@ struct Run {
 
 /// The end of a story.
 struct Ending {
-  bool well = false;  ///< as the cast requires
-  std::string outcome;
-  double time = 0.0;  ///< [s] of the robot
+  bool well = false;        ///< as the cast requires
+  std::string handed_over;  ///< as the people know it: "alice has the report"; empty: nothing
+  double time = 0.0;        ///< [s] of the robot
   std::uint64_t utterances = 0;
   std::string hash;  ///< of the dialogue
   Track track;
   std::string said;  ///< "speaker: text" a line
-
-  bool delivered() const { return outcome.starts_with("done: "); }
 };
 
 /// The last lines of the programs' output, shown after a failure.
@@ -170,8 +168,9 @@ Ending play_live(const ScenarioOptions& options, const Run& run,
   supervisor.stop();
   if (!trouble.empty())
     kept.show(trouble);
-  return {played.well(), played.outcome(), played.time(), played.utterances(), played.hash(), {},
-          said};
+  return {
+      played.well(), played.handed_over(), played.time(), played.utterances(), played.hash(), {},
+      said};
 }
 
 Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
@@ -187,7 +186,7 @@ Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
         if (result.is_object()) {
           told = true;
           ending = {result.value("well", false),
-                    result.value("outcome", ""),
+                    result.value("handed_over", ""),
                     result.value("time_s", 0.0),
                     result.value("utterances", std::uint64_t{0}),
                     result.value("dialogue_hash", ""),
@@ -245,8 +244,8 @@ Ending play(const ScenarioOptions& options, const std::string& cast, std::uint64
                                 run.trace());
   if (!options.json)
     print("%s after %.0f s of robot time, %.0f m, %s%s\n",
-          ending.delivered() ? "delivered" : "not delivered", ending.time, ending.track.path,
-          counted(ending.track.contacts, "contact").c_str(),
+          ending.handed_over.empty() ? "nobody has got anything" : ending.handed_over.c_str(),
+          ending.time, ending.track.path, counted(ending.track.contacts, "contact").c_str(),
           ending.well ? "" : "; the story was to end otherwise");
   flush_output();
   if (!options.audio.empty())
@@ -260,7 +259,7 @@ class Sum {
   void add(const Ending& ending) {
     ++runs_;
     well_ += ending.well ? 1 : 0;
-    delivered_ += ending.delivered() ? 1 : 0;
+    delivered_ += ending.handed_over.empty() ? 0 : 1;
     time_ += ending.time;
     contacts_ += ending.track.contacts;
     utterances_ += ending.utterances;

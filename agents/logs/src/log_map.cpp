@@ -57,6 +57,7 @@ LogEvaluation evaluate_log(const DataSet& log, const LogMap& laser,
   result.run = register_sonars(virtual_drive(log, sonars), map, start_in_map);
   result.dead_reckoning = accuracy(log.odometry.poses(), truth);
   result.localized = accuracy(result.run.poses, truth);
+  result.tracked = accuracy(result.run.tracked, truth);
   return result;
 }
 

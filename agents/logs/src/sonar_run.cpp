@@ -33,7 +33,6 @@ SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
     step(cycle++, drive.poses_in_odom[i], {});
     const auto& placed = step(cycle, drive.poses_in_odom[i], drive.readings[i]);
     ++out.steps;
-    out.tracking += placed.state == State::tracking ? 1U : 0U;
     out.lost += placed.state == State::lost ? 1U : 0U;
     out.unplaced += placed.state == State::unplaced ? 1U : 0U;
     out.accepted += static_cast<std::size_t>(
@@ -41,6 +40,8 @@ SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
                       [](const registration::Match& match) { return match.accepted; }));
     if (placed.state != State::unplaced)
       out.poses.push_back({drive.times[i], placed.pose_in_map});
+    if (placed.state == State::tracking)
+      out.tracked.push_back({drive.times[i], placed.pose_in_map});
   }
   return out;
 }

@@ -73,7 +73,8 @@ TEST(LogMap, SonarsHoldThePoseOnTheMapOfTheLog) {
   const LogEvaluation result =
       evaluate_log(log, mapped, front_of_b21(), mapped.walls, mapped.poses.front().pose);
   EXPECT_EQ(result.run.unplaced, 0U);
-  EXPECT_GT(result.run.tracking, result.run.steps * 9 / 10);
+  EXPECT_GT(result.run.tracked.size(), result.run.steps * 9 / 10);
+  EXPECT_EQ(result.tracked.compared, result.run.tracked.size());
   EXPECT_LT(result.localized.ate, 0.5 * result.dead_reckoning.ate);
 }
 

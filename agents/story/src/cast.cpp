@@ -8,7 +8,7 @@
 namespace saphira::story {
 namespace {
 
-constexpr const char* kWords = "PERSON, HAS, KNOWS, SAYS, NEAR, DEPLOYMENT, THINGS or ENDS";
+constexpr const char* kWords = "PERSON, HAS, GETS, KNOWS, SAYS, NEAR, DEPLOYMENT, THINGS or ENDS";
 
 /// The text between two others: "karen" in "Is karen here?".
 std::optional<std::string> between(std::string_view text, std::string_view before,
@@ -81,11 +81,13 @@ Cast::Cast(std::string_view text, const std::string& file) : file_(file) {
       deployment_ = reader.word("a name of config/deployments");
     } else if (word == "THINGS") {
       things_ = std::filesystem::path(file).replace_filename(reader.word("a file beside this one"));
-    } else if (word == "HAS" || word == "KNOWS") {
+    } else if (word == "HAS" || word == "GETS" || word == "KNOWS") {
       if (people_.empty())
         reader.fail("expected a PERSON above it");
       if (word == "HAS") {
         people_.back().has.emplace(reader.word("what the person has"));
+      } else if (word == "GETS") {
+        people_.back().gets.emplace(reader.word("what the person is to have at the end"));
       } else {
         const std::string whom(reader.word("a name"));
         people_.back().knows[whom] = place(2);
@@ -95,6 +97,9 @@ Cast::Cast(std::string_view text, const std::string& file) : file_(file) {
     }
     reader.expect_end();
   }
+  for (const Person& person : people_)
+    for (const std::string& object : person.has)
+      owners_[object] = person.name;
 }
 
 void Cast::check(const std::function<bool(const std::string& place)>& is_place) const {
@@ -111,6 +116,22 @@ bool Cast::has(const std::string& person, const std::string& object) const {
   return std::any_of(people_.begin(), people_.end(), [&](const Person& one) {
     return one.name == person && one.has.contains(object);
   });
+}
+
+bool Cast::all_got() const {
+  return std::all_of(people_.begin(), people_.end(), [](const Person& one) {
+    return std::includes(one.has.begin(), one.has.end(), one.gets.begin(), one.gets.end());
+  });
+}
+
+std::string Cast::handed_over() const {
+  std::string text;
+  for (const Person& person : people_)
+    for (const std::string& object : person.has)
+      if (const auto owner = owners_.find(object);
+          owner == owners_.end() || owner->second != person.name)
+        text += (text.empty() ? "" : ", ") + person.name + " has the " + object;
+  return text;
 }
 
 std::optional<Cast::Line> Cast::answer(const std::string& said, const std::string& place) {
@@ -142,8 +163,21 @@ std::optional<Cast::Line> Cast::answer(const std::string& said, const std::strin
     return Line{here.front()->name, "I don't know", {}};
   if (const auto object = between(said, "Here is ", ", please take it")) {
     const std::string name = object->substr(0, object->find(" from "));
-    here.front()->has.insert(without_article(name));
-    return Line{here.front()->name, "thank you", {}};
+    Person* taker = here.front();
+    for (Person* const person : here)
+      if (object->ends_with(" for " + person->name))
+        taker = person;
+    taker->has.insert(without_article(name));
+    return Line{taker->name, "thank you", {}};
+  }
+  if (const auto question = between(said, "Does ", "?")) {
+    const std::size_t have = question->find(" have ");
+    if (have != std::string::npos)
+      return Line{here.front()->name,
+                  has(question->substr(0, have), without_article(question->substr(have + 6)))
+                      ? "yes"
+                      : "no",
+                  {}};
   }
   return std::nullopt;
 }

@@ -32,6 +32,30 @@ TEST(Cast, PeopleAnswerWhereTheyAreByWhatTheyHaveAndKnow) {
   EXPECT_TRUE(cast.has("alice", "report"));
 }
 
+TEST(Cast, WhoeverAnObjectIsForTakesItAndThePeopleKnowWhoHasIt) {
+  const std::string text =
+      "PERSON karen N1\nHAS report\nPERSON alice N1\nGETS report\nPERSON bob N2\n";
+  Cast cast(text, "f");
+  answer(cast, "Please give me the report", "N1");
+  EXPECT_EQ(cast.handed_over(), "") << "the robot has it";
+  EXPECT_FALSE(cast.all_got());
+  EXPECT_EQ(answer(cast, "Here is the report from karen, please take it", "N1"),
+            "karen: thank you");
+  EXPECT_EQ(answer(cast, "Does alice have the report?", "N1"), "karen: no");
+  EXPECT_EQ(cast.handed_over(), "") << "its owner has it again";
+  EXPECT_FALSE(cast.all_got());
+  answer(cast, "Please give me the report", "N1");
+  EXPECT_EQ(answer(cast, "Here is the report from karen for alice, please take it", "N1"),
+            "alice: thank you");
+  EXPECT_EQ(answer(cast, "Does alice have the report?", "N1"), "karen: yes");
+  EXPECT_EQ(cast.handed_over(), "alice has the report");
+  EXPECT_TRUE(cast.all_got());
+  answer(cast, "Please give me the report", "N1");
+  answer(cast, "Here is the report from karen for alice, please take it", "N2");
+  EXPECT_EQ(cast.handed_over(), "bob has the report");
+  EXPECT_FALSE(cast.all_got());
+}
+
 TEST(Cast, ALineMayWaitForTheRobotAtAPlace) {
   const std::string file = test::source("config/people/introduction.people");
   const Cast cast(read_file(file), file);

@@ -9,7 +9,8 @@ namespace {
 
 /// A robot in the hall at cycle 50, and Alice, who says one sentence to it.
 struct AStory : testing::Test {
-  AStory() {
+  explicit AStory(const std::string& has = "")
+      : cast("PERSON alice hall\n" + has + "SAYS alice Flakey, stop\n") {
     v1::MapArtifact hall;
     hall.id(1);
     hall.type(v1::ARTIFACT_CORRIDOR);
@@ -26,6 +27,18 @@ struct AStory : testing::Test {
     registrations.write(v1::Registration());
   }
 
+  /// The robot's last answer to the newest sentence.
+  void answers(const std::string& text) {
+    for (const auto& sample : heard.take()) {
+      v1::Utterance utterance;
+      utterance.answers(sample.data.id());
+      utterance.text(text);
+      utterance.end(true);
+      answers_.write(utterance);
+    }
+  }
+
+  std::string cast;
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node robot{test::memory_options("robot"), memory};
   bus::Writer<v1::FloorMap> maps = robot.writer(bus::topics::kMap);
@@ -33,7 +46,15 @@ struct AStory : testing::Test {
   bus::Writer<v1::Registration> registrations = robot.writer(bus::topics::kRegistration);
   bus::Reader<v1::Utterance> heard = robot.reader(bus::topics::kHeard);
   bus::Node people{test::memory_options("people"), memory};
-  Story story{people, Cast("PERSON alice hall\nSAYS alice Flakey, stop\n", "test.people"), {}};
+  bus::Writer<v1::Utterance> answers_ = robot.writer(bus::topics::kSaid);
+  Story story{people, Cast(cast, "test.people"), {}};
+};
+
+struct WhoeverHasIt : AStory {
+  WhoeverHasIt() : AStory("HAS report\nGETS report\n") {}
+};
+struct WhoeverHasItNot : AStory {
+  WhoeverHasItNot() : AStory("GETS report\n") {}
 };
 
 TEST_F(AStory, InLockstepTheTimeOfAnUtteranceIsTheCycle) {
@@ -52,6 +73,26 @@ TEST_F(AStory, LiveItIsAlsoTheGivenTime) {
   ASSERT_EQ(said.size(), 1U);
   EXPECT_EQ(said[0].data.stamp().cycle(), 50U);
   EXPECT_EQ(said[0].data.time(), 1e9);
+}
+
+TEST_F(WhoeverHasIt, EndsWell) {
+  story.step();
+  answers("done: the report was brought");
+  story.step();
+  EXPECT_TRUE(story.step());
+  EXPECT_EQ(story.outcome(), "done: the report was brought");
+  EXPECT_TRUE(story.well());
+}
+
+// What the robot says of it does not count.
+TEST_F(WhoeverHasItNot, DoesNotEndWell) {
+  story.step();
+  answers("done: the report was brought");
+  story.step();
+  EXPECT_TRUE(story.step());
+  EXPECT_EQ(story.outcome(), "done: the report was brought");
+  EXPECT_FALSE(story.well());
+  EXPECT_EQ(story.handed_over(), "");
 }
 
 }  // namespace

@@ -74,7 +74,8 @@ std::vector<DriveKey> take_keys(std::string& input) {
 void KeyDrive::press(DriveKey key, double now) {
   if (key == DriveKey::stop)
     return release();
-  if (key > DriveKey::keep)
+  // To go on with nothing would take the robot from whoever drives it.
+  if (key > DriveKey::keep || (key == DriveKey::keep && !order(now).active))
     return;
   if (!order(now).active)
     ++order_.turn->move;  // hold the present heading

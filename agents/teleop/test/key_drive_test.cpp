@@ -65,11 +65,22 @@ TEST(KeyDrive, AHeldKeyBridgesTheDelayBeforeItsFirstRepeat) {
 
 TEST(KeyDrive, LettingGoOfAHeldKeyStopsSoon) {
   KeyDrive drive;
-  drive.press(DriveKey::keep, 0.0);
+  drive.press(DriveKey::faster, 0.0);
   for (int i = 0; i <= 8; ++i)
     drive.press(DriveKey::keep, 0.5 + 0.05 * i);
   EXPECT_TRUE(drive.order(1.1).active);
   EXPECT_FALSE(drive.order(1.25).active);
+}
+
+TEST(KeyDrive, ToGoOnWithNothingDrivesNothing) {
+  KeyDrive drive;
+  drive.press(DriveKey::keep, 0.0);
+  EXPECT_FALSE(drive.order(0.0).active);
+  drive.press(DriveKey::faster, 0.1);
+  drive.press(DriveKey::keep, 0.5);
+  EXPECT_TRUE(drive.order(1.0).active);
+  drive.press(DriveKey::keep, 5.0);
+  EXPECT_FALSE(drive.order(5.0).active);
 }
 
 TEST(KeyDrive, AHeldKeyAcceleratesNoFasterThanTheRate) {

@@ -26,6 +26,11 @@ bool is_of_the_first(std::string_view subclass) {
          (subclass.starts_with("pion") && !subclass.starts_with("pioneer-"));
 }
 
+/// The file of the same robot with a later server.
+std::string later_name(const std::string& name) {
+  return name + "-sh.p";
+}
+
 constexpr double kMillimetre = 0.001;
 constexpr int kMaxSonars = 64;
 
@@ -533,7 +538,7 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
   for (std::size_t hyphen = name.rfind('-');
        hyphen != std::string::npos && name.substr(hyphen) != "-sh"; hyphen = name.rfind('-')) {
     name.resize(hyphen);
-    if (name != of_class)
+    if (name != of_class && name != "pioneer")
       add(name);
   }
   // The file of the class Pioneer is one of the manual's time, with its units.
@@ -545,9 +550,15 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
 std::optional<std::string> find_parameter_file(const std::string& folder,
                                                std::string_view robot_class,
                                                std::string_view subclass) {
-  for (const std::string& name : parameter_file_names(robot_class, subclass))
-    if (const auto path = std::filesystem::path(folder) / name; std::filesystem::exists(path))
+  namespace fs = std::filesystem;
+  for (const std::string& name : parameter_file_names(robot_class, subclass)) {
+    const fs::path path = fs::path(folder) / name;
+    // A variant of amigo may as well be of the later generation amigo-sh, whose units differ.
+    const bool ambiguous =
+        path.stem() != lowered(subclass) && fs::exists(fs::path(folder) / later_name(path.stem()));
+    if (fs::exists(path) && !ambiguous)
       return path.string();
+  }
   return std::nullopt;
 }
 
@@ -564,6 +575,13 @@ RobotParameters parameters_of(const RobotIdentity& robot, const std::string& fol
   const auto path = find_parameter_file(folder, robot.robot_class, robot.subclass);
   if (!path) {
     const std::string names = joined(parameter_file_names(robot.robot_class, robot.subclass));
+    for (const std::string& name : parameter_file_names(robot.robot_class, robot.subclass))
+      if (std::filesystem::exists(std::filesystem::path(folder) / name))
+        throw std::runtime_error(name_of(robot) +
+                                 " may be of either generation, whose units differ: " + folder +
+                                 "/" + name + " or " + later_name(name.substr(0, name.size() - 2)) +
+                                 (other.empty() ? "" : "; " + other) +
+                                 ". Copy the right one there as " + lowered(robot.subclass) + ".p");
     throw std::runtime_error("no parameter file for " + name_of(robot) + ": looked for " +
                              (names.empty() ? "nothing (the robot names no class)" : names) +
                              " in " + folder + (other.empty() ? "" : "; " + other) +

@@ -392,6 +392,15 @@ TEST(ParametersOf, WhereNoFileFitsTheErrorSaysWhatWasLookedFor) {
           ". Copy the file of the most similar robot there, under its subclass");
   EXPECT_NE(trouble({"mine", "", ""}).find("nothing (the robot names no class)"),
             std::string::npos);
+  // The units of the two differ.
+  EXPECT_EQ(trouble({"mine", "Pioneer", "amigo-v2"}),
+            "robot \"mine\" (Pioneer, amigo-v2) may be of either generation, whose units differ: " +
+                source("config/robots") +
+                "/amigo.p or amigo-sh.p. Copy the right one there as "
+                "amigo-v2.p");
+  EXPECT_NE(trouble({"mine", "MTLX", "pioneer-lx"}).find("looked for pioneer-lx.p, mtlx.p"),
+            std::string::npos)
+      << trouble({"mine", "MTLX", "pioneer-lx"});
 }
 
 // Manual 5.4.2.

@@ -33,18 +33,13 @@ void rename(Grammar::Understood& understood, const std::string& from, const std:
           value = to;
 }
 
-/// The place or person of a meaning; empty: none, or several.
-std::string only_name(const Meaning& meaning) {
-  std::string only;
-  for (const char* const name : kNamed) {
-    const std::string value = slot(meaning, name);
-    if (value.empty() || value == "this")
-      continue;
-    if (!only.empty())
-      return {};
-    only = value;
-  }
-  return only;
+/// The places and persons of a meaning.
+std::vector<std::string> names_in(const Meaning& meaning) {
+  std::vector<std::string> names;
+  for (const char* const name : kNamed)
+    if (const std::string value = slot(meaning, name); !value.empty() && value != "this")
+      names.push_back(value);
+  return names;
 }
 
 }  // namespace
@@ -95,6 +90,20 @@ void Dialogue::choices(const Grammar::Understood& understood, const Utterance& u
     ask(std::move(question), utterance);
 }
 
+/// An open question has the first claim on an answer. A stop is one in any case.
+void Dialogue::prefer_answer(Grammar::Understood& understood, const Situation& situation) const {
+  std::vector<Meaning>& meanings = understood.meanings;
+  if (understood.answer && meanings.size() == 1 && meanings.front().functor != "stop" &&
+      (is_yes_or_no(*understood.answer) || meanings.front().functor == "to_place")) {
+    meanings = {*understood.answer};
+    understood.then.clear();
+    understood.apart.clear();
+  } else if (situation.asked_about.empty() && questions_.empty() && understood.bare.size() == 1 &&
+             !place(slot(understood.bare.front(), "person"), situation).empty()) {
+    meanings = {{"to_place", {{"place", slot(understood.bare.front(), "person")}, {"owner", ""}}}};
+  }
+}
+
 /// A recognizer is not certain of the words.
 void Dialogue::ask_again(Grammar::Understood understood, const Utterance& utterance, Outputs& out) {
   if (is_yes_or_no(understood.meanings.front())) {
@@ -129,15 +138,16 @@ void Dialogue::note_name(Grammar::Understood understood, const Utterance& uttera
                          const Outputs& out) {
   Question question;
   question.asked = out.goals.empty();
-  question.name = question.asked            ? out.unknown.name
-                  : understood.then.empty() ? only_name(understood.meanings.front())
-                                            : std::string();
-  if (question.name.empty())
+  if (!question.asked && understood.then.empty())
+    question.names = names_in(understood.meanings.front());
+  else if (question.asked && !out.unknown.name.empty())
+    question.names = {out.unknown.name};
+  if (question.names.empty())
     return;
   question.no = kLeft;
   if (question.asked && !out.unknown.meant.empty()) {
     question.yes = {understood};
-    rename(question.yes[0], question.name, lowered(out.unknown.meant));
+    rename(question.yes[0], question.names.front(), lowered(out.unknown.meant));
   }
   question.sentence = std::move(understood);
   ask(std::move(question), utterance);
@@ -192,10 +202,17 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     return false;
   } else if (bare || !is_yes_or_no(heard.front())) {
     const std::string name = named(understood, utterance, situation);
-    if (name.empty() || question.name.empty() || (!question.asked && !understood.addressed))
+    if (name.empty() || question.names.empty() ||
+        (!question.asked && !understood.addressed && situation.asked_about.empty()))
       return false;
-    next = std::move(question.sentence);
-    rename(next, question.name, name);
+    next = question.sentence;
+    rename(next, question.names.front(), name);
+    // Of several names it asks which one was wrong.
+    for (std::size_t i = 1; i < question.names.size(); ++i) {
+      Grammar::Understood other = question.sentence;
+      rename(other, question.names[i], name);
+      next.meanings.push_back(other.meanings.front());
+    }
   } else if (!question.asked) {
     return false;
   } else if (heard.front().functor == "no") {
@@ -239,6 +256,8 @@ void Dialogue::leave_out(Grammar::Understood& understood, const Situation& situa
     meanings.front() = {"somebody", {{"person", slot(meanings.front(), "name")}}};
   else if (asked && meanings.empty())
     meanings = understood.bare;
+  if (instead && is_handover(situation.asked_about))
+    meanings.clear();  // a place or person is no answer
   if ((instead || !understood.bare.empty()) &&
       !(asked && meanings.size() == 1 && is_known(slot(meanings.front(), "person"), situation)))
     meanings.clear();

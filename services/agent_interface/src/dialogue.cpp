@@ -26,8 +26,6 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
-/// Questions of activities whether something was handed over.
-constexpr std::array kHandovers{"given", "taken"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
 constexpr const char* kSaidLine = "said\t";
@@ -44,6 +42,7 @@ bool is_fact(const Meaning& meaning) {
 double unit_of_move(std::string_view functor) {
   return functor == "move"               ? 1.0
          : functor == "move_feet"        ? 0.3048
+         : functor == "move_inches"      ? 0.0254
          : functor == "move_centimeters" ? 0.01
          : functor == "move_millimeters" ? 0.001
                                          : 0.0;
@@ -115,9 +114,10 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
     } else {
       want(meaning, utterance, "go_to", {point_ahead(distance, 0.0)});
     }
-  } else if (meaning.functor == "turn" || meaning.functor == "turn_around") {
-    const bool around = meaning.functor == "turn_around";
-    const double degrees = around ? 180.0 : number_of(meaning, "degrees");
+  } else if (meaning.functor.starts_with("turn")) {
+    const double degrees = meaning.functor == "turn_around" ? 180.0
+                           : meaning.functor == "turn_side" ? 90.0
+                                                            : number_of(meaning, "degrees");
     if (degrees <= 0.0) {
       refuse(utterance, "that is no turn", out);
       return true;
@@ -163,7 +163,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     want(meaning, utterance, "explore", {});
   } else if (functor == "find") {
     want(meaning, utterance, "find-person", {text("name", slot(meaning, "person"))});
-  } else if (functor == "go_to") {
+  } else if (functor == "go_to" || functor == "to_place") {
     const std::string name = slot(meaning, "place");
     std::uint32_t artifact = 0;
     std::string wrong;
@@ -196,7 +196,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     else
       want(meaning, utterance, "deliver",
            {text("object", "the " + slot(meaning, "object")), text("from", whom("person")),
-            text("to", to)});
+            text("to", to), text("receiver", lowered(utterance.speaker))});
   } else {
     return false;
   }
@@ -235,12 +235,15 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     }
     // Somebody is called to hand it over.
     if (saphira::joined(words_of(utterance.text), " ") == called &&
-        (is_question(utterance.text) || std::find(kHandovers.begin(), kHandovers.end(),
-                                                  situation.asked_about) != kHandovers.end()))
+        (is_question(utterance.text) || is_handover(situation.asked_about)))
       return true;
   }
+  const bool takes = situation.asked_about == "taken";
   if (meaning.functor == "yes" || meaning.functor == "handed") {
-    value = "yes";
+    value = takes && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
+    told.about.clear();
+  } else if (takes && meaning.functor == "somebody") {
+    value = called;
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
     value = "no";
@@ -340,7 +343,11 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
   } else if (!goes_on) {
     std::erase_if(questions_, [](const Question& one) { return !one.drops.empty(); });
   }
+  const bool dropped = !begun.canceled.empty();
   add(std::move(begun), out);
+  if (dropped)
+    for (const auto& [object, to] : situation.carried)
+      say(utterance, "I still have " + object, false, out);
   note_begin(situation, out);
   if (!out.goals.empty() && out.goals.back().functor == "stop")
     stop_ = out.goals.back().tag;
@@ -365,10 +372,13 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   const bool asked = !situation.asked_about.empty();
   const Question* const question = question_for(utterance);
-  const bool corrects = question != nullptr && !question->asked && !asked;
   const bool answers = question != nullptr && question->asked;
   const bool certain = utterance.confidence >= kCertain && utterance.text.size() <= kLongestText;
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
+  prefer_answer(understood, situation);
+  const bool corrects = question != nullptr && !question->asked &&
+                        (!asked || (understood.meanings.size() == 1 &&
+                                    !slot(understood.meanings.front(), "meant").empty()));
   if (corrects && understood.addressed && understood.meanings.empty()) {
     understood = grammar_.understand(utterance.text, true);
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
@@ -390,6 +400,11 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       return out;
     }
   }
+  // A word alone may be to somebody else.
+  if (asked && understood.meanings.empty() && utterance.confidence >= kSure &&
+      words_of(utterance.text).size() > 1)
+    out.claims.push_back({kNotUnderstood, named_person(utterance.speaker) + ": " + utterance.text,
+                          claim_source(utterance)});
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   const bool stops =

@@ -50,6 +50,20 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
     refuse(utterance, "I do not know where that is: my map has no place called home or start", out);
 }
 
+/// Slower holds for all that it does, until it is told to go faster.
+void Dialogue::change_pace(bool slower, const Utterance& utterance, const Situation& situation,
+                           Outputs& out) const {
+  if (slower) {
+    out.claims.push_back({kPace, "slow", claim_source(utterance)});
+    say(utterance, situation.is_slow ? "I go slowly already" : "I go slowly", true, out);
+  } else if (situation.is_slow) {
+    out.claims.push_back({kPace, "", ""});
+    say(utterance, "I go as fast as before", true, out);
+  } else {
+    refuse(utterance, "I go no faster than the task asks for", out);
+  }
+}
+
 bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
                       const Situation& situation, Outputs& out) {
   const std::string& functor = meaning.functor;
@@ -92,12 +106,16 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     if (!to.empty())
       want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)});
   } else if (functor == "pause") {
-    const double unit = slot(meaning, "unit") == "minutes" ? 60.0 : 1.0;
+    const double unit = slot(meaning, "unit").starts_with("minute") ? 60.0 : 1.0;
     const double seconds = number_of(meaning, "time") * unit;
     if (seconds <= 0.0 || seconds > kLongestWait)
       refuse(utterance, "I wait for up to an hour", out);
     else
       want(meaning, utterance, "pause", {number("seconds", seconds)});
+  } else if (functor == "go_on") {
+    add(tasks_.go_on(utterance), out);
+  } else if (functor == "pace") {
+    change_pace(slot(meaning, "change") == "slower", utterance, situation, out);
   } else if (functor == "wait_there") {
     want(meaning, utterance, "pause", {number("seconds", kWaitThere)});
     wanted_.back().brief = false;

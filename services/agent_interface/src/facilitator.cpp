@@ -41,6 +41,36 @@ std::string misfit(const Functor& functor, const Arguments& arguments) {
   return complete(functor, bound);
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t size = letter_size(text);
+    if (size == 0)
+      return false;
+    text.remove_prefix(size);
+  }
+  return true;
+}
+
+/// Where an answer is not as the functor declares it, and what was expected; empty: nowhere.
+std::string contradiction(const Functor& functor, const Answer& answer) {
+  if (!is_utf8(answer.text))
+    return "its text is not in UTF-8";
+  for (const Argument& result : answer.results) {
+    if (!is_utf8(result.name) || !is_utf8(result.text))
+      return "a slot is not in UTF-8";
+    const auto declared =
+        std::find_if(functor.parameters.begin(), functor.parameters.end(),
+                     [&](const Parameter& one) { return one.name == result.name; });
+    if (declared == functor.parameters.end())
+      return functor.name + " has no slot " + quoted(result.name);
+    Arguments alone{result};
+    if (std::string wrong = complete({functor.name, "", {optional(*declared)}}, alone);
+        !wrong.empty())
+      return wrong;
+  }
+  return {};
+}
+
 bool is_variable(const Argument& argument) {
   return argument.kind == ArgumentKind::unbound && !argument.text.empty();
 }
@@ -490,7 +520,7 @@ void Facilitator::advance(const Id& id, double now) {
 }
 
 void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
-                       const Answer& answer, double now) {
+                       const Answer& given, double now) {
   now_ = now;
   const Id id{asker, number};
   const auto found = open_.find(id);
@@ -512,18 +542,24 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
   }
   asked->heard = true;
   // An agent that knows no withdrawals does the action to its end.
-  if (open.withdrawn && answer.code == AnswerCode::unknown_functor)
+  if (open.withdrawn && given.code == AnswerCode::unknown_functor)
     return;
-  if (!ended(answer.code)) {
+  if (!ended(given.code)) {
     // An agent that says again and again that it is at work has the time that it needs.
     if (open.request.deadline <= 0.0)
       open.end = now + kUsualDeadline;
     if (open.wanted == 1)
-      give(id, agents_.at(asked->agent).name, answer);
+      give(id, agents_.at(asked->agent).name, given);
     return;
   }
   const std::string name = agents_.at(asked->agent).name;
   const bool acts = asked->acts;
+  Answer answer = given;
+  if (const Capability* const declared = capability(asked->agent, open.request.functor))
+    if (const std::string wrong = contradiction(declared->functor, answer); !wrong.empty())
+      // An action is done, whatever is said of it.
+      answer = {acts || !well(answer.code) ? answer.code : AnswerCode::refused,
+                "the answer of agent " + name + " is not as it has declared: " + wrong};
   open.asked.erase(asked);
   if (well(answer.code)) {
     ++open.got;

@@ -16,8 +16,8 @@ constexpr std::size_t kLongestName = 3;        // words
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
 /// Units behind a number without a blank, and their words in the grammars.
-constexpr std::array<std::pair<const char*, const char*>, 4> kUnits{
-    {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}}};
+constexpr std::array<std::pair<const char*, const char*>, 5> kUnits{
+    {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}, {"in", "inches"}}};
 
 /// Short forms, and the words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
@@ -102,7 +102,8 @@ std::vector<std::string> words_and_marks_of(std::string_view said) {
         i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
     if (is_letter(c)) {
       word += c;
-    } else if (c == '.' && digit_follows && (word.empty() || is_number(word))) {
+    } else if (digit_follows &&
+               ((c == '.' && word.empty()) || ((c == '.' || c == ',') && is_number(word)))) {
       word += word.empty() ? "0." : ".";
     } else if (c == '\'' && !word.empty()) {
       const bool owner = i + 1 < text.size() && text[i + 1] == 's' &&
@@ -219,7 +220,42 @@ std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<s
       match.slots[node.slot] = one.value;
     matches.push_back(std::move(match));
   }
+  if (node.kind == Node::Kind::number)
+    if (const auto decimal = this->decimal(words, from.end)) {
+      matches.push_back(from);
+      matches.back().end += decimal->first;
+      matches.back().literal += decimal->first;
+      matches.back().slots[node.slot] = decimal->second;
+    }
   return matches;
+}
+
+/// "One point two five": its number of words, and "1.25".
+std::optional<std::pair<std::size_t, std::string>> Grammar::decimal(
+    const std::vector<std::string>& words, std::size_t at) const {
+  const auto value = [&](const std::string& list, std::size_t i) -> std::string {
+    if (i < words.size() && is_number(words[i]))
+      return words[i];
+    if (const auto found = lists_.find(list); i < words.size() && found != lists_.end())
+      for (const Entry& one : found->second)
+        if (one.words.size() == 1 && one.words.front() == words[i])
+          return one.value;
+    return {};
+  };
+  std::string text = value("digit", at);
+  if (text.empty())
+    text = value("number", at);
+  if (text.empty() || at + 1 >= words.size() || words[at + 1] != "point")
+    return std::nullopt;
+  std::size_t end = at + 2;
+  text += ".";
+  for (std::string digit = value("digit", end); !digit.empty(); digit = value("digit", end)) {
+    text += digit;
+    ++end;
+  }
+  if (end == at + 2 || !is_number(text))
+    return std::nullopt;
+  return std::pair(end - at, text);
 }
 
 /// A name is any word without another use. The grammar does not check that such a place or person
@@ -365,8 +401,11 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.meanings = look(words, result.addressed, replies, Among::reply);
   if (result.meanings.empty() && urgent.meaning)
     result.meanings = {*urgent.meaning};
+  const std::vector<Meaning> as_reply = look(words, false, true, Among::reply);
   if (result.meanings.empty() && result.addressed)
-    result.bare = look(words, false, replies, Among::reply);
+    result.bare = as_reply;
+  else if (replies && as_reply.size() == 1)
+    result.answer = as_reply.front();
   return result;
 }
 
@@ -439,16 +478,17 @@ std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string
       meanings = look(sentence, true, false, Among::later);
     if (meanings.empty())
       meanings = look(sentence, true, false, Among::usual);
-    if (auto all = completed(before, sentence); meanings.empty() && !all.empty()) {
+    const auto is_step = [&] {
+      return meanings.size() == 1 &&
+             std::find(steps_.begin(), steps_.end(), meanings[0].functor) != steps_.end();
+    };
+    if (auto all = completed(before, sentence); !is_step() && !all.empty()) {
       meanings = look(all, true, false, Among::usual);
       if (meanings.size() == 1 && takes_text(meanings[0].functor))
         return std::nullopt;
       sentence = std::move(all);
     }
-    if (meanings.size() != 1 ||
-        std::find(steps_.begin(), steps_.end(), meanings[0].functor) == steps_.end())
-      return std::nullopt;
-    return meanings[0];
+    return is_step() ? std::optional(meanings[0]) : std::nullopt;
   };
   if (std::vector<std::string> all = words; !first)
     if (const auto last = step(all))

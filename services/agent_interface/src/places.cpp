@@ -48,6 +48,17 @@ std::string letters_of(std::string_view name) {
   return letters;
 }
 
+/// The number of a room as people say it: "231", "room 231", "number 231". Empty: no such words.
+std::string room_number(const std::string& name) {
+  std::vector<std::string> words = words_of(name);
+  while (words.size() > 1 &&
+         (words.front() == "room" || words.front() == "office" || words.front() == "number"))
+    words.erase(words.begin());
+  return words.size() == 1 && words.front().find_first_not_of("0123456789") == std::string::npos
+             ? words.front()
+             : std::string();
+}
+
 /// The only name that shares a word with the said one, as "EJ-231" with "number 231". Empty: none,
 /// or several.
 std::string only_with_word_of(const std::string& said, const std::vector<std::string>& names) {
@@ -150,8 +161,19 @@ std::string Dialogue::place(const std::string& name, const Situation& situation)
         return feature.name;
     return {};
   };
-  const std::string exact = same(lowered);
-  return exact.empty() ? same(letters_of) : exact;
+  std::string known = same(lowered);
+  if (known.empty())
+    known = same(letters_of);
+  const std::string number = room_number(name);
+  if (!known.empty() || number.empty())
+    return known;
+  for (const maps::Feature& feature : situation.map.features)
+    if (is_place(feature) && feature.name != known && feature.name.ends_with("-" + number)) {
+      if (!known.empty())
+        return {};  // two buildings have that number
+      known = feature.name;
+    }
+  return known;
 }
 
 bool Dialogue::findable(const std::string& person, const Situation& situation) const {

@@ -125,6 +125,13 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
   if (brief && other != nullptr)
     text += ", and then I go on with " + named_task(*other, utterance.speaker);
   const Said announced{utterance.id, utterance.speaker, text, false};
+  if (stop && other != nullptr) {
+    stopped_ = {*other};
+    for (Task& step : std::exchange(stopped_.front().then, {}))
+      stopped_.push_back(std::move(step));
+  } else if (!stop && !brief) {
+    stopped_.clear();
+  }
   if (stop)
     out.said.push_back(announced);
   if (!brief)
@@ -133,6 +140,28 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
   if (!stop)
     out.said.push_back(announced);
   begin(std::move(first), out);
+  return out;
+}
+
+Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
+  const auto wait = std::find_if(open_.begin(), open_.end(),
+                                 [](const Task& one) { return one.goal.functor == "pause"; });
+  if (wait != open_.end()) {
+    const std::uint64_t tag = wait->goal.tag;
+    Outputs out = ended({tag, true, "I was told to go on"});
+    out.canceled.push_back(tag);
+    out.said.push_back(
+        {utterance.id, utterance.speaker,
+         task() == nullptr ? "I go on" : "I go on with " + named_task(*task(), utterance.speaker),
+         true});
+    return out;
+  }
+  if (task() == nullptr && !stopped_.empty())
+    return want(std::exchange(stopped_, {}), utterance);
+  Outputs out;
+  const std::string present = going_on(utterance.speaker);
+  out.said.push_back({utterance.id, utterance.speaker,
+                      present.empty() ? "there is nothing to go on with" : "good" + present, true});
   return out;
 }
 

@@ -19,6 +19,7 @@ constexpr const char* kQuestion = "asking-about";
 constexpr const char* kPerson = "asking-for";
 constexpr std::string_view kPlaceOf = "place-of-";
 constexpr std::string_view kKnowers = "knows-where-";
+constexpr std::string_view kCarries = "carries-";
 constexpr const char* kFinder = "find-person";
 
 /// A text in the language of activities: "karen's office".
@@ -61,6 +62,8 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
   situation.asked_about.clear();
   situation.asked_for.clear();
   situation.findable.clear();
+  situation.carried.clear();
+  situation.is_slow = false;
   std::vector<Find> finds;
   for (const Belief& belief : beliefs) {
     const std::string value = text_of(belief.value);
@@ -68,6 +71,10 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
       situation.asked_about = value;
     else if (belief.name == kPerson)
       situation.asked_for = value;
+    else if (belief.name == kPace)
+      situation.is_slow = value == "slow";
+    else if (belief.name.starts_with(kCarries) && !value.empty())
+      situation.carried.emplace_back(belief.name.substr(kCarries.size()), value);
     for (const std::string_view about : {kPlaceOf, kKnowers})
       if (belief.name.starts_with(about) && !value.empty())
         situation.findable.push_back(lowered(belief.name.substr(about.size())));

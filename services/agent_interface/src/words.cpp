@@ -51,6 +51,10 @@ std::string named_task(const Task& task, const std::string& listener) {
                                                    : " for " + named_person(task.goal.speaker));
 }
 
+bool is_handover(std::string_view asked_about) {
+  return asked_about == "given" || asked_about == "taken";
+}
+
 bool same_person(const std::string& a, const std::string& b) {
   return lowered(a) == lowered(b);
 }

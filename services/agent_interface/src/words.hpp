@@ -14,6 +14,15 @@ namespace saphira::agent_interface {
 inline constexpr std::string_view kInstead = "instead";
 inline constexpr std::string_view kChoice = "choice";
 
+/// The claim about a reply that is no answer to the question of an activity.
+inline constexpr const char* kNotUnderstood = "not-understood";
+
+/// The claim that the robot is to go slowly.
+inline constexpr const char* kPace = "pace";
+
+/// True for a question of an activity whether something is handed over.
+bool is_handover(std::string_view asked_about);
+
 /// The marks between clauses, as words of their own: a comma, and any other.
 inline constexpr const char* kComma = ",";
 inline constexpr const char* kMark = ".";

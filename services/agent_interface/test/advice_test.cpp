@@ -228,11 +228,16 @@ TEST(Beliefs, TheOpenQuestionAndTheFindsAreHeeded) {
                                         {"place-of-karen", "\"EJ-231\"", "find-person", 70},
                                         {"place-of-john", "nil", "find-person", 71},
                                         {"place-of-bob", "\"EJ-233\"", "dialogue", 72},
+                                        {"carries-the report", "\"EJ-233\"", "deliver", 72},
+                                        {"carries-the mail", "nil", "deliver", 72},
                                         {"corridor-of-ann", "\"EJ-1\"", "find-person", 73}},
                                        situation);
   EXPECT_EQ(situation.asked_about, "given");
   EXPECT_EQ(situation.asked_for, "");
   EXPECT_EQ(finds, (std::vector<Find>{{"karen", "EJ-231", 70}}));
+  ASSERT_EQ(situation.carried.size(), 1U);
+  EXPECT_EQ(situation.carried[0].first, "the report");
+  EXPECT_EQ(situation.carried[0].second, "EJ-233");
   heed({}, situation);
   EXPECT_EQ(situation.asked_about, "");
 }

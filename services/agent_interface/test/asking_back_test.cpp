@@ -219,8 +219,8 @@ TEST_F(DialogueTest, ANameThatNothingHasIsAnsweredAtOnceWithTheNearest) {
             "I know no place or person called zoe, but EJ-231, EJ-233, upper corridor. Which one, "
             "or where is zoe?");
   EXPECT_EQ(said("Flakey, find Jhon"), "I know no place or person called jhon; do you mean john?");
-  EXPECT_EQ(said("Flakey, go to office 231"),
-            "I know no place or person called office 231; do you mean EJ-231?");
+  EXPECT_EQ(said("Flakey, go to EK 231"),
+            "I know no place or person called ek 231; do you mean EJ-231?");
   EXPECT_TRUE(last.goals.empty());
   EXPECT_EQ(said("Flakey, go to EJ 233"), "I go to EJ-233");
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
@@ -254,7 +254,10 @@ TEST_F(DialogueTest, AQuestionBackIsAnsweredByItsSpeakerWithYesNoOrAName) {
   EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
   EXPECT_EQ(said("EJ-233"), "I drop the way to EJ-231 / I go to EJ-233");
   EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
-  EXPECT_EQ(said("no, I meant EJ-231"), "I drop the way to EJ-233 / I go to EJ-231");
+  EXPECT_EQ(
+      said("no, I meant EJ-231"),
+      "what? That may mean \"I get the report from ej-231 and bring it to ej-233\", or \"I get "
+      "the report from john and bring it to ej-231\"");
   EXPECT_EQ(said("Flakey, go to EJ-232"), asks);
   EXPECT_EQ(said("lunch"), "") << "a word to somebody else";
   EXPECT_EQ(said("yes"), "");
@@ -300,7 +303,87 @@ TEST_F(DialogueTest, AnOrderAtTheEndOfAMessageIsAskedBack) {
   hear("Flakey, ask John for the report and then go home");
   EXPECT_EQ(last.said.back().text,
             "I get the report from john and bring it here, and then I go home, to start");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"john\" to=\"upper corridor\"");
+  EXPECT_EQ(goals(),
+            "deliver object=\"the report\" from=\"john\" to=\"upper corridor\" receiver=\"alice\"");
+}
+
+TEST_F(DialogueTest, AnOpenQuestionHasTheFirstClaimOnAnAnswer) {
+  hear("Flakey, go to EJ-231");
+  for (const char* const yes : {"Flakey, go ahead", "go ahead"}) {
+    EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"),
+              "I am going to EJ-231 for Alice. Shall I drop that?");
+    hear(yes, "Bob");
+    EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"") << yes;
+    hear("Flakey, stop");
+    hear("Flakey, go to EJ-231");
+  }
+  EXPECT_EQ(said("Flakey, take the mail to Xyz", "Carol").substr(0, 39),
+            "I know no place or person called xyz, b");
+  hear("Flakey, the EJ-233", "Carol");
+  EXPECT_EQ(goals(), "") << "it is another name for Xyz; the task is Alice's";
+}
+
+TEST_F(DialogueTest, ACorrectionCorrectsWhateverIsOpen) {
+  hear("Flakey, take the report from John to EJ-233");
+  situation.asked_about = "given";
+  EXPECT_EQ(
+      said("no, I meant EJ-231"),
+      "what? That may mean \"I get the report from EJ-231 and bring it to EJ-233\", or \"I get "
+      "the report from john and bring it to EJ-231\"");
+  EXPECT_TRUE(last.claims.empty());
+  hear("the second");
+  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"john\" to=\"EJ-231\"");
+  hear("Flakey, take this report to EJ-233");
+  hear("no, I meant EJ-231");
+  EXPECT_EQ(goals(), "deliver object=\"the report\" to=\"EJ-231\" sender=\"Alice\"");
+  hear("I meant EJ-233", "Bob");
+  EXPECT_TRUE(last.goals.empty()) << "it is not Bob's task";
+  for (const Claimed& claim : last.claims)
+    EXPECT_EQ(claim.name, "not-understood") << "a place is no answer";
+}
+
+TEST_F(DialogueTest, AWaitPausesAndGoOnEndsIt) {
+  hear("Flakey, go to EJ-231");
+  const std::uint64_t way = last.goals.at(0).tag;
+  EXPECT_EQ(said("Flakey, wait a minute"),
+            "I wait 1 minute, and then I go on with the way to EJ-231");
+  EXPECT_EQ(goals(), "pause seconds=60");
+  EXPECT_TRUE(last.canceled.empty());
+  const std::uint64_t wait = last.goals.at(0).tag;
+  EXPECT_EQ(said("Flakey, go on"), "done: I was told to go on / I go on with the way to EJ-231");
+  EXPECT_EQ(last.canceled, std::vector{wait});
+  EXPECT_EQ(said("Flakey, go on"), "good: I go on with the way to EJ-231");
+  hear("Flakey, stop");
+  EXPECT_EQ(last.canceled, std::vector{way});
+  EXPECT_EQ(said("Flakey, go on"), "I go to EJ-231");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+  hear("Flakey, stop");
+  hear("Flakey, go to EJ-233");
+  dialogue.ended({last.goals.at(0).tag, true, "there"});
+  EXPECT_EQ(said("Flakey, go on"), "there is nothing to go on with");
+}
+
+TEST_F(DialogueTest, APlaceAloneIsOneToGoTo) {
+  for (const char* const sentence :
+       {"Flakey, EJ-231 please", "Flakey, to EJ-231", "Flakey, EJ-231", "Flakey, go to room 231",
+        "Flakey, 231 please", "Flakey, let's go to EJ-231"}) {
+    Dialogue fresh{grammar()};
+    std::swap(dialogue, fresh);
+    hear(sentence);
+    EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"") << sentence;
+  }
+}
+
+TEST_F(DialogueTest, ItGoesSlowlyUntilItMayGoFasterAgain) {
+  EXPECT_EQ(said("Flakey, slower please"), "I go slowly");
+  ASSERT_EQ(last.claims.size(), 1U);
+  EXPECT_EQ(last.claims[0].name, "pace");
+  EXPECT_EQ(last.claims[0].value, "slow");
+  situation.is_slow = true;
+  EXPECT_EQ(said("Flakey, go faster"), "I go as fast as before");
+  EXPECT_EQ(last.claims.at(0).value, "");
+  situation.is_slow = false;
+  EXPECT_EQ(said("Flakey, faster"), "I go no faster than the task asks for");
 }
 
 TEST_F(DialogueTest, ANameAloneMayCallAPersonWhileTheRobotWaits) {

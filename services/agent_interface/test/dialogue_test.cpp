@@ -205,18 +205,60 @@ TEST_F(DialogueTest, StopStopsWhateverFollows) {
 TEST_F(DialogueTest, ThingsAreBroughtToWhoIsNearTheirOwnRoom) {
   hear("Flakey, this is Alice's office");
   hear("Flakey, get the report from Karen");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"karen\" to=\"EJ-231\"");
+  EXPECT_EQ(goals(),
+            "deliver object=\"the report\" from=\"karen\" to=\"EJ-231\" receiver=\"alice\"");
   situation.pose_in_map = Pose{9.5, 1.0, 0.0};
   hear("Flakey, get the report from Karen");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"karen\" to=\"upper corridor\"");
+  EXPECT_EQ(
+      goals(),
+      "deliver object=\"the report\" from=\"karen\" to=\"upper corridor\" receiver=\"alice\"");
   situation.pose_in_map = Pose{7.0, 4.0, 0.0};
   hear("Flakey, get the report from Karen");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"karen\" to=\"EJ-233\"");
+  EXPECT_EQ(goals(),
+            "deliver object=\"the report\" from=\"karen\" to=\"EJ-233\" receiver=\"alice\"");
+}
+
+TEST_F(DialogueTest, WhoeverTakesSomethingIsNamed) {
+  situation.asked_about = "taken";
+  EXPECT_EQ(said("thank you", "Karen"), "thank you");
+  ASSERT_EQ(last.claims.size(), 1U);
+  EXPECT_EQ(last.claims[0].value, "karen");
+  hear("thank you", "");
+  EXPECT_EQ(last.claims.at(0).value, "yes");
+  hear("alice has it", "Karen");
+  EXPECT_EQ(last.claims.at(0).value, "alice");
+  hear("no", "Karen");
+  EXPECT_EQ(last.claims.at(0).value, "no");
+  situation.asked_about = "given";
+  hear("here you are", "Karen");
+  EXPECT_EQ(last.claims.at(0).value, "yes");
+}
+
+TEST_F(DialogueTest, AReplyThatIsNoAnswerIsTold) {
+  situation.asked_about = "answer";
+  EXPECT_EQ(said("what do you want?", "Bob"), "");
+  ASSERT_EQ(last.claims.size(), 1U);
+  EXPECT_EQ(last.claims[0].name, "not-understood");
+  EXPECT_EQ(last.claims[0].value, "Bob: what do you want?");
+  situation.asked_about.clear();
+  hear("what do you want?", "Bob");
+  EXPECT_TRUE(last.claims.empty()) << "people talk to each other";
+}
+
+TEST_F(DialogueTest, WhatIsOnItsBackIsNotForgotten) {
+  situation.carried = {{"the report", "EJ-231"}};
+  EXPECT_EQ(said("Flakey, where is the report?"), "I have it: I was to bring it to EJ-231");
+  EXPECT_EQ(said("Flakey, who has the report?"), "I have it: I was to bring it to EJ-231");
+  EXPECT_EQ(said("Flakey, where is the mail?"), "nobody has told me where mail is");
+  hear("Flakey, take the report to John");
+  EXPECT_EQ(said("Flakey, stop"), "I stop / I drop the report / I still have the report");
 }
 
 TEST_F(DialogueTest, TasksAreActivitiesWithPlacesOrPersons) {
   hear("Flakey, get the report from Karen");
-  EXPECT_EQ(goals(), "deliver object=\"the report\" from=\"karen\" to=\"upper corridor\"");
+  EXPECT_EQ(
+      goals(),
+      "deliver object=\"the report\" from=\"karen\" to=\"upper corridor\" receiver=\"alice\"");
   hear("Flakey, take the mail from EJ-231 to John");
   EXPECT_EQ(goals(), "deliver object=\"the mail\" from=\"EJ-231\" to=\"john\"");
   hear("Flakey, this is Karen's office");

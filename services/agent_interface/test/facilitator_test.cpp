@@ -46,6 +46,34 @@ Answer library() {
   return {AnswerCode::done, "", {text("place", "library")}};
 }
 
+TEST(Facilitation, AnAnswerThatIsNotAsDeclaredIsNotPassedOn) {
+  const auto answered = [](const Answer& answer, bool acts) {
+    Facilitator facilitator(kSelf);
+    facilitator.announce(agent(1, "a", acts));
+    facilitator.ask(place_of(1), 0.0);
+    facilitator.step(0.0);
+    facilitator.hear("address of a", kPerson, 1, answer, 0.1);
+    const auto solved = facilitator.step(0.1).solved;
+    EXPECT_EQ(solved.size(), 1U);
+    return solved.empty() ? Answer{} : solved[0].answer;
+  };
+  const auto done = [](Arguments results) {
+    return Answer{AnswerCode::done, "", std::move(results)};
+  };
+  EXPECT_EQ(answered(library(), false), library());
+  for (const Answer& wrong :
+       {done({number("place", 3.0)}), done({text("room", "library")}),
+        done({text("place", "lib\xffrary")}), Answer{AnswerCode::done, "b\xffd", {}}}) {
+    const Answer refused = answered(wrong, false);
+    EXPECT_EQ(refused.code, AnswerCode::refused);
+    EXPECT_TRUE(refused.results.empty());
+    EXPECT_TRUE(refused.text.starts_with("the answer of agent a is not as it has declared: "))
+        << refused.text;
+    EXPECT_EQ(answered(wrong, true).code, AnswerCode::done) << "an action is done";
+    EXPECT_TRUE(answered(wrong, true).results.empty());
+  }
+}
+
 AgentInfo agent_that_notes() {
   AgentInfo result = agent(1, "a");
   result.capabilities.push_back({{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});

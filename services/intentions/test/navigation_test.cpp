@@ -195,6 +195,13 @@ TEST_F(Navigation, ZonesOfTheMapForbidAndSlowDown) {
   EXPECT_LT(speed_limit(world(), false).speed, 0.0);
   EXPECT_EQ(speed_limit(world(), true).speed, 0.0);
 
+  beliefs.set("pace", "slow", "test", now);
+  EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.15);
+  EXPECT_EQ(speed_limit(world(), false).reason, "told to go slowly");
+  be_at({4.5, -0.7, -kPi / 2});
+  EXPECT_EQ(speed_limit(world(), false).speed, 0.0) << "the zone ahead allows less";
+  beliefs.unset("pace");
+
   be_at({1.0, 0.0, 0.0});
   with(
       "ZONE (900) 2000, 0, 0, 3000, 2000 slow 150 \"k\"\nZONE (901) 1000, 0, 0, 1000, 1000 slow "

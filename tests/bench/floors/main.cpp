@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Options {
   double errors = 1.0;
   std::string robot = "pioneer";
   std::string write_to;
+  bool only_carried = false;
   bool json = false;
 };
 
@@ -148,6 +150,7 @@ struct Carried {
   int arrived = 0;
   int false_success = 0;         ///< reported more than two metres away
   std::vector<double> sure_way;  ///< [m] way of each with a wrong pose at a confidence of 0.9
+  std::vector<double> lost_way;  ///< [m] way of each until it says that it is lost
 };
 
 Carried carry(const Options& options, const Site& site) {
@@ -180,14 +183,20 @@ Carried carry(const Options& options, const Site& site) {
     const intentions::GoalId id =
         whole.ask("go-to-place", {text("place", std::to_string(goal->id))});
     double sure = 0.0;
+    double way = 0.0;
+    std::optional<double> lost;
     Vec2 before = whole.truth().position();
     for (int cycle = 0; cycle < kGivenUp && !whole.ended(id); ++cycle) {
       whole.advance();
       const Vec2 now = whole.truth().position();
       if (whole.registered().confidence >= 0.9 && (whole.believed().position() - now).norm() > 0.5)
         sure += (now - before).norm();
+      way += (now - before).norm();
+      if (!lost && whole.registered().state != registration::State::tracking)
+        lost = way;
       before = now;
     }
+    result.lost_way.push_back(lost.value_or(way));
     ++result.goals;
     result.sure_way.push_back(sure);
     if (whole.status(id).state != intentions::GoalState::kSucceeded)
@@ -272,9 +281,9 @@ int run(const Options& options) {
       write(options.write_to, here);
       continue;
     }
-    const Patrolled patrolled = patrol(options, here);
     const Carried lost = carry(options, here);
-    const Built built = build(options, here);
+    const Patrolled patrolled = options.only_carried ? Patrolled{} : patrol(options, here);
+    const Built built = options.only_carried ? Built{} : build(options, here);
     const double explored = share(built.covered, built.length);
     const double doors = share(built.score.doors_found, built.score.doors);
     const double p95 = test::quantile(patrolled.offs.position, 0.95);
@@ -292,6 +301,7 @@ int run(const Options& options) {
     carried.arrived += lost.arrived;
     carried.false_success += lost.false_success;
     carried.sure_way.insert(carried.sure_way.end(), lost.sure_way.begin(), lost.sure_way.end());
+    carried.lost_way.insert(carried.lost_way.end(), lost.lost_way.begin(), lost.lost_way.end());
     length += built.length;
     covered += built.covered;
     built_doors += built.score.doors;
@@ -348,6 +358,8 @@ int run(const Options& options) {
                               {"carried_goals", carried.goals},
                               {"carried_arrived", carried.arrived},
                               {"false_success", carried.false_success},
+                              {"lost_after_m_p50", test::quantile(carried.lost_way, 0.5)},
+                              {"lost_after_m_p95", test::quantile(carried.lost_way, 0.95)},
                               {"carried_sure_m_p50", test::quantile(carried.sure_way, 0.5)},
                               {"carried_sure_m_p90", test::quantile(carried.sure_way, 0.9)},
                               {"floors", floors}};
@@ -368,6 +380,8 @@ int main(int argc, char** argv) {
   app.add_option("--robot", options.robot, "a robot of config/robots");
   app.add_option("--write", options.write_to,
                  "only write the floors into this folder, as worlds and maps");
+  app.add_flag("--only-carried", options.only_carried,
+               "only the goals after the robot was carried; the other figures are void");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))
     return *code;

@@ -1,6 +1,7 @@
 #include "saphira/base/guess.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "saphira/base/text.hpp"
@@ -63,7 +64,16 @@ std::string guess(std::string_view word, const std::vector<std::string>& candida
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,
                          std::string_view otherwise) {
-  const std::string meant = guess(word, candidates);
+  std::string meant = guess(word, candidates);
+  // Words of people, and the command that begins with a candidate.
+  constexpr std::array<std::array<std::string_view, 3>, 3> kSynonyms{
+      {{"halt", "estop", "estop"},
+       {"hand-back", "drive", "drive hand-back"},
+       {"off", "reset", "reset"}}};
+  for (const auto& [said, candidate, command] : kSynonyms)
+    if (meant.empty() && word == said &&
+        std::find(candidates.begin(), candidates.end(), candidate) != candidates.end())
+      meant = command;
   return meant.empty() ? std::string(otherwise) : ": did you mean " + meant + "?";
 }
 

@@ -24,6 +24,10 @@ TEST(Guess, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(guess(std::string(100'000, 'g'), kCommands), "");
   EXPECT_EQ(guess("goal", {}), "");
   EXPECT_EQ(did_you_mean("fly", kCommands), "");
+  EXPECT_EQ(did_you_mean("halt", {"goal", "estop"}), ": did you mean estop?");
+  EXPECT_EQ(did_you_mean("hand-back", {"drive"}), ": did you mean drive hand-back?");
+  EXPECT_EQ(did_you_mean("off", {"reset"}), ": did you mean reset?");
+  EXPECT_EQ(did_you_mean("off", {"goal"}), "");
   EXPECT_EQ(did_you_mean("fly", kCommands, "; help lists them"), "; help lists them");
 }
 

@@ -1,11 +1,13 @@
 #include "mapping.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "driving.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/explore/explorer.hpp"
 #include "saphira/maps/map.hpp"
 
@@ -50,7 +52,16 @@ class ExploreUnknown : public Activity {
     if (next.done) {
       stand(self);
       const std::vector<std::string> left = explorer_->left(*world.around.map);
-      if (left.empty())
+      const std::vector<maps::Feature>& found = world.around.map->features;
+      // The explorer follows corridors: without one it has looked nowhere.
+      if (std::none_of(found.begin(), found.end(), [](const maps::Feature& one) {
+            return one.type == lps::PointType::corridor;
+          }))
+        self.fail(GoalCode::kActivity,
+                  format("no corridor was found in %.0f m of way: the robot understands floors of "
+                         "corridors with rooms at them, and maps nothing else",
+                         way_length()));
+      else if (left.empty())
         self.succeed(next.reason);
       else
         self.fail(
@@ -102,6 +113,13 @@ class ExploreUnknown : public Activity {
     turning_ = turns;
     driving_to_ = there;
     return true;
+  }
+
+  double way_length() const {
+    double length = 0.0;
+    for (std::size_t i = 1; i < way_.size(); ++i)
+      length += (way_[i] - way_[i - 1]).norm();
+    return length;
   }
 
   /// Stores places of the way at a distance from each other, and the present one.

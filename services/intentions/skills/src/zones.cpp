@@ -23,6 +23,7 @@ constexpr double kAhead = 1.5;        ///< [m] beyond its hull that a slow robot
 constexpr double kProbe = 0.05;       ///< [m]
 constexpr double kReaction = 0.3;     ///< [s] until the robot brakes
 constexpr double kBrakesSo = 0.3;     ///< [m/s2] of a robot that does not tell it
+constexpr double kSlowPace = 0.15;    ///< [m/s] of a robot that was told to go slowly
 constexpr double kStandstill = 0.05;  ///< [m/s] too slow to go on
 
 /// A keep-out before the robot, and the speed from which the robot stops before it.
@@ -100,12 +101,15 @@ std::string keep_out_ahead(const World& world, bool backwards) {
 
 SpeedLimit speed_limit(const World& world, bool backwards) {
   SpeedLimit limit;
+  if (world.beliefs.get("pace", world) == Value("slow"))
+    limit = {kSlowPace, "told to go slowly"};
   const std::optional<Pose> robot = world.robot_in_map();
   const std::vector<maps::Zone>& zones = zones_of(world);
   if (zones.empty() || !robot)
     return limit;
   if (const maps::Zone* const slow = maps::slowest_at(zones, *world.around.topology,
-                                                      robot->position(), world.around.robot_radius))
+                                                      robot->position(), world.around.robot_radius);
+      slow != nullptr && (limit.speed < 0.0 || slow->speed < limit.speed))
     limit = {slow->speed, slow->text};
   const Ahead ahead = look_ahead(world, backwards);
   if (!ahead.text.empty() && (limit.speed < 0.0 || ahead.speed < limit.speed))

@@ -37,6 +37,7 @@ Accuracy accuracy(const std::vector<StampedPose>& poses, const Trajectory& truth
 struct LogEvaluation {
   Accuracy dead_reckoning;
   Accuracy localized;  ///< while the robot has a pose
+  Accuracy tracked;    ///< while the robot is sure of it
   SonarRun run;
 };
 

@@ -20,9 +20,9 @@ struct SonarDrive {
 };
 
 struct SonarRun {
-  std::vector<StampedPose> poses;  ///< in the map, from its first placement on
+  std::vector<StampedPose> poses;    ///< in the map, from its first placement on
+  std::vector<StampedPose> tracked;  ///< of these, those of which the robot is sure
   std::size_t steps = 0;
-  std::size_t tracking = 0;
   std::size_t lost = 0;
   std::size_t unplaced = 0;
   std::size_t accepted = 0;  ///< matches

@@ -46,12 +46,17 @@ class Cast {
   std::optional<Line> answer(const std::string& said, const std::string& place);
   /// True where that person has it.
   bool has(const std::string& person, const std::string& object) const;
+  /// True where everybody has what they are to have at the end.
+  bool all_got() const;
+  /// The objects with another owner than at the beginning: "alice has the report"; empty: none.
+  std::string handed_over() const;
 
  private:
   struct Person {
     std::string name;
     std::string place;
     std::set<std::string> has;
+    std::set<std::string> gets;  ///< to have at the end
     std::map<std::string, std::string> knows;
   };
   struct Named {
@@ -63,6 +68,7 @@ class Cast {
   std::string file_;
   std::vector<Named> places_;
   std::vector<Person> people_;
+  std::map<std::string, std::string> owners_;  ///< of objects at the beginning
   std::vector<Line> lines_;
   std::string end_ = "done: ";
   std::string deployment_ = "office";

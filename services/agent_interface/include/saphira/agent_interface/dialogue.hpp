@@ -74,8 +74,11 @@ struct Situation {
   /// Persons of whom an activity or another program believes a place, or who knows it; in small
   /// letters.
   std::vector<std::string> findable{};
+  /// Objects on the robot's back, such as "the report", and where each was to go.
+  std::vector<std::pair<std::string, std::string>> carried{};
   double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
   bool turns_cameras = false;  ///< the robot has a head
+  bool is_slow = false;        ///< it was told to go slowly
 };
 
 /// The request that puts an artifact with its name on the map.
@@ -149,10 +152,10 @@ class Dialogue {
     Utterance raised_by{};
     Grammar::Understood sentence{};          ///< as it was heard
     std::vector<Grammar::Understood> yes{};  ///< after a yes; of several the speaker names one
-    std::vector<Task> drops{};     ///< after a yes; the task of somebody else is dropped for it
-    std::optional<Advice> fact{};  ///< after a yes; against what the robot knows
-    std::string no{};              ///< the answer to a no; empty: the sentence is carried out
-    std::string name{};            ///< in the sentence, for which another one may be said
+    std::vector<Task> drops{};         ///< after a yes; the task of somebody else is dropped for it
+    std::optional<Advice> fact{};      ///< after a yes; against what the robot knows
+    std::string no{};                  ///< the answer to a no; empty: the sentence is carried out
+    std::vector<std::string> names{};  ///< in the sentence, for which another one may be said
     bool asked = true;  ///< false: the robot does it; only another name is an answer, at any time
   };
   struct Gone {  ///< a person without a known place: it was withdrawn
@@ -171,6 +174,7 @@ class Dialogue {
   void ask(Question question, const Utterance& utterance);
   void ask_again(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
   void ask_for_order(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
+  void prefer_answer(Grammar::Understood& understood, const Situation& situation) const;
   void note_name(Grammar::Understood understood, const Utterance& utterance, const Outputs& out);
   /// The question that this utterance may answer; nullptr: none.
   const Question* question_for(const Utterance& utterance) const;
@@ -203,6 +207,8 @@ class Dialogue {
   /// Tasks for people that are not in 4.6 of the paper (errands.cpp).
   bool errand(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
+  void change_pace(bool slower, const Utterance& utterance, const Situation& situation,
+                   Outputs& out) const;
   /// Keeps the place where a new task begins, for "come back".
   void note_begin(const Situation& situation, const Outputs& out);
   void go_back(const Meaning& meaning, const Utterance& utterance, const Situation& situation,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saphira/base/text.hpp"
@@ -60,6 +61,8 @@ class Grammar {
     /// I am late and go home". Empty: it may not.
     std::vector<Meaning> apart{};
     std::vector<Meaning> bare{};  ///< replies that are a mere name, after the keyword
+    /// Its meaning as a reply, where the sentence has another one by itself.
+    std::optional<Meaning> answer{};
   };
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
   /// asked a question. With the keyword a reply counts only where no other rule matches.
@@ -137,6 +140,8 @@ class Grammar {
                           const Match& from) const;
   std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
                            const Match& from) const;
+  std::optional<std::pair<std::size_t, std::string>> decimal(const std::vector<std::string>& words,
+                                                             std::size_t at) const;
   enum class Among { usual, reply, urgent, later, alone };  ///< the rules that may match
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
                             Among among) const;

@@ -110,6 +110,8 @@ class Tasks {
   /// drops: also ends the task of somebody else, without a question.
   Outputs want(std::vector<Task> steps, const Utterance& utterance, bool drops = false);
   Outputs ended(const Outcome& outcome);
+  /// After a wait: the wait ends, and the task goes on. After a stop: the dropped task begins anew.
+  Outputs go_on(const Utterance& utterance);
   /// A program has ended or has withdrawn its words: its tasks end. A stop of it goes on.
   Outputs left(const ProgramId& program);
   /// ": I go on with the mail for alice"; empty: with nothing.
@@ -138,7 +140,8 @@ class Tasks {
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
   void release(Outputs& out);
 
-  std::vector<Task> open_;  ///< at most one brief goal and one task
+  std::vector<Task> open_;     ///< at most one brief goal and one task
+  std::vector<Task> stopped_;  ///< the steps of the task that the newest stop has ended
   std::uint64_t tag_ = 0;
   /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
   /// none.

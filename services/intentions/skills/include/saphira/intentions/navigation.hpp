@@ -21,12 +21,13 @@ void add_navigation(Functions& functions);
 /// of the map.
 std::vector<Vec2> way_points(const Surroundings& around, const Value& path);
 
-/// The speed that zones of the map, and advice, allow the robot at its place.
+/// The speed that zones of the map, advice, and an order to go slowly allow the robot at its place.
 struct SpeedLimit {
   double speed = -1.0;  ///< [m/s]; below 0: none
   std::string reason;   ///< in words; empty: none
 };
-/// Of the slow zones around the robot, and of a keep-out before it, where it drives to.
+/// Of the slow zones around the robot, of a keep-out before it, where it drives to, and of the
+/// belief `pace`, which may be "slow".
 SpeedLimit speed_limit(const World& world, bool backwards);
 
 /// core_functions() and these: all functions of the shipped activities.
