@@ -1,5 +1,6 @@
 // The cost of security: the round trip over a secured bus compared with an open one, and the CPU
-// time of the secured demo while its robot stands.
+// time of the secured demo while its robot stands. And its worth: members that forge their
+// permissions, and a flood of announcements.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -7,19 +8,24 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench.hpp"
+#include "forged.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/security/authority.hpp"
 #include "support/process.hpp"
+#include "support/strangers.hpp"
 
 using namespace saphira;
 using std::chrono::milliseconds;
@@ -57,9 +63,8 @@ bus::NodeOptions options_of(const std::string& program, const std::string& secur
 /// One side of the comparison.
 class RoundTrip {
  public:
-  RoundTrip(const std::string& self, const std::string& security)
-      : echo_({self, "--echo", security}),
-        node_(options_of("bench", security)),
+  explicit RoundTrip(const std::string& security)
+      : node_(options_of("bench", security)),
         commands_(node_.writer(bus::topics::kDriveTeleop)),
         states_(node_.reader(bus::topics::kRobotState)) {
     const auto end = Clock::now() + std::chrono::seconds(30);
@@ -99,7 +104,6 @@ class RoundTrip {
     return std::nullopt;
   }
 
-  const bench::Child echo_;
   bus::Node node_;
   bus::Writer<v1::MotorCommand> commands_;
   bus::Reader<v1::RobotState> states_;
@@ -107,14 +111,75 @@ class RoundTrip {
   std::vector<double> times_;
 };
 
-/// Makes a site below that folder; returns the folder of the benchmark's credentials.
-std::string credentials_in(const std::string& folder) {
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::seconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Makes a site in that folder.
+security::Authority site_in(const std::string& folder) {
   const std::string roles = config_folder() + "/security/roles.yaml";
-  const std::int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
-                               std::chrono::system_clock::now().time_since_epoch())
-                               .count();
-  return security::Authority::make(folder, "bench", read_file(roles), roles, now)
-      .add("bench", {"bridge", "services", "operator"}, "", 1, now);
+  return security::Authority::make(folder, "bench", read_file(roles), roles, now());
+}
+
+/// The topics on which altered programs with forged permissions are heard by the bridge, or hear
+/// others: of an observer, and of an operator of another robot.
+std::size_t member_escapes(security::Authority& site, const std::string& folder) {
+  const std::string bridges = site.add("escapes", {"bridge"}, "", 1, now());
+  bus::NodeOptions options = options_of("bridge", bridges);
+  bus::Node bridge(options);
+  std::vector<std::function<void()>> turns;
+  std::set<std::string> escapes;
+  bus::for_each_topic([&]<class T>(const bus::Topic<T>& topic) {
+    if (site.roles().may_write("bridge", topic.name))
+      turns.push_back([writer = std::make_shared<bus::Writer<T>>(bridge.writer(topic))] {
+        writer->write(T());
+      });
+    if (site.roles().may_read("bridge", topic.name))
+      turns.push_back(
+          [&escapes, reader = std::make_shared<bus::Reader<T>>(bridge.reader(topic)), topic] {
+            for (const auto& sample : reader->take())
+              if (!sample.info.sender || sample.info.sender->name != "bench")
+                escapes.insert(topic.name);
+          });
+  });
+  for (const auto& [role, robot] : {std::pair("observer", ""), std::pair("operator", "other")}) {
+    const std::string name = std::string("liar-") + role;
+    const std::string forged = folder + "/" + name;
+    std::filesystem::copy(site.add(name, {role}, robot, 1, now()), forged,
+                          std::filesystem::copy_options::recursive);
+    security::test::forge(forged, {{name, 1, role, "bench"}, "", now() - 60, now() + 3600},
+                          site.roles(), security::test::pair_of(forged, role));
+    test::Process liar({"saphira-bus-altered", "--name", name}, folder + "/said",
+                       {{"SAPHIRA_DOMAIN", std::to_string(kDomain)},
+                        {"SAPHIRA_ROBOT", options.robot},
+                        {"SAPHIRA_SECURITY", forged}});
+    for (const auto end = Clock::now() + std::chrono::seconds(5); Clock::now() < end;) {
+      for (const auto& turn : turns)
+        turn();
+      bridge.wait(milliseconds(50));
+    }
+    if (!liar.running())
+      throw std::runtime_error("the altered program has ended: " + liar.output());
+    if (liar.output().find("hears ") != std::string::npos)
+      escapes.insert(liar.output());
+  }
+  return escapes.size();
+}
+
+/// 10,000 forged announcements within 10 s, then a member who joins.
+nlohmann::json flood(const std::string& self, const std::string& credentials,
+                     const std::string& folder) {
+  test::Process victim({self, "--echo", credentials}, folder + "/victim");
+  test::Strangers strangers(kDomain);
+  strangers.announce(10000, 1000);
+  const auto began = Clock::now();
+  const RoundTrip joiner(credentials);
+  const double joined = std::chrono::duration<double>(Clock::now() - began).count();
+  return {{"aborts", victim.running() ? 0 : 1},
+          {"joined_s", joined},
+          {"flooded_mb", bench::resident_mb(victim.pid())}};
 }
 
 double idle_cpu_percent(const std::string& security, unsigned seconds) {
@@ -144,10 +209,12 @@ int main(int argc, char** argv) {
   bool json = false;
   int pings = 500;
   unsigned seconds = 20;
+  bool attack = true;
   std::string answering;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--pings", pings, "round trips on each bus").in_range(10, 100000);
   app.add_option("--seconds", seconds, "how long to watch the idle demo; 0: not").in_range(0, 3600);
+  app.add_flag("!--no-attack", attack, "without forged permissions and the flood");
   app.add_option("--echo", answering, "be the other process").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
@@ -155,12 +222,16 @@ int main(int argc, char** argv) {
     echo(answering);
 
   const test::TempDir folder;
-  const std::string credentials = credentials_in(folder.path("site"));
+  security::Authority site = site_in(folder.path("site"));
+  const std::string credentials =
+      site.add("bench", {"bridge", "services", "operator"}, "", 1, now());
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   nlohmann::json result;
   {
-    RoundTrip open(self, bus::kOpenBus);
-    RoundTrip secured(self, credentials);
+    const bench::Child open_echo({self, "--echo", bus::kOpenBus});
+    const bench::Child secured_echo({self, "--echo", credentials});
+    RoundTrip open(bus::kOpenBus);
+    RoundTrip secured(credentials);
     for (int i = 0; i < pings; ++i) {
       open.measure();
       secured.measure();
@@ -176,6 +247,15 @@ int main(int argc, char** argv) {
               {"secure_p99_us", secured.quantile(0.99)},
               {"ratio_p50", secured.quantile(0.5) / open.quantile(0.5)}};
     std::printf("ratio    p50 %6.2f\n", secured.quantile(0.5) / open.quantile(0.5));
+  }
+  if (attack) {
+    result["member_escapes"] = member_escapes(site, folder.path());
+    result.update(flood(self, credentials, folder.path()));
+    std::printf(
+        "forged permissions: %zu topics written or read\n"
+        "10,000 forged announcements: %d programs ended, a member joined in %.2f s, %.0f MB\n",
+        result["member_escapes"].get<std::size_t>(), result["aborts"].get<int>(),
+        result["joined_s"].get<double>(), result["flooded_mb"].get<double>());
   }
   if (seconds > 0) {
     const double idle = idle_cpu_percent(credentials, seconds);

@@ -133,6 +133,8 @@ int check(const Words& words, const bus::NodeOptions& options) {
   }
   for (const std::string& role : security::roles_in(folder)) {
     const security::Credentials good = security::load_role(folder, role, now());
+    if (const std::string trouble = security::trouble_of_key(good); !trouble.empty())
+      throw std::invalid_argument(trouble);
     std::cout << folder << "/" << role << ": " << security::common_name(good.subject) << " of "
               << good.subject.site << ", " << role << ", until " << day_of(good.until) << '\n';
   }

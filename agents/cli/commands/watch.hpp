@@ -98,7 +98,7 @@ std::string person(const std::string& program, bool since = false);
 constexpr double kEmptyBus = 5.0;  ///< [s] until a question is given up where no program is heard
 
 /// The missing or troubled programs, in words, for requests without an answer.
-std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
+std::string who_is_there(const bus::Node& node, const Processes& processes);
 
 /// The program that answers requests on agents/solve.
 inline constexpr const char* kFacilitator = "facilitator";

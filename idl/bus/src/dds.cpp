@@ -467,13 +467,13 @@ class DdsTransport : public Transport {
   }
   std::vector<EndpointEntry> endpoints() const override { return from_each(&Discovery::endpoints); }
   std::vector<std::string> take_troubles() override { return from_each(&Discovery::take_troubles); }
-  Malformed take_malformed() override {
+  Refusals take_refusals() override {
     const auto session = bus_->hold();
-    Malformed all;
+    Refusals all;
     bus_->each_session([&](Session& one) {
-      const Malformed malformed = one.discovery.take_malformed();
-      all.count += malformed.count;
-      all.texts.insert(all.texts.end(), malformed.texts.begin(), malformed.texts.end());
+      const Refusals more = one.discovery.take_refusals();
+      all.samples += more.samples;
+      all.texts.insert(all.texts.end(), more.texts.begin(), more.texts.end());
     });
     return all;
   }
@@ -484,7 +484,26 @@ class DdsTransport : public Transport {
   std::optional<Identity> identity() const override {
     return bus_->guard() ? std::optional(bus_->guard()->own()) : std::nullopt;
   }
-  std::string expiry() const override { return bus_->guard() ? bus_->guard()->expiry() : ""; }
+  std::vector<std::string> notices() const override {
+    std::vector<std::string> all;
+    if (!bus_->guard())
+      return all;
+    all.push_back(bus_->guard()->expiry());
+    const auto session = bus_->hold();
+    bus_->each_session(
+        [&](Session& one) { all.push_back(one.entrance->strangers(BootClock::now())); });
+    std::erase(all, "");
+    return all;
+  }
+  std::string bar() const override {
+    const auto session = bus_->hold();
+    std::string found;
+    bus_->each_session([&](Session& one) {
+      if (found.empty())
+        found = one.discovery.bar();
+    });
+    return found;
+  }
   bool is_own(const WriterId& writer) const override {
     const auto session = bus_->hold();
     bool own = false;

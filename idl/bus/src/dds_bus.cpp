@@ -10,6 +10,7 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -68,8 +69,9 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
                  Peers& peers, const std::shared_ptr<Machines>& machines,
                  const std::shared_ptr<Guard>& guard)
     : side(the_side),
+      entrance(guard ? std::make_shared<Entrance>(std::random_device{}()) : nullptr),
       // Each side hears of its own programs; those of this machine are heard on loopback.
-      discovery(wake, peers, side == Side::network ? machines : nullptr, guard,
+      discovery(wake, peers, side == Side::network ? machines : nullptr, guard, entrance,
                 side == Side::local && options.profile == Profile::wan ? kProgramsPerPeer : 0) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
@@ -78,7 +80,8 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   participant = factory->create_participant(
       options.domain,
-      participant_qos(options, side, mute_, side == Side::network ? machines : nullptr, guard),
+      participant_qos(options, side, mute_, side == Side::network ? machines : nullptr, guard,
+                      entrance),
       &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
@@ -93,6 +96,8 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
     subscriber_qos.partition().push_back(options.robot.c_str());
   }
   if (participant->enable() == ReturnCode_t::RETCODE_OK) {
+    if (entrance)  // it hears its own announcements
+      entrance->let_in(Entrance::prefix_at(participant->guid().guidPrefix.value));
     publisher = participant->create_publisher(publisher_qos);
     subscriber = participant->create_subscriber(subscriber_qos);
   }

@@ -51,6 +51,7 @@ class Session {
   void tell_heard(const std::string& machines);
 
   const Side side;
+  const std::shared_ptr<Entrance> entrance;  ///< none on an open bus
   Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;

@@ -7,6 +7,7 @@
 
 #include "dds_convert.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/printable.hpp"
 
 namespace saphira::bus::internal {
 
@@ -18,8 +19,12 @@ namespace {
 
 // After this time a mismatch is told by its policy alone. The endpoint is usually known sooner.
 constexpr std::chrono::seconds kUnexplained{2};
+// After this time a program that is not let in is told.
+constexpr std::chrono::seconds kSlowHandshake{5};
 // Maximum number of logged mistakes. A larger number is forged.
 constexpr std::size_t kMostProgramsTold = 1000;
+// The same for programs that are not let in: anybody can announce them.
+constexpr int kMostRefusedTold = 20;
 
 const char* policy_name(fdds::QosPolicyId_t id) {
   static constexpr std::pair<fdds::QosPolicyId_t, const char*> kNames[]{
@@ -132,6 +137,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   const auto& prefix = info.info.m_guid.guidPrefix;
   Program& program = programs_[prefix];
   if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
+    if (entrance_)
+      entrance_->forget(Entrance::prefix_at(prefix.value), BootClock::now());
     // Fast DDS may report that a program was found again before it reports that it was dropped.
     if (--program.discovered <= 0) {
       if (machines_)
@@ -144,13 +151,20 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   } else {
     if (info.status == Info::DISCOVERED_PARTICIPANT) {
       ++program.discovered;
+      if (entrance_)
+        entrance_->found(Entrance::prefix_at(prefix.value));
       // Later announcements do not count: the handshake checked the certificate with the first one.
+      const std::string subject = announced_subject(info.info.identity_token_);
+      program.subject = printable(subject);
       if (guard_)
-        program.identity = guard_->identify(prefix, announced_subject(info.info.identity_token_));
+        program.identity = guard_->identify(prefix, subject);
+      if (const auto member = security::parse_subject(subject);
+          member && (!guard_ || member->site != guard_->site()))
+        other_site_ = member->site;
     }
-    program.name = info.info.m_participantName.to_string();
+    program.name = printable(info.info.m_participantName.to_string());
     const auto& bytes = info.info.m_userData.data_vec();
-    const std::string data(bytes.begin(), bytes.end());
+    const std::string data = printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     program.host = field(data, "host=");
     if (machines_)
       machines_->tell(to_text(prefix), field(data, "hears="));
@@ -162,6 +176,49 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     count_programs_here();
   }
   changed();
+}
+
+void Discovery::onParticipantAuthentication(fdds::DomainParticipant* /*participant*/,
+                                            rtps::ParticipantAuthenticationInfo&& info) {
+  const auto prefix = Entrance::prefix_at(info.guid.guidPrefix.value);
+  if (info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) {
+    entrance_->let_in(prefix);
+    return;
+  }
+  entrance_->refuse(prefix);
+  const std::scoped_lock lock(mutex_);
+  const auto found = programs_.find(info.guid.guidPrefix);
+  if (found == programs_.end())
+    return;
+  tell_refused(found->first, found->second);
+  wake_->signal();
+}
+
+void Discovery::tell_refused(const rtps::GuidPrefix_t& prefix, const Program& program) {
+  if (refused_told_ >= kMostRefusedTold ||
+      !told_.insert({"refused", program.name + " " + program.host + " " + program.subject}).second)
+    return;
+  ++refused_told_;
+  refusals_.texts.push_back(
+      "a program at the address " + entrance_->address_of(Entrance::prefix_at(prefix.value)) +
+      " is not let in that calls itself " + program.name +
+      (program.host.empty() ? "" : " at " + program.host) +
+      (program.subject.empty() ? "" : " and announces " + program.subject) +
+      ": it has not proved that it is a member of this site, or its permissions are not signed by "
+      "the site's authority");
+}
+
+std::string Discovery::bar() const {
+  const std::scoped_lock lock(mutex_);
+  if (other_site_.empty())
+    return {};
+  const std::string text = "its programs are of the site " + other_site_;
+  if (guard_)
+    return text + ", and the credentials of " + guard_->own().name + " are of " + guard_->site();
+  return text +
+         ", and this one has no credentials of it: on the machine of the site's authority, "
+         "`saphira security add NAME --role operator` makes them; copy that folder to "
+         "~/.config/saphira/credentials";
 }
 
 std::shared_ptr<const Identity> Discovery::identity_of(const rtps::GUID_t& writer) const {
@@ -222,21 +279,32 @@ void Discovery::add_incompatible(const std::string& topic, bool own_writes,
 
 void Discovery::add_malformed(const std::string& topic, const rtps::GUID_t& writer) {
   const std::scoped_lock lock(mutex_);
-  ++malformed_.count;
+  ++refusals_.samples;
   if (told_.size() >= kMostProgramsTold ||
       !told_.insert({"malformed " + topic, hex_text(to_id(writer))}).second)
     return;
   EndpointEntry from;
   from.writer = true;
-  malformed_.texts.push_back("topic " + topic + ": refused a malformed sample of " +
-                             name(with_program(writer, from)) +
-                             "; further ones are only counted (refused_samples)");
+  refusals_.texts.push_back("topic " + topic + ": refused a malformed sample of " +
+                            name(with_program(writer, from)) +
+                            "; further ones are only counted (refused_samples)");
   wake_->signal();
 }
 
-Malformed Discovery::take_malformed() {
+Refusals Discovery::take_refusals() {
   const std::scoped_lock lock(mutex_);
-  return std::exchange(malformed_, {});
+  // Fast DDS does not report that it has refused a program's permissions.
+  if (entrance_) {
+    for (const std::string& address : entrance_->take_new_strangers())
+      refusals_.texts.push_back("strangers at " + address +
+                                " are kept out: their announcements are dropped, and counted in "
+                                "the status");
+    for (const auto& [prefix, program] : programs_)
+      if (Clock::now() - program.found > kSlowHandshake &&
+          !entrance_->is_in(Entrance::prefix_at(prefix.value)))
+        tell_refused(prefix, program);
+  }
+  return std::exchange(refusals_, {});
 }
 
 void Discovery::add_own(const EndpointEntry& own) {

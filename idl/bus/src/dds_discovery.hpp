@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dds_guard.hpp"
+#include "entrance.hpp"
 #include "internal.hpp"
 #include "machines.hpp"
 #include "peers.hpp"
@@ -24,13 +25,14 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// most_here: programs of this machine that others can find [0: any number].
   /// machines: gets the machines that each program hears; may be null.
-  /// guard: identifies each program, and learns which are let in; none on an open bus.
+  /// guard: identifies each program; entrance: learns which are let in; none on an open bus.
   Discovery(std::shared_ptr<Wake> wake, Peers& peers, std::shared_ptr<Machines> machines,
-            std::shared_ptr<Guard> guard, std::size_t most_here)
+            std::shared_ptr<Guard> guard, std::shared_ptr<Entrance> entrance, std::size_t most_here)
       : wake_(std::move(wake)),
         peers_(peers),
         machines_(std::move(machines)),
         guard_(std::move(guard)),
+        entrance_(std::move(entrance)),
         most_here_(most_here) {}
   ~Discovery() override;
   Discovery(const Discovery&) = delete;
@@ -40,6 +42,9 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(
+      eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
@@ -55,21 +60,26 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   void add_own(const EndpointEntry& own);
   void remove_own(const std::string& id);
 
+  /// As Node has it.
+  std::string bar() const;
+
   /// The identity of a sample's writer, as far as discovery knows; none on an open bus.
   std::shared_ptr<const Identity> identity_of(const eprosima::fastrtps::rtps::GUID_t& writer) const;
 
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
   std::vector<std::string> take_troubles();
-  Malformed take_malformed();
+  Refusals take_refusals();
   void watch(bool on) { watched_ = on; }
 
  private:
   struct Program {
     std::string name;
     std::string host;
-    std::uint32_t pid = 0;                     ///< 0: not built on this library
-    int discovered = 0;                        ///< times found minus times dropped
+    std::uint32_t pid = 0;  ///< 0: not built on this library
+    int discovered = 0;     ///< times found minus times dropped
+    std::chrono::steady_clock::time_point found = std::chrono::steady_clock::now();
+    std::string subject;                       ///< announced; empty on an open bus
     std::shared_ptr<const Identity> identity;  ///< none on an open bus
   };
 
@@ -89,6 +99,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts);
 
   void count_programs_here();
+  void tell_refused(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const Program& program);
   void tell_forbidden(const eprosima::fastrtps::rtps::GUID_t& guid, const EndpointEntry& endpoint);
 
   template <class Proxy>
@@ -99,6 +110,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   Peers& peers_;
   const std::shared_ptr<Machines> machines_;
   const std::shared_ptr<Guard> guard_;
+  const std::shared_ptr<Entrance> entrance_;
   const std::size_t most_here_;
   std::atomic<bool> watched_{false};
   mutable std::mutex mutex_;
@@ -108,7 +120,9 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   std::map<Incompatible, std::chrono::steady_clock::time_point> incompatible_;  ///< since when
   std::set<std::pair<std::string, std::string>> told_;
   std::vector<std::string> troubles_;
-  Malformed malformed_;
+  Refusals refusals_;
+  std::string other_site_;  ///< to which a program says that it belongs
+  int refused_told_ = 0;
   bool type_check_due_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "log.hpp"
+#include "saphira/security/documents.hpp"
 
 namespace saphira::bus::internal {
 namespace {
@@ -49,6 +50,7 @@ Guard::Guard(std::string folder, security::Credentials credentials)
       credentials_(std::move(credentials)),
       own_{credentials_.subject.name, credentials_.subject.role},
       looked_(BootClock::now()) {
+  security::only_authorities_sign();
   take(security::load_revoked(folder_, credentials_.authority));
 }
 

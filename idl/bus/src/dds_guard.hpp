@@ -38,6 +38,7 @@ class Guard {
   /// The reason why a program may not write or read a topic, in words; empty where it may.
   std::string why_not(const Identity& identity, const std::string& topic, bool writes) const;
   const Identity& own() const { return own_; }
+  const std::string& site() const { return credentials_.subject.site; }
 
   /// True where the certificate of a packet's sender is revoked. From any thread.
   bool revoked(const std::uint8_t* prefix) const;

@@ -191,7 +191,8 @@ fdds::UserDataQosPolicy user_data(const std::string& heard) {
 fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side,
                                            std::shared_ptr<const std::atomic<bool>> mute,
                                            std::shared_ptr<Machines> machines,
-                                           std::shared_ptr<Guard> guard) {
+                                           std::shared_ptr<Guard> guard,
+                                           std::shared_ptr<Entrance> entrance) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.user_data() = user_data("");
@@ -230,10 +231,14 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
     }
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
-      udp, std::move(mute), std::move(machines), std::move(ports), guard, std::move(ignore)));
-  if (guard)
+  qos.transport().user_transports.push_back(
+      std::make_shared<SieveDescriptor>(udp, std::move(mute), std::move(machines), std::move(ports),
+                                        guard, std::move(entrance), std::move(ignore)));
+  if (guard) {
     guard->secure(qos);
+    // Fast DDS has room for 100 handshakes, and ends by an assertion where there is none.
+    qos.allocation().participants = {0, 100, 1};
+  }
   return qos;
 }
 

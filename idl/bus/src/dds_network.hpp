@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dds_guard.hpp"
+#include "entrance.hpp"
 #include "machines.hpp"
 #include "saphira/bus/node.hpp"
 
@@ -41,10 +42,11 @@ std::string look_up(const std::string& host);
 void set_up_library();
 
 /// The discovery settings and addresses of one side. While `mute` is set the side sends nothing.
-/// `machines`, `guard`: see SieveDescriptor.
+/// `machines`, `guard`, `entrance`: see SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const NodeOptions& options, Side side, std::shared_ptr<const std::atomic<bool>> mute,
-    std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr);
+    std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr,
+    std::shared_ptr<Entrance> entrance = nullptr);
 
 /// The user data of a participant: its host, its process, and the machines that it hears.
 eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "introduction.hpp"
 #include "log.hpp"
 #include "sieve.hpp"
 
@@ -50,25 +51,65 @@ class Sieve : public transport::ChainingTransport {
     if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)) ||
         !plausible(buffer, sound))
       return;
+    const bool announces = is_announcement(buffer, sound);
     std::unique_lock<std::mutex> alone;
     if (descriptor_.guard) {
-      if (descriptor_.guard->revoked(sender_of(buffer))) {
-        const auto gone = farewell(sender_of(buffer));
-        pass(next, gone.data(), static_cast<std::uint32_t>(gone.size()), local, remote);
+      const bool introduces = announces || is_handshake(buffer, sound);
+      if (introduces)
+        alone = std::unique_lock(introductions());
+      const Entrance::Prefix sender = Entrance::prefix_at(sender_of(buffer));
+      if (descriptor_.guard->revoked(sender.data())) {
+        // Fast DDS 2.9 may hang where it forgets a participant in its handshake.
+        if (descriptor_.entrance->is_in(sender))
+          pass(next, farewell(sender.data()), local, remote);
         return;
       }
-      if (is_forgeable(buffer, sound))
+      if (!speaks_for_itself(buffer, sound)) {
+        if (!is_farewell(buffer, sound))  // an honest program says it too
+          descriptor_.entrance->forged(address_of(remote), BootClock::now());
         return;
-      if (is_announcement(buffer, sound) || is_handshake(buffer, sound))
-        alone = std::unique_lock(introductions());
+      }
+      const auto fate = fate_of(sender, announces, introduces, remote);
+      if (fate == Entrance::Fate::drops)
+        return;
+      if (announces && fate == Entrance::Fate::waits) {
+        std::vector<rtps::octet> shortened(buffer, buffer + sound);
+        set_lease(shortened.data(), shortened.size(), Entrance::kLease);
+        hear(remote);
+        pass(next, shortened, local, remote);
+        return;
+      }
     }
-    if (descriptor_.machines && remote.kind == LOCATOR_KIND_UDPv4 && is_announcement(buffer, sound))
-      descriptor_.machines->hear(rtps::IPLocator::toIPv4string(remote),
-                                 BootClock::now().time_since_epoch());
+    if (announces)
+      hear(remote);
     pass(next, buffer, sound, local, remote);
   }
 
  private:
+  static std::string address_of(const rtps::Locator_t& place) {
+    return place.kind == LOCATOR_KIND_UDPv4 ? rtps::IPLocator::toIPv4string(place) : "";
+  }
+
+  Entrance::Fate fate_of(const Entrance::Prefix& sender, bool announces, bool introduces,
+                         const rtps::Locator_t& from) const {
+    const auto now = BootClock::now();
+    return announces    ? descriptor_.entrance->announced(sender, address_of(from), now)
+           : introduces ? descriptor_.entrance->shakes_hands(sender, now)
+                        : descriptor_.entrance->sends(sender, now);
+  }
+
+  /// An announcement from that machine.
+  void hear(const rtps::Locator_t& remote) const {
+    if (descriptor_.machines && remote.kind == LOCATOR_KIND_UDPv4)
+      descriptor_.machines->hear(rtps::IPLocator::toIPv4string(remote),
+                                 BootClock::now().time_since_epoch());
+  }
+
+  static void pass(transport::TransportReceiverInterface* next,
+                   const std::vector<rtps::octet>& message, const rtps::Locator_t& local,
+                   const rtps::Locator_t& remote) {
+    pass(next, message.data(), static_cast<std::uint32_t>(message.size()), local, remote);
+  }
   static void pass(transport::TransportReceiverInterface* next, const rtps::octet* buffer,
                    std::uint32_t size, const rtps::Locator_t& local,
                    const rtps::Locator_t& remote) {

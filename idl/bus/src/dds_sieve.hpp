@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dds_guard.hpp"
+#include "entrance.hpp"
 #include "machines.hpp"
 
 namespace saphira::bus::internal {
@@ -26,16 +27,19 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
 
   /// While `mute` is set nothing is sent. `machines`, if any, get the sources of announcements; the
   /// program announces itself to them, at each of these ports. With a `guard`, packets from senders
-  /// with a revoked certificate are dropped, and so are farewells, which anybody can forge.
+  /// with a revoked certificate are dropped, and so are farewells and introductions in another's
+  /// name, which anybody can forge; the `entrance` decides which introductions pass.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
                   std::vector<std::uint32_t> the_ports = {},
-                  std::shared_ptr<Guard> the_guard = nullptr, Ignore the_ignore = nullptr)
+                  std::shared_ptr<Guard> the_guard = nullptr,
+                  std::shared_ptr<Entrance> the_entrance = nullptr, Ignore the_ignore = nullptr)
       : ChainingTransportDescriptor(std::move(low)),
         mute(std::move(the_mute)),
         machines(std::move(the_machines)),
         ports(std::move(the_ports)),
         guard(std::move(the_guard)),
+        entrance(std::move(the_entrance)),
         ignore(std::move(the_ignore)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
@@ -43,6 +47,7 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   std::shared_ptr<Machines> machines;
   std::vector<std::uint32_t> ports;
   std::shared_ptr<Guard> guard;
+  std::shared_ptr<Entrance> entrance;  ///< one with a guard
   Ignore ignore;
 };
 

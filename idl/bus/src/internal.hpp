@@ -61,10 +61,11 @@ class Wake {
   std::atomic<bool> written_{false};  ///< fd() is readable
 };
 
-/// Samples that were not of their topic's type, since the last call.
-struct Malformed {
-  std::uint64_t count = 0;
-  std::vector<std::string> texts;  ///< each topic and writer once
+/// What was refused since the last call.
+struct Refusals {
+  std::uint64_t samples = 0;  ///< that were not of their topic's type
+  std::vector<std::string>
+      texts;  ///< of these, each topic and writer once; each program not let in
 };
 
 /// One node's side of a bus.
@@ -79,15 +80,18 @@ class Transport {
   virtual std::vector<EndpointEntry> endpoints() const = 0;
   /// Endpoints that did not match one of this node's since the last call, one text each.
   virtual std::vector<std::string> take_troubles() = 0;
-  virtual Malformed take_malformed() { return {}; }
+  virtual Refusals take_refusals() { return {}; }
   /// True where a change of endpoints() wakes the node.
   virtual void watch_endpoints(bool watch) = 0;
   /// As Node has them.
   virtual std::vector<std::string> silent_peers() const { return {}; }
   virtual std::vector<std::string> network_waits() const { return {}; }
-  /// With security, the identity of this node, and a warning where its certificate expires soon.
+  /// With security, the identity of this node, and what its status says beside the program's own
+  /// reason: that its certificate expires soon, and which strangers are kept out.
   virtual std::optional<Identity> identity() const { return std::nullopt; }
-  virtual std::string expiry() const { return {}; }
+  virtual std::vector<std::string> notices() const { return {}; }
+  /// As Node has it.
+  virtual std::string bar() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
   virtual void renew() {}
   /// True where a writer is one of this node's.

@@ -96,9 +96,9 @@ struct Node::Impl {
       log(v1::LOG_ERROR, text);
       health.incompatible_text = std::move(text);
     }
-    const internal::Malformed malformed = transport->take_malformed();
-    status.refused_samples() += malformed.count;
-    for (const auto& text : malformed.texts)
+    const internal::Refusals refusals = transport->take_refusals();
+    status.refused_samples() += refusals.samples;
+    for (const auto& text : refusals.texts)
       log(v1::LOG_WARNING, text);
   }
 
@@ -235,6 +235,10 @@ std::vector<std::string> Node::silent_peers() const {
   return impl_->transport->silent_peers();
 }
 
+std::string Node::bar() const {
+  return impl_->transport->bar();
+}
+
 std::optional<Identity> Node::identity() const {
   return impl_->transport->identity();
 }
@@ -273,14 +277,10 @@ bool Node::publish_status() {
     self.last_cpu = cpu;
     self.last_published = now;
   }
-  // The coming expiry of the certificate is told beside the program's own reason.
-  if (const std::string expiry = self.transport->expiry(); !expiry.empty()) {
-    v1::ServiceStatus told = self.status;
-    told.reason() += (told.reason().empty() ? "" : "; ") + expiry;
-    self.status_writer->write(told);
-  } else {
-    self.status_writer->write(self.status);
-  }
+  v1::ServiceStatus told = self.status;
+  for (const std::string& notice : self.transport->notices())
+    told.reason() += (told.reason().empty() ? "" : "; ") + notice;
+  self.status_writer->write(told);
   self.beat(0);
   self.published_state = self.status.state();
   self.published_reason = self.status.reason();

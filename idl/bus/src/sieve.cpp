@@ -5,72 +5,16 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "submessage.hpp"
+
 namespace saphira::bus::internal {
 
 namespace {
 
-constexpr std::size_t kHeader = 20;
-constexpr std::size_t kSubmessageHeader = 4;
-constexpr std::uint8_t kPad = 0x01;
-constexpr std::uint8_t kInfoTimestamp = 0x09;
 constexpr std::uint8_t kStatistics = 0x80;
 constexpr std::uint8_t kAcknack = 0x06;
 constexpr std::uint8_t kHeartbeat = 0x07;
 constexpr std::uint8_t kGap = 0x08;
-constexpr std::uint8_t kInfoSource = 0x0c;
-constexpr std::uint8_t kData = 0x15;
-constexpr std::uint8_t kDataFragment = 0x16;
-constexpr std::uint8_t kParticipantWriter[] = {0x00, 0x01, 0x00, 0xc2};
-constexpr std::uint8_t kHandshakeWriter[] = {0x00, 0x02, 0x01, 0xc3};
-
-/// A submessage of a sound message.
-struct Submessage {
-  std::uint8_t id;
-  bool little;
-  const std::uint8_t* data;  // behind its header
-  std::size_t size;
-
-  std::uint64_t word(std::size_t at) const {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      value = value << 8U | data[at + (little ? 3 - i : i)];
-    return value;
-  }
-  std::size_t half(std::size_t at) const {
-    return little ? data[at] | std::size_t{data[at + 1]} << 8U
-                  : data[at + 1] | std::size_t{data[at]} << 8U;
-  }
-  /// A sequence number: its high word first.
-  std::uint64_t number(std::size_t at) const { return word(at) << 32U | word(at + 4); }
-};
-
-/// The submessage that begins there; `next` is where its successor begins.
-Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t at,
-                      std::size_t& next) {
-  Submessage result{message[at], (message[at + 1] & 1U) != 0, message + at + kSubmessageHeader, 0};
-  const std::size_t one = message[at + 2];
-  const std::size_t other = message[at + 3];
-  result.size = result.little ? one | other << 8U : one << 8U | other;
-  // The last one may leave its length open.
-  if (result.size == 0 && result.id != kPad && result.id != kInfoTimestamp)
-    result.size = size - at - kSubmessageHeader;
-  next = at + kSubmessageHeader + ((result.size + 3) & ~std::size_t{3});
-  return result;
-}
-
-/// True where the inline QoS of data gives the status of its instance, or cannot be read.
-bool may_tell_status(const Submessage& data) {
-  constexpr std::uint64_t kEnd = 0x0001;
-  constexpr std::uint64_t kStatus = 0x0071;
-  for (std::size_t at = 4 + data.half(2); at + 4 <= data.size; at += 4 + data.half(at + 2)) {
-    const std::uint64_t parameter = data.half(at);
-    if (parameter == kEnd)
-      return false;
-    if (parameter == kStatus)
-      return true;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -96,7 +40,7 @@ bool is_handshake(const std::uint8_t* message, std::size_t size) {
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
-    if (part.id == kData && part.size >= 20 && std::memcmp(part.data + 8, kHandshakeWriter, 4) == 0)
+    if (part.has_data() && (part.is_of(kHandshakeWriter) || part.is_for(kHandshakeReader)))
       return true;
   }
   return false;
@@ -104,23 +48,6 @@ bool is_handshake(const std::uint8_t* message, std::size_t size) {
 
 const std::uint8_t* sender_of(const std::uint8_t* message) {
   return message + 8;
-}
-
-bool is_forgeable(const std::uint8_t* message, std::size_t size) {
-  constexpr std::uint8_t kInlineQos = 0x02;
-  constexpr std::uint8_t kKey = 0x08;
-  std::size_t next = 0;
-  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
-    const Submessage part = submessage(message, size, at, next);
-    if (part.id == kInfoSource)
-      return true;
-    if (part.id == kData && part.size >= 20 &&
-        std::memcmp(part.data + 8, kParticipantWriter, 4) == 0 &&
-        ((message[at + 1] & kKey) != 0 ||
-         ((message[at + 1] & kInlineQos) != 0 && may_tell_status(part))))
-      return true;
-  }
-  return false;
 }
 
 std::vector<std::uint8_t> farewell(const std::uint8_t* prefix) {
@@ -156,8 +83,7 @@ bool is_announcement(const std::uint8_t* message, std::size_t size) {
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
-    if (part.id == kData && part.size >= 20 &&
-        std::memcmp(part.data + 8, kParticipantWriter, 4) == 0)
+    if (part.has_data() && part.is_of(kParticipantWriter))
       return true;
   }
   return false;

@@ -27,11 +27,6 @@ bool is_handshake(const std::uint8_t* message, std::size_t size);
 /// The GUID prefix of the participant that a sound message claims as its sender.
 const std::uint8_t* sender_of(const std::uint8_t* message);
 
-/// True where a sound message says that a participant has ended, or speaks for another participant
-/// than its sender. Both are in clear even where all else is encrypted, so that anybody can forge
-/// them.
-bool is_forgeable(const std::uint8_t* message, std::size_t size);
-
 /// A message by which a participant says that it has ended. It makes Fast DDS, which cannot ignore
 /// a participant, forget the participant and its keys.
 std::vector<std::uint8_t> farewell(const std::uint8_t* prefix);

@@ -3,19 +3,24 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "forged.hpp"
 #include "harness.hpp"
 #include "liar.hpp"
 #include "process.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
+#include "strangers.hpp"
 #include "trouble.hpp"
 
 namespace saphira::bus::test {
@@ -44,6 +49,7 @@ class Site {
     authority_->add(name, {role}, robot, 365, now());
   }
   security::Authority& authority() { return *authority_; }
+  const security::Authority& authority() const { return *authority_; }
 
   /// A member's folder as somebody else has copied it.
   std::string copy_of(const std::string& member) const {
@@ -245,6 +251,149 @@ TEST_F(EveryLine, IsKeptByTheOthers) {
   }
 }
 
+/// All that an honest member may write and read on the bus.
+class Honest {
+ public:
+  Honest(const Site& site, const std::string& role) : node_(site.node(role)) {
+    const security::Roles& roles = site.authority().roles();
+    for_each_topic([&]<class T>(const Topic<T>& topic) {
+      if (roles.may_write(role, topic.name))
+        turns_.push_back(
+            [writer = std::make_shared<Writer<T>>(node_->writer(topic))] { writer->write(T()); });
+      if (roles.may_read(role, topic.name))
+        turns_.push_back([this, reader = std::make_shared<Reader<T>>(node_->reader(topic)), topic] {
+          for (const auto& sample : reader->take())
+            heard_[sample.info.sender ? sample.info.sender->name : ""].insert(topic.name);
+        });
+    });
+  }
+
+  void turn() {
+    for (const auto& one : turns_)
+      one();
+    for (const std::string& text : internal::transport_of(*node_).take_refusals().texts)
+      refusals_ += text + "\n";
+    node_->wait(milliseconds(20));
+  }
+  /// The topics on which it has heard a member.
+  std::set<std::string> heard(const std::string& member) { return heard_[member]; }
+  const std::string& refusals() const { return refusals_; }
+
+ private:
+  const std::unique_ptr<Node> node_;
+  std::vector<std::function<void()>> turns_;
+  std::map<std::string, std::set<std::string>> heard_;
+  std::string refusals_;
+};
+
+// An altered program takes permissions that nobody of the site's authority has signed. The others
+// do not let it in, so that it neither writes nor reads anything.
+class Forger : public testing::Test {
+ protected:
+  Forger() {
+    for (Site* const site : {&site_, &other_}) {
+      site->add("john", "observer");
+      site->add("karen", "operator", robot("other"));
+    }
+  }
+
+  /// A member's folder with permissions for everything.
+  std::string forged(const std::string& member, const std::string& role,
+                     const security::KeyPair& signer) const {
+    const std::string folder = site_.copy_of(member);
+    security::test::forge(folder, {{member, 1, role, "forged"}, "", 0, now() + 86400},
+                          site_.authority().roles(), signer);
+    return folder;
+  }
+  saphira::test::Process altered(const std::string& name, const std::string& credentials,
+                                 const std::vector<std::string>& more = {}) {
+    std::vector<std::string> argv{"saphira-bus-altered", "--robot", robot("s"), "--name", name};
+    argv.insert(argv.end(), more.begin(), more.end());
+    return {argv,
+            folder_.path(name),
+            {{"SAPHIRA_DOMAIN", saphira::test::domain()},
+             {"SAPHIRA_PROFILE", "host"},
+             {"SAPHIRA_SECURITY", credentials}}};
+  }
+  template <class Condition>
+  bool turn_until(Condition&& condition) {
+    return saphira::test::wait_until([&] {
+      bridge_.turn();
+      services_.turn();
+      return condition();
+    });
+  }
+
+  const saphira::test::TempDir folder_;
+  Site site_{"forged"};
+  Site other_{"forged"};
+  Honest bridge_{site_, "bridge"};
+  Honest services_{site_, "services"};
+};
+
+TEST_F(Forger, IsHeldToItsGenuinePermissions) {
+  auto genuine = altered("genuine", site_.copy_of("john"));
+  ASSERT_TRUE(turn_until([&] {
+    return saphira::test::has(genuine.output(), "hears robot/state") &&
+           bridge_.heard("john").contains(topics::kDriveStop.name);
+  })) << genuine.output();
+  const security::Roles& roles = site_.authority().roles();
+  for (const std::string& topic : bridge_.heard("john"))
+    EXPECT_TRUE(roles.may_write("observer", topic)) << topic;
+  EXPECT_FALSE(saphira::test::has(genuine.output(), "hears drive/behaviors"));
+}
+
+TEST_F(Forger, IsNotLetIn) {
+  const std::string karens = site_.copy_of("karen");
+  const std::string johns = site_.copy_of("john");
+  const std::string theirs = other_.copy_of("john");
+  const struct {
+    const char* name;
+    const char* member;
+    const char* role;
+    security::KeyPair signer;
+  } cases[]{{"by-itself", "john", "observer", security::test::pair_of(johns, "observer")},
+            {"of-another-robot", "karen", "operator", security::test::pair_of(karens, "operator")},
+            {"by-another-site", "john", "observer", security::test::pair_of(theirs, "observer")}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.name);
+    auto program = altered(one.name, forged(one.member, one.role, one.signer));
+    const std::string told = "calls itself " + std::string(one.name);
+    EXPECT_TRUE(turn_until([&] {
+      return saphira::test::has(bridge_.refusals(), told) &&
+             saphira::test::has(services_.refusals(), told);
+    })) << program.output();
+    for (int i = 0; i < 20; ++i) {
+      bridge_.turn();
+      services_.turn();
+    }
+    for (Honest* const honest : {&bridge_, &services_})
+      EXPECT_EQ(honest->heard(one.member), std::set<std::string>());
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_FALSE(saphira::test::has(program.output(), "hears ")) << program.output();
+  }
+}
+
+// One that announces an operator's name, and authenticates as itself. Its permissions are genuine.
+TEST_F(Forger, HasNoOtherName) {
+  site_.add("kate", "operator");
+  auto program = altered(
+      "false-name", site_.copy_of("john"),
+      {"--own", "CN=john.1,OU=observer,O=forged", "--as", "CN=kate.1,OU=operator,O=forged"});
+  const std::string told = "calls itself false-name at " + internal::host_name() +
+                           " and announces /O=forged/OU=operator/CN=kate.1";
+  EXPECT_TRUE(turn_until([&] {
+    return saphira::test::has(bridge_.refusals(), told) &&
+           saphira::test::has(services_.refusals(), told);
+  })) << bridge_.refusals();
+  for (const char* const member : {"john", "kate"})
+    EXPECT_EQ(bridge_.heard(member), std::set<std::string>()) << member;
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_FALSE(saphira::test::has(program.output(), "hears ")) << program.output();
+}
+
 TEST(Security, AStrangerIsNotHeardAndHearsNothing) {
   const Site site("stranger");
   const auto bridge = site.node("bridge");
@@ -276,6 +425,34 @@ TEST(Security, AStrangerIsNotHeardAndHearsNothing) {
   EXPECT_EQ(forged.matched(), 0U);
   EXPECT_EQ(spy.matched(), 1U);
   EXPECT_TRUE(spy.take().empty());
+  EXPECT_TRUE(saphira::test::has(one.bar(), "its programs are of the site stranger"));
+  EXPECT_EQ(bridge->bar(), "");
+  std::string told;
+  EXPECT_TRUE(eventually(*bridge, [&] {
+    for (const std::string& text : internal::transport_of(*bridge).take_refusals().texts)
+      told += text;
+    return saphira::test::has(told, "127.0.0.1 is not let in that calls itself stranger");
+  })) << told;
+}
+
+TEST(Security, AFloodOfStrangersKeepsNobodyOut) {
+  const Site site("flood");
+  const auto bridge = site.node("bridge");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  saphira::test::Strangers strangers(static_cast<unsigned>(std::stoul(saphira::test::domain())));
+  const std::jthread flood([&] { strangers.announce(5000, 1000); });
+  for (int i = 0; i < 2; ++i) {  // during the flood, and once more
+    const auto operating = site.node("operator");
+    auto driver = operating->writer(topics::kDriveTeleop);
+    ASSERT_TRUE(eventually(*bridge, [&] { return commands.matched() >= 1; }));
+    EXPECT_TRUE(eventually(*bridge, [&] {
+      driver.write(command_of("operator"));
+      return !commands.take().empty();
+    }));
+  }
+  const auto notices = internal::transport_of(*bridge).notices();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_TRUE(saphira::test::has(notices[0], "strangers are kept out: 127.0.0.1 ("));
 }
 
 TEST(Security, AMemberOfAnotherSiteIsAStranger) {
@@ -299,6 +476,10 @@ TEST(Security, AMemberOfAnotherSiteIsAStranger) {
     return heard;
   }));
   EXPECT_EQ(forged.matched(), 0U);
+  EXPECT_TRUE(eventually(*foreign, [&] {
+    return foreign->bar() ==
+           "its programs are of the site one, and the credentials of operator are of other";
+  }));
 }
 
 TEST(Security, WhoIsRevokedIsCutOff) {

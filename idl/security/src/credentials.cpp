@@ -1,5 +1,7 @@
 #include "saphira/security/credentials.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -136,7 +138,13 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
     return checked(file, kCopy, [&] { return verified(text, found.authority); });
   };
   document(found.files.governance);
-  found.robot = robot_of(document(found.files.permissions));
+  const std::string permissions = document(found.files.permissions);
+  if (subject_of(permissions) != to_text(found.subject))
+    fail(found.files.permissions,
+         "they are of " + subject_of(permissions) + ", and the certificate beside them is of " +
+             to_text(found.subject),
+         kCopy);
+  found.robot = robot_of(permissions);
   const std::string revoked_file = folder + "/" + kRevoked;
   const Revoked revoked =
       checked(revoked_file, kCopy, [&] { return load_revoked(folder, found.authority); });
@@ -145,6 +153,15 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
          "`saphira security add " + found.subject.name + " --role " + found.subject.role +
              "` makes a new one, if it should have one");
   return found;
+}
+
+std::string trouble_of_key(const Credentials& credentials) {
+  struct stat file {};
+  if (::stat(credentials.files.key.c_str(), &file) != 0 ||
+      (file.st_mode & (S_IRWXG | S_IRWXO)) == 0)
+    return {};
+  return credentials.files.key + ": other users of this machine may read it, and be " +
+         credentials.subject.name + " then; chmod 600 " + credentials.files.key;
 }
 
 std::string to_text(const Revoked& revoked) {

@@ -14,6 +14,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "saphira/security/documents.hpp"
+
 namespace saphira::security {
 namespace {
 
@@ -165,6 +167,27 @@ KeyPair make_member(const Subject& subject, Validity validity, const KeyPair& au
   if (X509_sign(made.get(), signer.get(), EVP_sha256()) == 0)
     fail("a certificate could not be signed");
   return {to_pem(key), to_pem(made)};
+}
+
+void only_authorities_sign() {
+  static const bool once = [] {
+    static const auto before =
+        X509_PURPOSE_get0(X509_PURPOSE_get_by_id(X509_PURPOSE_SMIME_SIGN))->check_purpose;
+    // ca: 0 for the signer, 1 for those that vouch for it. A self-signed certificate is trusted
+    // only where it is the authority's own.
+    const auto check = [](const X509_PURPOSE* purpose, const X509* certificate, int ca) {
+      return ca == 0 && X509_self_signed(const_cast<X509*>(certificate), 1) != 1
+                 ? 0
+                 : before(purpose, certificate, ca);
+    };
+    std::string name = "S/MIME signing by an authority";
+    std::string short_name = "smimesign";
+    if (X509_PURPOSE_add(X509_PURPOSE_SMIME_SIGN, X509_TRUST_EMAIL, 0, check, name.data(),
+                         short_name.data(), nullptr) != 1)
+      fail("the signers of permissions cannot be restricted");
+    return true;
+  }();
+  static_cast<void>(once);
 }
 
 std::string sign(const std::string& text, const KeyPair& authority) {

@@ -19,6 +19,15 @@ std::string element(const std::string& name, const std::string& content) {
   return "<" + name + ">" + content + "</" + name + ">\n";
 }
 
+/// The content of the first element that begins so; empty where there is none.
+std::string first(const std::string& text, std::string_view begin) {
+  const std::size_t at = text.find(begin);
+  if (at == std::string::npos)
+    return {};
+  const std::size_t from = at + begin.size();
+  return text.substr(from, text.find('<', from) - from);
+}
+
 /// One direction: its topics, of one robot or of all.
 std::string criteria(const std::string& direction, const std::string& topics,
                      const std::string& robot) {
@@ -75,13 +84,12 @@ std::string permissions(const Grant& grant, const Roles& roles) {
 }
 
 std::string robot_of(const std::string& permissions) {
-  static constexpr std::string_view kBegin = "<partition>";
-  const std::size_t begin = permissions.find(kBegin);
-  if (begin == std::string::npos)
-    return {};
-  const std::size_t from = begin + kBegin.size();
-  const std::string robot = permissions.substr(from, permissions.find('<', from) - from);
+  const std::string robot = first(permissions, "<partition>");
   return robot == "*" ? "" : robot;
+}
+
+std::string subject_of(const std::string& permissions) {
+  return first(permissions, "<subject_name>");
 }
 
 }  // namespace saphira::security

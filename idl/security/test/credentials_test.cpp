@@ -73,6 +73,23 @@ TEST_F(CredentialsTest, FilesOfOthersAreTold) {
   EXPECT_TRUE(says(loading(), "another authority has signed it")) << loading();
 }
 
+TEST_F(CredentialsTest, PermissionsOfAnotherMemberAreTold) {
+  Authority authority(folder_.path());
+  const std::string robots = authority.add("flakey", {"bridge"}, "", 365, kNow);
+  fs::copy(robots + "/bridge/permissions.signed", made_ + "/operator/permissions.signed",
+           fs::copy_options::overwrite_existing);
+  EXPECT_TRUE(says(loading(), "they are of CN=flakey.1,OU=bridge,O=office")) << loading();
+}
+
+TEST_F(CredentialsTest, AKeyThatOthersMayReadIsTold) {
+  const Credentials good = load_credentials(made_, "cli", kNow);
+  EXPECT_EQ(trouble_of_key(good), "");
+  for (const fs::perms others : {fs::perms::group_read, fs::perms::others_read}) {
+    fs::permissions(good.files.key, fs::perms::owner_read | others);
+    EXPECT_TRUE(says(trouble_of_key(good), "chmod 600 " + good.files.key));
+  }
+}
+
 TEST_F(CredentialsTest, AProgramNeedsItsRole) {
   const std::string text = loading(kNow, "bridge");
   EXPECT_TRUE(says(text, "has credentials of operator, and bridge needs those of bridge")) << text;

@@ -33,6 +33,7 @@ TEST(Documents, PermissionsSayWhatTheRoleMay) {
   EXPECT_EQ(between(text, "<partition>", "</"), "*");
   EXPECT_EQ(between(text, "<default>", "</"), "DENY");
   EXPECT_EQ(robot_of(text), "");
+  EXPECT_EQ(subject_of(text), "CN=karen.2,OU=operator,O=office");
 }
 
 TEST(Documents, WhoMayWriteNothingHasNothingToPublish) {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <ctime>
 
+#include "saphira/base/printable.hpp"
+
 namespace saphira {
 
 std::string log_line(double time, std::string_view level, std::string_view program,
@@ -18,8 +20,8 @@ std::string log_line(double time, std::string_view level, std::string_view progr
                 local.tm_sec, static_cast<int>((time - second) * 1000.0));
   std::string line = clock.data();
   for (const std::string_view part : {level, program})
-    line.append(" ").append(part);
-  return line.append(": ").append(text);
+    line.append(" ").append(printable(part));
+  return line.append(": ").append(printable(text, "\n\t"));
 }
 
 }  // namespace saphira

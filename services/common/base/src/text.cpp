@@ -12,21 +12,13 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/printable.hpp"
 
 namespace saphira {
 
 namespace {
 
 constexpr std::size_t kExcerpt = 100;  // letters of a quotation
-
-/// Without control characters: a NUL would end the text there, others would drive the terminal.
-std::string printable(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n')
-      c = '?';
-  return out;
-}
 
 /// FileError at the first byte that begins no letter of UTF-8.
 void expect_utf8(std::string_view text, const std::string& file) {
@@ -61,8 +53,8 @@ std::string quoted(std::string_view word) {
 
 std::string describe(const std::string& file, int line, int column, const std::string& message,
                      std::string_view line_text) {
-  std::string out =
-      file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + printable(message);
+  std::string out = file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " +
+                    printable(message, "\n\t");
   if (!line_text.empty()) {
     // Of a long line the part around the place, of whole UTF-8 letters.
     const auto within = [&](std::size_t i) {
@@ -82,7 +74,7 @@ std::string describe(const std::string& file, int line, int column, const std::s
               (end < line_text.size() ? "..." : "");
       column += static_cast<int>(before.size()) - static_cast<int>(begin);
     }
-    out += "\n    " + printable(shown) + "\n    ";
+    out += "\n    " + printable(shown, "\n\t") + "\n    ";
     // Tabs are kept so that the caret stands under the place whatever their width.
     for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(column); ++i)
       out += i < shown.size() && shown[i] == '\t' ? '\t' : ' ';

@@ -112,6 +112,9 @@ class Node {
   /// lan, wan: in words, the missing address of this machine or of a named peer. Until the address
   /// comes, other machines are not reached; the programs of this machine are.
   std::vector<std::string> network_waits() const;
+  /// In words, why programs of a site do not let this one in: it has no credentials, or those of
+  /// another site. Empty where no program of another site was found.
+  std::string bar() const;
   /// With security, the identity of this program; none on an open bus.
   std::optional<Identity> identity() const;
 

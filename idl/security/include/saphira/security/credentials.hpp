@@ -53,6 +53,10 @@ Credentials load_credentials(const std::string& folder, const std::string& progr
 /// Those of one role of the folder.
 Credentials load_role(const std::string& folder, const std::string& role, std::int64_t now);
 
+/// The fault and the remedy where other users of this machine may read the private key; empty
+/// otherwise.
+std::string trouble_of_key(const Credentials& credentials);
+
 /// The roles that a folder has credentials of.
 std::vector<std::string> roles_in(const std::string& folder);
 

@@ -25,7 +25,14 @@ struct Grant {
   std::int64_t until = 0;
 };
 std::string permissions(const Grant& grant, const Roles& roles);
-/// The robot of a grant that permissions() wrote.
+/// Whose signature counts in this process, from the first call on: that of an authority alone, not
+/// that of a member whom the authority has certified. Fast DDS 2.9 takes permissions from any
+/// certificate of the site (CVE-2023-24010). It asks OpenSSL for the purpose of the signer's
+/// certificate (S/MIME), and there this is decided, for all users of OpenSSL in the process: before
+/// the first participant is made. From any thread.
+void only_authorities_sign();
+/// The robot of a grant that permissions() wrote, and its subject as RFC 2253 writes it.
 std::string robot_of(const std::string& permissions);
+std::string subject_of(const std::string& permissions);
 
 }  // namespace saphira::security

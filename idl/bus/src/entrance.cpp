@@ -1,0 +1,158 @@
+#include "entrance.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "saphira/base/fnv1a.hpp"
+
+namespace saphira::bus::internal {
+
+Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& address, Time now) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto known = known_.find(prefix); known != known_.end()) {
+    const Fate found = fate(known->second, now);
+    return found == Fate::drops ? dropped(address, now) : found;
+  }
+  if (const auto refused = refused_.find(prefix); refused != refused_.end()) {
+    if (now - refused->second < kRefusal)
+      return dropped(address, now);
+    refused_.erase(refused);
+  }
+  if (waiting_ >= kCrowd && !heard_twice(prefix, now))
+    return dropped(address, now);
+  // Fast DDS did not take these, and will not tell their end.
+  if (waiting_ >= kMost)
+    waiting_ -= std::erase_if(known_, [&](const auto& one) {
+      return one.second.found == 0 && !one.second.in && now - one.second.since > kPatience;
+    });
+  if (waiting_ >= kMost)
+    return dropped(address, now);
+  known_[prefix] = {.since = now, .address = address};
+  ++waiting_;
+  return Fate::waits;
+}
+
+Entrance::Fate Entrance::shakes_hands(const Prefix& prefix, Time now) {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known == known_.end() ? Fate::drops : fate(known->second, now);
+}
+
+Entrance::Fate Entrance::sends(const Prefix& prefix, Time now) {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known == known_.end() ? Fate::passes : fate(known->second, now);
+}
+
+void Entrance::found(const Prefix& prefix) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto known = known_.find(prefix); known != known_.end())
+    ++known->second.found;
+}
+
+void Entrance::let_in(const Prefix& prefix) {
+  const std::scoped_lock lock(mutex_);
+  const auto [known, is_new] = known_.try_emplace(prefix);
+  if (!std::exchange(known->second.in, true) && !is_new)
+    --waiting_;
+}
+
+void Entrance::refuse(const Prefix& prefix) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto known = known_.find(prefix); known != known_.end())
+    known->second.refused = true;
+}
+
+void Entrance::forget(const Prefix& prefix, Time now) {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  if (known == known_.end() || --known->second.found > 0)
+    return;
+  if (known->second.refused) {
+    if (refused_.size() >= kMostRefused)
+      refused_.clear();
+    refused_[prefix] = now;
+  }
+  if (!known->second.in)
+    --waiting_;
+  known_.erase(known);
+}
+
+bool Entrance::is_in(const Prefix& prefix) const {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known != known_.end() && known->second.in;
+}
+
+std::string Entrance::address_of(const Prefix& prefix) const {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known == known_.end() ? std::string() : known->second.address;
+}
+
+void Entrance::forged(const std::string& address, Time now) {
+  const std::scoped_lock lock(mutex_);
+  dropped(address, now);
+}
+
+std::string Entrance::strangers(Time now) const {
+  const auto seconds = [](Time::duration time) {
+    return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(time).count()) + " s";
+  };
+  const std::scoped_lock lock(mutex_);
+  std::string text;
+  for (const auto& [address, stranger] : strangers_)
+    if (stranger.packets >= kStranger && now - stranger.last < kSilence)
+      text += (text.empty() ? "strangers are kept out: " : ", ") +
+              (address.empty() ? "other addresses" : address) + " (" +
+              std::to_string(stranger.packets) + " packets in " +
+              seconds(stranger.last - stranger.first) + ", the last " +
+              seconds(now - stranger.last) + " ago)";
+  return text;
+}
+
+std::vector<std::string> Entrance::take_new_strangers() {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::string> addresses;
+  for (auto& [address, stranger] : strangers_)
+    if (stranger.packets >= kStranger && !std::exchange(stranger.named, true))
+      addresses.push_back(address.empty() ? "other addresses" : address);
+  return addresses;
+}
+
+Entrance::Fate Entrance::dropped(const std::string& address, Time now) {
+  auto found = strangers_.find(address);
+  if (found == strangers_.end()) {
+    std::erase_if(strangers_, [&](const auto& one) { return now - one.second.last >= kSilence; });
+    found = strangers_.try_emplace(strangers_.size() < kMostAddresses ? address : "").first;
+  }
+  Stranger& stranger = found->second;
+  if (now - stranger.last >= kSilence)
+    stranger = {};
+  if (stranger.packets++ == 0)
+    stranger.first = now;
+  stranger.last = now;
+  return Fate::drops;
+}
+
+Entrance::Fate Entrance::fate(const Known& known, Time now) const {
+  if (known.in)
+    return Fate::passes;
+  return known.refused || now - known.since > patience() ? Fate::drops : Fate::waits;
+}
+
+bool Entrance::heard_twice(const Prefix& prefix, Time now) {
+  Fnv1a hash;
+  hash.add(std::to_string(seed_));
+  hash.add(std::string_view(reinterpret_cast<const char*>(prefix.data()), prefix.size()));
+  Heard& heard = heard_[hash.value() % heard_.size()];
+  const auto ago = now - heard.when;
+  if (heard.prefix == prefix && ago <= kTwiceAtMost)
+    return ago >= kTwice;
+  heard = {prefix, now};
+  return false;
+}
+
+}  // namespace saphira::bus::internal

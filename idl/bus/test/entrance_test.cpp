@@ -1,0 +1,189 @@
+// Participants that want to be let in, by a clock that the test moves.
+#include "entrance.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::bus::internal {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Fate = Entrance::Fate;
+
+class EntranceTest : public testing::Test {
+ protected:
+  static Entrance::Prefix program(std::uint32_t number) {
+    Entrance::Prefix prefix{};
+    for (unsigned i = 0; i < 4; ++i)
+      prefix[i] = static_cast<std::uint8_t>(number >> 8U * i);
+    return prefix;
+  }
+  Fate announce(std::uint32_t number) {
+    return entrance_.announced(program(number), "10.0.0.7", now_);
+  }
+  /// It is announced, and Fast DDS begins a handshake with it.
+  void wait_at_the_door(std::uint32_t number) {
+    announce(number);
+    now_ += Entrance::kTwice;
+    ASSERT_EQ(announce(number), Fate::waits) << number;
+    entrance_.found(program(number));
+  }
+  void crowd() {
+    for (std::uint32_t i = 0; i < Entrance::kCrowd; ++i)
+      wait_at_the_door(kStranger + i);
+  }
+
+  static constexpr std::uint32_t kStranger = 1000000;
+  Entrance entrance_{1};
+  Entrance::Time now_{seconds(1000)};
+};
+
+TEST_F(EntranceTest, AMemberWaitsAndIsLetIn) {
+  EXPECT_EQ(entrance_.shakes_hands(program(1), now_), Fate::drops);
+  EXPECT_EQ(announce(1), Fate::waits);
+  EXPECT_EQ(entrance_.shakes_hands(program(1), now_), Fate::waits);
+  EXPECT_FALSE(entrance_.is_in(program(1)));
+  entrance_.found(program(1));
+  entrance_.let_in(program(1));
+  EXPECT_TRUE(entrance_.is_in(program(1)));
+  now_ += seconds(1000);
+  EXPECT_EQ(announce(1), Fate::passes);
+  EXPECT_EQ(entrance_.shakes_hands(program(1), now_), Fate::passes);
+  EXPECT_EQ(entrance_.sends(program(1), now_), Fate::passes);
+  entrance_.forget(program(1), now_);
+  EXPECT_FALSE(entrance_.is_in(program(1)));
+}
+
+TEST_F(EntranceTest, InPeaceAHandshakeMayTakeLong) {
+  wait_at_the_door(1);
+  now_ += Entrance::kPatienceInPeace - seconds(1);
+  EXPECT_EQ(announce(1), Fate::waits);
+  now_ += seconds(1);
+  EXPECT_EQ(announce(1), Fate::drops);
+  EXPECT_EQ(entrance_.sends(program(1), now_), Fate::drops);
+  entrance_.forget(program(1), now_);  // by its lease
+  EXPECT_EQ(announce(1), Fate::waits);
+}
+
+TEST_F(EntranceTest, InACrowdOneWaitsShortly) {
+  crowd();
+  wait_at_the_door(1);
+  now_ += Entrance::kPatience;
+  EXPECT_EQ(announce(1), Fate::waits);
+  now_ += milliseconds(1);
+  EXPECT_EQ(announce(1), Fate::drops);
+  EXPECT_EQ(entrance_.shakes_hands(program(1), now_), Fate::drops);
+}
+
+TEST_F(EntranceTest, InACrowdOneIsHeardTwice) {
+  crowd();
+  EXPECT_EQ(announce(1), Fate::drops);
+  now_ += Entrance::kTwice - milliseconds(1);
+  EXPECT_EQ(announce(1), Fate::drops);
+  now_ += milliseconds(1);
+  EXPECT_EQ(announce(1), Fate::waits);
+  EXPECT_EQ(announce(2), Fate::drops);
+  now_ += Entrance::kTwiceAtMost + milliseconds(1);
+  EXPECT_EQ(announce(2), Fate::drops);
+  now_ += Entrance::kTwice;
+  EXPECT_EQ(announce(2), Fate::waits);
+}
+
+TEST_F(EntranceTest, OnesHeardOnceTakeNoPlace) {
+  for (std::uint32_t i = 0; i < 10000; ++i) {
+    announce(kStranger + i);
+    now_ += milliseconds(1);
+  }
+  announce(1);
+  now_ += Entrance::kTwice;
+  EXPECT_EQ(announce(1), Fate::waits);
+}
+
+TEST_F(EntranceTest, SoManyWaitAndNoMore) {
+  for (std::uint32_t i = 0; i < Entrance::kMost; ++i)
+    wait_at_the_door(kStranger + i);
+  const auto asks = [&] {
+    announce(1);
+    now_ += Entrance::kTwice;
+    return announce(1);
+  };
+  EXPECT_EQ(asks(), Fate::drops);
+  entrance_.forget(program(kStranger), now_);
+  EXPECT_EQ(asks(), Fate::waits);
+  // Those that were let in do not count.
+  EXPECT_EQ(announce(2), Fate::drops);
+  entrance_.let_in(program(1));
+  now_ += Entrance::kTwice;
+  EXPECT_EQ(announce(2), Fate::waits);
+}
+
+TEST_F(EntranceTest, ThoseThatFastDdsNeverFoundGiveWay) {
+  for (std::uint32_t i = 0; i < Entrance::kMost; ++i) {
+    announce(kStranger + i);
+    now_ += Entrance::kTwice;
+    announce(kStranger + i);
+  }
+  announce(1);
+  now_ += Entrance::kPatience;
+  EXPECT_EQ(announce(1), Fate::waits);
+}
+
+TEST_F(EntranceTest, WhoIsRefusedComesAgainLater) {
+  wait_at_the_door(1);
+  entrance_.refuse(program(1));
+  EXPECT_EQ(announce(1), Fate::drops);
+  EXPECT_EQ(entrance_.sends(program(1), now_), Fate::drops);
+  entrance_.forget(program(1), now_);  // by its lease
+  now_ += Entrance::kRefusal - milliseconds(1);
+  EXPECT_EQ(announce(1), Fate::drops);
+  now_ += milliseconds(1);
+  EXPECT_EQ(announce(1), Fate::waits);
+}
+
+TEST_F(EntranceTest, OneThatIsFoundAgainBeforeItsEndIsToldStaysIn) {
+  wait_at_the_door(1);
+  entrance_.let_in(program(1));
+  entrance_.found(program(1));
+  entrance_.forget(program(1), now_);
+  EXPECT_TRUE(entrance_.is_in(program(1)));
+  entrance_.forget(program(1), now_);
+  EXPECT_FALSE(entrance_.is_in(program(1)));
+}
+
+TEST_F(EntranceTest, StrangersAreCountedAndNamed) {
+  crowd();
+  for (std::uint64_t i = 0; i + 1 < Entrance::kStranger; ++i)
+    announce(1000 + static_cast<std::uint32_t>(i));
+  EXPECT_EQ(entrance_.strangers(now_), "");
+  EXPECT_TRUE(entrance_.take_new_strangers().empty());
+  now_ += seconds(5);
+  announce(1);
+  now_ += seconds(2);
+  EXPECT_EQ(entrance_.strangers(now_),
+            "strangers are kept out: 10.0.0.7 (100 packets in 5 s, the last 2 s ago)");
+  EXPECT_EQ(entrance_.take_new_strangers(), std::vector<std::string>{"10.0.0.7"});
+  EXPECT_TRUE(entrance_.take_new_strangers().empty());
+  now_ += Entrance::kSilence;
+  EXPECT_EQ(entrance_.strangers(now_), "");
+}
+
+TEST_F(EntranceTest, OnlySomeAddressesAreNamed) {
+  for (std::uint32_t address = 0; address < 1000; ++address)
+    for (std::uint64_t i = 0; i < Entrance::kStranger; ++i)
+      entrance_.forged(std::to_string(address), now_);
+  EXPECT_EQ(entrance_.take_new_strangers().size(), Entrance::kMostAddresses + 1);
+}
+
+TEST_F(EntranceTest, WhereOneComesFromIsKnown) {
+  wait_at_the_door(1);
+  EXPECT_EQ(entrance_.address_of(program(1)), "10.0.0.7");
+  EXPECT_EQ(entrance_.address_of(program(2)), "");
+}
+
+TEST_F(EntranceTest, TheProgramHearsItself) {
+  entrance_.let_in(program(7));
+  EXPECT_EQ(announce(7), Fate::passes);
+}
+
+}  // namespace
+}  // namespace saphira::bus::internal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace saphira::test {
+
+/// Somebody without credentials who announces programs that there are none of: copies of an
+/// announcement that was heard on the loopback of a DDS domain, each with another identifier.
+class Strangers {
+ public:
+  /// Waits until a program of the domain announces itself; std::runtime_error where none does.
+  explicit Strangers(unsigned domain);
+  ~Strangers();
+  Strangers(const Strangers&) = delete;
+  Strangers& operator=(const Strangers&) = delete;
+
+  /// Announces so many, at so many a second.
+  void announce(int count, int per_second);
+
+ private:
+  int sender_;
+  std::uint16_t port_;
+  std::string heard_;
+  std::mt19937_64 random_{1};
+};
+
+}  // namespace saphira::test
