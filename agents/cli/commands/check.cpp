@@ -91,7 +91,12 @@ int check(const std::string& name, const std::vector<std::string>& set,
           : said.text.empty() ? "ok"
                               : "would start, but says",
           said.text.c_str());
-    wrong += said.well ? 0 : 1;
+    const bool of_service = !places.own.empty() && deployment.file.starts_with(places.own);
+    const std::string unseen =
+        closed_devices(child.argv) +
+        (of_service ? hidden_from_service(child.argv, folder.path()) : std::string());
+    print("%s", unseen.c_str());
+    wrong += said.well && unseen.empty() ? 0 : 1;
     misused += said.misused ? 1 : 0;
   }
   for (const std::string& text : left_out)

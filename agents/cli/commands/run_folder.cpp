@@ -23,7 +23,9 @@ constexpr const char* kServiceFolder = "/var/lib/saphira";  ///< of saphira@.ser
 
 /// Advice for a folder that cannot be used.
 constexpr const char* kElsewhere =
-    "; the variable SAPHIRA_RUN names another folder for what runs (usual: one in /tmp)";
+    "; the variable SAPHIRA_RUN names another folder for what runs (usual: "
+    "~/.local/state/saphira/HOST)";
+constexpr std::size_t kLongestFolder = 60;  ///< of a socket in it at most 107
 
 /// Makes a private folder; one of another owner is refused.
 void make_own(const std::string& path) {
@@ -34,12 +36,39 @@ void make_own(const std::string& path) {
     throw std::runtime_error(path + ": expected a folder of this user" + kElsewhere);
 }
 
-/// The folder of this user, for all deployments: SAPHIRA_RUN, or one in /tmp.
+/// Where a home is missing. What cleans /tmp does not know what runs.
+std::string temporary_folder() {
+  return "/tmp/saphira-" + std::to_string(getuid());
+}
+
+/// In the user's home, which several machines may share; empty: there is none to write to.
+std::string folder_in_home() {
+  const char* const state = std::getenv("XDG_STATE_HOME");
+  const char* const home = std::getenv("HOME");
+  char host[256] = {};
+  if (gethostname(host, sizeof host - 1) != 0)
+    return {};
+  const std::string base = state != nullptr && *state == '/' ? std::string(state)
+                           : home != nullptr && *home == '/' ? std::string(home) + "/.local/state"
+                                                             : std::string();
+  const std::string folder = base + "/saphira/" + host;
+  if (base.empty() || folder.size() > kLongestFolder)
+    return {};
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  struct stat info {};
+  return stat(folder.c_str(), &info) == 0 && info.st_uid == getuid() &&
+                 access(folder.c_str(), W_OK) == 0
+             ? folder
+             : std::string();
+}
+
+/// The folder of this user, for all deployments. It has to outlast what runs.
 std::string own_folder() {
   const char* const given = std::getenv("SAPHIRA_RUN");
-  const std::string ours = given != nullptr && *given != '\0'
-                               ? std::string(given)
-                               : "/tmp/saphira-" + std::to_string(getuid());
+  std::string ours = given != nullptr && *given != '\0' ? std::string(given) : folder_in_home();
+  if (ours.empty())
+    ours = temporary_folder();
   make_own(ours);
   return ours;
 }
@@ -92,23 +121,26 @@ RunFolder::~RunFolder() {
 
 std::vector<Running> running_deployments() {
   std::vector<Running> all;
-  for (const auto& entry : std::filesystem::directory_iterator(own_folder())) {
-    const std::string path = entry.path() / "lock";
-    if (!std::filesystem::exists(path))
-      continue;
-    // A free lock means that no process runs it.
-    const int file = lock(path);
-    if (file >= 0) {
-      close(file);
-      continue;
+  std::error_code none;
+  // One that was started without a home is there, too.
+  for (const std::string& folder : std::set<std::string>{own_folder(), temporary_folder()})
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+      const std::string path = entry.path() / "lock";
+      if (!std::filesystem::exists(path, none))
+        continue;
+      // A free lock means that no process runs it.
+      const int file = lock(path);
+      if (file >= 0) {
+        close(file);
+        continue;
+      }
+      Running running{entry.path().filename(), 0, {}, 0};
+      std::ifstream in(path);
+      in >> running.pid >> running.domain >> std::ws;
+      std::getline(in, running.robot);
+      if (running.pid > 0)
+        all.push_back(running);
     }
-    Running running{entry.path().filename(), 0, {}, 0};
-    std::ifstream in(path);
-    in >> running.pid >> running.domain >> std::ws;
-    std::getline(in, running.robot);
-    if (running.pid > 0)
-      all.push_back(running);
-  }
   return all;
 }
 
@@ -137,8 +169,8 @@ std::vector<RunningBus> running_buses() {
   };
   std::vector<Found> found;
   std::error_code none;
-  const std::string own = own_folder();
-  for (const std::string& folder : std::set<std::string>{own, kServiceFolder})
+  for (const std::string& folder :
+       std::set<std::string>{own_folder(), temporary_folder(), kServiceFolder})
     for (const auto& entry : std::filesystem::directory_iterator(folder + "/buses", none)) {
       const std::string path = entry.path();
       const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);

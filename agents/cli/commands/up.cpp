@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -21,6 +23,7 @@
 #include "environment.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/cli/bounded_log.hpp"
 #include "saphira/cli/deployment.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/cli/service_manager.hpp"
@@ -35,8 +38,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr const char* kAreStarted = " started; Ctrl-C stops them";
-constexpr double kStarted = 20.0;  ///< [s]
-constexpr double kStopped = 20.0;  ///< [s]
+constexpr double kStarted = 20.0;                    ///< [s]
+constexpr double kStopped = 20.0;                    ///< [s]
+constexpr const char* kLogVariable = "SAPHIRA_LOG";  ///< of a detached one: its log file
+constexpr std::int64_t kLongestLog = 8 << 20;        ///< [bytes] of each of two parts
 
 /// Prints each line with the child's name before it, in a color of its own on a terminal.
 Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
@@ -226,6 +231,10 @@ int up(const std::string& name, const std::vector<std::string>& set,
     std::filesystem::remove(std::filesystem::path(folder.path()) / file, gone);
   }
 
+  std::optional<BoundedLog> log;
+  if (const char* const file = std::getenv(kLogVariable))
+    log.emplace(file, std::vector{STDOUT_FILENO, STDERR_FILENO}, kLongestLog);
+  unsetenv(kLogVariable);
   const ServiceManager manager;
   const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);
@@ -244,6 +253,8 @@ int up(const std::string& name, const std::vector<std::string>& set,
     if (renew.came())
       supervisor.renew(other_contract);
     manager.alive();
+    if (log)
+      log->keep_bounded();
   }
   manager.stopping();
   const auto misused = supervisor.misused();
@@ -258,7 +269,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
 
 /// Starts this program again, without a terminal: its output goes to the log.
 pid_t start_again(const std::string& name, const std::vector<std::string>& set,
-                  const bus::NodeOptions& options, int log) {
+                  const bus::NodeOptions& options, const std::string& path, int log) {
   std::vector<std::string> words{"saphira", "up", name};
   for (const std::string& one : set)
     words.insert(words.end(), {"--set", one});
@@ -266,7 +277,8 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
   for (std::string& word : words)
     argv.push_back(word.data());
   argv.push_back(nullptr);
-  const auto environment = as_environment(options);
+  auto environment = as_environment(options);
+  environment[kLogVariable] = path;
   const pid_t child = fork();
   if (child != 0)
     return child;
@@ -299,7 +311,8 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0600);
   if (file < 0)
     throw std::runtime_error(cannot_be(log, "written"));
-  const pid_t child = start_again(std::filesystem::absolute(deployment.file), set, options, file);
+  const pid_t child =
+      start_again(std::filesystem::absolute(deployment.file), set, options, log, file);
   close(file);
   const auto began = Clock::now();
   int status = 0;

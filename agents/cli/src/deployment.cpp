@@ -402,4 +402,31 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
   return all;
 }
 
+std::string hidden_from_service(const std::vector<std::string>& argv, const std::string& run) {
+  std::string text;
+  for (const std::string& word : argv)
+    for (const char* const hidden : {"/home/", "/root/", "/run/user/", "/tmp/", "/var/tmp/"}) {
+      const std::size_t at = word.find(hidden);
+      const bool begins =
+          at == 0 || (at != std::string::npos &&
+                      std::string_view("=:,").find(word[at - 1]) != std::string::npos);
+      if (begins && !word.substr(at).starts_with(run))
+        text += "  the service does not see " + word.substr(at) +
+                ": put it below /etc/saphira, readable for the user saphira\n";
+    }
+  return text;
+}
+
+std::string closed_devices(const std::vector<std::string>& argv) {
+  std::string text;
+  for (const std::string& word : argv) {
+    const std::string device = word.substr(0, word.find('@'));  // DEVICE@RATE
+    if (device.starts_with("/dev/") && access(device.c_str(), F_OK) == 0 &&
+        access(device.c_str(), R_OK | W_OK) != 0)
+      text += "  this user may not open " + device +
+              ": it is for the group that `ls -l` shows, usually dialout\n";
+  }
+  return text;
+}
+
 }  // namespace saphira::cli

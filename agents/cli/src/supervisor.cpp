@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "saphira/base/text.hpp"
@@ -261,15 +264,39 @@ void Supervisor::read_beats(std::size_t index) {
     watchdog_.hear(index, beat, Clock::now());
 }
 
+/// How long a thread of the child was ready and had no processor, since the last call. Whichever
+/// thread that was, others may have waited for it.
+std::chrono::nanoseconds Supervisor::starved(Slot& slot) {
+  std::map<std::string, std::chrono::nanoseconds> waited;
+  std::chrono::nanoseconds longest{0};
+  std::error_code none;
+  for (const auto& thread :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(slot.pid) + "/task", none)) {
+    long long ran = 0;
+    long long ready = 0;
+    if (!(std::ifstream(thread.path() / "schedstat") >> ran >> ready))
+      continue;
+    const auto& now = waited[thread.path().filename()] = std::chrono::nanoseconds(ready);
+    if (const auto before = slot.waited.find(thread.path().filename()); before != slot.waited.end())
+      longest = std::max(longest, now - before->second);
+  }
+  slot.waited = std::move(waited);
+  return longest;
+}
+
 void Supervisor::watch(BootClock::duration waited, milliseconds timeout) {
   for (std::size_t i = 0; i < slots_.size(); ++i)
     read_beats(i);
   if (waited > timeout + kWatch)
     watchdog_.slept(Clock::now());
+  if (Clock::now() - judged_ < kWatch)
+    return;
+  judged_ = Clock::now();
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
     if (slot.pid == 0 || !slot.spec.restart || !slot.trouble.empty())
       continue;
+    watchdog_.starved(i, starved(slot), Clock::now());
     if (const auto trouble = watchdog_.trouble(i, Clock::now())) {
       slot.trouble = *trouble;
       say(slot.spec.name + ": " + *trouble + "; killed");

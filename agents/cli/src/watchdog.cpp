@@ -82,6 +82,15 @@ void Watchdog::slept(Time now) {
     }
 }
 
+void Watchdog::starved(std::size_t child, std::chrono::nanoseconds waited, Time now) {
+  for (auto& [instance, voice] : children_[child].voices) {
+    voice.last = std::min(now, voice.last + std::chrono::duration_cast<Time::duration>(waited));
+    if (voice.waits)
+      voice.waits =
+          std::min(now, *voice.waits + std::chrono::duration_cast<Time::duration>(waited));
+  }
+}
+
 std::optional<std::string> Watchdog::trouble(std::size_t child, Time now) const {
   for (const auto& [instance, voice] : children_[child].voices) {
     if (voice.beats >= kRegular && now - voice.last >= kSilent)

@@ -280,5 +280,19 @@ TEST(ShippedDeployments, HearAndSpeakWhereTheyUnderstandSentences) {
   EXPECT_EQ(count, 4);
 }
 
+TEST(ServiceSight, FilesInHomesAndInTheSharedTmpAreNamed) {
+  const std::string text = hidden_from_service(
+      {"/usr/bin/saphira-bridge", "--link", "unix:/tmp/robot", "--map=/home/ann/lab.map", "--state",
+       "/tmp/run/bridge.state", "/etc/saphira/home/x", "/dev/ttyUSB0"},
+      "/tmp/run");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  EXPECT_NE(text.find("does not see /tmp/robot:"), std::string::npos) << text;
+  EXPECT_NE(text.find("does not see /home/ann/lab.map:"), std::string::npos) << text;
+}
+
+TEST(ServiceSight, ADeviceThatIsNotThereIsNotClosed) {
+  EXPECT_EQ(closed_devices({"--link", "/dev/null", "/dev/none@19200", "/dev/tty/none"}), "");
+}
+
 }  // namespace
 }  // namespace saphira::cli

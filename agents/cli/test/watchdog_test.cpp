@@ -49,6 +49,21 @@ constexpr int kDeaf = Watchdog::kDeaf.count();
 constexpr int kMute = Watchdog::kMute.count();
 constexpr int kAllDeaf = Watchdog::kAllDeaf.count();
 
+TEST_F(WatchdogTest, NodeWithoutAProcessorDoesNotHang) {
+  pass(10);
+  for (int i = 0; i < 60; ++i) {
+    now_ += seconds(1);
+    dog_.starved(1, milliseconds(900), now_);
+    dog_.starved(2, seconds(5), now_);
+  }
+  EXPECT_EQ(trouble(1), "") << "6 s of its own";
+  EXPECT_EQ(trouble(2), "");
+  EXPECT_EQ(trouble(0), "hung");
+  now_ += seconds(4);
+  EXPECT_EQ(trouble(1), "hung");
+  EXPECT_EQ(trouble(2), "");
+}
+
 TEST_F(WatchdogTest, NodeThatFallsSilentHangs) {
   pass(10);
   const auto last = now_;

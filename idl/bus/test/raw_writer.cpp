@@ -112,7 +112,8 @@ bool RawWriter::write(Bytes bytes, double ahead) {
   eprosima::fastrtps::Time_t now;
   eprosima::fastrtps::Time_t::now(now);
   const double time = static_cast<double>(now.to_ns()) * 1e-9 + ahead;
-  return impl_->writer->write_w_timestamp(&bytes, fdds::HANDLE_NIL, eprosima::fastrtps::Time_t(time)) ==
+  return impl_->writer->write_w_timestamp(&bytes, fdds::HANDLE_NIL,
+                                          eprosima::fastrtps::Time_t(time)) ==
          eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 }
 

@@ -34,6 +34,7 @@ TEST_F(CredentialsTest, TimesAreTold) {
   EXPECT_TRUE(says(loading(kNow + 365 * kDay), "saphira security renew karen"));
   EXPECT_TRUE(says(loading(kNow - 2 * kDay), "holds from"));
   EXPECT_TRUE(says(loading(kNow - 2 * kDay), "clock of this machine"));
+  EXPECT_THROW(load_credentials(made_, "cli", kNow - 2 * kDay), NotYet) << "no mistake of a person";
 }
 
 TEST_F(CredentialsTest, EachMissingFileIsNamed) {

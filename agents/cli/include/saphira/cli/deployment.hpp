@@ -88,4 +88,10 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
                                      const std::vector<std::string>& set = {},
                                      std::vector<std::string>* left_out = nullptr);
 
+/// The files in a command line that the unit saphira@.service does not see, since it hides homes
+/// and has a /tmp of its own; a line each, with the remedy. run: a folder that does not count.
+std::string hidden_from_service(const std::vector<std::string>& argv, const std::string& run);
+/// The devices in a command line that this user may not open; a line each, with the remedy.
+std::string closed_devices(const std::vector<std::string>& argv);
+
 }  // namespace saphira::cli

@@ -91,6 +91,7 @@ class Supervisor {
     int beats = -1;       ///< the pipe of its heartbeats
     std::string trouble;  ///< the reason for its kill
     std::string file;     ///< identity of its program file at the start; see file_of()
+    std::map<std::string, std::chrono::nanoseconds> waited;  ///< of its threads, see starved()
   };
   struct Stream {
     int fd;
@@ -107,6 +108,7 @@ class Supervisor {
   bool read_stream(Stream& stream);
   void reap(std::size_t index);
   void read_beats(std::size_t index);
+  static std::chrono::nanoseconds starved(Slot& slot);
   void watch(BootClock::duration waited, std::chrono::milliseconds timeout);
   void renew_next();
   void say(const std::string& text) { print_({}, text); }
@@ -116,6 +118,7 @@ class Supervisor {
   Print print_;
   std::chrono::milliseconds proven_;  ///< a child that ran this long starts afresh
   Watchdog watchdog_;
+  Clock::time_point judged_;  ///< newest check for hanging children
   bool stopping_ = false;
   std::vector<std::size_t> to_renew_;    ///< the next one first
   std::optional<std::size_t> renewing_;  ///< ended for a new version, and not yet proven

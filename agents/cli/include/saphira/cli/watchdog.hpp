@@ -14,7 +14,8 @@ namespace saphira::cli {
 /// Detects hanging, deaf and mute children, by their heartbeats. Pure: the time is an argument.
 ///
 /// A node hangs when it has sent heartbeats regularly and then none for 10 s. A program may have
-/// any number of nodes; a silent program is not judged.
+/// any number of nodes; a silent program is not judged. Time in which it was ready to run and had
+/// no processor does not count.
 ///
 /// A node that waits for its robot is deaf, or the bridge of that robot is mute:
 /// - deaf after 15 s, where another child hears the robot all the time;
@@ -37,6 +38,8 @@ class Watchdog {
   void hear(std::size_t child, const Heartbeat& beat, Time now);
   /// The supervisor itself stood still: missing heartbeats of that time do not count.
   void slept(Time now);
+  /// The child waited for the processor, for that time since the last call: it could not send then.
+  void starved(std::size_t child, std::chrono::nanoseconds waited, Time now);
   /// The error of a child, in words.
   std::optional<std::string> trouble(std::size_t child, Time now) const;
 

@@ -46,7 +46,8 @@ class NotYet : public std::runtime_error {
 
 /// The credentials in a folder for a program. Where the roles of the site name it, those of that
 /// role; for any other program the first of operator, agent, observer and recorder in the folder.
-/// std::invalid_argument that names the file, the fault and the remedy; NotYet. `now`: [s since 1970].
+/// std::invalid_argument that names the file, the fault and the remedy; NotYet. `now`: [s since
+/// 1970].
 Credentials load_credentials(const std::string& folder, const std::string& program,
                              std::int64_t now);
 
