@@ -113,6 +113,8 @@ std::string who_is_there(const bus::Node& node, const Processes& processes) {
                             name_of(options.profile);
   if (const std::string bar = node.bar(); all.empty() && !bar.empty())
     return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
+  if (const std::string bar = processes.bar(); all.empty() && !bar.empty())
+    return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
   if (all.empty())
     return "no program is on the bus (" + where +
            "): is it up (saphira up demo), and are these the same on both sides?" +

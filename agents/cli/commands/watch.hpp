@@ -44,7 +44,7 @@ void keep_newest(bus::Reader<T>& reader, Samples& samples, Key key) {
 /// Keeps the newest status of every process.
 class Processes {
  public:
-  explicit Processes(bus::Node& node) : reader_(node.reader(bus::topics::kStatus)) {}
+  explicit Processes(bus::Node& node) : node_(node), reader_(node.reader(bus::topics::kStatus)) {}
 
   void poll();
   std::vector<SeenProcess> all() const;
@@ -56,6 +56,8 @@ class Processes {
   situation::Situation situation() const;
   /// Of all seen processes, including ended ones.
   std::uint64_t late_cycles() const;
+  /// As the node has it.
+  std::string bar() const { return node_.bar(); }
 
  private:
   struct Entry {
@@ -65,6 +67,7 @@ class Processes {
     int samples = 0;
     double age = 0.0;  ///< [s] least age of a sample, by the clocks of both machines
   };
+  const bus::Node& node_;
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
   Clock::time_point began_ = Clock::now();
