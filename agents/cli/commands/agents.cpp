@@ -89,7 +89,7 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
       tell(end);
     std::cerr << "saphira: " << in_front << end.text();
     if (!stop.requested() && absence(node, processes, kFacilitator).empty())
-      std::cerr << "; " << who_is_there(options, processes);
+      std::cerr << "; " << who_is_there(processes);
     std::cerr << '\n';
     return bus::kExitFailed;
   }
@@ -208,7 +208,7 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   const bool alone = processes.all().empty();
   const std::string absent = absence(node, processes, kFacilitator);
   (alone ? std::cerr << "saphira: " : std::cout)
-      << "no agents; " << (absent.empty() ? who_is_there(options, processes) : absent) << '\n';
+      << "no agents; " << (absent.empty() ? who_is_there(processes) : absent) << '\n';
   return alone ? bus::kExitFailed : bus::kExitOk;
 }
 

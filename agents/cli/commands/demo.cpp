@@ -380,7 +380,7 @@ class Demo {
     const auto asked = Clock::now();
     while (!goals.delivered(100)) {
       supervisor_.step(milliseconds(0));
-      if (stop.requested() || supervisor_.misused() || gave_up(asked, node, processes))
+      if (stop.requested() || supervisor_.misused() || gave_up(asked, processes))
         return;
       processes.poll();
     }
@@ -430,7 +430,7 @@ class Demo {
         shown = Clock::now();
         shown_time = std::floor(watcher.robot_time());
       }
-      if (supervisor_.misused() || gave_up(news, node, processes))
+      if (supervisor_.misused() || gave_up(news, processes))
         return;
     }
     late_cycles_ = processes.late_cycles();
@@ -443,11 +443,11 @@ class Demo {
       print("%s\n", watcher.line(status_).c_str());
   }
 
-  bool gave_up(Clock::time_point last_news, const bus::Node& node, const Processes& processes) {
+  bool gave_up(Clock::time_point last_news, const Processes& processes) {
     if (seconds_since(last_news) < kNewsPatience)
       return false;
     trouble_ = "nothing was heard for " + std::to_string(static_cast<int>(kNewsPatience)) +
-               " s: " + who_is_there(node, processes);
+               " s: " + who_is_there(processes);
     return true;
   }
 

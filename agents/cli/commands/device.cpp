@@ -42,8 +42,8 @@ class Watch {
   bus::Reader<v1::Devices> devices_ = node.reader(bus::topics::kDevices);
 };
 
-int nobody(const bus::NodeOptions& options, const Watch& watch) {
-  std::cerr << "saphira: no robot: " << who_is_there(options, watch.processes) << '\n';
+int nobody(const Watch& watch) {
+  std::cerr << "saphira: no robot: " << who_is_there(watch.processes) << '\n';
   return bus::kExitFailed;
 }
 
@@ -56,7 +56,7 @@ int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
     watch.poll();
   }
   if (!watch.robot)
-    return nobody(options, watch);
+    return nobody(watch);
   std::fputs(table(device_rows(*watch.robot, watch.devices)).c_str(), stdout);
   return bus::kExitOk;
 }
@@ -71,7 +71,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
     watch.poll();
     if (!watch.robot) {
       if (seconds_since(said) > 3.0) {
-        nobody(options, watch);
+        nobody(watch);
         said = Clock::now();
       }
       continue;
@@ -119,10 +119,9 @@ int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus
   const v1::Answer answer =
       bridge.ask(to_bus(command.request), kDevicePatience, &stop, [&] { watch.poll(); });
   if (answer.code() == v1::ANSWER_NOBODY && answer.service().empty())
-    return nobody(options, watch);
+    return nobody(watch);
   if (answer.code() == v1::ANSWER_TOO_LATE && answer.service().empty()) {
-    std::cerr << "saphira: " << answer.text() << "; " << who_is_there(options, watch.processes)
-              << '\n';
+    std::cerr << "saphira: " << answer.text() << "; " << who_is_there(watch.processes) << '\n';
     return bus::kExitFailed;
   }
   std::printf("%s\n", answer.text().c_str());

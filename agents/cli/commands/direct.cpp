@@ -75,9 +75,8 @@ bool DirectDriver::drives() const {
 
 std::string DirectDriver::trouble() const {
   if (!grant_)
-    return seconds_since(began_) < kUnanswered
-               ? ""
-               : "no bridge is heard; " + who_is_there(node_.options(), processes_);
+    return seconds_since(began_) < kUnanswered ? ""
+                                               : "no bridge is heard; " + who_is_there(processes_);
   if (!refusal_.empty())
     return "refused: " + refusal_;
   if (!drives())

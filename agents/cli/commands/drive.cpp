@@ -220,10 +220,9 @@ class Teleop {
         again = seconds_since(began) + 0.1;
       }
     }
-    complain("saphira: %s\n", grant_ ? "the bridge has not confirmed that the robot is handed back"
-                                     : ("not handed back: no bridge is heard; " +
-                                        who_is_there(node_.options(), processes_))
-                                           .c_str());
+    complain("saphira: %s\n",
+             grant_ ? "the bridge has not confirmed that the robot is handed back"
+                    : ("not handed back: no bridge is heard; " + who_is_there(processes_)).c_str());
     return bus::kExitFailed;
   }
 
@@ -390,7 +389,7 @@ class Teleop {
       setpoint.velocity = 0.0;  // a refused setpoint is not shown as wanted
     std::string line;
     if (!robot_ || seconds_since(robot_came_) > 1.0) {
-      line = "no robot: " + who_is_there(node_.options(), processes_);
+      line = "no robot: " + who_is_there(processes_);
     } else {
       line =
           format("want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",

@@ -110,7 +110,7 @@ class Button {
     return bridges_.all([](const v1::Grant& one) { return !one.estopped(); });
   }
 
-  std::string why_nobody() const { return who_is_there(node_, processes_); }
+  std::string why_nobody() const { return who_is_there(processes_); }
 
   Clock::time_point began_ = Clock::now();
   bus::Node node_;

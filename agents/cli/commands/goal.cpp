@@ -114,7 +114,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     if (seconds_since(began) > told + kConfirmPatience) {
       told = seconds_since(began);
       const std::string who =
-          confirmed ? "not every bridge" + bridges.several() : who_is_there(node, processes);
+          confirmed ? "not every bridge" + bridges.several() : who_is_there(processes);
       complain(
           "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
           "trying; Ctrl-C ends it.\n",
@@ -164,7 +164,7 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
     const bool empty = processes.all().empty();
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
-      complain("saphira: no answer yet: %s\n", who_is_there(node, processes).c_str());
+      complain("saphira: no answer yet: %s\n", who_is_there(processes).c_str());
     }
     if (!status && seconds_since(began) > (empty ? kEmptyBus : kUnanswered)) {
       complain("saphira: given up\n");
@@ -216,7 +216,7 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
   }
   complain("saphira: %s\n",
            asked ? "withdrawn, and it has not ended yet"
-                 : ("nothing is known of this goal; " + who_is_there(node, processes)).c_str());
+                 : ("nothing is known of this goal; " + who_is_there(processes)).c_str());
   return bus::kExitFailed;
 }
 
@@ -237,8 +237,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   if (!goals.statuses().empty())
     return bus::kExitOk;
   const bool alone = processes.all().empty();
-  (alone ? std::cerr << "saphira: " : std::cout)
-      << "no goals; " << who_is_there(node, processes) << '\n';
+  (alone ? std::cerr << "saphira: " : std::cout) << "no goals; " << who_is_there(processes) << '\n';
   return alone ? bus::kExitFailed : bus::kExitOk;
 }
 
@@ -279,8 +278,7 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
     known = reader.take_newest();
   }
   if (!known) {
-    std::cerr << "saphira: nobody said what can be asked for; " << who_is_there(node, processes)
-              << '\n';
+    std::cerr << "saphira: nobody said what can be asked for; " << who_is_there(processes) << '\n';
     return bus::kExitFailed;
   }
   bool any = false;

@@ -110,8 +110,7 @@ int echo(const std::string& topic, std::uint64_t count, bool once, double timeou
     processes.poll();
     if (once && timeout == 0.0 && reader.matched() == 0 && processes.all().empty() &&
         seconds_since(began) > kEmptyBus) {
-      complain("saphira: no answer yet: %s\nsaphira: given up\n",
-               who_is_there(options, processes).c_str());
+      complain("saphira: no answer yet: %s\nsaphira: given up\n", who_is_there(processes).c_str());
       return bus::kExitFailed;
     }
     // A short wait: the remaining time is checked again.

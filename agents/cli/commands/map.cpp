@@ -45,7 +45,7 @@ v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
-      : node(options), processes(node), deployments(node, processes), options_(options) {}
+      : node(options), processes(node), deployments(node, processes) {}
 
   /// True where a new sample of registration came.
   bool poll() {
@@ -78,8 +78,7 @@ class View {
       }
       node.wait(milliseconds(100), &stop);
     }
-    std::cerr << "saphira: no map: registration is not heard; " << who_is_there(options_, processes)
-              << '\n';
+    std::cerr << "saphira: no map: registration is not heard; " << who_is_there(processes) << '\n';
     return false;
   }
 
@@ -107,7 +106,6 @@ class View {
   std::string holds;  ///< the latches, in words
 
  private:
-  bus::NodeOptions options_;
   bus::Reader<v1::Grant> grants_ = node.reader(bus::topics::kGrant);
   bus::Reader<v1::FloorMap> maps_ = node.reader(bus::topics::kMap);
   bus::Reader<v1::Registration> registrations_ = node.reader(bus::topics::kRegistration);
@@ -321,12 +319,11 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
 }
 
 /// Sends a request to registration and waits for its answer; reports the result.
-bool ask(View& view, const Request& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+bool ask(View& view, const Request& asked, const bus::Stop& stop) {
   const v1::Answer answer =
       view.registration_client.ask(to_bus(asked), kMapPatience, &stop, [&] { view.poll(); });
   if (answer.service().empty()) {
-    std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
-              << '\n';
+    std::cerr << "saphira: registration did not answer; " << who_is_there(view.processes) << '\n';
     return false;
   }
   if (!bus::well(answer.code()))
@@ -342,8 +339,7 @@ int request(const std::vector<std::string>& words, const bus::NodeOptions& optio
   // Place names belong to the present map.
   if (!view.wait_for_map(stop, false))
     return bus::kExitFailed;
-  return ask(view, parse_map_request(words, view.map), options, stop) ? bus::kExitOk
-                                                                      : bus::kExitFailed;
+  return ask(view, parse_map_request(words, view.map), stop) ? bus::kExitOk : bus::kExitFailed;
 }
 
 int route(const std::string& place, const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -426,7 +422,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   // Also after an interruption: the partial map counts.
   if (!whole) {
     const bus::Stop end;
-    if (!ask(view, {"add_features", {{"on", false}}}, options, end))
+    if (!ask(view, {"add_features", {{"on", false}}}, end))
       return bus::kExitFailed;
   }
   view.poll();

@@ -28,7 +28,7 @@ int list_processes(const bus::NodeOptions& options, const bus::Stop& stop) {
   mind.listen(kProcessesListen, stop);
   const std::string text = processes_table(mind.services());
   if (text.empty()) {
-    std::cerr << "saphira: no service tells its processes; " << who_is_there(node, mind.processes())
+    std::cerr << "saphira: no service tells its processes; " << who_is_there(mind.processes())
               << '\n';
     return bus::kExitFailed;
   }

@@ -40,7 +40,7 @@ class StatusView {
   std::string text() const {
     const auto all = processes_.all();
     if (all.empty())
-      return who_is_there(node_, processes_) + "\n" + silent_peers();
+      return who_is_there(processes_) + "\n" + silent_peers();
     std::string text = status_table(all);
     const situation::Situation now = situation();
     text += "drive: " + driver(now) + "\n";

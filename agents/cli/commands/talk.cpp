@@ -217,7 +217,7 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
     if (!knowledge) {
       const std::string absent = absence(node, processes, kDialogue);
       std::cerr << "saphira: nothing is said about what the robot knows; "
-                << (absent.empty() ? who_is_there(node, processes) : absent) << '\n';
+                << (absent.empty() ? who_is_there(processes) : absent) << '\n';
       return bus::kExitFailed;
     }
     std::fputs(knowledge_table(*knowledge).c_str(), stdout);

@@ -32,9 +32,9 @@ void add_watch_options(CLI::App& command, WatchOptions& options) {
   command.add_flag("--watch,-w", options.watch, "again and again, also into a file");
 }
 
-int nobody(const bus::NodeOptions& options, const Mind& mind, const std::string& what) {
-  std::cerr << "saphira: nothing is said about " << what << "; "
-            << who_is_there(options, mind.processes()) << '\n';
+int nobody(const Mind& mind, const std::string& what) {
+  std::cerr << "saphira: nothing is said about " << what << "; " << who_is_there(mind.processes())
+            << '\n';
   return bus::kExitFailed;
 }
 
@@ -55,7 +55,7 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
       return bus::kExitFailed;
     }
     if (!text && seconds_since(began) > kMindPatience)
-      return nobody(options, mind, what);
+      return nobody(mind, what);
   }
   if (!watch.live() && text) {
     mind.listen(kOthers, stop);
@@ -247,7 +247,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
   if (past && !mind.some(cycle)) {
     const auto known = mind.known();
     if (known.second == 0)
-      return nobody(options, mind, "what has been");
+      return nobody(mind, "what has been");
     std::cerr << "saphira: cycle "
               << (why_options.cycle > 0 ? std::to_string(why_options.cycle)
                                         : std::to_string(-why_options.cycle) + " ago")
@@ -255,7 +255,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
     return bus::kExitFailed;
   }
   if (!mind.heard())
-    return nobody(options, mind, "the robot");
+    return nobody(mind, "the robot");
   const situation::Situation known = mind.situation(cycle, past);
   const Explanation explanation = wish ? why_not(known, *wish) : situation::why(known);
   std::fputs((why_options.json ? to_json(explanation) + "\n" : to_text(explanation)).c_str(),
@@ -314,8 +314,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
     if (writer.matched() > 0)
       taken_back = writer.dispose(sample) || taken_back;
   }
-  std::cerr << "saphira: it is still taken for true; " << who_is_there(options, mind.processes())
-            << '\n';
+  std::cerr << "saphira: it is still taken for true; " << who_is_there(mind.processes()) << '\n';
   return bus::kExitFailed;
 }
 
@@ -356,7 +355,7 @@ int claim(const std::string& name, const std::string& value, bool hold,
     }
     if (seconds_since(began) > kMindPatience) {
       std::cerr << "saphira: nobody has taken it for true (saphira log says why); "
-                << who_is_there(options, mind.processes()) << '\n';
+                << who_is_there(mind.processes()) << '\n';
       return bus::kExitFailed;
     }
   }

@@ -105,15 +105,14 @@ const char* remedy(bus::Profile profile) {
 
 }  // namespace
 
-std::string who_is_there(const bus::Node& node, const Processes& processes) {
+std::string who_is_there(const Processes& processes) {
+  const bus::Node& node = processes.node();
   const bus::NodeOptions& options = node.options();
   const auto all = processes.all();
   const std::string where = "robot " + options.robot + ", domain " +
                             std::to_string(options.domain) + ", profile " +
                             name_of(options.profile);
   if (const std::string bar = node.bar(); all.empty() && !bar.empty())
-    return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
-  if (const std::string bar = processes.bar(); all.empty() && !bar.empty())
     return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
   if (all.empty())
     return "no program is on the bus (" + where +
@@ -159,7 +158,7 @@ std::string absence(const bus::Node& node, const Processes& processes, const std
   if (is_heard(known.programs, program) || processes.quiet() < needed.count())
     return {};
   if (known.programs.empty())
-    return who_is_there(node, processes);
+    return who_is_there(processes);
   return "no saphira-" + program + " is heard (robot " + node.options().robot + ", domain " +
          std::to_string(node.options().domain) +
          "): it does not run (saphira up office has it), hangs, or is cut off";

@@ -56,8 +56,7 @@ class Processes {
   situation::Situation situation() const;
   /// Of all seen processes, including ended ones.
   std::uint64_t late_cycles() const;
-  /// As the node has it.
-  std::string bar() const { return node_.bar(); }
+  const bus::Node& node() const { return node_; }
 
  private:
   struct Entry {
@@ -101,7 +100,7 @@ std::string person(const std::string& program, bool since = false);
 constexpr double kEmptyBus = 5.0;  ///< [s] until a question is given up where no program is heard
 
 /// The missing or troubled programs, in words, for requests without an answer.
-std::string who_is_there(const bus::Node& node, const Processes& processes);
+std::string who_is_there(const Processes& processes);
 
 /// The program that answers requests on agents/solve.
 inline constexpr const char* kFacilitator = "facilitator";

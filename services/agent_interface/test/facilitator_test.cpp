@@ -63,7 +63,7 @@ TEST(Facilitation, AnAnswerThatIsNotAsDeclaredIsNotPassedOn) {
   EXPECT_EQ(answered(library(), false), library());
   for (const Answer& wrong :
        {done({number("place", 3.0)}), done({text("room", "library")}),
-        done({text("place", "lib\xffrary")}), Answer{AnswerCode::done, "b\xffd", {}}}) {
+        done({text("place", "lib\xff" "rary")}), Answer{AnswerCode::done, "b\xff" "d", {}}}) {
     const Answer refused = answered(wrong, false);
     EXPECT_EQ(refused.code, AnswerCode::refused);
     EXPECT_TRUE(refused.results.empty());

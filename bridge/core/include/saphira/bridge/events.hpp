@@ -12,6 +12,7 @@
 #include "saphira/base/notes.hpp"
 #include "saphira/base/stamp.hpp"
 #include "saphira/base/stop_id.hpp"
+#include "saphira/geometry/edge.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
