@@ -26,7 +26,6 @@ TEST_P(PeopleOnTheWay, AreNotTouched) {
   for (const Crowd crowd : {Crowd::kUsual, Crowd::kCorridor, Crowd::kDoorway, Crowd::kInside}) {
     options.crowd = crowd;
     for (options.seed = 1; options.seed <= 3; ++options.seed) {
-      options.body = options.seed % 2 == 0 ? 0.3 : 0.25;
       SCOPED_TRACE(kCrowdNames[static_cast<int>(crowd)] + std::string(", seed ") +
                    std::to_string(options.seed));
       const auto crossing = plan_crossing(options, parameters);
