@@ -101,6 +101,7 @@ void Dialogue::prefer_answer(Grammar::Understood& understood, const Situation& s
   } else if (situation.asked_about.empty() && questions_.empty() && understood.bare.size() == 1 &&
              !place(slot(understood.bare.front(), "person"), situation).empty()) {
     meanings = {{"to_place", {{"place", slot(understood.bare.front(), "person")}, {"owner", ""}}}};
+    understood.bare.clear();
   }
 }
 

@@ -46,7 +46,7 @@ Answer library() {
   return {AnswerCode::done, "", {text("place", "library")}};
 }
 
-TEST(Facilitation, AnAnswerThatIsNotAsDeclaredIsNotPassedOn) {
+TEST(Facilitators, PassOnNoAnswerThatIsNotAsDeclared) {
   const auto answered = [](const Answer& answer, bool acts) {
     Facilitator facilitator(kSelf);
     facilitator.announce(agent(1, "a", acts));
@@ -61,9 +61,14 @@ TEST(Facilitation, AnAnswerThatIsNotAsDeclaredIsNotPassedOn) {
     return Answer{AnswerCode::done, "", std::move(results)};
   };
   EXPECT_EQ(answered(library(), false), library());
-  for (const Answer& wrong :
-       {done({number("place", 3.0)}), done({text("room", "library")}),
-        done({text("place", "lib\xff" "rary")}), Answer{AnswerCode::done, "b\xff" "d", {}}}) {
+  for (const Answer& wrong : {done({number("place", 3.0)}), done({text("room", "library")}),
+                              done({text("place",
+                                         "lib\xff"
+                                         "rary")}),
+                              Answer{AnswerCode::done,
+                                     "b\xff"
+                                     "d",
+                                     {}}}) {
     const Answer refused = answered(wrong, false);
     EXPECT_EQ(refused.code, AnswerCode::refused);
     EXPECT_TRUE(refused.results.empty());
