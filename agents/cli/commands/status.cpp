@@ -11,6 +11,8 @@ namespace saphira::cli {
 
 namespace {
 
+constexpr double kSlow = 1.5;  ///< [s] the status of each program comes once a second
+
 /// The status of all programs, and the driver of the robot.
 class StatusView {
  public:
@@ -78,6 +80,7 @@ class StatusView {
            heard(robot_) + heard(behaved_) + heard(intended_);
   }
 
+  const Processes& processes() const { return processes_; }
   bool anybody() const { return !processes_.all().empty(); }
 
  private:
@@ -111,7 +114,8 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   bus::Node node(options);
   StatusView view(node);
   const auto refresh = [&view] { view.poll(); };
-  listen(node, stop, refresh, [&view] { return view.news(); });
+  const double took =
+      listen(node, stop, view.processes(), refresh, [&view] { return view.news(); });
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
     return view.anybody() ? bus::kExitOk : bus::kExitFailed;
@@ -125,6 +129,11 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   }
   if (!watch)
     std::fputs(view.text().c_str(), stdout);
+  if (!watch && took > kSlow)
+    std::printf(
+        "slow: the last of this was heard after %.1f s, by a network or a machine that is "
+        "slow or loaded\n",
+        took);
   return view.anybody() ? bus::kExitOk : bus::kExitFailed;
 }
 

@@ -174,7 +174,7 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   bus::Node node(options);
   Processes processes(node);
   listen(
-      node, stop, [&] { processes.poll(); }, [&] { return processes.news(); });
+      node, stop, processes, [&] { processes.poll(); }, [&] { return processes.news(); });
   for (const SeenProcess& each : processes.all())
     if (names.contains(each.status.name()) && each.age <= kLostAge)
       return Taken{each.status.name() + " (process " + std::to_string(each.status.pid()) + " at " +

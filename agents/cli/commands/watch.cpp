@@ -131,18 +131,21 @@ std::string who_is_there(const Processes& processes) {
   return "bridge, behaviors and intentions are on the bus (" + where + ")";
 }
 
-std::chrono::milliseconds listening_time(const bus::Node& node) {
+std::chrono::milliseconds listening_time(const bus::Node& node, bool heard) {
+  if (!heard && node.options().profile != bus::Profile::host)
+    return std::chrono::milliseconds(4000);
   // With security: Fast DDS repeats a lost handshake message after a second.
   return std::chrono::milliseconds(node.identity() ? 2600 : 1300);
 }
 
-void listen(bus::Node& node, const bus::Stop& stop, const std::function<void()>& poll,
-            const std::function<std::size_t()>& news) {
+double listen(bus::Node& node, const bus::Stop& stop, const Processes& processes,
+              const std::function<void()>& poll, const std::function<std::size_t()>& news) {
   constexpr std::chrono::seconds kMost{10};
   const auto began = Clock::now();
   auto changed = began;
   std::size_t before = news();
-  while (!stop.requested() && Clock::now() - changed < listening_time(node) &&
+  while (!stop.requested() &&
+         Clock::now() - changed < listening_time(node, processes.heard_any()) &&
          Clock::now() - began < kMost) {
     node.wait(std::chrono::milliseconds(50), &stop);
     poll();
@@ -150,11 +153,12 @@ void listen(bus::Node& node, const bus::Stop& stop, const std::function<void()>&
       changed = Clock::now();
     before = news();
   }
+  return std::chrono::duration<double>(changed - began).count();
 }
 
 std::string absence(const bus::Node& node, const Processes& processes, const std::string& program) {
   const situation::Situation known = processes.situation();
-  const std::chrono::duration<double> needed = listening_time(node);
+  const std::chrono::duration<double> needed = listening_time(node, processes.heard_any());
   if (is_heard(known.programs, program) || processes.quiet() < needed.count())
     return {};
   if (known.programs.empty())

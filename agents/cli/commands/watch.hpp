@@ -48,6 +48,7 @@ class Processes {
 
   void poll();
   std::vector<SeenProcess> all() const;
+  bool heard_any() const { return !entries_.empty(); }
   /// Rises with each program that is noticed, and again when it is heard.
   std::size_t news() const { return reader_.matched() + entries_.size(); }
   /// [s] since that has changed.
@@ -106,12 +107,12 @@ std::string who_is_there(const Processes& processes);
 inline constexpr const char* kFacilitator = "facilitator";
 
 /// The time after which every living program has reported that was noticed: the status comes once a
-/// second.
-std::chrono::milliseconds listening_time(const bus::Node& node);
+/// second. Where nobody was heard, other machines may still be on their way.
+std::chrono::milliseconds listening_time(const bus::Node& node, bool heard = true);
 /// Polls until `news`, which rises with all that is noticed and heard, has stayed the same for that
-/// time: on a slow network later. For 10 s at most.
-void listen(bus::Node& node, const bus::Stop& stop, const std::function<void()>& poll,
-            const std::function<std::size_t()>& news);
+/// time: on a slow network later. For 10 s at most. Returns the time of the newest [s].
+double listen(bus::Node& node, const bus::Stop& stop, const Processes& processes,
+              const std::function<void()>& poll, const std::function<std::size_t()>& news);
 
 /// That this program is not heard, in words. Empty: it is, or may not have reported yet.
 std::string absence(const bus::Node& node, const Processes& processes, const std::string& program);
