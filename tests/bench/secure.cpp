@@ -136,12 +136,11 @@ std::size_t member_escapes(security::Authority& site, const std::string& folder)
       turns.push_back([writer = std::make_shared<bus::Writer<T>>(bridge.writer(topic))] {
         writer->write(T());
       });
-    if (site.roles().may_read("bridge", topic.name))
+    else if (site.roles().may_read("bridge", topic.name))  // nobody else is there to write it
       turns.push_back(
           [&escapes, reader = std::make_shared<bus::Reader<T>>(bridge.reader(topic)), topic] {
-            for (const auto& sample : reader->take())
-              if (!sample.info.sender || sample.info.sender->name != "bench")
-                escapes.insert(topic.name);
+            if (!reader->take().empty())
+              escapes.insert(topic.name);
           });
   });
   for (const auto& [role, robot] : {std::pair("observer", ""), std::pair("operator", "other")}) {
