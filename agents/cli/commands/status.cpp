@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -11,7 +12,8 @@ namespace saphira::cli {
 
 namespace {
 
-constexpr double kSlow = 1.5;  ///< [s] the status of each program comes once a second
+constexpr double kSlow = 1.5;       ///< [s] the status of each program comes once a second
+constexpr double kStarting = 15.0;  ///< [s] longer than any time of listening
 
 /// The status of all programs, and the driver of the robot.
 class StatusView {
@@ -129,7 +131,11 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   }
   if (!watch)
     std::fputs(view.text().c_str(), stdout);
-  if (!watch && took > kSlow)
+  const auto all = view.processes().all();
+  const bool starting = std::any_of(all.begin(), all.end(), [](const SeenProcess& each) {
+    return each.status.uptime() < kStarting;
+  });
+  if (!watch && took > kSlow && !starting)
     std::printf(
         "slow: the last of this was heard after %.1f s, by a network or a machine that is "
         "slow or loaded\n",
