@@ -20,14 +20,14 @@ const double kLobes = std::tan(radians(40.0));
 const double kAboutAxis = std::tan(radians(20.0));
 constexpr double kOnEdge = 0.12;  // [m]
 
-/// A person whom no beam looks at any more is still there: only beams and way make the robot
-/// forget. A person may step into a space that was free, so free space does not make an echo less
-/// believable.
+/// A person whom no beam looks at any more is still there while the robot stands. A moving one may
+/// take ten seconds past him. He may step into a space that was free, so free space does not make
+/// an echo less believable.
 lps::MemorySettings cautious_memory() {
   lps::MemorySettings settings;
   settings.least = 0.0;
-  settings.fading = 1.0;
-  settings.fading_a_metre = 0.6;
+  settings.fading = 0.985;
+  settings.keeps_at_rest = true;
   return settings;
 }
 

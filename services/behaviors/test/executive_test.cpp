@@ -116,8 +116,8 @@ TEST_F(ExecutiveTest, HeldItTurnsItsSonarsToAndFro) {
   for (int cycle = 0; cycle < 19; ++cycle)
     EXPECT_EQ(swing(), 0.0);
   for (int cycle = 0; cycle < 20; ++cycle)
-    EXPECT_DOUBLE_EQ(swing(), radians(20.0));
-  EXPECT_DOUBLE_EQ(swing(), -radians(20.0));
+    EXPECT_NEAR(swing(), radians(20.0), 1e-9);
+  EXPECT_NEAR(swing(), -radians(20.0), 1e-9);
   robot_.velocity = 0.1;
   EXPECT_EQ(swing(), 0.0) << "it drives again";
 }

@@ -17,6 +17,9 @@ constexpr double kTouched = 2.0;
 constexpr double kCells = 20.0;
 constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
+// In a cycle: less is rest.
+constexpr double kMoved = 0.001;           // [m]
+constexpr double kTurned = radians(0.25);  // [rad]
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
@@ -54,11 +57,11 @@ void ObstacleMemory::clear() {
 }
 
 void ObstacleMemory::move_to(const Pose& robot_in_odom) {
-  const double way = placed_ ? (robot_in_odom.position() - robot_in_odom_).norm() : 0.0;
-  robot_in_odom_ = robot_in_odom.position();
-  const double kept = settings_.fading * std::pow(settings_.fading_a_metre, way);
-  if (kept < 1.0)
-    scale(beliefs_, kept);
+  const Pose motion = relative(robot_in_odom_, robot_in_odom);
+  robot_in_odom_ = robot_in_odom;
+  if (!settings_.keeps_at_rest || motion.position().norm() > kMoved ||
+      std::abs(motion.th) > kTurned)
+    scale(beliefs_, settings_.fading);
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;

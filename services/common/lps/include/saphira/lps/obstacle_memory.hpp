@@ -22,7 +22,7 @@ struct MemorySettings {
   double least = -4.0;          ///< ...or below this
   double obstacle = 0.8;        ///< belief that makes an obstacle
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
-  double fading_a_metre = 1.0;  ///< of all beliefs, for each metre that the robot drives
+  bool keeps_at_rest = false;   ///< no belief fades while the robot stands
 };
 
 /// The settings for sonars that hear up to `range` [m]. Below 1 m the grid is finer, since a cone
@@ -70,8 +70,8 @@ class ObstacleMemory {
 
   MemorySettings settings_;
   bool placed_ = false;
-  Vec2 robot_in_odom_{0.0, 0.0};  ///< of the last move_to
-  long column0_ = 0;              ///< of the grid's corner, in cells of odom
+  Pose robot_in_odom_;  ///< of the last move_to
+  long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
   std::vector<double> beliefs_;  ///< by rows
   std::vector<Vec2> points_;
