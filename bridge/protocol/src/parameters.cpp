@@ -577,11 +577,13 @@ RobotParameters parameters_of(const RobotIdentity& robot, const std::string& fol
     const std::string names = joined(parameter_file_names(robot.robot_class, robot.subclass));
     for (const std::string& name : parameter_file_names(robot.robot_class, robot.subclass))
       if (std::filesystem::exists(std::filesystem::path(folder) / name))
-        throw std::runtime_error(name_of(robot) +
-                                 " may be of either generation, whose units differ: " + folder +
-                                 "/" + name + " or " + later_name(name.substr(0, name.size() - 2)) +
-                                 (other.empty() ? "" : "; " + other) +
-                                 ". Copy the right one there as " + lowered(robot.subclass) + ".p");
+        throw std::runtime_error(
+            name_of(robot) +
+            format(
+                " may be of either generation, whose units differ: %s/%s or %s%s%s. Copy the right "
+                "one there as %s.p",
+                folder.c_str(), name.c_str(), later_name(name.substr(0, name.size() - 2)).c_str(),
+                other.empty() ? "" : "; ", other.c_str(), lowered(robot.subclass).c_str()));
     throw std::runtime_error("no parameter file for " + name_of(robot) + ": looked for " +
                              (names.empty() ? "nothing (the robot names no class)" : names) +
                              " in " + folder + (other.empty() ? "" : "; " + other) +
