@@ -121,7 +121,8 @@ Contact ContactWatch::blame(const Thing& thing, double towards) const {
   Contact contact;
   contact.tick = scene_->ticks();
   contact.kind = thing.kind;
-  contact.walks = thing.kind == ThingKind::kPerson && scene_->persons()[thing.number].way > 0.0;
+  contact.walks =
+      thing.kind == ThingKind::kPerson && !scene_->persons()[thing.number].plan->script.empty();
   contact.name = name_of(thing);
   contact.towards = towards;
   contact.heard = heard(thing);

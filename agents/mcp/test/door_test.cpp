@@ -220,7 +220,7 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   EXPECT_TRUE(http(port, post + "x", "{}", behind).starts_with("HTTP/1.1 401"));
   EXPECT_TRUE(
       http(port, post + "\r\nOrigin: http://evil.example", "{}").starts_with("HTTP/1.1 403"));
-  EXPECT_TRUE(http(port, post, std::string(70000, ' ')).starts_with("HTTP/1.1 413"));
+  EXPECT_TRUE(http(port, post, std::string(1'100'000, ' ')).starts_with("HTTP/1.1 413"));
   EXPECT_TRUE(http(port, post, R"({"id":1,"method":"ping"})").starts_with("HTTP/1.1 400"));
 
   // The older era, with a session.

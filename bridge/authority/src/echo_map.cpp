@@ -73,7 +73,11 @@ void EchoMap::update(std::uint64_t cycle, const Pose& robot_in_odom,
         return is_of({to_sonar(edge.from), to_sonar(edge.to)}, *reading.range);
       });
       (of_edge ? edges_ : memory_).echo(sonar_in_odom, *reading.range);
-      (of_edge ? memory_ : edges_).free_before(sonar_in_odom, *reading.range);
+      // Nothing else stands at an edge's own echo.
+      if (of_edge)
+        memory_.free_before(sonar_in_odom, *reading.range + kOnEdge);
+      else
+        edges_.free_before(sonar_in_odom, *reading.range);
       echoes_.push_back({reading.sonar, sonar_in_odom, *reading.range, cycle});
     } else {
       memory_.silence(sonar_in_odom);

@@ -162,25 +162,28 @@ TEST(Drive, TheGuardStopsBeforeWhatIsHeardAndSaysSo) {
 }
 
 TEST(Drive, TheGuardTakesAnEchoForAnEdgeOfTheDriversMap) {
-  Driven scene;
-  const auto pass_a_post = [&](std::vector<Edge> edges) {
-    for (int i = 0; i < 4; ++i) {
-      // A post 0.5 m from the sonar that looks to the left.
-      scene.shown.sonars = {{1, static_cast<std::uint16_t>(0.3 / scene.robot.range_unit)}};
+  // A post that the sonar to the left, half ahead, hears at 0.40 m.
+  const auto speed_past_it = [](double error) {
+    Driven scene;
+    for (int i = 0; i < 9; ++i) {
+      scene.shown.sonars = {{1, static_cast<std::uint16_t>(0.40 / scene.robot.range_unit)}};
       scene.cycle();
+      const Pose robot = scene.all<CycleBegan>().back().state.pose_in_odom;
+      const Vec2 post =
+          transform(compose(robot, scene.robot.sonars[1].pose_in_robot), {0.40 + error, 0.0});
       DriveCommand command = scene.wish(Role::behaviors, 0.3);
       command.motion.rotation_velocity = 0.0;
-      command.edges = edges;
+      command.edges = {{post, post}};
       scene.tell(command);
     }
     return scene.all<GrantDecided>().back().guarded.velocity;
   };
-  const Pose robot = scene.all<CycleBegan>().back().state.pose_in_odom;
-  const Vec2 post = transform(robot, {0.15 + 0.3 * std::sqrt(0.5), 0.3 * std::sqrt(0.5)});
-  const double strange = pass_a_post({});
-  EXPECT_GT(pass_a_post({{post, post}}), strange + 0.02);
-  const double broken = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(pass_a_post({{post, {broken, 0.0}}}), pass_a_post({})) << "no usable number";
+  const double at_the_post = speed_past_it(0.0);
+  EXPECT_DOUBLE_EQ(speed_past_it(0.1), at_the_post);
+  const double strange = speed_past_it(0.3);
+  EXPECT_LT(strange, 0.5 * at_the_post);
+  EXPECT_GE(speed_past_it(std::numeric_limits<double>::quiet_NaN()), strange)
+      << "an edge that is no number counts as none";
 }
 
 TEST(Drive, ADriverThatIsSlowIsSlowed) {

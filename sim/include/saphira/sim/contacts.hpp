@@ -24,7 +24,7 @@ enum class ThingKind { kPerson, kPost, kBox, kDoor, kRobot, kWall };
 struct Contact {
   std::uint64_t tick = 0;  ///< of the scene
   ThingKind kind = ThingKind::kWall;
-  bool walks = false;  ///< a person who walked then; else it stood
+  bool walks = false;  ///< a person who walks about in this world; else one who stands
   std::string name;    ///< as in the world file; of a robot its number, of a wall none
   Blame blame = Blame::kCaused;
   double towards = 0.0;  ///< [m/s] of the robot's hull towards the thing
