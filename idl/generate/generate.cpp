@@ -1,0 +1,529 @@
+// Generates the contract's C++ from its IDL files.
+//
+//   saphira-idl-generate FOLDER FILE.idl...
+//
+// FOLDER/saphira/idl/ gets a header with plain structs and enums for each file; types.hpp, which
+// includes them all; members.hpp, which visits the members of each struct with their names, keys
+// and bounds and names the enumerators (CDR, JSON and keys are made with it); and schema.json, the
+// JSON Schema of each type. Comments go with what they are about.
+//
+// The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
+// with their constants, bounded sequences, strings. Anything else is an error that names the place.
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Token {
+  std::string text;
+  int line;
+};
+
+struct Type {
+  std::string name;   // in IDL, or of a definition; of a sequence: of its elements
+  std::string bound;  // of a sequence [empty: it is none]
+};
+
+struct Member {
+  Type type;
+  std::string name;
+  std::string comment;
+  bool key = false;
+};
+
+enum class Kind { open, close, enumeration, structure, alias, constant };
+
+struct Definition {
+  Kind kind;
+  std::string name;  // close: none
+  std::string comment;
+  std::vector<Member> members;  // enumeration: names alone
+  std::string of;               // alias, constant: the type
+  std::string value;            // constant
+};
+
+struct File {
+  std::string stem;
+  std::vector<std::string> includes;
+  std::vector<Definition> definitions;
+};
+
+constexpr std::size_t kVaries = 1000000;  // more than any key may have
+
+struct Base {
+  const char* cpp;
+  std::size_t size;  // in CDR
+  const char* json;
+};
+
+const std::map<std::string, Base> bases{
+    {"boolean", {"bool", 1, R"("type": "boolean")"}},
+    {"octet", {"std::uint8_t", 1, R"("type": "integer", "minimum": 0, "maximum": 255)"}},
+    {"short", {"std::int16_t", 2, R"("type": "integer", "minimum": -32768, "maximum": 32767)"}},
+    {"unsigned short",
+     {"std::uint16_t", 2, R"("type": "integer", "minimum": 0, "maximum": 65535)"}},
+    {"long", {"std::int32_t", 4, R"("type": "integer")"}},
+    {"unsigned long", {"std::uint32_t", 4, R"("type": "integer", "minimum": 0)"}},
+    {"long long", {"std::int64_t", 8, R"("type": "integer")"}},
+    {"unsigned long long", {"std::uint64_t", 8, R"("type": "integer", "minimum": 0)"}},
+    {"float", {"float", 4, R"("type": ["number", "null"])"}},
+    {"double", {"double", 8, R"("type": ["number", "null"])"}},
+    {"string", {"std::string", kVaries, R"("type": "string")"}}};
+
+class Parser {
+ public:
+  explicit Parser(const std::filesystem::path& path) : path_(path.string()) {
+    file_.stem = path.stem().string();
+    split();
+  }
+  File parse() {
+    while (next_ < tokens_.size())
+      definition();
+    return std::move(file_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& expected) const {
+    const int line = next_ < tokens_.size() ? tokens_[next_].line : last_line_;
+    const std::string found = next_ < tokens_.size() ? tokens_[next_].text : "the end of the file";
+    throw std::runtime_error(path_ + ":" + std::to_string(line) + ": expected " + expected +
+                             ", found " + found);
+  }
+
+  static bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '@';
+  }
+  void split() {
+    std::ifstream in(path_);
+    if (!in)
+      throw std::runtime_error(path_ + ": cannot be read");
+    for (std::string line; std::getline(in, line);) {
+      ++last_line_;
+      if (line.starts_with("#include \"")) {
+        file_.includes.push_back(line.substr(10, line.find(".idl") - 10));
+        continue;
+      }
+      const std::size_t comment = std::min(line.find("//"), line.size());
+      const std::size_t before = tokens_.size();
+      for (std::size_t i = 0; i < comment;) {
+        std::size_t end = i + 1;
+        while (is_word(line[i]) && end < comment && is_word(line[end]))
+          ++end;
+        if (std::isspace(static_cast<unsigned char>(line[i])) == 0)
+          tokens_.push_back({line.substr(i, end - i), last_line_});
+        i = end;
+      }
+      if (comment < line.size())
+        comments_[last_line_] = {line.substr(comment + 2), comment, tokens_.size() == before};
+    }
+  }
+
+  bool at(const std::string& text) const {
+    return next_ < tokens_.size() && tokens_[next_].text == text;
+  }
+  bool take(const std::string& text) {
+    const bool found = at(text);
+    next_ += found ? 1 : 0;
+    return found;
+  }
+  void expect(const std::string& text) {
+    if (!take(text))
+      fail("\"" + text + "\"");
+  }
+  std::string word() {
+    if (next_ >= tokens_.size() || !is_word(tokens_[next_].text[0]) ||
+        tokens_[next_].text[0] == '@')
+      fail("a name");
+    return tokens_[next_++].text;
+  }
+  // The lines of comment alone that end before this line.
+  std::string comment_above(int line) const {
+    std::string text;
+    for (auto found = comments_.find(--line); found != comments_.end() && found->second.alone;
+         found = comments_.find(--line))
+      text = found->second.text + text;
+    return text;
+  }
+  // The comment behind the token that was taken last, with its further lines below.
+  std::string comment_behind() const {
+    int line = tokens_[next_ - 1].line;
+    if (next_ < tokens_.size() && tokens_[next_].line == line && !at("}"))
+      return {};
+    std::string text;
+    auto found = comments_.find(line);
+    if (found == comments_.end() || found->second.alone)
+      return {};
+    const std::size_t column = found->second.column;
+    do
+      text += found->second.text;
+    while ((found = comments_.find(++line)) != comments_.end() && found->second.alone &&
+           found->second.column == column);
+    return text;
+  }
+  int line() const { return next_ < tokens_.size() ? tokens_[next_].line : last_line_; }
+
+  void definition() {
+    const std::string comment = comment_above(line());
+    auto& made = file_.definitions;
+    if (take("module")) {
+      made.push_back({Kind::open, word(), {}, {}, {}, {}});
+      expect("{");
+      while (!take("}"))
+        definition();
+      made.push_back({Kind::close, {}, {}, {}, {}, {}});
+    } else if (take("enum")) {
+      Definition item{Kind::enumeration, word(), comment, {}, {}, {}};
+      expect("{");
+      bool more = true;
+      while (more) {
+        item.members.push_back({{}, word(), {}});
+        more = take(",");
+        item.members.back().comment = comment_behind();
+      }
+      expect("}");
+      made.push_back(item);
+    } else if (at("@extensibility")) {
+      // Other kinds of structs have other bytes for some vendors.
+      for (const char* const part : {"@extensibility", "(", "FINAL", ")", "struct"})
+        expect(part);
+      Definition item{Kind::structure, word(), comment, {}, {}, {}};
+      expect("{");
+      while (!take("}")) {
+        const bool key = take("@key");
+        const Type of = type();
+        const std::string name = word();
+        expect(";");
+        item.members.push_back({of, name, comment_behind(), key});
+      }
+      made.push_back(item);
+    } else if (take("typedef")) {
+      const std::string of = type().name;
+      made.push_back({Kind::alias, word(), comment, {}, of, {}});
+    } else if (take("const")) {
+      const std::string of = word();
+      const std::string name = word();
+      expect("=");
+      made.push_back({Kind::constant, name, {}, {}, of, word()});
+      expect(";");
+      made.back().comment = comment_behind();
+      return;
+    } else {
+      fail("module, enum, @extensibility(FINAL) struct, typedef or const");
+    }
+    expect(";");
+  }
+
+  Type type() {
+    Type result;
+    if (take("sequence")) {
+      expect("<");
+      result = type();
+      if (!result.bound.empty())
+        fail("no sequence in a sequence");
+      expect(",");
+      result.bound = word();
+      expect(">");
+      return result;
+    }
+    result.name = word();
+    if (result.name == "unsigned" || result.name == "long")
+      while (at("long") || at("short"))
+        result.name += " " + word();
+    return result;
+  }
+
+  std::string path_;
+  File file_;
+  std::vector<Token> tokens_;
+  std::size_t next_ = 0;
+  int last_line_ = 0;
+  struct Comment {
+    std::string text;
+    std::size_t column;
+    bool alone;  // no code on its line
+  };
+  std::map<int, Comment> comments_;  // by line
+};
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::string trimmed(const std::string& text) {
+  return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+}
+
+/// The texts that are made of the files.
+class Generator {
+ public:
+  void add(const File& file) {
+    stem_ = file.stem;
+    std::ostringstream out;
+    out << top << "#include <cstdint>\n#include <string>\n#include <vector>\n\n";
+    for (const std::string& include : file.includes)
+      out << "#include \"saphira/idl/" << include << ".hpp\"\n";
+    for (const Definition& item : file.definitions)
+      write(item, out);
+    headers_[file.stem + ".hpp"] = out.str();
+  }
+
+  /// By file name.
+  std::map<std::string, std::string> texts() const {
+    std::map<std::string, std::string> all = headers_;
+    std::string includes;
+    for (const auto& [name, text] : headers_)
+      includes += "#include \"saphira/idl/" + name + "\"\n";
+    all["types.hpp"] = top + includes;
+    all["members.hpp"] =
+        top + std::string("#include <type_traits>\n\n#include \"saphira/idl/types.hpp\"\n") +
+        visitor + members_.str();
+    all["schema.json"] =
+        "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"$defs\": {" +
+        schemas_.str() + "\n  }\n}\n";
+    return all;
+  }
+
+ private:
+  static constexpr const char* top = "// Generated from idl/; changes are lost.\n#pragma once\n\n";
+  static constexpr const char* visitor = R"(
+namespace saphira {
+
+/// A member of a struct of the contract.
+struct Member {
+  const char* name;
+  bool key;
+  std::uint32_t bound;                  ///< of a sequence [0: it is none]
+  const char* (*name_of)(std::int32_t);  ///< of a number whose values have names [nullptr: it is none]
+};
+
+/// Calls visit(member, value) for each member of a sample of the contract, in their order.
+template <class T, class Visit>
+constexpr void visit_members(T& sample, Visit&& visit) {
+  visit_members(std::type_identity<std::remove_const_t<T>>{}, sample, visit);
+}
+
+}  // namespace saphira
+
+)";
+
+  void write(const Definition& item, std::ostream& out) {
+    const std::string comment = item.comment.empty() ? "" : "///" + item.comment + "\n";
+    switch (item.kind) {
+      case Kind::open:
+        out << "\nnamespace " << item.name << " {\n";
+        members_ << "namespace " << item.name << " {\n";
+        break;
+      case Kind::close:
+        out << "\n}\n";
+        members_ << "}\n";
+        break;
+      case Kind::alias:
+        out << "\n" << comment << "using " << item.name << " = " << cpp(item.of) << ";\n";
+        aliases_[item.name] = item.of;
+        break;
+      case Kind::constant:
+        out << "inline constexpr " << item.of << " " << item.name << " = " << item.value << ";"
+            << behind(item.comment);
+        constants_[item.of].push_back(item.name);
+        break;
+      case Kind::enumeration:
+        out << "\n" << comment;
+        enumeration(item, out);
+        break;
+      case Kind::structure:
+        out << "\n" << comment;
+        structure(item, out);
+        break;
+    }
+  }
+
+  static std::string behind(const std::string& comment) {
+    return (comment.empty() ? "" : "  ///<" + comment) + "\n";
+  }
+
+  std::string cpp(const std::string& type) const {
+    const auto base = bases.find(type);
+    return base == bases.end() ? type : base->second.cpp;
+  }
+
+  void name_of(const std::string& function, const std::string& type,
+               const std::vector<std::string>& names) {
+    members_ << "constexpr const char* " << function << "(" << type << " value) {\n"
+             << "  switch (value) {\n";
+    for (const std::string& name : names)
+      members_ << "    case " << name << ":\n      return \"" << name << "\";\n";
+    members_ << "  }\n  return nullptr;\n}\n";
+  }
+
+  void enumeration(const Definition& item, std::ostream& out) {
+    out << "enum " << item.name << " : std::uint32_t {\n";
+    std::vector<std::string> names;
+    for (const Member& member : item.members) {
+      out << "  " << member.name << "," << behind(member.comment);
+      names.push_back(member.name);
+    }
+    out << "};\n";
+    name_of("name_of", item.name, names);
+    sizes_[item.name] = 4;
+    schema(item, "\"enum\": [" + listed(names) + "]");
+  }
+
+  void structure(const Definition& item, std::ostream& out) {
+    out << "struct " << item.name << " {\n";
+    std::ostringstream visits;
+    std::string properties;
+    std::size_t whole = 0;
+    std::size_t keys = 0;
+    for (const Member& member : item.members) {
+      const bool is_sequence = !member.type.bound.empty();
+      const std::string type = cpp(member.type.name);
+      out << "  " << (is_sequence ? "std::vector<" + type + ">" : type) << " " << member.name
+          << "{};" << behind(member.comment);
+      std::string names = "nullptr";
+      if (const auto found = constants_.find(member.type.name); found != constants_.end()) {
+        if (named_.insert(found->first).second)
+          name_of("name_of_" + found->first, found->first, found->second);
+        names = "name_of_" + found->first;
+      }
+      visits << "  visit(Member{\"" << member.name << "\", " << (member.key ? "true" : "false")
+             << ", " << (is_sequence ? member.type.bound : "0") << ", " << names << "}, sample."
+             << member.name << ");\n";
+      const std::size_t size = is_sequence ? kVaries : size_of(member.type.name);
+      whole = end(whole, size);
+      if (member.key)
+        keys = end(keys, size);
+      properties += std::string(properties.empty() ? "" : ",") + "\n        " +
+                    quoted(member.name) + ": {" + property(member) + "}";
+    }
+    // Other vendors do not hear the withdrawal of a longer one.
+    if (keys > 16)
+      throw std::runtime_error(stem_ + ".idl: the key of " + item.name + " has more than 16 bytes");
+    sizes_[item.name] = whole;
+    out << "  bool operator==(const " << item.name << "&) const = default;\n};\n";
+    members_
+        << "template <class Sample, class Visit>\nconstexpr void visit_members(std::type_identity<"
+        << item.name << ">, Sample& sample, Visit& visit) {\n"
+        << visits.str() << "}\n";
+    schema(item, "\"type\": \"object\",\n      \"properties\": {" + properties +
+                     "\n      },\n      \"additionalProperties\": false");
+  }
+
+  // Where a member ends in CDR that begins at `begin` or later.
+  static std::size_t end(std::size_t begin, std::size_t size) {
+    const std::size_t align = size >= 8 ? 8 : size >= 4 ? 4 : size >= 2 ? 2 : 1;
+    return (begin + align - 1) / align * align + size;
+  }
+
+  // In bytes of CDR.
+  std::size_t size_of(const std::string& type) const {
+    if (const auto base = bases.find(type); base != bases.end())
+      return base->second.size;
+    if (const auto alias = aliases_.find(type); alias != aliases_.end())
+      return size_of(alias->second);
+    const auto found = sizes_.find(type);
+    if (found == sizes_.end())
+      throw std::runtime_error(stem_ + ".idl: no type " + type);
+    return found->second;
+  }
+
+  static std::string listed(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names)
+      all += (all.empty() ? "" : ", ") + quoted(name);
+    return all;
+  }
+
+  std::string property(const Member& member) const {
+    std::string type = "\"$ref\": " + quoted("#/$defs/" + member.type.name);
+    if (const auto base = bases.find(member.type.name); base != bases.end())
+      type = base->second.json;
+    else if (const auto found = constants_.find(member.type.name); found != constants_.end())
+      type = "\"anyOf\": [{\"enum\": [" + listed(found->second) + "]}, {" +
+             bases.at(aliases_.at(found->first)).json + "}]";
+    if (!member.type.bound.empty())
+      type =
+          "\"type\": \"array\", \"maxItems\": " + member.type.bound + ", \"items\": {" + type + "}";
+    if (!member.comment.empty())
+      type += ", \"description\": " + quoted(trimmed(member.comment));
+    return type;
+  }
+
+  void schema(const Definition& item, const std::string& text) {
+    schemas_ << (schemas_.tellp() == 0 ? "" : ",") << "\n    " << quoted(item.name) << ": {\n";
+    if (!item.comment.empty())
+      schemas_ << "      \"description\": " << quoted(trimmed(item.comment)) << ",\n";
+    schemas_ << "      " << text << "\n    }";
+  }
+
+  std::string stem_;  // of the present file
+  std::map<std::string, std::string> headers_;
+  std::ostringstream members_;
+  std::ostringstream schemas_;
+  std::map<std::string, std::string> aliases_;
+  std::map<std::string, std::vector<std::string>> constants_;  // by their type
+  std::map<std::string, std::size_t> sizes_;
+  std::set<std::string> named_;  // types of constants with a function for their names
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 3)
+      throw std::runtime_error("usage: saphira-idl-generate FOLDER FILE.idl...");
+    std::map<std::string, File> files;
+    for (int i = 2; i < argc; ++i) {
+      File file = Parser(argv[i]).parse();
+      files[file.stem] = std::move(file);
+    }
+    Generator generator;
+    std::set<std::string> added;
+    const std::function<void(const std::string&)> add = [&](const std::string& stem) {
+      if (!added.insert(stem).second)
+        return;
+      const auto found = files.find(stem);
+      if (found == files.end())
+        throw std::runtime_error(stem + ".idl is included and was not given");
+      for (const std::string& include : found->second.includes)
+        add(include);
+      generator.add(found->second);
+    };
+    for (const auto& [stem, file] : files)
+      add(stem);
+    const std::filesystem::path folder = std::filesystem::path(argv[1]) / "saphira" / "idl";
+    std::filesystem::create_directories(folder);
+    for (const auto& [name, text] : generator.texts()) {
+      // A header that stays the same is left as it is, so its users are not compiled again.
+      std::stringstream before;
+      before << std::ifstream(folder / name).rdbuf();
+      if (before.str() == text)
+        continue;
+      std::ofstream out(folder / name);
+      out << text;
+      out.close();
+      if (!out)
+        throw std::runtime_error((folder / name).string() + ": cannot be written");
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}
