@@ -132,7 +132,7 @@ class Talkers {
   bool step() {
     if (dialogue_) {
       if (const auto robot = robots_->take_newest())
-        seconds_ = 0.1 * static_cast<double>(robot->stamp().cycle());
+        seconds_ = 0.1 * static_cast<double>(robot->stamp.cycle);
       dialogue_->step(seconds_);
     }
     return story_ && story_->step();

@@ -10,8 +10,8 @@ void Audience::hear(const bus::WriterId& writer, const v1::ServiceStatus& status
   const auto [known, is_new] = programs_.try_emplace(writer);
   Program& program = known->second;
   const bool waits = bus::waits_for_robot(status);
-  program.steps = !waits && !is_new && program.stamp != status.stamp();
-  program.stamp = status.stamp();
+  program.steps = !waits && !is_new && program.stamp != status.stamp;
+  program.stamp = status.stamp;
   if (!waits)
     program.waits.reset();
   else if (!program.waits)

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "saphira/bus/endpoint.hpp"
-#include "system.h"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::bridge {
 

@@ -40,11 +40,11 @@ std::vector<protocol::Bytes> Camera::begin(std::uint64_t cycle) {
 }
 
 void Camera::packet(const protocol::VisionPacket& packet, const v1::RobotState& state) {
-  packets_.push_back(state.stamp().cycle());
+  packets_.push_back(state.stamp.cycle);
   v1::VisionChannels channels = to_bus(packet);
-  channels.stamp(state.stamp());
-  channels.odom(state.odom());
-  channels.pose_in_odom(state.pose_in_odom());
+  channels.stamp = state.stamp;
+  channels.odom = state.odom;
+  channels.pose_in_odom = state.pose_in_odom;
   channels_.write(channels);
 }
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "robot.h"
 #include "saphira/bus/node.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/protocol/server_packet.hpp"
-#include "vision.h"
 
 namespace saphira::bridge {
 

@@ -53,9 +53,9 @@ std::vector<T> first(std::vector<T> values, std::size_t count) {
 
 v1::SonarReading reading_of(const protocol::Sonar& sonar) {
   v1::SonarReading out;
-  out.sonar(sonar.number);
-  out.range(static_cast<float>(sonar.range));
-  out.echo(sonar.echo);
+  out.sonar = sonar.number;
+  out.range = static_cast<float>(sonar.range);
+  out.echo = sonar.echo;
   return out;
 }
 
@@ -63,8 +63,8 @@ v1::SonarReading reading_of(const protocol::Sonar& sonar) {
 
 v1::Stamp to_bus(const Stamp& stamp) {
   v1::Stamp out;
-  out.epoch(stamp.epoch);
-  out.cycle(stamp.cycle);
+  out.epoch = stamp.epoch;
+  out.cycle = stamp.cycle;
   return out;
 }
 
@@ -76,67 +76,67 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
   v1::RobotState out;
-  out.stamp(stamp);
-  out.odom(state.odom);
-  out.pose_in_odom(saphira::to_bus(state.pose_in_odom));
-  out.velocity(in.velocity);
-  out.rotation_velocity(in.rotation_velocity);
-  out.left_velocity(in.left_velocity);
-  out.right_velocity(in.right_velocity);
-  out.target_velocity(state.target_velocity);
-  out.target_heading_in_odom(state.target_heading_in_odom);
-  out.status(kMotors.theirs(in.motors));
-  out.left_stalled(in.left_stalled);
-  out.right_stalled(in.right_stalled);
-  out.bumpers(in.bumpers);
-  out.battery(in.battery);
-  out.ptu(in.ptu);
-  out.head(in.head);
-  out.say(in.say);
-  out.timer(in.timer);
-  out.analog(in.analog);
-  out.digital_input(in.digital_input);
-  out.digital_output(in.digital_output);
-  out.sonars(converted(in.sonars, reading_of, kMostSonars));
-  out.motor_packets_per_s(short_of<std::uint16_t>(state.motor_packets_per_s));
-  out.sonar_readings_per_s(short_of<std::uint16_t>(state.sonar_readings_per_s));
-  out.vision_packets_per_s(0);  // Shell counts them
-  out.bad_packets(static_cast<std::uint32_t>(bad_packets));
+  out.stamp = stamp;
+  out.odom = state.odom;
+  out.pose_in_odom = saphira::to_bus(state.pose_in_odom);
+  out.velocity = in.velocity;
+  out.rotation_velocity = in.rotation_velocity;
+  out.left_velocity = in.left_velocity;
+  out.right_velocity = in.right_velocity;
+  out.target_velocity = state.target_velocity;
+  out.target_heading_in_odom = state.target_heading_in_odom;
+  out.status = kMotors.theirs(in.motors);
+  out.left_stalled = in.left_stalled;
+  out.right_stalled = in.right_stalled;
+  out.bumpers = in.bumpers;
+  out.battery = in.battery;
+  out.ptu = in.ptu;
+  out.head = in.head;
+  out.say = in.say;
+  out.timer = in.timer;
+  out.analog = in.analog;
+  out.digital_input = in.digital_input;
+  out.digital_output = in.digital_output;
+  out.sonars = converted(in.sonars, reading_of, kMostSonars);
+  out.motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s);
+  out.sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s);
+  out.vision_packets_per_s = 0;  // Shell counts them
+  out.bad_packets = static_cast<std::uint32_t>(bad_packets);
   return out;
 }
 
 v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint64_t odom,
                         const v1::Stamp& stamp) {
   v1::SonarBuckets out;
-  out.stamp(stamp);
-  out.odom(odom);
+  out.stamp = stamp;
+  out.odom = odom;
   const auto each = [](const reflector::Bucket& bucket) {
     v1::SonarBucket result;
-    result.reading(reading_of(bucket.reading));
-    result.cycle(bucket.cycle);
-    result.pose_in_odom(saphira::to_bus(bucket.pose_in_odom));
-    result.x(bucket.point.x());
-    result.y(bucket.point.y());
+    result.reading = reading_of(bucket.reading);
+    result.cycle = bucket.cycle;
+    result.pose_in_odom = saphira::to_bus(bucket.pose_in_odom);
+    result.x = bucket.point.x();
+    result.y = bucket.point.y();
     return result;
   };
-  out.buckets(converted(buckets, each, kMostSonars));
+  out.buckets = converted(buckets, each, kMostSonars);
   return out;
 }
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
   v1::VisionChannels out;
-  out.channels(converted(packet.channels, [](const protocol::VisionChannel& channel) {
+  out.channels = converted(packet.channels, [](const protocol::VisionChannel& channel) {
     v1::VisionChannel result;
-    result.mode(kVisionModes.theirs(channel.mode));
-    result.x(channel.x);
-    result.y(channel.y);
-    result.area(channel.area);
-    result.width(channel.width);
-    result.height(channel.height);
-    result.first(channel.first);
-    result.count(channel.count);
+    result.mode = kVisionModes.theirs(channel.mode);
+    result.x = channel.x;
+    result.y = channel.y;
+    result.area = channel.area;
+    result.width = channel.width;
+    result.height = channel.height;
+    result.first = channel.first;
+    result.count = channel.count;
     return result;
-  }));
+  });
   return out;
 }
 
@@ -144,106 +144,106 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep) {
   v1::RobotDescription out;
-  out.stamp(stamp);
-  out.name(identity.name);
-  out.robot_class(identity.robot_class);
-  out.robot_subclass(identity.subclass);
-  out.parameter_file(p.file);
-  out.link(link);
-  out.radius(p.radius);
-  out.diagonal(p.diagonal);
-  out.max_velocity(p.max_velocity);
-  out.max_rotation_velocity(p.max_rotation_velocity);
-  out.acceleration(p.acceleration);
-  out.deceleration(p.deceleration);
-  out.rotation_acceleration(p.rotation_acceleration);
-  out.front_buffer(static_cast<std::uint16_t>(p.front_buffer));
-  out.side_buffer(static_cast<std::uint16_t>(p.side_buffer));
-  out.front_max_range(p.front_max_range);
-  out.head_reach(p.head_reach);
-  out.lockstep(lockstep);
+  out.stamp = stamp;
+  out.name = identity.name;
+  out.robot_class = identity.robot_class;
+  out.robot_subclass = identity.subclass;
+  out.parameter_file = p.file;
+  out.link = link;
+  out.radius = p.radius;
+  out.diagonal = p.diagonal;
+  out.max_velocity = p.max_velocity;
+  out.max_rotation_velocity = p.max_rotation_velocity;
+  out.acceleration = p.acceleration;
+  out.deceleration = p.deceleration;
+  out.rotation_acceleration = p.rotation_acceleration;
+  out.front_buffer = static_cast<std::uint16_t>(p.front_buffer);
+  out.side_buffer = static_cast<std::uint16_t>(p.side_buffer);
+  out.front_max_range = p.front_max_range;
+  out.head_reach = p.head_reach;
+  out.lockstep = lockstep;
   const auto sonar = [](const protocol::SonarUnit& unit) {
     v1::SonarPose result;
-    result.sonar(unit.number);
-    result.pose_in_robot(saphira::to_bus(unit.pose_in_robot));
+    result.sonar = unit.number;
+    result.pose_in_robot = saphira::to_bus(unit.pose_in_robot);
     return result;
   };
-  out.sonars(converted(p.sonars, sonar, kMostSonars));
+  out.sonars = converted(p.sonars, sonar, kMostSonars);
   return out;
 }
 
 v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
   v1::Grant out;
-  out.stamp(stamp);
-  out.role(kRoles.theirs(grant.role));
-  out.source(grant.source);
-  out.reason(grant.reason);
-  out.expires_in(grant.expires_in);
-  out.command_age(grant.command_age);
-  out.guard(kGuardActions.theirs(guarded.action));
-  out.guard_reason(guarded.reason);
-  out.asked_velocity(told.setpoints.velocity);
-  out.velocity(guarded.velocity);
-  out.rotation(told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY);
-  out.rotation_velocity(guarded.rotation_velocity);
-  out.heading(told.setpoints.heading_in_odom);
-  out.distance_left(told.distance_left);
-  out.answers(to_bus(grant.answers));
-  out.number(grant.number);
-  out.estopped(grant.estopped);
-  out.estop_source(grant.estop_source);
-  out.waits_for_hand_back(grant.waits_for_hand_back);
-  out.stop().asker(grant.stop.asker);
-  out.stop().number(grant.stop.number);
-  out.stop_source(grant.stop_source);
+  out.stamp = stamp;
+  out.role = kRoles.theirs(grant.role);
+  out.source = grant.source;
+  out.reason = grant.reason;
+  out.expires_in = grant.expires_in;
+  out.command_age = grant.command_age;
+  out.guard = kGuardActions.theirs(guarded.action);
+  out.guard_reason = guarded.reason;
+  out.asked_velocity = told.setpoints.velocity;
+  out.velocity = guarded.velocity;
+  out.rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY;
+  out.rotation_velocity = guarded.rotation_velocity;
+  out.heading = told.setpoints.heading_in_odom;
+  out.distance_left = told.distance_left;
+  out.answers = to_bus(grant.answers);
+  out.number = grant.number;
+  out.estopped = grant.estopped;
+  out.estop_source = grant.estop_source;
+  out.waits_for_hand_back = grant.waits_for_hand_back;
+  out.stop.asker = grant.stop.asker;
+  out.stop.number = grant.stop.number;
+  out.stop_source = grant.stop_source;
   const auto refusal = [](const authority::Refusal& one) {
     v1::Refusal result;
-    result.role(kRoles.theirs(one.role));
-    result.source(one.source);
-    result.reason(one.reason);
+    result.role = kRoles.theirs(one.role);
+    result.source = one.source;
+    result.reason = one.reason;
     return result;
   };
-  out.refused(converted(refused, refusal, kMostRefusals));
+  out.refused = converted(refused, refusal, kMostRefusals);
   return out;
 }
 
 std::string trouble(const v1::MotorCommand& command) {
-  if (std::string wrong = trouble(to_motion(command), command.contact_speed()); !wrong.empty())
+  if (std::string wrong = trouble(to_motion(command), command.contact_speed); !wrong.empty())
     return wrong;
-  if (command.translation() > v1::TRANSLATION_POSITION)
+  if (command.translation > v1::TRANSLATION_POSITION)
     return "unknown translation mode";
-  if (command.rotation() > v1::ROTATION_RELATIVE_HEADING)
+  if (command.rotation > v1::ROTATION_RELATIVE_HEADING)
     return "unknown rotation mode";
   return {};
 }
 
 reflector::Motion to_motion(const v1::MotorCommand& command) {
   reflector::Motion out;
-  out.translation = kTranslations.ours(command.translation(), reflector::Translation::none);
-  out.rotation = kRotations.ours(command.rotation(), reflector::Rotation::none);
-  out.velocity = command.velocity();
-  out.distance = command.distance();
-  out.move = command.move();
-  out.rotation_velocity = command.rotation_velocity();
-  out.heading = command.heading();
+  out.translation = kTranslations.ours(command.translation, reflector::Translation::none);
+  out.rotation = kRotations.ours(command.rotation, reflector::Rotation::none);
+  out.velocity = command.velocity;
+  out.distance = command.distance;
+  out.move = command.move;
+  out.rotation_velocity = command.rotation_velocity;
+  out.heading = command.heading;
   return out;
 }
 
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer) {
-  DriveCommand out{{}, to_motion(command), command.contact_speed(), {}, trouble(command)};
+  DriveCommand out{{}, to_motion(command), command.contact_speed, {}, trouble(command)};
   out.command.role = role;
   out.command.writer = writer;
   out.command.source = source_of(command);
-  out.command.epoch = command.stamp().epoch();
-  out.command.cycle = command.stamp().cycle();
-  out.command.number = command.number();
-  out.command.active = command.active();
-  out.command.hand_back = command.hand_back();
-  out.command.heeds = {command.heeds().asker(), command.heeds().number()};
-  for (const v1::Edge& edge : command.edges())
-    out.edges.push_back({{edge.x1(), edge.y1()}, {edge.x2(), edge.y2()}});
+  out.command.epoch = command.stamp.epoch;
+  out.command.cycle = command.stamp.cycle;
+  out.command.number = command.number;
+  out.command.active = command.active;
+  out.command.hand_back = command.hand_back;
+  out.command.heeds = {command.heeds.asker, command.heeds.number};
+  for (const v1::Edge& edge : command.edges)
+    out.edges.push_back({{edge.x1, edge.y1}, {edge.x2, edge.y2}});
   return out;
 }
 
@@ -251,65 +251,65 @@ v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp) {
   v1::Devices out;
-  out.stamp(stamp);
+  out.stamp = stamp;
   const auto asked = [&](const reflector::DeviceRequest& request) {
     v1::DeviceRequest result;
-    result.source(request.source);
-    result.asked(request.asked);
-    result.answer(saphira::to_bus(request.answer));
-    result.answer().asker(request.asker);
-    result.answer().number(request.number);
-    result.answer().service("bridge");
-    result.answer().stamp(stamp);
-    result.sent(request.sent);
+    result.source = request.source;
+    result.asked = request.asked;
+    result.answer = saphira::to_bus(request.answer);
+    result.answer.asker = request.asker;
+    result.answer.number = request.number;
+    result.answer.service = "bridge";
+    result.answer.stamp = stamp;
+    result.sent = request.sent;
     return result;
   };
-  out.requests(converted(requests, asked, kMostRequests));
-  out.front_bumpers(information.front_bumpers);
-  out.rear_bumpers(information.rear_bumpers);
-  out.has_flags(information.motors_on.has_value());
-  out.motors_on(information.motors_on.value_or(false));
-  out.emergency_stop(information.emergency_stop.value_or(false));
-  out.faults(information.faults.value_or(0));
-  out.charging(information.charge_state.value_or(0));
-  out.has_compass(information.compass.has_value());
-  out.compass(information.compass.value_or(0.0));
-  out.has_charge(information.state_of_charge.has_value());
-  out.charge(information.state_of_charge.value_or(0.0));
-  out.has_temperature(information.temperature.has_value());
-  out.temperature(information.temperature.value_or(0.0));
-  out.gripper_state(information.gripper_bits);
+  out.requests = converted(requests, asked, kMostRequests);
+  out.front_bumpers = information.front_bumpers;
+  out.rear_bumpers = information.rear_bumpers;
+  out.has_flags = information.motors_on.has_value();
+  out.motors_on = information.motors_on.value_or(false);
+  out.emergency_stop = information.emergency_stop.value_or(false);
+  out.faults = information.faults.value_or(0);
+  out.charging = information.charge_state.value_or(0);
+  out.has_compass = information.compass.has_value();
+  out.compass = information.compass.value_or(0.0);
+  out.has_charge = information.state_of_charge.has_value();
+  out.charge = information.state_of_charge.value_or(0.0);
+  out.has_temperature = information.temperature.has_value();
+  out.temperature = information.temperature.value_or(0.0);
+  out.gripper_state = information.gripper_bits;
   if (const auto& configuration = reports.configuration) {
-    out.has_configuration(true);
-    out.serial_number(configuration->serial);
-    out.firmware(configuration->firmware);
-    out.information_period(configuration->cycle);
-    out.watchdog(configuration->watchdog);
+    out.has_configuration = true;
+    out.serial_number = configuration->serial;
+    out.firmware = configuration->firmware;
+    out.information_period = configuration->cycle;
+    out.watchdog = configuration->watchdog;
   }
   if (const auto& encoders = reports.encoders) {
-    out.has_encoders(true);
-    out.left_encoder(encoders->left);
-    out.right_encoder(encoders->right);
+    out.has_encoders = true;
+    out.left_encoder = encoders->left;
+    out.right_encoder = encoders->right;
   }
   if (const auto& io = reports.io) {
-    out.has_io(true);
-    out.digital_inputs(first(io->digital_inputs, 16));
-    out.digital_outputs(first(io->digital_outputs, 16));
-    out.analog_inputs(first(io->analogs, 32));
+    out.has_io = true;
+    out.digital_inputs = first(io->digital_inputs, 16);
+    out.digital_outputs = first(io->digital_outputs, 16);
+    out.analog_inputs = first(io->analogs, 32);
   }
   if (const auto& gripper = reports.gripper) {
-    out.has_gripper(true);
-    out.gripper_kind(gripper->kind);
-    out.gripper_state(gripper->state);
-    out.grasp_time(gripper->grasp_time);
+    out.has_gripper = true;
+    out.gripper_kind = gripper->kind;
+    out.gripper_state = gripper->state;
+    out.grasp_time = gripper->grasp_time;
   }
   const auto packets = [](const auto& unread) {
     v1::PacketCount result;
-    result.type(unread.first);
-    result.count(unread.second);
+    result.type = unread.first;
+    result.count = unread.second;
     return result;
   };
-  out.unread_packets(converted(reports.unread, packets, kMostCounts));
+  out.unread_packets = converted(reports.unread, packets, kMostCounts);
   return out;
 }
 

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "device.h"
-#include "motion.h"
-#include "robot.h"
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/bridge/events.hpp"
+#include "saphira/idl/device.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/system.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
-#include "system.h"
-#include "vision.h"
 
 namespace saphira::bridge {
 
@@ -48,7 +48,7 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
 /// A writer's own name, cut to the contract's length: anybody may write any text.
 template <class Sample>
 std::string source_of(const Sample& sample) {
-  return sample.source().substr(0, 255);
+  return sample.source.substr(0, 255);
 }
 
 v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,

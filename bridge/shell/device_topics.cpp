@@ -54,9 +54,9 @@ void DeviceTopics::packet(const protocol::ServerPacket& packet, std::uint8_t typ
                           const v1::Stamp& stamp) {
   if (const auto* aux = std::get_if<protocol::AuxPacket>(&packet)) {
     v1::SerialData data;
-    data.stamp(stamp);
-    data.port(aux->line);
-    data.data(aux->bytes);
+    data.stamp = stamp;
+    data.port = aux->line;
+    data.data = aux->bytes;
     serial_data_.write(data);
     return;
   }

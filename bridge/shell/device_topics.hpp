@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "camera.hpp"
-#include "device.h"
 #include "requests/shell/desk.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/idl/device.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
 

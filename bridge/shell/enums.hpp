@@ -1,11 +1,11 @@
 #pragma once
 
-#include "motion.h"
-#include "robot.h"
 #include "saphira/base/enum_pairs.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
-#include "vision.h"
 
 /// Enumerations of the robot's packets and motion, and those of the bus with the same meaning.
 namespace saphira::bridge {

@@ -11,9 +11,9 @@ OtherPrograms::OtherPrograms(bus::Node& node)
 void OtherPrograms::take() {
   const double now = BootClock::seconds();
   for (const auto& sample : statuses_.take()) {
-    if (sample.data.instance() == node_.status().instance())
+    if (sample.data.instance == node_.status().instance)
       continue;
-    if (sample.data.name() == node_.status().name())
+    if (sample.data.name == node_.status().name)
       note(sample.data, sample.info);
     else if (sample.info.disposed)
       audience_.lose(sample.info.writer);
@@ -34,7 +34,7 @@ void OtherPrograms::take() {
 // In lockstep the robot waits for the services.
 bool OtherPrograms::has_robot() const {
   const v1::ServiceStatus& own = node_.status();
-  return bus::serves(own) && own.stamp().cycle() > 0 && !node_.options().lockstep;
+  return bus::serves(own) && own.stamp.cycle > 0 && !node_.options().lockstep;
 }
 
 void OtherPrograms::note(const v1::ServiceStatus& other, const bus::SampleInfo& info) {
@@ -43,7 +43,7 @@ void OtherPrograms::note(const v1::ServiceStatus& other, const bus::SampleInfo& 
     return;
   }
   const auto [known, is_new] = others_.try_emplace(
-      info.writer, "process " + std::to_string(other.pid()) + " at " + other.host());
+      info.writer, "process " + std::to_string(other.pid) + " at " + other.host);
   if (is_new)
     node_.error("another bridge, " + known->second + ", has a robot of the name \"" +
                 node_.options().robot + "\": give one of them another name (--robot)");

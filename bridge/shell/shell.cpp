@@ -152,8 +152,8 @@ void Shell::advance(Ready ready) {
 }
 
 void Shell::end() {
-  node_.status().state(v1::SERVICE_STOPPING);
-  node_.status().reason("asked to stop");
+  node_.status().state = v1::SERVICE_STOPPING;
+  node_.status().reason = "asked to stop";
   const double now = BootClock::seconds();
   core_.end(now);
   deliver(now);
@@ -224,7 +224,7 @@ void Shell::take_all(double now) {
   take_drives(Role::behaviors, behaviors_, now);
   stops_.take(core_.stamp());
   if (const auto permit = permits_.take_newest())
-    core_.permit(permit->until_cycle());
+    core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   devices_.take(core_.stamp(), core_.in_session());  // nothing waits for them
@@ -234,7 +234,7 @@ void Shell::take_all(double now) {
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
   for (auto& sample : reader.take()) {
-    sample.data.source() = bus::named(sample.data.source(), sample.info);
+    sample.data.source = bus::named(sample.data.source, sample.info);
     if (!sample.info.disposed)
       core_.command(to_drive(sample.data, role, sample.info.writer), now);
   }
@@ -289,7 +289,7 @@ void Shell::perform(const SessionBegan& session, double) {
     camera_->connect();
   v1::RobotDescription description = to_bus(
       core_.parameters(), session.robot, to_bus(session.stamp), link_.address().text(), lockstep_);
-  description.instance(node_.instance());
+  description.instance = node_.instance();
   description_writer_.write(description);
 }
 
@@ -298,7 +298,7 @@ void Shell::perform(const CycleBegan& cycle, double now) {
   std::vector<protocol::Bytes> to_camera;
   if (camera_) {
     to_camera = camera_->begin(cycle.stamp.cycle);
-    newest_state_.vision_packets_per_s(camera_->packets_per_s());
+    newest_state_.vision_packets_per_s = camera_->packets_per_s();
   }
   state_writer_.write(newest_state_);
   if (!cycle.state.information.sonars.empty())
@@ -324,7 +324,7 @@ void Shell::perform(const GrantDecided& decided, double) {
     return;
   // With the grant, not with the state: services wait for the state.
   grant_recall_.write(grant);
-  if (recalled_ != stamp && newest_state_.stamp() == stamp) {
+  if (recalled_ != stamp && newest_state_.stamp == stamp) {
     recalled_ = stamp;
     state_recall_.write(newest_state_);
   }
@@ -357,16 +357,16 @@ void Shell::perform(const KeepOdometry& keep, double) {
 
 void Shell::perform(const StatusReport& report, double) {
   v1::ServiceStatus& status = node_.status();
-  status.state(to_bus(report.condition.health));
-  status.reason(report.condition.reason);
-  status.stamp(to_bus(report.stamp));
-  status.lockstep(lockstep_);
-  status.steps(report.steps);
-  status.late_cycles(report.late);
-  status.refused_samples(report.refused + devices_.refused());
+  status.state = to_bus(report.condition.health);
+  status.reason = report.condition.reason;
+  status.stamp = to_bus(report.stamp);
+  status.lockstep = lockstep_;
+  status.steps = report.steps;
+  status.late_cycles = report.late;
+  status.refused_samples = report.refused + devices_.refused();
   if (report.reaction) {
-    status.step_ms_mean(report.reaction->mean * 1000.0);
-    status.step_ms_max(report.reaction->max * 1000.0);
+    status.step_ms_mean = report.reaction->mean * 1000.0;
+    status.step_ms_max = report.reaction->max * 1000.0;
   }
   node_.publish_status();
 }

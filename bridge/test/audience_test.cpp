@@ -10,15 +10,15 @@ class AudienceTest : public testing::Test {
  protected:
   void waits(std::uint8_t program, const std::string& what = "state of cycle 7") {
     v1::ServiceStatus status;
-    status.stamp().cycle(6);
-    status.state(v1::SERVICE_WAITING);
-    status.reason("waits for robot/" + what);
+    status.stamp.cycle = 6;
+    status.state = v1::SERVICE_WAITING;
+    status.reason = "waits for robot/" + what;
     audience_.hear({program}, status, now_);
   }
   void steps(std::uint8_t program) {
     v1::ServiceStatus status;
-    status.stamp().cycle(++cycle_);
-    status.state(v1::SERVICE_RUNNING);
+    status.stamp.cycle = ++cycle_;
+    status.state = v1::SERVICE_RUNNING;
     audience_.hear({program}, status, now_);
   }
   bool after(double seconds) {
@@ -68,7 +68,7 @@ TEST_F(AudienceTest, WhatIsGoneOrStandsStillSaysNothing) {
   waits(1);
   // No more status of the second one: it hangs, or waits for another cause.
   v1::ServiceStatus status;
-  status.stamp().cycle(cycle_);
+  status.stamp.cycle = cycle_;
   audience_.hear({2}, status, now_);
   EXPECT_TRUE(after(Audience::kMute));
 }

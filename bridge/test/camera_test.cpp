@@ -22,7 +22,7 @@ TEST_F(CameraTest, IsAskedUntilItsPacketsCome) {
   EXPECT_TRUE(camera.begin(20).empty());
   EXPECT_EQ(camera.begin(21).size(), 2U) << "two seconds without a packet";
   v1::RobotState state;
-  state.stamp().cycle(22);
+  state.stamp.cycle = 22;
   camera.packet({}, state);
   for (std::uint64_t cycle = 23; cycle <= 32; ++cycle) {
     EXPECT_TRUE(camera.begin(cycle).empty());
@@ -41,19 +41,19 @@ TEST_F(CameraTest, IsAskedAgainInTheNextSession) {
 
 TEST_F(CameraTest, ItsPacketsSayWhereTheRobotWas) {
   v1::RobotState state;
-  state.stamp().epoch(3);
-  state.stamp().cycle(5);
-  state.odom(9);
-  state.pose_in_odom().x(1.5);
+  state.stamp.epoch = 3;
+  state.stamp.cycle = 5;
+  state.odom = 9;
+  state.pose_in_odom.x = 1.5;
   protocol::VisionPacket packet;
   packet.channels[1].area = 300;
   camera.packet(packet, state);
   const auto seen = channels.take_newest();
   ASSERT_TRUE(seen);
-  EXPECT_EQ(seen->stamp(), state.stamp());
-  EXPECT_EQ(seen->odom(), 9U);
-  EXPECT_EQ(seen->pose_in_odom().x(), 1.5);
-  EXPECT_EQ(seen->channels()[1].area(), 300U);
+  EXPECT_EQ(seen->stamp, state.stamp);
+  EXPECT_EQ(seen->odom, 9U);
+  EXPECT_EQ(seen->pose_in_odom.x, 1.5);
+  EXPECT_EQ(seen->channels[1].area, 300U);
 }
 
 }  // namespace

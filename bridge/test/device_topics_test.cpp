@@ -12,10 +12,10 @@ class DeviceTopicsTest : public testing::Test {
  protected:
   void ask(std::uint64_t number, double width) {
     v1::Request request;
-    request.source("a person");
-    request.number(number);
-    request.functor("servo");
-    request.arguments({bus::number("width", width)});
+    request.source = "a person";
+    request.number = number;
+    request.functor = "servo";
+    request.arguments = {bus::number("width", width)};
     servo.write(request);
   }
   v1::Answer answer() { return answers.take_newest().value(); }
@@ -37,14 +37,14 @@ TEST_F(DeviceTopicsTest, WhatIsAskedForIsUnderWay) {
   topics.take({}, true);
   const auto told = devices.take_newest();
   ASSERT_TRUE(told);
-  ASSERT_EQ(told->requests().size(), 1U);
-  EXPECT_EQ(told->requests()[0].source(), "a person");
-  EXPECT_EQ(told->requests()[0].answer().number(), 4U);
-  EXPECT_EQ(told->requests()[0].answer().code(), v1::ANSWER_UNDERWAY);
+  ASSERT_EQ(told->requests.size(), 1U);
+  EXPECT_EQ(told->requests[0].source, "a person");
+  EXPECT_EQ(told->requests[0].answer.number, 4U);
+  EXPECT_EQ(told->requests[0].answer.code, v1::ANSWER_UNDERWAY);
   const v1::Answer first = answer();
-  EXPECT_EQ(first.number(), 4U);
-  EXPECT_EQ(first.code(), v1::ANSWER_UNDERWAY);
-  EXPECT_EQ(first.text(), "servo 1500 us: not shown yet");
+  EXPECT_EQ(first.number, 4U);
+  EXPECT_EQ(first.code, v1::ANSWER_UNDERWAY);
+  EXPECT_EQ(first.text, "servo 1500 us: not shown yet");
   EXPECT_EQ(topics.refused(), 0U);
 }
 
@@ -53,8 +53,8 @@ TEST_F(DeviceTopicsTest, WithoutARobotThereIsNobodyToDoIt) {
   topics.take({}, false);
   EXPECT_FALSE(devices.take_newest()) << "the robot was not asked";
   const v1::Answer told = answer();
-  EXPECT_EQ(told.code(), v1::ANSWER_NOBODY);
-  EXPECT_EQ(told.text(), "no robot is connected");
+  EXPECT_EQ(told.code, v1::ANSWER_NOBODY);
+  EXPECT_EQ(told.text, "no robot is connected");
   EXPECT_EQ(topics.refused(), 1U);
 }
 
@@ -62,22 +62,22 @@ TEST_F(DeviceTopicsTest, WhatIsOutOfRangeIsRefused) {
   ask(4, 70000);
   topics.take({}, true);
   const v1::Answer told = answer();
-  EXPECT_EQ(told.code(), v1::ANSWER_BAD_ARGUMENT);
-  EXPECT_NE(told.text().find("servo: argument \"width\": expected a whole number from 0 to 65535"),
+  EXPECT_EQ(told.code, v1::ANSWER_BAD_ARGUMENT);
+  EXPECT_NE(told.text.find("servo: argument \"width\": expected a whole number from 0 to 65535"),
             std::string::npos)
-      << told.text();
+      << told.text;
   EXPECT_EQ(topics.refused(), 1U);
 }
 
 TEST_F(DeviceTopicsTest, AFunctorOfAnotherTopicIsUnknown) {
   auto server = person.writer<v1::Request>(bus::topics::kServer);
   v1::Request request;
-  request.source("a person");
-  request.functor("servo");
-  request.arguments({bus::number("width", 1500)});
+  request.source = "a person";
+  request.functor = "servo";
+  request.arguments = {bus::number("width", 1500)};
   server.write(request);
   topics.take({}, true);
-  EXPECT_EQ(answer().code(), v1::ANSWER_UNKNOWN_FUNCTOR);
+  EXPECT_EQ(answer().code, v1::ANSWER_UNKNOWN_FUNCTOR);
 }
 
 TEST_F(DeviceTopicsTest, ANewerRequestTakesThePlaceOfAnOlderOne) {
@@ -87,23 +87,23 @@ TEST_F(DeviceTopicsTest, ANewerRequestTakesThePlaceOfAnOlderOne) {
   topics.take({}, true);
   const auto told = answers.take();
   ASSERT_EQ(told.size(), 3U);
-  EXPECT_EQ(told[1].data.number(), 4U);
-  EXPECT_EQ(told[1].data.code(), v1::ANSWER_LOST);
-  EXPECT_EQ(told[1].data.text(), "servo 1500 us: a request of a person took its place");
-  EXPECT_EQ(told[2].data.number(), 5U);
+  EXPECT_EQ(told[1].data.number, 4U);
+  EXPECT_EQ(told[1].data.code, v1::ANSWER_LOST);
+  EXPECT_EQ(told[1].data.text, "servo 1500 us: a request of a person took its place");
+  EXPECT_EQ(told[2].data.number, 5U);
 }
 
 TEST_F(DeviceTopicsTest, BytesOfASerialPortAreHandedOn) {
-  stamp.cycle(8);
+  stamp.cycle = 8;
   protocol::AuxPacket aux;
   aux.line = 2;
   aux.bytes = {1, 2, 3};
   topics.packet(aux, 0xB8, stamp);
   const auto data = serial.take_newest();
   ASSERT_TRUE(data);
-  EXPECT_EQ(data->port(), 2);
-  EXPECT_EQ(data->data(), aux.bytes);
-  EXPECT_EQ(data->stamp(), stamp);
+  EXPECT_EQ(data->port, 2);
+  EXPECT_EQ(data->data, aux.bytes);
+  EXPECT_EQ(data->stamp, stamp);
 }
 
 TEST_F(DeviceTopicsTest, PacketsThatNobodyReadsAreToldOnce) {

@@ -14,9 +14,9 @@ class NamesakesTest : public testing::Test {
   /// Publishes a status of `node` with that state.
   void say(bus::Node& node, v1::ServiceState state) {
     v1::ServiceStatus status = node.status();
-    status.state(state);
-    status.host("the attic");
-    status.pid(12);
+    status.state = state;
+    status.host = "the attic";
+    status.pid = 12;
     said_ = node.writer(bus::topics::kStatus);
     said_->write(status);
     programs.take();
@@ -52,7 +52,7 @@ TEST_F(NamesakesTest, AreNoMoreWhenTheirProgramIsGone) {
   {
     auto status = other.status();
     auto writer = other.writer(bus::topics::kStatus);
-    status.state(v1::SERVICE_DEGRADED);
+    status.state = v1::SERVICE_DEGRADED;
     writer.write(status);
     programs.take();
     EXPECT_TRUE(programs.has_namesake());

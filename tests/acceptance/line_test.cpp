@@ -11,7 +11,7 @@ namespace {
 void arrives(System& system) {
   const std::optional<v1::GoalStatus> status = system.wait_end(system.go_to(1.6, 0.2));
   ASSERT_TRUE(status.has_value()) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
   EXPECT_EQ(system.truth().contacts, 0);
 }
 

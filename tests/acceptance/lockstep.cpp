@@ -70,7 +70,7 @@ v1::GoalId LockstepSystem::ask(const v1::Goal& goal) {
 
 void LockstepSystem::permit(std::uint64_t until) {
   v1::StepPermit sample;
-  sample.until_cycle(until);
+  sample.until_cycle = until;
   permits_.write(sample);
 }
 
@@ -83,7 +83,7 @@ std::optional<v1::GoalStatus> LockstepSystem::wait_end(const v1::GoalId& goal,
         goals.poll();
         meanwhile();
         status = goals.status(goal);
-        return status && bus::ended(status->state());
+        return status && bus::ended(status->state);
       },
       std::chrono::minutes(4));
   return status;

@@ -75,7 +75,7 @@ TEST(TwoRobots, DoNotHearEachOther) {
   long count = 0;
   ASSERT_TRUE(wait_until([&] {
     for (const auto& sample : states.take()) {
-      EXPECT_LT(std::abs(sample.data.velocity()), 0.01);
+      EXPECT_LT(std::abs(sample.data.velocity), 0.01);
       ++count;
     }
     return count >= 20;

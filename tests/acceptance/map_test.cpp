@@ -30,7 +30,7 @@ class MapTest : public testing::Test {
     system.permit(permitted_ += 1500);
     const std::optional<v1::GoalStatus> status = system.wait_end(id, [this] { take(); });
     ASSERT_TRUE(status) << system.output();
-    EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+    EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
   }
   /// Lets the robot make steps until the condition holds.
   bool step_until(const std::function<bool()>& condition) {
@@ -48,8 +48,8 @@ class MapTest : public testing::Test {
       map = std::move(newest);
   }
   bool on_map(std::uint32_t id) const {
-    return map && std::any_of(map->artifacts().begin(), map->artifacts().end(),
-                              [id](const v1::MapArtifact& each) { return each.id() == id; });
+    return map && std::any_of(map->artifacts.begin(), map->artifacts.end(),
+                              [id](const v1::MapArtifact& each) { return each.id == id; });
   }
   /// Ends the run: without a contact, and with the right pose in registration.
   void end() {
@@ -57,10 +57,10 @@ class MapTest : public testing::Test {
     const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
     EXPECT_EQ(rows.back().contacts, 0);
     for (const sim::TraceRow& row : rows) {
-      if (registered.empty() || row.cycle != registered.back().stamp().cycle())
+      if (registered.empty() || row.cycle != registered.back().stamp.cycle)
         continue;
-      const v1::Pose2& pose = registered.back().pose_in_map();
-      EXPECT_LT(std::hypot(pose.x() - row.pose_in_world.x, pose.y() - row.pose_in_world.y), 0.3);
+      const v1::Pose2& pose = registered.back().pose_in_map;
+      EXPECT_LT(std::hypot(pose.x - row.pose_in_world.x, pose.y - row.pose_in_world.y), 0.3);
       return;
     }
     ADD_FAILURE() << "registration of no cycle of the trace";
@@ -81,15 +81,15 @@ class MapTest : public testing::Test {
 TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
   bus::RequestClient requests(system.node, bus::topics::kRegistrationRequest, "test");
   ASSERT_TRUE(step_until([&] {
-    return !registered.empty() && registered.back().state() == v1::REGISTRATION_TRACKING;
+    return !registered.empty() && registered.back().state == v1::REGISTRATION_TRACKING;
   })) << system.output();
   // Beside the way, half a metre before the wall: its absence shows by echoes from behind it.
   v1::Request request;
-  request.functor("put");
-  request.arguments({bus::number("id", 900), bus::text("type", "OBJECT"),
-                     bus::point("position", 5.0, 7.4, 0.0, v1::FRAME_MAP),
-                     bus::number("length", 0.5), bus::number("width", 0.2)});
-  ASSERT_EQ(requests.ask(request, 60.0).code(), v1::ANSWER_DONE) << system.output();
+  request.functor = "put";
+  request.arguments = {bus::number("id", 900), bus::text("type", "OBJECT"),
+                       bus::point("position", 5.0, 7.4, 0.0, v1::FRAME_MAP),
+                       bus::number("length", 0.5), bus::number("width", 0.2)};
+  ASSERT_EQ(requests.ask(request, 60.0).code, v1::ANSWER_DONE) << system.output();
   ASSERT_TRUE(step_until([&] { return on_map(900); })) << system.output();
   // A goal continues while the map changes; on the way back at the latest the object is missed.
   arrive(go_along_the_corridor(11.5));
@@ -118,11 +118,11 @@ std::string way_of_building(bool single_process) {
         system.node.wait(std::chrono::milliseconds(10));
         if (auto sample = registrations.take_newest())
           newest = std::move(*sample);
-        return newest.stamp().cycle() >= cycles;
+        return newest.stamp.cycle >= cycles;
       },
       std::chrono::minutes(2)))
       << system.output();
-  EXPECT_EQ(newest.reason(), "builds the map") << system.output();
+  EXPECT_EQ(newest.reason, "builds the map") << system.output();
   return system.end();
 }
 
@@ -142,7 +142,7 @@ class PerceptionLoss : public testing::TestWithParam<const char*> {
         [&] {
           if (auto newest = registrations.take_newest())
             registration = *newest;
-          return registration.state() == v1::REGISTRATION_TRACKING && registration.odom() != 0;
+          return registration.state == v1::REGISTRATION_TRACKING && registration.odom != 0;
         },
         limit);
   }
@@ -159,30 +159,29 @@ TEST_P(PerceptionLoss, AKilledServiceKnowsAgainWhereTheRobotIs) {
   ASSERT_TRUE(wait_until([&] { return system.truth().x > 2.0; }, std::chrono::seconds(30)))
       << system.output();
   ASSERT_TRUE(wait_tracking(std::chrono::seconds(30))) << system.output();
-  const v1::Pose2 before = registration.odom_in_map();
-  const std::uint64_t cycle = registration.stamp().cycle();
+  const v1::Pose2 before = registration.odom_in_map;
+  const std::uint64_t cycle = registration.stamp.cycle;
   system[GetParam()].signal(SIGKILL);
   system.start(GetParam());
   ASSERT_TRUE(wait_until(
       [&] {
         return wait_tracking(std::chrono::milliseconds(10)) &&
-               registration.stamp().cycle() > cycle + 10;
+               registration.stamp.cycle > cycle + 10;
       },
       std::chrono::seconds(30)))
       << system.output();
   // At most two seconds of robot time, and no jump.
-  EXPECT_LE(registration.stamp().cycle(), cycle + 30) << system.output();
-  EXPECT_NEAR(registration.odom_in_map().x(), before.x(), 0.15);
-  EXPECT_NEAR(registration.odom_in_map().y(), before.y(), 0.15);
-  EXPECT_NEAR(registration.odom_in_map().th(), before.th(), 0.05);
+  EXPECT_LE(registration.stamp.cycle, cycle + 30) << system.output();
+  EXPECT_NEAR(registration.odom_in_map.x, before.x, 0.15);
+  EXPECT_NEAR(registration.odom_in_map.y, before.y, 0.15);
+  EXPECT_NEAR(registration.odom_in_map.th, before.th, 0.05);
   const std::optional<v1::GoalStatus> status = system.wait_end(goal);
   ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
   EXPECT_EQ(system.truth().contacts, 0);
   ASSERT_TRUE(wait_tracking(std::chrono::seconds(30)));
   const Truth truth = system.truth();
-  EXPECT_LT(std::hypot(registration.pose_in_map().x() - truth.x,
-                       registration.pose_in_map().y() - truth.y),
+  EXPECT_LT(std::hypot(registration.pose_in_map.x - truth.x, registration.pose_in_map.y - truth.y),
             0.3);
 }
 

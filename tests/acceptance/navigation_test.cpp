@@ -34,26 +34,26 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
       if (sample.info.disposed)
         erased = true;
       else if (way.empty())
-        way = sample.data.points();
+        way = sample.data.points;
     }
   };
   const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
     take_drawings();
     for (const auto& sample : intentions.take())
-      for (const v1::IntentionNode& node : sample.data.nodes())
-        schemas.insert(node.schema());
+      for (const v1::IntentionNode& node : sample.data.nodes)
+        schemas.insert(node.schema);
   });
   ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
-  EXPECT_NE(status->reason().find("N2"), std::string::npos) << status->reason();
+  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
+  EXPECT_NE(status->reason.find("N2"), std::string::npos) << status->reason;
   for (const char* schema : {"go-to-place", "plan-and-execute", "monitor-planex", "follow-path",
                              "corridor-to-door", "through-door", "FollowCorridor", "FollowDoor"})
     EXPECT_TRUE(schemas.contains(schema)) << schema;
   // The way is drawn on the map, from the robot through the room's door, until its end.
   ASSERT_GE(way.size(), 2u);
-  EXPECT_NEAR(way.front().x(), 1.5, 0.3);
+  EXPECT_NEAR(way.front().x, 1.5, 0.3);
   EXPECT_TRUE(std::any_of(way.begin(), way.end(), [](const v1::DrawnPoint& at) {
-    return std::hypot(at.x() - 6.95, at.y() - 8.0) < 0.3;
+    return std::hypot(at.x - 6.95, at.y - 8.0) < 0.3;
   }));
   EXPECT_TRUE(wait_until([&] {
     take_drawings();
@@ -77,8 +77,8 @@ TEST(NavigationAcceptance, BumpAndGoBumps) {
   system.permit(800);
   const std::optional<v1::GoalStatus> status = system.wait_end(id);
   ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
-  EXPECT_EQ(status->reason(), "ran into 1 things");
+  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
+  EXPECT_EQ(status->reason, "ran into 1 things");
   const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
   const auto touch = std::find_if(rows.begin(), rows.end(),
                                   [](const sim::TraceRow& row) { return row.contacts > 0; });

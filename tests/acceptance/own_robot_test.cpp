@@ -43,13 +43,13 @@ TEST(OwnRobot, DrivesByACopyOfTheNearestRobotsFile) {
         description = std::move(newest);
     });
     ASSERT_TRUE(status) << command << system.output();
-    EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+    EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
   }
   EXPECT_GT(permitted, 0U) << "the page drives";
   ASSERT_TRUE(description);
-  EXPECT_EQ(description->robot_subclass(), "my-robot");
-  EXPECT_EQ(description->parameter_file(), file);
-  EXPECT_NEAR(description->radius(), 0.24, 1e-6);
+  EXPECT_EQ(description->robot_subclass, "my-robot");
+  EXPECT_EQ(description->parameter_file, file);
+  EXPECT_NEAR(description->radius, 0.24, 1e-6);
   const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
   ASSERT_FALSE(rows.empty());
   EXPECT_EQ(rows.back().contacts, 0);

@@ -50,8 +50,8 @@ double aside(const std::vector<sim::TraceRow>& rows) {
 TEST(PeopleAcceptance, ArrivesBehindAPersonWhomItDoesNotTouch) {
   const Drive result = drive(std::string(kHall) + kPerson);
   ASSERT_TRUE(result.status);
-  EXPECT_EQ(result.status->state(), v1::GOAL_SUCCEEDED) << result.status->reason() << "\n"
-                                                        << result.output;
+  EXPECT_EQ(result.status->state, v1::GOAL_SUCCEEDED) << result.status->reason << "\n"
+                                                      << result.output;
   ASSERT_FALSE(result.rows.empty());
   EXPECT_EQ(result.rows.back().contacts, 0);
   EXPECT_NEAR(result.rows.back().pose_in_world.x, 1.5 + kWay, 0.5);
@@ -63,7 +63,7 @@ TEST(PeopleAcceptance, ArrivesBehindAPersonWhomItDoesNotTouch) {
 TEST(PeopleAcceptance, WayWithoutAPersonIsStraight) {
   const Drive result = drive(kHall);
   ASSERT_TRUE(result.status);
-  EXPECT_EQ(result.status->state(), v1::GOAL_SUCCEEDED) << result.status->reason();
+  EXPECT_EQ(result.status->state, v1::GOAL_SUCCEEDED) << result.status->reason;
   EXPECT_LT(aside(result.rows), 0.2);
 }
 

@@ -43,15 +43,15 @@ TEST(SeeingAcceptance, AWalkerIsFollowed) {
   const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
     for (const auto& sample : system.visions.take()) {
       // In lockstep every picture is processed.
-      skipped += sample.data.picture() != sample.data.stamp().cycle();
-      for (const v1::SeenThing& thing : sample.data.things()) {
-        people += thing.kind() == v1::SEEN_PERSON;
-        colors += thing.kind() == v1::SEEN_BLOB && thing.channel() == 0;
+      skipped += sample.data.picture != sample.data.stamp.cycle;
+      for (const v1::SeenThing& thing : sample.data.things) {
+        people += thing.kind == v1::SEEN_PERSON;
+        colors += thing.kind == v1::SEEN_BLOB && thing.channel == 0;
       }
     }
   });
   ASSERT_TRUE(status);
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << "\n" << system.output();
+  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << "\n" << system.output();
   EXPECT_GT(people, 200U);
   EXPECT_GT(colors, 100U);
   EXPECT_EQ(skipped, 0U);
@@ -75,10 +75,10 @@ TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
     EXPECT_TRUE(wait_until(
         [&] {
           for (const auto& sample : states.take())
-            heads[sample.data.stamp().cycle()] = sample.data.head();
+            heads[sample.data.stamp.cycle] = sample.data.head;
           system.node.wait(std::chrono::milliseconds(50));
           const auto newest = system.visions.take_newest();
-          return newest && newest->stamp().cycle() >= kCycles;
+          return newest && newest->stamp.cycle >= kCycles;
         },
         std::chrono::minutes(2)))
         << system.output();

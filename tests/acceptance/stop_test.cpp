@@ -28,15 +28,15 @@ TEST(Stop, EndsAGoalOfAnyPriority) {
   System system;
   system.start_all();
   v1::Goal wanted = test::goal("go_to", {bus::point("position", 8.0, 0.0, 0.0, v1::FRAME_ODOM)});
-  wanted.priority(1000);
+  wanted.priority = 1000;
   const v1::GoalId goal = system.goals().ask(wanted);
   ASSERT_TRUE(system.wait_moving()) << system.output();
   Process stop = command_line(system, {"goal", "stop"});
   EXPECT_EQ(stop.wait(), 0) << stop.output();
   const auto status = system.wait_end(goal);
   ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
-  EXPECT_EQ(status->code(), v1::CODE_STOPPED) << status->reason();
+  EXPECT_EQ(status->state, v1::GOAL_CANCELED);
+  EXPECT_EQ(status->code, v1::CODE_STOPPED) << status->reason;
   EXPECT_TRUE(stays_still(system, 20)) << system.output();
 }
 
@@ -64,14 +64,14 @@ TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
   bus::Writer<v1::MotorCommand> direct = system.node().writer(bus::topics::kDriveDirect);
   auto robots = system.node().reader(bus::topics::kRobotState);
   v1::MotorCommand command;
-  command.source("a program that hears nothing");
-  command.active(true);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(0.3);
+  command.source = "a program that hears nothing";
+  command.active = true;
+  command.translation = v1::TRANSLATION_VELOCITY;
+  command.velocity = 0.3;
   const auto drive = [&] {
     if (const auto robot = robots.take_newest())
-      command.stamp(robot->stamp());
-    command.number(command.number() + 1);
+      command.stamp = robot->stamp;
+    command.number = command.number + 1;
     direct.write(command);
     system.node().wait(std::chrono::milliseconds(50));
   };
@@ -89,9 +89,9 @@ TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
     return system.truth().cycle >= begin + 30;
   }));
   EXPECT_TRUE(still);
-  command.active(false);
+  command.active = false;
   drive();
-  command.active(true);
+  command.active = true;
   EXPECT_TRUE(wait_until([&] {
     drive();
     return !system.truth().still();
@@ -108,8 +108,8 @@ TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
   ASSERT_TRUE(system.wait_still()) << system.output();
   const auto status = system.wait_end(goal);
   ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
-  EXPECT_EQ(status->reason().find("emergency stop, pressed by"), 0U) << status->reason();
+  EXPECT_EQ(status->state, v1::GOAL_CANCELED);
+  EXPECT_EQ(status->reason.find("emergency stop, pressed by"), 0U) << status->reason;
 
   // While it is latched, no goal drives.
   const v1::GoalId meanwhile = system.go_to(8.0, 0.0);

@@ -61,7 +61,7 @@ std::optional<v1::GoalStatus> System::wait_end(const v1::GoalId& goal,
         meanwhile();
         goals_.poll();
         status = goals_.status(goal);
-        return status && bus::ended(status->state());
+        return status && bus::ended(status->state);
       },
       std::chrono::minutes(2));
   return ended ? status : std::nullopt;

@@ -59,39 +59,39 @@ std::string functor(unsigned agent, unsigned capability) {
   std::vector<v1::Agent> agents;
   for (unsigned i = 0; i < count; ++i) {
     v1::Agent agent;
-    agent.id(all.first + i + 1);
-    agent.name("agent" + std::to_string(all.first + i));
+    agent.id = all.first + i + 1;
+    agent.name = "agent" + std::to_string(all.first + i);
     for (unsigned k = 0; k < each; ++k)
-      agent.capabilities().push_back(
-          bus::capability(functor(all.first + i, k), "a fact of a benchmark",
-                          {bus::number_slot("given", "a number", true),
-                           bus::number_slot("found", "the same number")}));
-    addresses.insert(bus::agent_address(agent.id(), agent.name()));
+      agent.capabilities.push_back(bus::capability(functor(all.first + i, k),
+                                                   "a fact of a benchmark",
+                                                   {bus::number_slot("given", "a number", true),
+                                                    bus::number_slot("found", "the same number")}));
+    addresses.insert(bus::agent_address(agent.id, agent.name));
     announces.write(agent);
     agents.push_back(std::move(agent));
   }
   for (unsigned i = 0; i < all.triggers / kProcesses; ++i) {
     v1::Trigger trigger;
-    trigger.id().writer(all.first + 1);
-    trigger.id().number(i + 1);
-    trigger.source("a benchmark");
-    trigger.kind(i % 100 < kTold ? v1::TRIGGER_TIME : v1::TRIGGER_EVENT);
-    trigger.period(60.0);
-    trigger.condition(i % 100 < kTold ? "" : "it_happened");
-    trigger.action(functor(all.first, 0));
-    trigger.action_arguments({bus::number("given", i)});
+    trigger.id.writer = all.first + 1;
+    trigger.id.number = i + 1;
+    trigger.source = "a benchmark";
+    trigger.kind = i % 100 < kTold ? v1::TRIGGER_TIME : v1::TRIGGER_EVENT;
+    trigger.period = 60.0;
+    trigger.condition = i % 100 < kTold ? "" : "it_happened";
+    trigger.action = functor(all.first, 0);
+    trigger.action_arguments = {bus::number("given", i)};
     triggers.write(trigger);
   }
   for (;;) {
     node.wait(std::chrono::milliseconds(500));
     for (const auto& sample : asked.take()) {
-      if (sample.info.disposed || !addresses.contains(sample.data.service()))
+      if (sample.info.disposed || !addresses.contains(sample.data.service))
         continue;
       v1::Answer answer =
-          bus::done({bus::number("found", bus::number_of(sample.data.arguments(), "given"))});
-      answer.asker(sample.data.asker());
-      answer.number(sample.data.number());
-      answer.service(sample.data.service());
+          bus::done({bus::number("found", bus::number_of(sample.data.arguments, "given"))});
+      answer.asker = sample.data.asker;
+      answer.number = sample.data.number;
+      answer.service = sample.data.service;
       answers.write(answer);
     }
     node.publish_status();
@@ -103,13 +103,13 @@ std::vector<double> ask(bus::Node& node, bus::Agent& asker, const Options& all, 
   std::vector<double> us;
   for (unsigned i = 0; i < all.requests; ++i) {
     v1::Request request;
-    request.functor(functor(i * 7 % agents, 0));
-    request.arguments({bus::number("given", i), bus::open("found")});
+    request.functor = functor(i * 7 % agents, 0);
+    request.arguments = {bus::number("given", i), bus::open("found")};
     const auto begun = Clock::now();
     const v1::Answer answer = asker.ask(request, 10.0);
     const double took = std::chrono::duration<double, std::micro>(Clock::now() - begun).count();
-    if (answer.code() != v1::ANSWER_DONE || bus::number_of(answer.results(), "found") != i)
-      throw std::runtime_error(request.functor() + ": " + answer.text());
+    if (answer.code != v1::ANSWER_DONE || bus::number_of(answer.results, "found") != i)
+      throw std::runtime_error(request.functor + ": " + answer.text);
     us.push_back(took);
     node.wait(std::chrono::milliseconds(10));
   }
@@ -121,12 +121,12 @@ void wait_for(bus::Agent& asker, unsigned agents) {
   const auto end = Clock::now() + std::chrono::seconds(60);
   for (unsigned known = 0; known < agents;) {
     v1::Request request;
-    request.functor(functor(known, 0));
-    request.arguments({bus::number("given", 1), bus::open("found")});
-    if (asker.ask(request, 1.0).code() == v1::ANSWER_DONE)
+    request.functor = functor(known, 0);
+    request.arguments = {bus::number("given", 1), bus::open("found")};
+    if (asker.ask(request, 1.0).code == v1::ANSWER_DONE)
       known += agents / kProcesses;
     else if (Clock::now() > end)
-      throw std::runtime_error("nobody can do " + request.functor());
+      throw std::runtime_error("nobody can do " + request.functor);
   }
 }
 
@@ -137,7 +137,7 @@ class Late {
   std::uint64_t count() {
     for (const auto& sample : statuses_.take())
       if (!sample.info.disposed)
-        late_[sample.data.instance()] = sample.data.late_cycles();
+        late_[sample.data.instance] = sample.data.late_cycles;
     std::uint64_t sum = 0;
     for (const auto& [instance, late] : late_)
       sum += late;

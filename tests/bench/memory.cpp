@@ -93,7 +93,7 @@ class Misuse {
  private:
   static v1::Goal goal(const std::string& functor) {
     v1::Goal goal;
-    goal.functor(functor);
+    goal.functor = functor;
     return goal;
   }
 
@@ -101,7 +101,7 @@ class Misuse {
     const auto end = Clock::now() + kPatience;
     const auto over = [&](const v1::GoalId& id) {
       const auto status = goals.status(id);
-      return status && bus::ended(status->state());
+      return status && bus::ended(status->state);
     };
     while (!std::all_of(ids.begin(), ids.end(), over)) {
       if (Clock::now() > end)

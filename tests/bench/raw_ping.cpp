@@ -124,12 +124,12 @@ using Service =
 // As sent by the bridge and the behaviors on the way to a goal.
 v1::RobotState robot_state() {
   v1::RobotState state;
-  state.sonars().resize(2);
+  state.sonars.resize(2);
   return state;
 }
 v1::MotorCommand motor_command() {
   v1::MotorCommand command;
-  command.source("behaviors");
+  command.source = "behaviors";
   return command;
 }
 
@@ -141,7 +141,7 @@ v1::MotorCommand motor_command() {
   std::unique_lock lock(ready);
   Service service(domain, "ping/command", "ping/state", [&](const v1::RobotState& state) {
     { const std::scoped_lock wait(ready); }
-    command.stamp(state.stamp());
+    command.stamp = state.stamp;
     self->write(command);
   });
   self = &service;
@@ -156,12 +156,12 @@ std::vector<double> ping(std::uint32_t domain, double hz, int count) {
   std::uint64_t answered = 0;
   Robot robot(domain, "ping/state", "ping/command", [&](const v1::MotorCommand& command) {
     const std::scoped_lock lock(mutex);
-    answered = command.stamp().cycle();
+    answered = command.stamp.cycle;
     arrived.notify_one();
   });
   auto state = robot_state();
   const auto once = [&](std::uint64_t cycle, std::chrono::milliseconds limit) {
-    state.stamp().cycle(cycle);
+    state.stamp.cycle = cycle;
     const auto start = Clock::now();
     robot.write(state);
     std::unique_lock lock(mutex);

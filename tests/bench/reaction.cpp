@@ -127,21 +127,21 @@ protocol::InformationPacket information(long n) {
 v1::Intentions intentions(const v1::Stamp& stamp) {
   const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
     v1::IntendedBehavior b;
-    b.name(schema);
-    b.schema(schema);
-    b.priority(priority);
-    b.running(true);
-    b.parameters(std::move(parameters));
+    b.name = schema;
+    b.schema = schema;
+    b.priority = priority;
+    b.running = true;
+    b.parameters = std::move(parameters);
     return b;
   };
-  const double y = stamp.cycle() % 2 == 0 ? 10.0 : -10.0;
+  const double y = stamp.cycle % 2 == 0 ? 10.0 : -10.0;
   v1::Intentions sample;
-  sample.stamp(stamp);
-  sample.behavior_control(true);
-  sample.behaviors({behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
-                    behavior("GoToPos", 2,
-                             {bus::point("goal", 50.0, y, 0.0, v1::FRAME_ODOM),
-                              bus::number("speed", 0.2), bus::number("radius", 0.2)})});
+  sample.stamp = stamp;
+  sample.behavior_control = true;
+  sample.behaviors = {behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
+                      behavior("GoToPos", 2,
+                               {bus::point("goal", 50.0, y, 0.0, v1::FRAME_ODOM),
+                                bus::number("speed", 0.2), bus::number("radius", 0.2)})};
   return sample;
 }
 
@@ -174,8 +174,8 @@ class Reaction {
     // For the next cycle, well after the answer.
     if (states_)
       if (const auto state = states_->take_newest())
-        stamp_ = state->stamp();
-    stamp_.cycle(static_cast<std::uint64_t>(n_));
+        stamp_ = state->stamp;
+    stamp_.cycle = static_cast<std::uint64_t>(n_);
     intend_.write(intentions(stamp_));
     return took;
   }

@@ -54,7 +54,7 @@ bus::NodeOptions options_of(const std::string& program, const std::string& secur
   for (;;) {
     node.wait(milliseconds(1000));
     commands.visit([&](const v1::MotorCommand& command, const bus::SampleInfo&) {
-      state.stamp().cycle(command.number());
+      state.stamp.cycle = command.number;
       states.write(state);
     });
   }
@@ -89,14 +89,14 @@ class RoundTrip {
   /// [us]
   std::optional<double> ping(milliseconds limit) {
     v1::MotorCommand command;
-    command.number(++number_);
+    command.number = ++number_;
     const auto began = Clock::now();
     commands_.write(command);
     while (Clock::now() - began < limit) {
       node_.wait(limit);
       bool answered = false;
       states_.visit([&](const v1::RobotState& state, const bus::SampleInfo&) {
-        answered = answered || state.stamp().cycle() == number_;
+        answered = answered || state.stamp.cycle == number_;
       });
       if (answered)
         return std::chrono::duration<double, std::micro>(Clock::now() - began).count();

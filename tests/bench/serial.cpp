@@ -64,31 +64,31 @@ Run demo(int baud, const std::string& seed) {
   auto states = node.reader(bus::topics::kRobotState);
   bus::GoalClient goals(node, "bench");
   v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments({bus::point("position", kGoalX, kGoalY, 0.0, v1::FRAME_ODOM)});
-  goal.deadline(kDeadline);
+  goal.functor = "go_to";
+  goal.arguments = {bus::point("position", kGoalX, kGoalY, 0.0, v1::FRAME_ODOM)};
+  goal.deadline = kDeadline;
   const v1::GoalId id = goals.ask(goal);
 
   Run run;
   std::optional<v1::GoalStatus> status;
   const auto began = std::chrono::steady_clock::now();
   const auto patience = std::chrono::seconds(240);
-  while (!(status && bus::ended(status->state())) &&
+  while (!(status && bus::ended(status->state)) &&
          std::chrono::steady_clock::now() - began < patience) {
     node.wait(milliseconds(100));
     goals.poll();
     status = goals.status(id);
     for (const auto& sample : states.take())
-      run.bad_packets = sample.data.bad_packets();
+      run.bad_packets = sample.data.bad_packets;
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   run.outcome = status ? bus::describe(*status) : "the goal got no answer";
-  run.arrived = status && status->state() == v1::GOAL_SUCCEEDED;
-  run.time = status ? status->elapsed() : 0.0;
+  run.arrived = status && status->state == v1::GOAL_SUCCEEDED;
+  run.time = status ? status->elapsed : 0.0;
   run.track = cli::evaluate_trace(
       read_file(folder.path("trace.csv")),
-      status ? status->stamp().cycle() : std::numeric_limits<std::uint64_t>::max(), "trace.csv");
+      status ? status->stamp.cycle : std::numeric_limits<std::uint64_t>::max(), "trace.csv");
   run.bytes_per_s[0] = static_cast<double>(line.to_robot()) / wall;
   run.bytes_per_s[1] = static_cast<double>(line.from_robot()) / wall;
   run.waited[0] = line.waited_to_robot();

@@ -89,10 +89,10 @@ class Site {
     return wait_until(
         [&] {
           if (const auto robot = robots_.take_newest())
-            stamp_ = robot->stamp();
+            stamp_ = robot->stamp;
           for (const auto& sample : grants_.take()) {
             grant_ = sample.data;
-            if (armed_ && (grant_.stop() != before_ || grant_.estopped())) {
+            if (armed_ && (grant_.stop != before_ || grant_.estopped)) {
               arrived_ = system_.truth().cycle;
               armed_ = false;
             }
@@ -108,7 +108,7 @@ class Site {
   }
   /// From now on the arrival of a stop is noted.
   void arm() {
-    before_ = grant_.stop();
+    before_ = grant_.stop;
     arrived_.reset();
     armed_ = true;
   }
@@ -226,7 +226,7 @@ std::vector<Stop> stops() {
          bool done = false;
          site.until([&] {
            for (const v1::Answer& answer : client.poll())
-             done = done || (answer.number() == number && answer.code() == v1::ANSWER_DONE);
+             done = done || (answer.number == number && answer.code == v1::ANSWER_DONE);
            return done;
          });
          return done;
@@ -239,9 +239,9 @@ std::vector<Stop> stops() {
          site.until([&] {
            goals.poll();
            status = goals.status(id);
-           return status && bus::ended(status->state());
+           return status && bus::ended(status->state);
          });
-         return status && status->state() == v1::GOAL_SUCCEEDED;
+         return status && status->state == v1::GOAL_SUCCEEDED;
        }},
       {"MCP stop", [](Site& site) { return site.tool("stop", Json::object()); }},
       {"MCP emergency_stop",

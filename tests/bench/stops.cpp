@@ -109,8 +109,8 @@ class Ride {
   /// [m/s] The speed in the driver's grant: the guard slows a robot that cannot hear people in
   /// time.
   std::optional<double> permitted() const {
-    return grant_ && grant_->role() == v1::ROLE_DIRECT && grant_->velocity() > 0.0
-               ? std::optional(grant_->velocity())
+    return grant_ && grant_->role == v1::ROLE_DIRECT && grant_->velocity > 0.0
+               ? std::optional(grant_->velocity)
                : std::nullopt;
   }
 
@@ -144,12 +144,12 @@ class Ride {
 
   void write(bus::Writer<v1::MotorCommand>& writer, bool active) {
     v1::MotorCommand command;
-    command.source("bench");
-    command.stamp(state_.stamp());
-    command.number(++number_);
-    command.active(active);
-    command.translation(v1::TRANSLATION_VELOCITY);
-    command.velocity(velocity_);
+    command.source = "bench";
+    command.stamp = state_.stamp;
+    command.number = ++number_;
+    command.active = active;
+    command.translation = v1::TRANSLATION_VELOCITY;
+    command.velocity = velocity_;
     writer.write(command);
   }
 

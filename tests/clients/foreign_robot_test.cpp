@@ -29,20 +29,20 @@ class ForeignRobotTest : public ::testing::Test {
 TEST_F(ForeignRobotTest, IsDrivenByOurBridge) {
   ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
       << scene.bridge_log();
-  EXPECT_EQ(scene.description->robot_class(), "Pioneer");
-  EXPECT_TRUE(scene.description->parameter_file().ends_with("/p3dx.p"));
-  ASSERT_TRUE(scene.until([&] { return scene.state.sonars().size() == 16; }));
-  EXPECT_NEAR(scene.state.sonars()[5].range(), 3.05, 0.01);
-  EXPECT_NEAR(scene.state.battery(), 13.0, 1e-6);
+  EXPECT_EQ(scene.description->robot_class, "Pioneer");
+  EXPECT_TRUE(scene.description->parameter_file.ends_with("/p3dx.p"));
+  ASSERT_TRUE(scene.until([&] { return scene.state.sonars.size() == 16; }));
+  EXPECT_NEAR(scene.state.sonars[5].range, 3.05, 0.01);
+  EXPECT_NEAR(scene.state.battery, 13.0, 1e-6);
 
   forward(scene.command, 0.25, 0.0);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 250.0; })) << scene.bridge_log();
   EXPECT_TRUE(robot.motors());
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 1.0; }));
-  EXPECT_NEAR(scene.state.pose_in_odom().x(), robot.x() / 1000.0, 0.1);
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 1.0; }));
+  EXPECT_NEAR(scene.state.pose_in_odom.x, robot.x() / 1000.0, 0.1);
   forward(scene.command, 0.0, radians(30.0));
-  ASSERT_TRUE(scene.until([&] { return scene.state.rotation_velocity() > radians(25.0); }));
+  ASSERT_TRUE(scene.until([&] { return scene.state.rotation_velocity > radians(25.0); }));
   EXPECT_NEAR(robot.rotation(), 30.0, 1.0);
 
   // It has no watchdog: only the bridge stops it.
@@ -50,7 +50,7 @@ TEST_F(ForeignRobotTest, IsDrivenByOurBridge) {
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 0.0 && robot.rotation() == 0.0; }))
       << scene.bridge_log();
   EXPECT_EQ(robot.trouble(), "");
-  EXPECT_EQ(scene.state.bad_packets(), 0U);
+  EXPECT_EQ(scene.state.bad_packets, 0U);
 }
 
 TEST_F(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
@@ -66,8 +66,8 @@ TEST_F(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
 TEST_F(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   forward(scene.command, 0.2, 0.0);
   scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.19; })) << scene.bridge_log();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.19; })) << scene.bridge_log();
+  const std::uint64_t epoch = scene.state.stamp.epoch;
   robot.spoil([](std::vector<std::uint8_t>& body) {
     body[7] = 0x01;  // the left wheel backward, the right one forward, at the largest speed
     body[8] = 0x80;
@@ -76,21 +76,21 @@ TEST_F(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   });
   // It also waited during the connection.
   ASSERT_TRUE(scene.until([&] {
-    return scene.status.state() == v1::SERVICE_WAITING &&
-           scene.status.reason().find("the robot sends a turn of 183 rad/s") == 0;
-  })) << scene.status.reason();
+    return scene.status.state == v1::SERVICE_WAITING &&
+           scene.status.reason.find("the robot sends a turn of 183 rad/s") == 0;
+  })) << scene.status.reason;
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }));
   // Longer than the limit of a silent link: packets come, so the link is not silent.
   scene.watch(std::chrono::milliseconds(3000));
-  EXPECT_EQ(scene.status.reason().find("the robot sends a turn of 183 rad/s"), 0U)
-      << scene.status.reason();
+  EXPECT_EQ(scene.status.reason.find("the robot sends a turn of 183 rad/s"), 0U)
+      << scene.status.reason;
   robot.spoil({});
-  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }))
-      << scene.status.reason();
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the session went on";
-  EXPECT_GT(scene.state.bad_packets(), 20U);
+  ASSERT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }))
+      << scene.status.reason;
+  EXPECT_EQ(scene.state.stamp.epoch, epoch) << "the session went on";
+  EXPECT_GT(scene.state.bad_packets, 20U);
   for (const v1::RobotState& state : scene.states)
-    EXPECT_LT(std::abs(state.rotation_velocity()), 1.0);
+    EXPECT_LT(std::abs(state.rotation_velocity), 1.0);
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << "and so does the drive";
 }
 
@@ -108,8 +108,7 @@ TEST(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
   forward(scene.command, 0.15, 0.2);
   scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.3; }))
-      << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 0.3; })) << scene.bridge_log();
   scene.drives = false;
   ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
   scene.bridge->signal(SIGTERM);

@@ -289,15 +289,15 @@ TEST(ShownCommands, OfGoalsAreGoals) {
     ++checked;
     v1::Goal goal;
     ASSERT_NO_THROW(goal = cli::parse_request(words)) << one.file << ": goal " << words.front();
-    EXPECT_TRUE(built_in.contains(goal.functor()) ||
-                std::regex_search(files, std::regex("[(]defintention :" + goal.functor() + "\\s")))
-        << one.file << ": goal " << goal.functor();
-    for (const v1::Argument& argument : goal.arguments())
-      EXPECT_TRUE(argument.name() != "place" || argument.kind() != v1::ARGUMENT_TEXT ||
-                  argument.text() == "nowhere" ||
-                  files.find('"' + argument.text() + '"') != std::string::npos ||
-                  on_a_map(argument.text()))
-          << one.file << ": no map has " << argument.text();
+    EXPECT_TRUE(built_in.contains(goal.functor) ||
+                std::regex_search(files, std::regex("[(]defintention :" + goal.functor + "\\s")))
+        << one.file << ": goal " << goal.functor;
+    for (const v1::Argument& argument : goal.arguments)
+      EXPECT_TRUE(argument.name != "place" || argument.kind != v1::ARGUMENT_TEXT ||
+                  argument.text == "nowhere" ||
+                  files.find('"' + argument.text + '"') != std::string::npos ||
+                  on_a_map(argument.text))
+          << one.file << ": no map has " << argument.text;
   }
   EXPECT_GT(checked, 10);
 }

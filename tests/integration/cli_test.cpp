@@ -72,20 +72,20 @@ class Scripted {
     auto commands = node.reader(topics::kDriveTeleop);
     up_ = true;
     v1::Stamp stamp;
-    stamp.epoch(7);
+    stamp.epoch = 7;
     while (!stop_.requested()) {
       node.wait(milliseconds(20), &stop_);
-      stamp.cycle(stamp.cycle() + 1);
+      stamp.cycle = stamp.cycle + 1;
       v1::RobotState robot;
-      robot.stamp(stamp);
-      robot.battery(12.5);
+      robot.stamp = stamp;
+      robot.battery = 12.5;
       robots.write(robot);
       v1::Grant grant;
-      grant.stamp(stamp);
-      grant.reason("nobody asked");
+      grant.stamp = stamp;
+      grant.reason = "nobody asked";
       grants.write(grant);
-      node.status().state(v1::SERVICE_RUNNING);
-      node.status().stamp(stamp);
+      node.status().state = v1::SERVICE_RUNNING;
+      node.status().stamp = stamp;
       node.publish_status();
       for (const auto& sample : goals.take())
         answer(sample, stamp, statuses);
@@ -99,26 +99,26 @@ class Scripted {
   void answer(const bus::Sample<v1::Goal>& goal, const v1::Stamp& stamp,
               bus::Writer<v1::GoalStatus>& statuses) {
     v1::GoalStatus status;
-    status.id(goal.data.id());
-    status.stamp(stamp);
-    status.functor(goal.data.functor());
-    status.state(v1::GOAL_UNDERWAY);
-    status.step("on the way");
+    status.id = goal.data.id;
+    status.stamp = stamp;
+    status.functor = goal.data.functor;
+    status.state = v1::GOAL_UNDERWAY;
+    status.step = "on the way";
     if (goal.info.disposed) {
       ++withdrawn_;
-      status.state(v1::GOAL_CANCELED);
-      status.reason("withdrawn by the scripted service");
-    } else if (goal.data.functor() == "go_to") {
+      status.state = v1::GOAL_CANCELED;
+      status.reason = "withdrawn by the scripted service";
+    } else if (goal.data.functor == "go_to") {
       statuses.write(status);
-      status.state(v1::GOAL_SUCCEEDED);
-      status.reason("it is there");
-    } else if (goal.data.functor() == "fly") {
-      status.state(v1::GOAL_REFUSED);
-      status.reason("no wings");
-    } else if (goal.data.functor() == "go-to-place") {
-      const bool known = bus::text_of(goal.data.arguments(), "place") == "N2";
-      status.state(known ? v1::GOAL_SUCCEEDED : v1::GOAL_FAILED);
-      status.reason(known ? "it is there" : "the map has no such place");
+      status.state = v1::GOAL_SUCCEEDED;
+      status.reason = "it is there";
+    } else if (goal.data.functor == "fly") {
+      status.state = v1::GOAL_REFUSED;
+      status.reason = "no wings";
+    } else if (goal.data.functor == "go-to-place") {
+      const bool known = bus::text_of(goal.data.arguments, "place") == "N2";
+      status.state = known ? v1::GOAL_SUCCEEDED : v1::GOAL_FAILED;
+      status.reason = known ? "it is there" : "the map has no such place";
     }
     statuses.write(status);
   }
@@ -153,9 +153,9 @@ TEST_F(CliTest, CompletionKnowsTheGoalsAndRequestsThatProgramsDeclare) {
   bus::Node node(test::node_options("declarer", robot_));
   auto writer = node.writer(topics::kActivitySchemas);
   v1::ActivitySchemas schemas;
-  schemas.schemas().resize(2);
-  schemas.schemas()[0].name("go_to");
-  schemas.schemas()[1].name("patrol");
+  schemas.schemas.resize(2);
+  schemas.schemas[0].name = "go_to";
+  schemas.schemas[1].name = "patrol";
   writer.write(schemas);
   bus::Agent agent(node, "calendar", "where people are");
   agent.can(bus::capability("place_of", "where a person is", {}),
@@ -215,14 +215,14 @@ TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
   std::vector<std::string> texts;
   EXPECT_TRUE(test::wait_until([&] {
     for (const auto& sample : heard.take()) {
-      texts.push_back(sample.data.speaker() + ": " + sample.data.text());
+      texts.push_back(sample.data.speaker + ": " + sample.data.text);
       v1::Utterance answer;
-      answer.id().writer(node.instance());
-      answer.id().number(texts.size());
-      answer.answers(sample.data.id());
-      answer.text("I heard " + sample.data.text());
-      answer.confidence(1.0);
-      answer.end(true);
+      answer.id.writer = node.instance();
+      answer.id.number = texts.size();
+      answer.answers = sample.data.id;
+      answer.text = "I heard " + sample.data.text;
+      answer.confidence = 1.0;
+      answer.end = true;
       said.write(answer);
     }
     return texts.size() == 3;
@@ -381,7 +381,7 @@ TEST_F(CliTest, ThePythonScriptOfTheDocumentDoesWhatItSays) {
   bus::Node node(test::node_options("teller", robot_));
   auto messages = node.writer(topics::kMessages);
   v1::Message message;
-  message.text("here I am");
+  message.text = "here I am";
   const std::string bin = std::filesystem::path(test::program("saphira")).parent_path().string();
   // timeout: a signal to it ends the script with the commands that it has started.
   test::Process script(
@@ -428,9 +428,9 @@ struct Button {
   void turn() {
     node.wait(milliseconds(20));
     for (const auto& sample : presses.take())
-      latched = latched || (hears && sample.data.active());
+      latched = latched || (hears && sample.data.active);
     v1::Grant grant;
-    grant.estopped(latched);
+    grant.estopped = latched;
     grants.write(grant);
   }
   bus::Node node;
@@ -480,18 +480,18 @@ TEST_F(CliTest, DriveIsADeadMan) {
   EXPECT_TRUE(test::wait_until([&] {
     press('i');
     std::this_thread::sleep_for(milliseconds(50));
-    return scripted.newest().active() && scripted.newest().velocity() > 0.0;
+    return scripted.newest().active && scripted.newest().velocity > 0.0;
   }));
-  EXPECT_EQ(scripted.newest().stamp().epoch(), 7U);
-  EXPECT_GT(scripted.newest().stamp().cycle(), 0U);
+  EXPECT_EQ(scripted.newest().stamp.epoch, 7U);
+  EXPECT_GT(scripted.newest().stamp.cycle, 0U);
   // Without keys it releases the robot, and stops.
-  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
-  EXPECT_EQ(scripted.newest().velocity(), 0.0);
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active; }));
+  EXPECT_EQ(scripted.newest().velocity, 0.0);
   // All numbers differ.
   std::uint64_t last = 0;
   for (const v1::MotorCommand& command : scripted.teleop()) {
-    EXPECT_GT(command.number(), last);
-    last = command.number();
+    EXPECT_GT(command.number, last);
+    last = command.number;
   }
   bus::Node bridge(test::node_options("bridge", robot_));
   auto stops = bridge.reader(bus::topics::kDriveStop);
@@ -500,15 +500,15 @@ TEST_F(CliTest, DriveIsADeadMan) {
   std::string asked;
   EXPECT_TRUE(test::wait_until([&] {
     if (const auto request = stops.take_newest())
-      asked = request->functor();
+      asked = request->functor;
     return !asked.empty();
   }));
   EXPECT_EQ(asked, "stop");
-  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active; }));
   const auto handed_back = [&] {
     const auto all = scripted.teleop();
     return std::any_of(all.begin(), all.end(), [](const v1::MotorCommand& command) {
-      return command.hand_back() && !command.active();
+      return command.hand_back && !command.active;
     });
   };
   EXPECT_FALSE(handed_back()) << "a release alone hands nothing back";
@@ -518,7 +518,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
   int status = 0;
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active; }));
   // The terminal has its earlier settings.
   termios after{};
   EXPECT_EQ(tcgetattr(terminal, &after), 0);
@@ -551,12 +551,12 @@ TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
     const char key = 'i';
     EXPECT_EQ(::write(terminal, &key, 1), 1);
     std::this_thread::sleep_for(milliseconds(50));
-    return scripted.newest().active() && scripted.newest().velocity() > 0.1;
+    return scripted.newest().active && scripted.newest().velocity > 0.1;
   }));
   // And when the keys stop as well, the robot is released.
-  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active(); }));
-  const std::uint64_t released = scripted.newest().number();
-  EXPECT_TRUE(test::wait_until([&] { return scripted.newest().number() > released + 10; }))
+  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active; }));
+  const std::uint64_t released = scripted.newest().number;
+  EXPECT_TRUE(test::wait_until([&] { return scripted.newest().number > released + 10; }))
       << "it goes on saying that it does not drive";
   const char quit = 'q';
   EXPECT_EQ(::write(terminal, &quit, 1), 1);

@@ -40,13 +40,12 @@ TEST(ExamplePlugin, IsBuiltFromTheInstalledTreeAndLoadedByTheService) {
     return told.has_value() || !service.running();
   })) << service.output();
   ASSERT_TRUE(told) << service.output();
-  const auto found =
-      std::ranges::find(told->schemas(), "HoldDistance",
-                        [](const v1::BehaviorSchema& schema) { return schema.name(); });
-  ASSERT_NE(found, told->schemas().end());
-  EXPECT_EQ(found->source(), plugin);
-  EXPECT_EQ(found->parameters().size(), 2U);
-  EXPECT_EQ(found->rules().size(), 3U);
+  const auto found = std::ranges::find(
+      told->schemas, "HoldDistance", [](const v1::BehaviorSchema& schema) { return schema.name; });
+  ASSERT_NE(found, told->schemas.end());
+  EXPECT_EQ(found->source, plugin);
+  EXPECT_EQ(found->parameters.size(), 2U);
+  EXPECT_EQ(found->rules.size(), 3U);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace saphira::test {
 
 inline v1::Goal goal(const std::string& functor, std::vector<v1::Argument> arguments = {}) {
   v1::Goal made;
-  made.functor(functor);
-  made.arguments(std::move(arguments));
+  made.functor = functor;
+  made.arguments = std::move(arguments);
   return made;
 }
 

@@ -53,10 +53,10 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   std::vector<std::string> words{ask_options.functor};
   words.insert(words.end(), ask_options.arguments.begin(), ask_options.arguments.end());
   v1::Request request = parse_question(words);
-  request.service(ask_options.agent);
-  request.deadline(ask_options.deadline);
+  request.service = ask_options.agent;
+  request.deadline = ask_options.deadline;
   if (ask_options.answers != 1)
-    request.arguments().push_back(bus::number("answers", ask_options.answers));
+    request.arguments.push_back(bus::number("answers", ask_options.answers));
 
   bus::Node node(options);
   Processes processes(node);
@@ -72,9 +72,9 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   };
   const auto show = [&] {
     for (const auto& sample : answers.take())
-      if (!sample.info.disposed && sample.data.asker() == node.instance() &&
-          sample.data.code() == v1::ANSWER_UNDERWAY &&
-          !(sample.data.text().empty() && sample.data.results().empty()))
+      if (!sample.info.disposed && sample.data.asker == node.instance() &&
+          sample.data.code == v1::ANSWER_UNDERWAY &&
+          !(sample.data.text.empty() && sample.data.results.empty()))
         tell(sample.data);
   };
   v1::Answer end = ask_program(kFacilitator, node, client, request,
@@ -82,19 +82,19 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
                                stop, processes, show);
   show();
   // The request ends with its writer.
-  if (stop.requested() && end.code() == v1::ANSWER_TOO_LATE)
-    end.text("withdrawn, as this command was ended: an agent at work on it is told to stop");
-  if (end.service().empty()) {
+  if (stop.requested() && end.code == v1::ANSWER_TOO_LATE)
+    end.text = "withdrawn, as this command was ended: an agent at work on it is told to stop";
+  if (end.service.empty()) {
     if (ask_options.json)
       tell(end);
-    std::cerr << "saphira: " << in_front << end.text();
+    std::cerr << "saphira: " << in_front << end.text;
     if (!stop.requested() && absence(node, processes, kFacilitator).empty())
       std::cerr << "; " << who_is_there(processes);
     std::cerr << '\n';
     return bus::kExitFailed;
   }
   tell(end);
-  return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
+  return bus::well(end.code) ? bus::kExitOk : bus::kExitFailed;
 }
 
 /// Each robot's agents, one robot after another. Success: one of them has answered.
@@ -141,18 +141,18 @@ int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptio
                        5.0, stop, processes);
   };
   v1::Answer answer = live();
-  if (answer.code() != v1::ANSWER_DONE) {
-    std::cerr << "saphira: " << answer.text() << '\n';
+  if (answer.code != v1::ANSWER_DONE) {
+    std::cerr << "saphira: " << answer.text << '\n';
     return bus::kExitFailed;
   }
-  if (!is_among(name, bus::text_of(answer.results(), "live"))) {
+  if (!is_among(name, bus::text_of(answer.results, "live"))) {
     std::cerr << "saphira: no trigger " << name << " can fire: saphira agents lists them\n";
     return bus::kExitFailed;
   }
   v1::Trigger withdrawn;
-  withdrawn.id(*id);
+  withdrawn.id = *id;
   const auto begin = Clock::now();
-  while (is_among(name, bus::text_of(answer.results(), "live"))) {
+  while (is_among(name, bus::text_of(answer.results, "live"))) {
     if (stop.requested() || seconds_since(begin) > 5.0) {
       std::cerr << "saphira: the facilitator has not taken the withdrawal\n";
       return bus::kExitFailed;
@@ -175,10 +175,10 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   std::map<std::pair<std::uint64_t, std::uint64_t>, bus::Sample<v1::Trigger>> set;
   poll_for(node, milliseconds(1300), stop, [&] {
     processes.poll();
-    keep_newest(agents, known, [](const v1::Agent& agent) { return agent.id(); });
+    keep_newest(agents, known, [](const v1::Agent& agent) { return agent.id; });
     for (const auto& sample : triggers.take()) {
-      const std::pair<std::uint64_t, std::uint64_t> id{sample.data.id().writer(),
-                                                       sample.data.id().number()};
+      const std::pair<std::uint64_t, std::uint64_t> id{sample.data.id.writer,
+                                                       sample.data.id.number};
       if (sample.info.disposed)
         set.erase(id);
       else
@@ -194,11 +194,11 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
     bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
     const v1::Answer answer =
         client.ask(bus::request(agent_interface::kLiveTriggers), kTold, &stop);
-    if (answer.code() == v1::ANSWER_DONE)
-      live = bus::text_of(answer.results(), "live");
+    if (answer.code == v1::ANSWER_DONE)
+      live = bus::text_of(answer.results, "live");
   }
   for (const auto& [id, trigger] : set) {
-    const std::string name = bus::describe(trigger.data.id());
+    const std::string name = bus::describe(trigger.data.id);
     const std::string held_by = holder(census, trigger.info.writer);
     std::printf("%s%s\n", describe(trigger.data, name, !live || is_among(name, *live)).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());

@@ -107,12 +107,12 @@ std::vector<std::string> declared(bool goals, const bus::NodeOptions& options,
   while (!stop.requested() && Clock::now() < end && !(goals && !names.empty())) {
     node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
     if (const auto known = schemas.take_newest(); known && goals)
-      for (const v1::ActivitySchema& schema : known->schemas())
-        names.insert(schema.name());
+      for (const v1::ActivitySchema& schema : known->schemas)
+        names.insert(schema.name);
     for (const auto& sample : agents.take())
       if (!goals && !sample.info.disposed)
-        for (const v1::Capability& capability : sample.data.capabilities())
-          names.insert(capability.functor());
+        for (const v1::Capability& capability : sample.data.capabilities)
+          names.insert(capability.functor);
   }
   return {names.begin(), names.end()};
 }

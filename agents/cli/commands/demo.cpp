@@ -125,7 +125,7 @@ class Watcher {
   bool poll() {
     if (const auto description = descriptions_.take_newest()) {
       description_ = description;
-      picture_.set_radius(description->radius());
+      picture_.set_radius(description->radius);
     }
     if (auto grant = grants_.take_newest())
       grant_ = std::move(grant);
@@ -134,9 +134,9 @@ class Watcher {
       place_walls();
     }
     if (const auto registration = registrations_.take_newest()) {
-      const bool placed = registration->state() == v1::REGISTRATION_TRACKING;
+      const bool placed = registration->state == v1::REGISTRATION_TRACKING;
       odom_in_map_ =
-          placed ? std::optional(lps::from_bus(registration->odom_in_map())) : std::nullopt;
+          placed ? std::optional(lps::from_bus(registration->odom_in_map)) : std::nullopt;
       place_walls();
     }
     bool any = false;
@@ -150,21 +150,21 @@ class Watcher {
 
   bool connected() const { return robot_.has_value(); }
   double robot_time() const {
-    return robot_ ? 0.1 * static_cast<double>(robot_->stamp().cycle()) : 0.0;
+    return robot_ ? 0.1 * static_cast<double>(robot_->stamp.cycle) : 0.0;
   }
 
   std::string line(const std::optional<v1::GoalStatus>& status) const {
     if (!robot_)
       return "no robot yet";
-    const Pose pose = lps::from_bus(robot_->pose_in_odom());
+    const Pose pose = lps::from_bus(robot_->pose_in_odom);
     std::string line =
         format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
-               pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
-    line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
+               pose.y, (goal_ - pose.position()).norm(), robot_->velocity);
+    line += (grant_ ? std::string(name_of(grant_->role)) : "?") + " drives";
     if (grant_ && !latched(*grant_).empty())
       line += ", " + latched(*grant_);
-    if (grant_ && grant_->guard() != v1::GUARD_NONE)
-      line += ", the guard " + std::string(name_of(grant_->guard()));
+    if (grant_ && grant_->guard != v1::GUARD_NONE)
+      line += ", the guard " + std::string(name_of(grant_->guard));
     line += nearest();
     if (status)
       line += "  " + bus::describe(*status);
@@ -202,20 +202,20 @@ class Watcher {
   }
 
   void take_echoes(const v1::RobotState& robot) {
-    const Pose pose = lps::from_bus(robot.pose_in_odom());
+    const Pose pose = lps::from_bus(robot.pose_in_odom);
     picture_.move_robot(pose);
-    for (const v1::SonarReading& reading : robot.sonars()) {
-      if (!reading.echo()) {
-        newest_.erase(reading.sonar());
+    for (const v1::SonarReading& reading : robot.sonars) {
+      if (!reading.echo) {
+        newest_.erase(reading.sonar);
         continue;
       }
-      newest_[reading.sonar()] = {robot.stamp().cycle(), reading.range()};
+      newest_[reading.sonar] = {robot.stamp.cycle, reading.range};
       if (!description_)
         continue;
-      for (const v1::SonarPose& sonar : description_->sonars())
-        if (sonar.sonar() == reading.sonar())
-          picture_.add_echo(transform(compose(pose, lps::from_bus(sonar.pose_in_robot())),
-                                      Vec2(static_cast<double>(reading.range()), 0.0)));
+      for (const v1::SonarPose& sonar : description_->sonars)
+        if (sonar.sonar == reading.sonar)
+          picture_.add_echo(transform(compose(pose, lps::from_bus(sonar.pose_in_robot)),
+                                      Vec2(static_cast<double>(reading.range), 0.0)));
     }
   }
 
@@ -223,7 +223,7 @@ class Watcher {
     double range = std::numeric_limits<double>::infinity();
     int sonar = 0;
     for (const auto& [index, reading] : newest_)
-      if (reading.cycle + 10 > robot_->stamp().cycle() && reading.range < range) {
+      if (reading.cycle + 10 > robot_->stamp.cycle && reading.range < range) {
         range = reading.range;
         sonar = index;
       }
@@ -363,10 +363,10 @@ class Demo {
     auto permits = node.writer(bus::topics::kStepPermit);
 
     v1::Goal goal;
-    goal.functor("go_to");
-    goal.arguments(
-        {bus::point("position", options_.goal[0], options_.goal[1], 0.0, v1::FRAME_ODOM)});
-    goal.deadline(options_.time_limit);
+    goal.functor = "go_to";
+    goal.arguments = {
+        bus::point("position", options_.goal[0], options_.goal[1], 0.0, v1::FRAME_ODOM)};
+    goal.deadline = options_.time_limit;
     const v1::GoalId id = goals.ask(goal);
     if (lines()) {
       print("robot %s on domain %u: saphira --robot %s --domain %u status shows it\n",
@@ -387,12 +387,12 @@ class Demo {
     std::uint64_t permitted = 0;
     // Not far beyond the goal's newest status: a minute after its end there is none.
     const auto permit = [&] {
-      const std::uint64_t until = kPermitted + (status_ ? status_->stamp().cycle() : 0);
+      const std::uint64_t until = kPermitted + (status_ ? status_->stamp.cycle : 0);
       if (!options_.lockstep || until < permitted + kPermitted / 3)
         return;
       v1::StepPermit step;
-      step.source("saphira demo");
-      step.until_cycle(permitted = until);
+      step.source = "saphira demo";
+      step.until_cycle = permitted = until;
       permits.write(step);
     };
     permit();
@@ -416,7 +416,7 @@ class Demo {
         if (!options_.lockstep)
           began = Clock::now();
       }
-      if (status_ && bus::ended(status_->state())) {
+      if (status_ && bus::ended(status_->state)) {
         wall_ = seconds_since(began);
         show(watcher);
         break;
@@ -453,12 +453,12 @@ class Demo {
 
   int report(bool interrupted) {
     Summary summary;
-    summary.arrived = status_ && status_->state() == v1::GOAL_SUCCEEDED;
-    const bool ended = status_ && bus::ended(status_->state());
+    summary.arrived = status_ && status_->state == v1::GOAL_SUCCEEDED;
+    const bool ended = status_ && bus::ended(status_->state);
     summary.track = evaluate_trace(
-        read_file(trace_),
-        ended ? status_->stamp().cycle() : std::numeric_limits<std::uint64_t>::max(), trace_);
-    summary.time = status_ ? status_->elapsed() : 0.0;
+        read_file(trace_), ended ? status_->stamp.cycle : std::numeric_limits<std::uint64_t>::max(),
+        trace_);
+    summary.time = status_ ? status_->elapsed : 0.0;
     summary.late_cycles = late_cycles_;
     summary.speed_factor = wall_ > 0.0 ? summary.time / wall_ : 0.0;
 

@@ -80,7 +80,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
     const std::set<std::vector<std::string>> now(rows.begin() + 1, rows.end());
     for (const auto& row : rows)
       if (now.contains(row) && !shown.contains(row))
-        std::printf("%8.1f s  %-14s  %s\n", 0.1 * static_cast<double>(watch.robot->stamp().cycle()),
+        std::printf("%8.1f s  %-14s  %s\n", 0.1 * static_cast<double>(watch.robot->stamp.cycle),
                     row[0].c_str(), row[1].c_str());
     std::fflush(stdout);
     if (std::ferror(stdout) != 0)
@@ -93,11 +93,11 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
 void print_serial(const v1::SerialData& data) {
   std::string hex;
   std::string text;
-  for (const std::uint8_t byte : data.data()) {
+  for (const std::uint8_t byte : data.data) {
     hex += format("%02x ", byte);
     text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '.';
   }
-  std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());
+  std::printf("port %d  %s |%s|\n", data.port, hex.c_str(), text.c_str());
 }
 
 /// Prints the answers from a serial port for kAnswerTime: a device there needs a moment.
@@ -107,7 +107,7 @@ void wait_for_serial(Watch& watch, bus::Reader<v1::SerialData>& serial, const Re
   while (!stop.requested() && seconds_since(sent) < kAnswerTime) {
     watch.node.wait(milliseconds(50), &stop);
     for (const auto& sample : serial.take())
-      if (sample.data.port() == number_of(asked.arguments, "port"))
+      if (sample.data.port == number_of(asked.arguments, "port"))
         print_serial(sample.data);
   }
 }
@@ -118,14 +118,14 @@ int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus
   bus::RequestClient bridge(watch.node, *command.topic, "saphira device");
   const v1::Answer answer =
       bridge.ask(to_bus(command.request), kDevicePatience, &stop, [&] { watch.poll(); });
-  if (answer.code() == v1::ANSWER_NOBODY && answer.service().empty())
+  if (answer.code == v1::ANSWER_NOBODY && answer.service.empty())
     return nobody(watch);
-  if (answer.code() == v1::ANSWER_TOO_LATE && answer.service().empty()) {
-    std::cerr << "saphira: " << answer.text() << "; " << who_is_there(watch.processes) << '\n';
+  if (answer.code == v1::ANSWER_TOO_LATE && answer.service.empty()) {
+    std::cerr << "saphira: " << answer.text << "; " << who_is_there(watch.processes) << '\n';
     return bus::kExitFailed;
   }
-  std::printf("%s\n", answer.text().c_str());
-  if (!bus::well(answer.code()))
+  std::printf("%s\n", answer.text.c_str());
+  if (!bus::well(answer.code))
     return bus::kExitFailed;
   if (number_of(command.request.arguments, "answer") > 0)
     wait_for_serial(watch, serial, command.request, stop);

@@ -29,23 +29,23 @@ DirectDriver::DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& 
 
 void DirectDriver::drive(v1::MotorCommand command) {
   // The stamp names the robot state that the command answers: an old one is refused.
-  if (command.stamp().cycle() == 0 && robot_)
-    command.stamp(robot_->stamp());
-  if (command.source().empty())
-    command.source(source_);
-  source_ = command.source();
+  if (command.stamp.cycle == 0 && robot_)
+    command.stamp = robot_->stamp;
+  if (command.source.empty())
+    command.source = source_;
+  source_ = command.source;
   if (number_ == 0)
     drove_ = Clock::now();
-  command.number(++number_);
+  command.number = ++number_;
   // Unique over restarts too, or the bridge would take the first for an old one.
-  command.move(node_.instance() + command.move());
+  command.move = node_.instance() + command.move;
   commands_.write(command);
 }
 
 void DirectDriver::release() {
   for (int i = 0; i < kReleases; ++i) {
     v1::MotorCommand command;
-    command.source(source_);
+    command.source = source_;
     drive(command);
     node_.wait(milliseconds(20));
   }
@@ -59,9 +59,9 @@ void DirectDriver::poll() {
     grant_ = sample.data;
     if (std::string who = stops_.hear(*grant_); !who.empty())
       stopped_by_ = std::move(who);
-    for (const v1::Refusal& refusal : grant_->refused())
-      if (refusal.source() == source_)
-        refusal_ = refusal.reason();
+    for (const v1::Refusal& refusal : grant_->refused)
+      if (refusal.source == source_)
+        refusal_ = refusal.reason;
   }
   if (drives()) {
     refusal_.clear();
@@ -70,7 +70,7 @@ void DirectDriver::poll() {
 }
 
 bool DirectDriver::drives() const {
-  return grant_ && grant_->role() != v1::ROLE_NONE && grant_->source() == source_;
+  return grant_ && grant_->role != v1::ROLE_NONE && grant_->source == source_;
 }
 
 std::string DirectDriver::trouble() const {
@@ -81,9 +81,9 @@ std::string DirectDriver::trouble() const {
     return "refused: " + refusal_;
   if (!drives())
     return seconds_since(drove_) < kUnanswered ? "" : describe(*grant_);
-  if (grant_->guard() != v1::GUARD_NONE)
-    return "the guard beside the robot " + std::string(name_of(grant_->guard())) +
-           " it: " + grant_->guard_reason();
+  if (grant_->guard != v1::GUARD_NONE)
+    return "the guard beside the robot " + std::string(name_of(grant_->guard)) +
+           " it: " + grant_->guard_reason;
   return {};
 }
 

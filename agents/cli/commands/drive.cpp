@@ -204,7 +204,7 @@ class Teleop {
       take();
       if (!grant_)
         continue;
-      if (!grant_->waits_for_hand_back() && !grant_->estopped()) {
+      if (!grant_->waits_for_hand_back && !grant_->estopped) {
         print("%s\n", waited ? "handed back: autonomy may drive"
                              : ("nothing waits to be handed back: " + describe(*grant_)).c_str());
         return bus::kExitOk;
@@ -317,8 +317,8 @@ class Teleop {
     }
     keys_.release();
     v1::Goal goal;
-    goal.functor("drive");
-    goal.arguments({bus::number("speed", kConstantVelocity)});
+    goal.functor = "drive";
+    goal.arguments = {bus::number("speed", kConstantVelocity)};
     constant_ = goals_.ask(goal);
     pilot_.hand_back();
     note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";
@@ -334,14 +334,14 @@ class Teleop {
     processes_.poll();
     goals_.poll();
     for (const v1::Answer& answer : stops_.poll())
-      note_ = answer.text();
+      note_ = answer.text;
     if (const auto robot = robots_.take_newest()) {
       robot_ = *robot;
       robot_came_ = Clock::now();
     }
     if (const auto description = descriptions_.take_newest()) {
-      keys_.set_max_velocity(description->max_velocity());
-      joystick_.stick().set_max_velocity(description->max_velocity());
+      keys_.set_max_velocity(description->max_velocity);
+      joystick_.stick().set_max_velocity(description->max_velocity);
     }
     if (!joystick_.there() && seconds_since(looked_) > 1.0) {
       joystick_.open();
@@ -355,7 +355,7 @@ class Teleop {
     }
     if (constant_)
       if (const auto status = goals_.status(*constant_)) {
-        if (bus::ended(status->state())) {
+        if (bus::ended(status->state)) {
           note_ = "constant velocity " + bus::describe(*status);
           constant_.reset();
         }
@@ -371,12 +371,12 @@ class Teleop {
     if (const Order stick = joystick_.stick().order(now()); stick.active && !order.active)
       order = stick;
     if (robot_)
-      order.cycle = robot_->stamp().cycle();
+      order.cycle = robot_->stamp.cycle;
     return order;
   }
 
   bool send() {
-    const auto command = pilot_.drive(wanted(), robot_ ? robot_->stamp() : v1::Stamp());
+    const auto command = pilot_.drive(wanted(), robot_ ? robot_->stamp : v1::Stamp());
     if (command)
       commands_.write(*command);
     return command.has_value();
@@ -393,11 +393,10 @@ class Teleop {
     } else {
       line =
           format("want %+.2f m/s  is %+.2f m/s %+4.0f deg/s  at (%.2f, %.2f) %4.0f deg  %.1f V%s%s",
-                 setpoint.velocity, robot_->velocity(), degrees(robot_->rotation_velocity()),
-                 robot_->pose_in_odom().x(), robot_->pose_in_odom().y(),
-                 degrees(robot_->pose_in_odom().th()), robot_->battery(),
-                 robot_->left_stalled() ? "  LEFT STALLED" : "",
-                 robot_->right_stalled() ? "  RIGHT STALLED" : "");
+                 setpoint.velocity, robot_->velocity, degrees(robot_->rotation_velocity),
+                 robot_->pose_in_odom.x, robot_->pose_in_odom.y, degrees(robot_->pose_in_odom.th),
+                 robot_->battery, robot_->left_stalled ? "  LEFT STALLED" : "",
+                 robot_->right_stalled ? "  RIGHT STALLED" : "");
     }
     const bool still = setpoint.velocity == 0.0 && setpoint.rotation == 0.0 &&
                        (!setpoint.turn || setpoint.turn->by == 0.0);
@@ -436,7 +435,7 @@ class Teleop {
       node_.wait(milliseconds(20));
     take();
     out().flush(milliseconds(100));  // the last picture comes before it
-    if (grant_ && grant_->waits_for_hand_back())
+    if (grant_ && grant_->waits_for_hand_back)
       print("\n%s\n", latched(*grant_).c_str());
     if (constant_) {
       end_constant();

@@ -34,7 +34,7 @@ class Button {
       write(false);
       node_.wait(kAgain, &stop);
       poll();
-      const bool all = bridges_.all([](const v1::Grant& one) { return one.estopped(); });
+      const bool all = bridges_.all([](const v1::Grant& one) { return one.estopped; });
       if (all && after == 0.0)
         after = seconds_since(began_);
       if (all && seconds_since(began_) >= kAllHeard) {
@@ -65,14 +65,14 @@ class Button {
   int reset(const bus::Stop& stop) {
     const v1::Answer answer =
         resets_.ask(bus::request("reset"), kResetLimit, &stop, [this] { poll(); });
-    if (!bus::well(answer.code())) {
-      complain("saphira: not reset: %s\n", answer.code() == v1::ANSWER_NOBODY
+    if (!bus::well(answer.code)) {
+      complain("saphira: not reset: %s\n", answer.code == v1::ANSWER_NOBODY
                                                ? ("no bridge is heard; " + why_nobody()).c_str()
-                                               : answer.text().c_str());
+                                               : answer.text.c_str());
       return bus::kExitFailed;
     }
-    if (!answer.text().empty()) {
-      print("%s\n", answer.text().c_str());
+    if (!answer.text.empty()) {
+      print("%s\n", answer.text.c_str());
       return bus::kExitOk;
     }
     // The next grant shows the release of the stop, and autonomy's wait.
@@ -86,10 +86,10 @@ class Button {
       return bus::kExitFailed;
     }
     const v1::Grant& grant = *bridges_.newest();
-    print("the emergency stop%s is reset; the robot stands until a new command: %s\n",
-          bridges_.several().c_str(),
-          grant.waits_for_hand_back() ? latched(grant).c_str()
-                                      : "saphira goal ..., or saphira drive");
+    print(
+        "the emergency stop%s is reset; the robot stands until a new command: %s\n",
+        bridges_.several().c_str(),
+        grant.waits_for_hand_back ? latched(grant).c_str() : "saphira goal ..., or saphira drive");
     return bus::kExitOk;
   }
 
@@ -107,7 +107,7 @@ class Button {
     bridges_.poll();
   }
   bool released() const {
-    return bridges_.all([](const v1::Grant& one) { return !one.estopped(); });
+    return bridges_.all([](const v1::Grant& one) { return !one.estopped; });
   }
 
   std::string why_nobody() const { return who_is_there(processes_); }

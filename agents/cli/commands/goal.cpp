@@ -56,13 +56,13 @@ class Follower {
   /// True when the goal has come to its end.
   bool show(const v1::GoalStatus& status) {
     // Progress alone is printed every tenth.
-    const std::string key = bus::describe(status.state()) + status.step() + status.reason() +
-                            status.note() + std::to_string(std::floor(status.progress() * 10.0));
+    const std::string key = bus::describe(status.state) + status.step + status.reason +
+                            status.note + std::to_string(std::floor(status.progress * 10.0));
     if (key != last_) {
-      print("%7.1f s  %s\n", status.elapsed(), bus::describe(status).c_str());
+      print("%7.1f s  %s\n", status.elapsed, bus::describe(status).c_str());
       last_ = key;
     }
-    return bus::ended(status.state());
+    return bus::ended(status.state);
   }
 
  private:
@@ -89,15 +89,15 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     bridges.poll();
     for (const v1::Answer& answer : stops.poll()) {
       if (!std::exchange(confirmed, true))
-        print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text().c_str(),
+        print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text.c_str(),
               seconds_since(began));
-      if (!bus::ended(answer.code()))
+      if (!bus::ended(answer.code))
         continue;
-      if (!bus::well(answer.code())) {
-        complain("saphira: %s. The latched stop is saphira estop.\n", answer.text().c_str());
+      if (!bus::well(answer.code)) {
+        complain("saphira: %s. The latched stop is saphira estop.\n", answer.text.c_str());
         return bus::kExitFailed;
       }
-      print("%s, after %.2f s\n", answer.text().c_str(), seconds_since(began));
+      print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
       ++done;
     }
     if (done > 0 && seconds_since(began) >= kAllHeard && done >= bridges.count()) {
@@ -127,12 +127,12 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
 
 int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   v1::Goal goal = parse_request(options.words);
-  if (goal.functor() == "stop")
+  if (goal.functor == "stop")
     return stop_robot(node_options, stop);
-  goal.priority(options.priority);
-  goal.deadline(options.deadline);
-  goal.level(options.level);
-  goal.writer_lost(options.keep ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
+  goal.priority = options.priority;
+  goal.deadline = options.deadline;
+  goal.level = options.level;
+  goal.writer_lost = options.keep ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL;
 
   bus::Node node(node_options);
   Processes processes(node);
@@ -157,9 +157,9 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
     if (status && follower.show(*status)) {
       deployments.settle(stop);
       if (const std::string advice = advice_after_failure(goal);
-          status->state() == v1::GOAL_FAILED && !advice.empty())
+          status->state == v1::GOAL_FAILED && !advice.empty())
         print("           %s\n", advice.c_str());
-      return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
+      return status->state == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     }
     const bool empty = processes.all().empty();
     if (!status && seconds_since(began) > told + 3.0) {
@@ -231,9 +231,8 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   });
   deployments.settle(stop);
   for (const v1::GoalStatus& status : goals.statuses())
-    std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),
-                status.functor().c_str(), status.requester().c_str(),
-                bus::describe(status).c_str());
+    std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id).c_str(), status.functor.c_str(),
+                status.requester.c_str(), bus::describe(status).c_str());
   if (!goals.statuses().empty())
     return bus::kExitOk;
   const bool alone = processes.all().empty();
@@ -246,17 +245,17 @@ const char* kind_word(v1::ParameterKind kind) {
 }
 
 void print_schema(const v1::ActivitySchema& schema) {
-  std::printf("%s  %s%s%s\n", schema.name().c_str(), schema.summary().c_str(),
-              schema.source().empty() ? "" : "  ", schema.source().c_str());
-  for (const v1::ActivityParameter& parameter : schema.parameters()) {
-    std::printf("  %s  %s", parameter.name().c_str(), kind_word(parameter.kind()));
-    if (parameter.kind() == v1::PARAMETER_NUMBER && parameter.low() < parameter.high())
-      std::printf(", %g to %g", parameter.low(), parameter.high());
-    if (!parameter.unit().empty())
-      std::printf(" [%s]", parameter.unit().c_str());
-    std::printf("%s\n", parameter.required()        ? ", required"
-                        : parameter.usual().empty() ? ""
-                                                    : (", usual: " + parameter.usual()).c_str());
+  std::printf("%s  %s%s%s\n", schema.name.c_str(), schema.summary.c_str(),
+              schema.source.empty() ? "" : "  ", schema.source.c_str());
+  for (const v1::ActivityParameter& parameter : schema.parameters) {
+    std::printf("  %s  %s", parameter.name.c_str(), kind_word(parameter.kind));
+    if (parameter.kind == v1::PARAMETER_NUMBER && parameter.low < parameter.high)
+      std::printf(", %g to %g", parameter.low, parameter.high);
+    if (!parameter.unit.empty())
+      std::printf(" [%s]", parameter.unit.c_str());
+    std::printf("%s\n", parameter.required        ? ", required"
+                        : parameter.usual.empty() ? ""
+                                                  : (", usual: " + parameter.usual).c_str());
   }
 }
 
@@ -283,15 +282,15 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
   }
   bool any = false;
   std::vector<std::string> names;
-  for (const v1::ActivitySchema& schema : known->schemas()) {
-    names.push_back(schema.name());
-    if (options.words.size() == 2 && schema.name() != options.words[1])
+  for (const v1::ActivitySchema& schema : known->schemas) {
+    names.push_back(schema.name);
+    if (options.words.size() == 2 && schema.name != options.words[1])
       continue;
     print_schema(schema);
     any = true;
   }
-  if (!known->trouble().empty())
-    std::printf("%s\n", known->trouble().c_str());
+  if (!known->trouble.empty())
+    std::printf("%s\n", known->trouble.c_str());
   if (!any && options.words.size() == 2) {
     std::cerr << "saphira: there is no activity \"" << options.words[1] << '"'
               << did_you_mean(options.words[1], names, "; saphira goal activities lists them")

@@ -20,8 +20,8 @@ std::string clock_time(std::int64_t time_ns) {
 }
 
 std::string record_line(const v1::LogRecord& record) {
-  return clock_time(record.time_ns()) + "  " + name_of(record.level()) + "  " + record.name() +
-         "  " + record.text() + "\n";
+  return clock_time(record.time_ns) + "  " + name_of(record.level) + "  " + record.name + "  " +
+         record.text + "\n";
 }
 
 /// The newest lines, of all programs together.
@@ -35,7 +35,7 @@ int newest(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop
          (lines.empty() || seconds_since(came) < kQuiet)) {
     for (const auto& sample : reader.take())
       if (!sample.info.disposed) {
-        lines.emplace(sample.data.time_ns(), record_line(sample.data));
+        lines.emplace(sample.data.time_ns, record_line(sample.data));
         came = Clock::now();
       }
     node.wait(std::chrono::milliseconds(50), &stop);

@@ -31,11 +31,11 @@ constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot
 
 /// The belief with the zones by advice, its value without the quotation marks.
 v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
-  for (const v1::Belief& belief : beliefs.beliefs())
-    if (const std::string& value = belief.value();
-        belief.name() == maps::kHazards && value.size() > 2 && value.front() == '"') {
+  for (const v1::Belief& belief : beliefs.beliefs)
+    if (const std::string& value = belief.value;
+        belief.name == maps::kHazards && value.size() > 2 && value.front() == '"') {
       v1::Belief found = belief;
-      found.value(value.substr(1, value.size() - 2));
+      found.value = value.substr(1, value.size() - 2);
       return found;
     }
   return {};
@@ -53,7 +53,7 @@ class View {
     if (const auto grant = grants_.take_newest())
       holds = latched(*grant);
     if (const auto description = descriptions_.take_newest())
-      radius = description->radius();
+      radius = description->radius;
     if (const auto beliefs = beliefs_.take_newest())
       hazards = hazards_in(*beliefs);
     if (auto newest = maps_.take_newest()) {
@@ -82,15 +82,11 @@ class View {
     return false;
   }
 
-  bool tracking() const {
-    return registration && registration->state() == v1::REGISTRATION_TRACKING;
-  }
-  Vec2 position() const {
-    return {registration->pose_in_map().x(), registration->pose_in_map().y()};
-  }
+  bool tracking() const { return registration && registration->state == v1::REGISTRATION_TRACKING; }
+  Vec2 position() const { return {registration->pose_in_map.x, registration->pose_in_map.y}; }
 
   std::set<std::uint32_t> closed_doors() const {
-    const auto& doors = registration->closed_doors();
+    const auto& doors = registration->closed_doors;
     return {doors.begin(), doors.end()};
   }
 
@@ -118,14 +114,13 @@ int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   std::printf("map %s%s: %s\n",
-              view.sample->source().empty() ? "from nothing" : view.sample->source().c_str(),
-              view.sample->changed() ? ", changed" : "",
+              view.sample->source.empty() ? "from nothing" : view.sample->source.c_str(),
+              view.sample->changed ? ", changed" : "",
               counted(view.map.features.size(), "artifact").c_str());
   auto told = Clock::now() - std::chrono::seconds(1);
   do {
     if (view.registration && seconds_since(told) >= 1.0) {
-      std::printf("%8.1f s  %s%s%s\n",
-                  0.1 * static_cast<double>(view.registration->stamp().cycle()),
+      std::printf("%8.1f s  %s%s%s\n", 0.1 * static_cast<double>(view.registration->stamp.cycle),
                   describe(*view.registration, view.map).c_str(), view.holds.empty() ? "" : "; ",
                   view.holds.c_str());
       std::fflush(stdout);
@@ -169,35 +164,35 @@ std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
   int high = 0;
   const v1::GridTile* first = nullptr;
   for (const v1::GridTile& tile : tiles) {
-    if (tile.odom() != registration.odom() || tile.side() == 0)
+    if (tile.odom != registration.odom || tile.side == 0)
       continue;
-    left = first == nullptr ? tile.column() : std::min<int>(left, tile.column());
-    right = first == nullptr ? tile.column() : std::max<int>(right, tile.column());
-    low = first == nullptr ? tile.row() : std::min<int>(low, tile.row());
-    high = first == nullptr ? tile.row() : std::max<int>(high, tile.row());
+    left = first == nullptr ? tile.column : std::min<int>(left, tile.column);
+    right = first == nullptr ? tile.column : std::max<int>(right, tile.column);
+    low = first == nullptr ? tile.row : std::min<int>(low, tile.row);
+    high = first == nullptr ? tile.row : std::max<int>(high, tile.row);
     first = first == nullptr ? &tile : first;
   }
   if (first == nullptr)
     return raster;
-  const int side = static_cast<int>(first->side());
-  const double edge = side * first->resolution();
+  const int side = static_cast<int>(first->side);
+  const double edge = side * first->resolution;
   raster.emplace();
-  raster->cell = first->resolution();
+  raster->cell = first->resolution;
   raster->width = (right - left + 1) * side;
   raster->height = (high - low + 1) * side;
   raster->lower_left_in_map =
-      compose(lps::from_bus(registration.odom_in_map()), {left * edge, low * edge, 0.0});
+      compose(lps::from_bus(registration.odom_in_map), {left * edge, low * edge, 0.0});
   raster->occupied.assign(
       static_cast<std::size_t>(raster->width) * static_cast<std::size_t>(raster->height), -1.0F);
   for (const v1::GridTile& tile : tiles) {
-    if (tile.odom() != registration.odom() || static_cast<int>(tile.side()) != side)
+    if (tile.odom != registration.odom || static_cast<int>(tile.side) != side)
       continue;
-    for (std::size_t i = 0; i < tile.cells().size(); ++i) {
-      const int x = (tile.column() - left) * side + static_cast<int>(i) % side;
-      const int y = (tile.row() - low) * side + static_cast<int>(i) / side;
-      if (tile.cells()[i] <= 200 && y < raster->height)
+    for (std::size_t i = 0; i < tile.cells.size(); ++i) {
+      const int x = (tile.column - left) * side + static_cast<int>(i) % side;
+      const int y = (tile.row - low) * side + static_cast<int>(i) / side;
+      if (tile.cells[i] <= 200 && y < raster->height)
         raster->occupied[static_cast<std::size_t>(y * raster->width + x)] =
-            static_cast<float>(tile.cells()[i]) / 200.0F;
+            static_cast<float>(tile.cells[i]) / 200.0F;
     }
   }
   return raster;
@@ -205,27 +200,27 @@ std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
 
 /// Adds a drawing of a program (manual 6.8), at its present place on the map.
 void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::Drawing& drawing) {
-  const Pose odom = lps::from_bus(registration.odom_in_map());
-  const Pose frame = drawn.frame() == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map())
-                     : drawn.frame() == v1::FRAME_ODOM ? odom
-                                                       : Pose{};
-  const std::string color = format("#%02x%02x%02x", drawn.red(), drawn.green(), drawn.blue());
+  const Pose odom = lps::from_bus(registration.odom_in_map);
+  const Pose frame = drawn.frame == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map)
+                     : drawn.frame == v1::FRAME_ODOM ? odom
+                                                     : Pose{};
+  const std::string color = format("#%02x%02x%02x", drawn.red, drawn.green, drawn.blue);
   std::vector<Vec2> points;
-  for (const v1::DrawnPoint& point : drawn.points())
-    if (std::isfinite(point.x()) && std::isfinite(point.y()))
-      points.emplace_back(point.x(), point.y());
+  for (const v1::DrawnPoint& point : drawn.points)
+    if (std::isfinite(point.x) && std::isfinite(point.y))
+      points.emplace_back(point.x, point.y);
   const bool in_legend =
       std::any_of(drawing.strokes.begin(), drawing.strokes.end(),
-                  [&](const maps::Strokes& one) { return one.name == drawn.source(); });
-  const double width = std::isfinite(drawn.width()) ? std::clamp(drawn.width(), 0.04, 1.0) : 0.04;
-  maps::Strokes strokes{in_legend ? std::string() : drawn.source(), color, width, {}};
+                  [&](const maps::Strokes& one) { return one.name == drawn.source; });
+  const double width = std::isfinite(drawn.width) ? std::clamp(drawn.width, 0.04, 1.0) : 0.04;
+  maps::Strokes strokes{in_legend ? std::string() : drawn.source, color, width, {}};
   const auto line = [&](const Vec2& from, const Vec2& to) {
     strokes.lines.push_back(transform(frame, from));
     strokes.lines.push_back(transform(frame, to));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2& a = points[i];
-    if (drawn.shape() == v1::DRAWING_POINTS) {
+    if (drawn.shape == v1::DRAWING_POINTS) {
       constexpr double kArm = 0.06;  // [m]
       line(a - Vec2(kArm, 0.0), a + Vec2(kArm, 0.0));
       line(a - Vec2(0.0, kArm), a + Vec2(0.0, kArm));
@@ -233,21 +228,21 @@ void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::D
     if (i + 1 == points.size())
       break;
     const Vec2& b = points[i + 1];
-    if (drawn.shape() == v1::DRAWING_LINE) {
+    if (drawn.shape == v1::DRAWING_LINE) {
       line(a, b);
-    } else if (drawn.shape() == v1::DRAWING_RECTANGLE && i % 2 == 0) {
+    } else if (drawn.shape == v1::DRAWING_RECTANGLE && i % 2 == 0) {
       const std::array<Vec2, 4> corners{a, Vec2(b.x(), a.y()), b, Vec2(a.x(), b.y())};
       for (std::size_t k = 0; k < corners.size(); ++k)
         line(corners[k], corners[(k + 1) % corners.size()]);
-    } else if (drawn.shape() == v1::DRAWING_ARROW && i % 2 == 0) {
+    } else if (drawn.shape == v1::DRAWING_ARROW && i % 2 == 0) {
       line(a, b);
       const double th = std::atan2(b.y() - a.y(), b.x() - a.x());
       for (const double wing : {0.5, -0.5})
         line(b - 0.2 * Vec2(std::cos(th + wing), std::sin(th + wing)), b);
     }
   }
-  if (drawn.shape() == v1::DRAWING_TEXT && !points.empty())
-    drawing.words.push_back({transform(frame, points[0]), drawn.text(), color});
+  if (drawn.shape == v1::DRAWING_TEXT && !points.empty())
+    drawing.words.push_back({transform(frame, points[0]), drawn.text, color});
   else
     drawing.strokes.push_back(std::move(strokes));
 }
@@ -271,24 +266,24 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   const auto began = Clock::now();
   do {
     keep_newest(grid, tiles,
-                [](const v1::GridTile& tile) { return std::pair(tile.column(), tile.row()); });
+                [](const v1::GridTile& tile) { return std::pair(tile.column, tile.row); });
     keep_newest(drawings, drawn,
-                [](const v1::Drawing& one) { return std::pair(one.instance(), one.number()); });
+                [](const v1::Drawing& one) { return std::pair(one.instance, one.number); });
     if (const auto seen = perceptions.take_newest())
-      for (const v1::Percept& percept : seen->percepts())
-        percepts[percept.id()] = lps::from_bus(percept.pose_in_odom());
+      for (const v1::Percept& percept : seen->percepts)
+        percepts[percept.id] = lps::from_bus(percept.pose_in_odom);
     if (view.poll() && view.tracking()) {
       way.points_in_map.push_back(view.position());
-      for (const v1::Match& match : view.registration->matches()) {
-        const auto percept = percepts.find(match.percept());
+      for (const v1::Match& match : view.registration->matches) {
+        const auto percept = percepts.find(match.percept);
         const maps::Feature* const artifact =
-            match.artifact() == 0 ? nullptr : maps::find(view.map, match.artifact());
+            match.artifact == 0 ? nullptr : maps::find(view.map, match.artifact);
         // A corridor's middle is not the place of its match.
         if (percept != percepts.end() && artifact != nullptr &&
             artifact->type != lps::PointType::corridor)
-          drawing.matches.push_back({transform(lps::from_bus(view.registration->odom_in_map()),
-                                               percept->second.position()),
-                                     artifact->pose_in_map.position(), match.accepted()});
+          drawing.matches.push_back(
+              {transform(lps::from_bus(view.registration->odom_in_map), percept->second.position()),
+               artifact->pose_in_map.position(), match.accepted});
       }
     }
     view.node.wait(milliseconds(100), &stop);
@@ -301,20 +296,20 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
     add(one, *view.registration, drawing);
   drawing.map = view.map;
   drawing.closed_doors = view.closed_doors();
-  const maps::Feature* const in = maps::find(view.map, view.registration->environment());
-  drawing.title = name_of(view.registration->state()) +
-                  (in == nullptr ? std::string() : ", in " + describe(*in));
+  const maps::Feature* const in = maps::find(view.map, view.registration->environment);
+  drawing.title =
+      name_of(view.registration->state) + (in == nullptr ? std::string() : ", in " + describe(*in));
   drawing.raster = raster_of(all, *view.registration);
   if (!way.points_in_map.empty())
     drawing.trajectories.push_back(std::move(way));
-  const v1::Covariance2& c = view.registration->covariance();
+  const v1::Covariance2& c = view.registration->covariance;
   drawing.robot.emplace();
-  drawing.robot->pose_in_map = lps::from_bus(view.registration->pose_in_map());
+  drawing.robot->pose_in_map = lps::from_bus(view.registration->pose_in_map);
   if (const auto description = descriptions.take_newest())
-    drawing.robot->radius = description->radius();
-  drawing.robot->xx = c.xx();
-  drawing.robot->yy = c.yy();
-  drawing.robot->xy = c.xy();
+    drawing.robot->radius = description->radius;
+  drawing.robot->xx = c.xx;
+  drawing.robot->yy = c.yy;
+  drawing.robot->xy = c.xy;
   return write_out(path, maps::to_svg(drawing));
 }
 
@@ -322,15 +317,15 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
 bool ask(View& view, const Request& asked, const bus::Stop& stop) {
   const v1::Answer answer =
       view.registration_client.ask(to_bus(asked), kMapPatience, &stop, [&] { view.poll(); });
-  if (answer.service().empty()) {
+  if (answer.service.empty()) {
     std::cerr << "saphira: registration did not answer; " << who_is_there(view.processes) << '\n';
     return false;
   }
-  if (!bus::well(answer.code()))
-    std::cerr << "saphira: " << answer.text() << '\n';
+  if (!bus::well(answer.code))
+    std::cerr << "saphira: " << answer.text << '\n';
   else if (const double id = number_of(from_bus(answer).results, "id"); id != 0.0)
     std::printf("artifact %.0f\n", id);
-  return bus::well(answer.code());
+  return bus::well(answer.code);
 }
 
 int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
@@ -351,8 +346,7 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   settings.closed = view.closed_doors();
   if (view.radius)
     settings.needs_width = maps::needed_width(*view.radius);
-  settings.zones =
-      maps::all_zones(view.map, topology, view.hazards.value(), view.hazards.said_by());
+  settings.zones = maps::all_zones(view.map, topology, view.hazards.value, view.hazards.said_by);
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route) {
     std::cerr << "saphira: " << found.reason << '\n';
@@ -379,7 +373,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     return bus::kExitFailed;
   bus::GoalClient goals(view.node, "saphira map build");
   v1::Goal wanted;
-  wanted.functor("build-map");
+  wanted.functor = "build-map";
   const v1::GoalId goal = goals.ask(wanted);
   std::string told;
   std::size_t corridors = 0;
@@ -396,8 +390,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
       now_doors += feature.type == lps::PointType::door ? 1U : 0U;
     }
     const auto status = goals.status(goal);
-    done = status && bus::ended(status->state());
-    std::string news = status ? (done ? status->reason() : status->step()) : std::string();
+    done = status && bus::ended(status->state);
+    std::string news = status ? (done ? status->reason : status->step) : std::string();
     if (!done && !view.holds.empty())
       news += (news.empty() ? "" : "; ") + view.holds;
     if (now_corridors != corridors || now_doors != doors)
@@ -408,12 +402,12 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     if (news.empty() || news == told)
       continue;
     told = news;
-    print("%8.1f s  %s\n", status ? status->elapsed() : 0.0, news.c_str());
+    print("%8.1f s  %s\n", status ? status->elapsed : 0.0, news.c_str());
   }
   flush_output();
   const auto status = goals.status(goal);
-  const bool whole = status && status->state() == v1::GOAL_SUCCEEDED;
-  if (status && status->state() == v1::GOAL_REFUSED)
+  const bool whole = status && status->state == v1::GOAL_SUCCEEDED;
+  if (status && status->state == v1::GOAL_REFUSED)
     return bus::kExitFailed;
   if (!done) {
     goals.cancel(goal);

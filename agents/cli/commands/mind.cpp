@@ -32,7 +32,7 @@ void Mind::recall() {
 void Mind::poll() {
   processes_.poll();
   if (const auto description = description_reader_.take_newest())
-    lockstep_ = description->lockstep();
+    lockstep_ = description->lockstep;
   if (recall_) {
     robots_.take(recall_->robots);
     grants_.take(recall_->grants);
@@ -48,18 +48,18 @@ void Mind::poll() {
   behaviors_.take(behavior_reader_);
   intentions_.take(intention_reader_);
   for (const auto& sample : goal_reader_.take())
-    if (!sample.info.disposed && sample.data.withdrawn().empty())
-      goals_[{sample.data.id().writer(), sample.data.id().number()}] = sample.data;
+    if (!sample.info.disposed && sample.data.withdrawn.empty())
+      goals_[{sample.data.id.writer, sample.data.id.number}] = sample.data;
   keep_newest(status_reader_, statuses_, [](const v1::GoalStatus& status) {
-    return Key{status.id().writer(), status.id().number()};
+    return Key{status.id.writer, status.id.number};
   });
   keep_newest(process_reader_, services_,
-              [](const v1::ProcessSet& service) { return service.instance(); });
+              [](const v1::ProcessSet& service) { return service.instance; });
   for (const auto& sample : program_reader_.take()) {
     if (sample.info.disposed)
-      programs_.erase(sample.data.instance());
+      programs_.erase(sample.data.instance);
     else
-      programs_[sample.data.instance()].note(sample.data);
+      programs_[sample.data.instance].note(sample.data);
   }
   if (auto schemas = schema_reader_.take_newest())
     schemas_ = std::move(schemas);
@@ -69,7 +69,7 @@ void Mind::poll() {
     if (!situation::is_doubtful(*registration))
       doubtful_since_ = 0;
     else if (registration_ && !situation::is_doubtful(*registration_))
-      doubtful_since_ = registration->stamp().cycle();
+      doubtful_since_ = registration->stamp.cycle;
     registration_ = std::move(registration);
   }
   if (!recall_ && !heard() && seconds_since(began_) > kSilence)
@@ -80,7 +80,7 @@ std::vector<const v1::ProgramMind*> Mind::programs() const {
   std::vector<const v1::ProgramMind*> result;
   for (const auto& [instance, past] : programs_)
     if (past.newest() != nullptr && past.epoch() == robots_.epoch() &&
-        past.newest()->stamp().cycle() + kSaidLately >= robots_.known().newest)
+        past.newest()->stamp.cycle + kSaidLately >= robots_.known().newest)
       result.push_back(past.newest());
   return result;
 }
@@ -89,11 +89,11 @@ std::vector<const v1::ProgramMind*> Mind::programs() const {
 const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cycle) const {
   for (const auto& [instance, past] : programs_)
     if (past.epoch() == robots_.epoch() && past.newest() != nullptr &&
-        past.newest()->source() == source)
+        past.newest()->source == source)
       if (const v1::ProgramMind* const then = past.at(cycle);
-          then != nullptr && then->behaviors().control() &&
-          std::any_of(then->behaviors().behaviors().begin(), then->behaviors().behaviors().end(),
-                      [](const v1::BehaviorState& each) { return each.running(); }))
+          then != nullptr && then->behaviors.control &&
+          std::any_of(then->behaviors.behaviors.begin(), then->behaviors.behaviors.end(),
+                      [](const v1::BehaviorState& each) { return each.running; }))
         return then;
   return nullptr;
 }
@@ -104,8 +104,8 @@ void Mind::listen(std::chrono::milliseconds time, const bus::Stop& stop) {
 
 const v1::BehaviorSchema* Mind::schema(const std::string& name) const {
   if (schemas_)
-    for (const v1::BehaviorSchema& schema : schemas_->schemas())
-      if (schema.name() == name)
+    for (const v1::BehaviorSchema& schema : schemas_->schemas)
+      if (schema.name == name)
         return &schema;
   return nullptr;
 }
@@ -113,7 +113,7 @@ const v1::BehaviorSchema* Mind::schema(const std::string& name) const {
 void Mind::take_past_goals() {
   for (const auto& sample : recall_->goals.take())
     if (!sample.info.disposed)
-      past_goals_[{sample.data.stamp().epoch(), sample.data.stamp().cycle()}] = sample.data;
+      past_goals_[{sample.data.stamp.epoch, sample.data.stamp.cycle}] = sample.data;
 }
 
 /// From the newest report of intentions in that cycle.
@@ -121,7 +121,7 @@ std::vector<v1::GoalStatus> Mind::goals_at(std::uint64_t cycle) const {
   auto after = past_goals_.upper_bound({robots_.epoch(), cycle});
   if (after == past_goals_.begin() || std::prev(after)->first.first != robots_.epoch())
     return {};
-  return std::prev(after)->second.goals();
+  return std::prev(after)->second.goals;
 }
 
 /// A command's effect shows in the grant of the next packet; in lockstep in the grant after the
@@ -142,8 +142,8 @@ bool Mind::whole(std::uint64_t cycle) const {
 std::uint64_t Mind::newest_cycle() const {
   const v1::Grant* const grant = grants_.newest();
   if (grant == nullptr)
-    return behaviors_.newest() == nullptr ? 0 : behaviors_.newest()->stamp().cycle();
-  const std::uint64_t newest = grant->stamp().cycle();
+    return behaviors_.newest() == nullptr ? 0 : behaviors_.newest()->stamp.cycle;
+  const std::uint64_t newest = grant->stamp.cycle;
   for (std::uint64_t back = 0; back < 10 && back < newest; ++back)
     if (whole(newest - back))
       return newest - back;
@@ -158,9 +158,9 @@ bool Mind::knows_goals() const {
   if (!schemas_)
     return false;
   if (const v1::Intentions* const newest = intentions_.newest())
-    for (const v1::IntentionNode& node : newest->nodes())
-      if (const Key key{node.goal().writer(), node.goal().number()};
-          node.parent() == 0 && !(statuses_.contains(key) && goals_.contains(key)))
+    for (const v1::IntentionNode& node : newest->nodes)
+      if (const Key key{node.goal.writer, node.goal.number};
+          node.parent == 0 && !(statuses_.contains(key) && goals_.contains(key)))
         return false;
   // A missing status may only be late.
   return !statuses_.empty() || seconds_since(began_) > kSoon;
@@ -177,9 +177,9 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.grant = copy(grant_for(cycle));
   // After a late command of this cycle, an earlier one holds: the reasons are from its cycle.
   std::uint64_t answered = cycle;
-  const auto drives = [&](v1::Role role) { return now.grant && now.grant->role() == role; };
-  if ((drives(v1::ROLE_BEHAVIORS) || drives(v1::ROLE_DIRECT)) && now.grant->answers().cycle() != 0)
-    answered = now.grant->answers().cycle();
+  const auto drives = [&](v1::Role role) { return now.grant && now.grant->role == role; };
+  if ((drives(v1::ROLE_BEHAVIORS) || drives(v1::ROLE_DIRECT)) && now.grant->answers.cycle != 0)
+    answered = now.grant->answers.cycle;
   if (behaviors_.epoch() == robots_.epoch())
     now.behaviors = copy(behaviors_.at(answered));
   if (answered > 0 && intentions_.epoch() == robots_.epoch())
@@ -189,9 +189,9 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.intentions_known =
       intentions_.epoch() == robots_.epoch() ? intentions_.known() : situation::Known{};
   if (const v1::ProgramMind* const own =
-          drives(v1::ROLE_DIRECT) ? program(now.grant->source(), answered) : nullptr) {
-    now.behaviors = own->behaviors();
-    now.intentions = own->intended();
+          drives(v1::ROLE_DIRECT) ? program(now.grant->source, answered) : nullptr) {
+    now.behaviors = own->behaviors;
+    now.intentions = own->intended;
     now.own_mind = true;
   }
   for (const auto& [key, goal] : goals_)
@@ -207,11 +207,11 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
       now.statuses.push_back(status);
   }
   if (schemas_)
-    now.schemas = schemas_->schemas();
+    now.schemas = schemas_->schemas;
   if (beliefs_ && !past)
-    now.beliefs = beliefs_->beliefs();
-  if (registration_ && !past && registration_->stamp().epoch() == robots_.epoch() &&
-      registration_->stamp().cycle() + kSaidLately >= robots_.known().newest) {
+    now.beliefs = beliefs_->beliefs;
+  if (registration_ && !past && registration_->stamp.epoch == robots_.epoch() &&
+      registration_->stamp.cycle + kSaidLately >= robots_.known().newest) {
     now.registration = registration_;
     now.doubtful_since = doubtful_since_;
   }
@@ -223,7 +223,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
 std::vector<v1::ProcessSet> Mind::services() const {
   std::vector<v1::ProcessSet> heard;
   for (const SeenProcess& program : processes_.all())
-    if (const auto found = services_.find(program.status.instance());
+    if (const auto found = services_.find(program.status.instance);
         found != services_.end() && program.age <= kLostAge)
       heard.push_back(found->second);
   return heard;

@@ -23,13 +23,13 @@ class Past {
     });
   }
   void note(const T& sample) {
-    if (sample.stamp().epoch() < epoch_)
+    if (sample.stamp.epoch < epoch_)
       return;
-    if (sample.stamp().epoch() > epoch_)
+    if (sample.stamp.epoch > epoch_)
       samples_.clear();
-    epoch_ = sample.stamp().epoch();
+    epoch_ = sample.stamp.epoch;
     // The first sample of a cycle stays: a second one is the cycle's result.
-    samples_.emplace(sample.stamp().cycle(), sample);
+    samples_.emplace(sample.stamp.cycle, sample);
     while (samples_.size() > kMost)
       samples_.erase(samples_.begin());
   }

@@ -43,23 +43,23 @@ int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bu
   v1::Request request =
       bus::request(asked.words[0], {bus::text("process", asked.words[2])}, asked.words[1]);
   if (asked.words[0] == "suspend")
-    request.arguments().push_back(bus::number("cycles", asked.cycles));
+    request.arguments.push_back(bus::number("cycles", asked.cycles));
   const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { mind.poll(); });
-  if (bus::well(answer.code())) {
+  if (bus::well(answer.code)) {
     // Its state is published in the cycle after that.
     mind.listen(milliseconds(300), stop);
     std::fputs(processes_table(mind.services()).c_str(), stdout);
     return bus::kExitOk;
   }
   std::string names;
-  bool there = !answer.service().empty();  // it may answer before its processes are discovered
+  bool there = !answer.service.empty();  // it may answer before its processes are discovered
   for (const v1::ProcessSet& service : mind.services()) {
-    names += (names.empty() ? "" : ", ") + service.service();
-    there = there || service.service() == request.service();
+    names += (names.empty() ? "" : ", ") + service.service;
+    there = there || service.service == request.service;
   }
   std::cerr << "saphira: "
-            << (there ? answer.text()
-                      : "no service " + request.service() + " with processes; there are " +
+            << (there ? answer.text
+                      : "no service " + request.service + " with processes; there are " +
                             (names.empty() ? "none" : names))
             << '\n';
   return bus::kExitFailed;

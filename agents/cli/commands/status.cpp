@@ -26,19 +26,19 @@ class StatusView {
       grant_ = std::move(grant);
     if (const auto robot = robots_.take_newest()) {
       // A robot in single step may stand still.
-      robot_ = robot->stamp();
+      robot_ = robot->stamp;
       robot_came_ = Clock::now();
     }
     if (const auto behaviors = behaviors_.take_newest())
-      behaved_ = behaviors->stamp();
+      behaved_ = behaviors->stamp;
     if (const auto intentions = intentions_.take_newest())
-      intended_ = intentions->stamp();
+      intended_ = intentions->stamp;
     keep_newest(goals_, statuses_, [](const v1::GoalStatus& goal) {
-      return std::pair(goal.id().writer(), goal.id().number());
+      return std::pair(goal.id.writer, goal.id.number);
     });
     for (const auto& sample : log_.take())
-      if (sample.data.text().starts_with(kStartedAgain))
-        started_again_[sample.data.instance()] = sample.data.name() + " was " + sample.data.text();
+      if (sample.data.text.starts_with(kStartedAgain))
+        started_again_[sample.data.instance] = sample.data.name + " was " + sample.data.text;
   }
 
   std::string text() const {
@@ -60,12 +60,12 @@ class StatusView {
 
   situation::Situation situation() const {
     situation::Situation now = processes_.situation();
-    now.now = robot_.cycle();
+    now.now = robot_.cycle;
     now.cycle = now.now;
     now.grant = grant_;
     now.silence = seconds_since(robot_came_);
     const auto known = [this](const v1::Stamp& stamp) {
-      const std::uint64_t cycle = stamp.epoch() == robot_.epoch() ? stamp.cycle() : 0;
+      const std::uint64_t cycle = stamp.epoch == robot_.epoch ? stamp.cycle : 0;
       return situation::Known{cycle, cycle};
     };
     now.behaviors_known = known(behaved_);
@@ -77,7 +77,7 @@ class StatusView {
 
   /// Rises with all that is noticed, and again when it is heard.
   std::size_t news() const {
-    const auto heard = [](const v1::Stamp& stamp) { return stamp.cycle() > 0 ? 1U : 0U; };
+    const auto heard = [](const v1::Stamp& stamp) { return stamp.cycle > 0 ? 1U : 0U; };
     return processes_.news() + robots_.matched() + behaviors_.matched() + intentions_.matched() +
            heard(robot_) + heard(behaved_) + heard(intended_);
   }

@@ -105,13 +105,13 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
     node.wait(milliseconds(200), &stop);
     processes.poll();
     for (const auto& sample : said.take()) {
-      if (sample.info.disposed || sample.data.answers().writer() != node.instance())
+      if (sample.info.disposed || sample.data.answers.writer != node.instance())
         continue;
       answered = true;
-      code = sample.data.refused() ? bus::kExitFailed : bus::kExitOk;
+      code = sample.data.refused ? bus::kExitFailed : bus::kExitOk;
       print("%s\n", line_of(sample.data, options.robot).c_str());
       std::fflush(stdout);
-      if (sample.data.end() || say_options.quick)
+      if (sample.data.end || say_options.quick)
         return code;
     }
     if (answered)
@@ -157,18 +157,18 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
     node.wait(milliseconds(50), &stop);
     processes.poll();
     for (const auto& sample : said.take()) {
-      const bool ours = sample.data.answers().writer() == node.instance();
+      const bool ours = sample.data.answers.writer == node.instance();
       if (sample.info.disposed ||
           !is_for(sample.data, sample.info.age, node.instance(), seconds_since(began)))
         continue;
-      const std::string& text = sample.data.text();
+      const std::string& text = sample.data.text;
       asked = text.ends_with("?") && !text.starts_with("what?");
       print("%s\n", line_of(sample.data, options.robot).c_str());
-      if (!ours || sample.data.answers().number() != number)
+      if (!ours || sample.data.answers.number != number)
         continue;
       answered = true;
-      over = over || sample.data.end();
-      code = sample.data.refused() ? bus::kExitFailed : bus::kExitOk;
+      over = over || sample.data.end;
+      code = sample.data.refused ? bus::kExitFailed : bus::kExitOk;
     }
     while (const auto line = input.next()) {
       const v1::Utterance utterance = situation::typed(
@@ -233,8 +233,8 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
   const v1::Answer answer = ask_program(
       kFacilitator, node, client,
       bus::request("forget", {bus::number("number", number)}, kDialogue), 10.0, stop, processes);
-  std::printf("%s\n", answer.text().c_str());
-  return bus::well(answer.code()) ? bus::kExitOk : bus::kExitFailed;
+  std::printf("%s\n", answer.text.c_str());
+  return bus::well(answer.code) ? bus::kExitOk : bus::kExitFailed;
 }
 
 }  // namespace

@@ -91,12 +91,12 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
 
 std::string header(const v1::Stamp& stamp, const Mind& mind) {
   const std::string holds = mind.grant() == nullptr ? "" : latched(*mind.grant());
-  return "cycle " + std::to_string(stamp.cycle()) + (holds.empty() ? "" : "  " + holds) + "\n";
+  return "cycle " + std::to_string(stamp.cycle) + (holds.empty() ? "" : "  " + holds) + "\n";
 }
 
 /// Heading of the display of a program with its own behaviors.
 std::string of_program(const v1::ProgramMind& program) {
-  return "\nof the program " + program.source() + ":\n";
+  return "\nof the program " + program.source + ":\n";
 }
 
 int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -106,10 +106,9 @@ int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const
         if (newest == nullptr)
           return std::nullopt;
         std::string text =
-            header(newest->stamp(), mind) + intentions_display(*newest, mind.behaviors());
+            header(newest->stamp, mind) + intentions_display(*newest, mind.behaviors());
         for (const v1::ProgramMind* const program : mind.programs())
-          text +=
-              of_program(*program) + intentions_display(program->intended(), &program->behaviors());
+          text += of_program(*program) + intentions_display(program->intended, &program->behaviors);
         return text;
       });
 }
@@ -119,17 +118,17 @@ int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const
 std::optional<std::string> find_behavior(const std::string& name, const v1::BehaviorSet& behaviors,
                                          const v1::Intentions* intentions, const Mind& mind,
                                          std::vector<std::string>& names) {
-  for (const v1::BehaviorState& state : behaviors.behaviors()) {
-    names.push_back(without_instance(state.name()));
-    if (state.name() != name && state.schema() != name && names.back() != name &&
-        instance_words(state.name()) != name)
+  for (const v1::BehaviorState& state : behaviors.behaviors) {
+    names.push_back(without_instance(state.name));
+    if (state.name != name && state.schema != name && names.back() != name &&
+        instance_words(state.name) != name)
       continue;
     const v1::IntendedBehavior* intended = nullptr;
     if (intentions != nullptr)
-      for (const v1::IntendedBehavior& one : intentions->behaviors())
-        if (one.name() == state.name())
+      for (const v1::IntendedBehavior& one : intentions->behaviors)
+        if (one.name == state.name)
           intended = &one;
-    return behavior_display(state, intended, mind.schema(state.schema()));
+    return behavior_display(state, intended, mind.schema(state.schema));
   }
   return std::nullopt;
 }
@@ -142,11 +141,11 @@ std::optional<std::string> behaviors_text(const std::string& name, const Mind& m
   const std::vector<const v1::ProgramMind*> programs = mind.programs();
   if (newest == nullptr && programs.empty())
     return std::nullopt;
-  std::string text = header(newest != nullptr ? newest->stamp() : programs.front()->stamp(), mind);
+  std::string text = header(newest != nullptr ? newest->stamp : programs.front()->stamp, mind);
   if (name.empty()) {
     text += newest != nullptr ? behaviors_display(*newest) : "";
     for (const v1::ProgramMind* const program : programs)
-      text += of_program(*program) + behaviors_display(program->behaviors());
+      text += of_program(*program) + behaviors_display(program->behaviors);
     return text;
   }
   std::vector<std::string> names;
@@ -154,14 +153,13 @@ std::optional<std::string> behaviors_text(const std::string& name, const Mind& m
     if (const auto found = find_behavior(name, *newest, mind.intentions(), mind, names))
       return text + *found;
   for (const v1::ProgramMind* const program : programs)
-    if (const auto found =
-            find_behavior(name, program->behaviors(), &program->intended(), mind, names))
+    if (const auto found = find_behavior(name, program->behaviors, &program->intended, mind, names))
       return text + *found;
   if (const v1::BehaviorSchema* const schema = mind.schema(name))
     return text + schema_display(*schema);
   if (mind.schemas() != nullptr)
-    for (const v1::BehaviorSchema& schema : mind.schemas()->schemas())
-      names.push_back(schema.name());
+    for (const v1::BehaviorSchema& schema : mind.schemas()->schemas)
+      names.push_back(schema.name);
   unknown = unknown_behavior(name, names);
   return text + unknown + "\n";
 }
@@ -277,18 +275,18 @@ v1::BeliefClaim claim_of(const std::string& name) {
   Fnv1a hash;
   hash.add(kClaimant + (" " + name));
   v1::BeliefClaim sample;
-  sample.id().writer(hash.value());
-  sample.id().number(1);
-  sample.source(kClaimant);
-  sample.name(name);
+  sample.id.writer = hash.value();
+  sample.id.number = 1;
+  sample.source = kClaimant;
+  sample.name = name;
   return sample;
 }
 
 /// The belief of that name from this command's claim; nullptr: none.
 const v1::Belief* claimed(const Mind& mind, const std::string& name) {
   if (mind.beliefs() != nullptr)
-    for (const v1::Belief& belief : mind.beliefs()->beliefs())
-      if (belief.name() == name && belief.said_by().find(kClaimant) != std::string::npos)
+    for (const v1::Belief& belief : mind.beliefs()->beliefs)
+      if (belief.name == name && belief.said_by.find(kClaimant) != std::string::npos)
         return &belief;
   return nullptr;
 }
@@ -325,9 +323,9 @@ int claim(const std::string& name, const std::string& value, bool hold,
   auto writer = node.writer(bus::topics::kBeliefClaims);
   v1::BeliefClaim sample = claim_of(name);
   if (hold)
-    sample.id().writer(node.instance());
-  sample.value(value);
-  sample.writer_lost(hold ? v1::WRITER_LOST_CANCEL : v1::WRITER_LOST_KEEP);
+    sample.id.writer = node.instance();
+  sample.value = value;
+  sample.writer_lost = hold ? v1::WRITER_LOST_CANCEL : v1::WRITER_LOST_KEEP;
   const auto began = Clock::now();
   std::optional<std::uint64_t> before;  // [cycle] of the earlier claim, if any
   bool written = false;
@@ -336,14 +334,14 @@ int claim(const std::string& name, const std::string& value, bool hold,
     const v1::Belief* const belief = claimed(mind, name);
     if (!written && mind.beliefs() != nullptr) {
       if (belief != nullptr)
-        before = belief->since();
+        before = belief->since;
       written = writer.write(sample);
       continue;
     }
     // In the service's notation: 1 may have become 1.0.
-    if (written && belief != nullptr && belief->since() != before) {
-      std::printf("%s = %s, said by %s\n", name.c_str(), belief->value().c_str(),
-                  belief->said_by().c_str());
+    if (written && belief != nullptr && belief->since != before) {
+      std::printf("%s = %s, said by %s\n", name.c_str(), belief->value.c_str(),
+                  belief->said_by.c_str());
       std::fflush(stdout);
       while (hold && !stop.requested())
         mind.listen(std::chrono::seconds(1), stop);

@@ -176,10 +176,10 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   listen(
       node, stop, processes, [&] { processes.poll(); }, [&] { return processes.news(); });
   for (const SeenProcess& each : processes.all())
-    if (names.contains(each.status.name()) && each.age <= kLostAge)
-      return Taken{each.status.name() + " (process " + std::to_string(each.status.pid()) + " at " +
-                       each.status.host() + ")",
-                   each.status.host() == node.status().host()};
+    if (names.contains(each.status.name) && each.age <= kLostAge)
+      return Taken{each.status.name + " (process " + std::to_string(each.status.pid) + " at " +
+                       each.status.host + ")",
+                   each.status.host == node.status().host};
   return std::nullopt;
 }
 

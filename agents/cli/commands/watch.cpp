@@ -16,7 +16,7 @@ namespace saphira::cli {
 
 void Processes::poll() {
   for (const auto& sample : reader_.take()) {
-    Entry& entry = entries_[sample.data.instance()];
+    Entry& entry = entries_[sample.data.instance];
     entry.gone = sample.info.disposed;
     if (!sample.info.disposed) {
       entry.age = entry.samples++ == 0 ? sample.info.age : std::min(entry.age, sample.info.age);
@@ -32,7 +32,7 @@ void Processes::poll() {
 std::vector<SeenProcess> Processes::all() const {
   std::vector<SeenProcess> processes;
   for (const auto& [instance, entry] : entries_)
-    if (!entry.gone && !entry.status.name().empty())
+    if (!entry.gone && !entry.status.name.empty())
       // The first sample may be that of a program which hangs: old, and kept for late readers.
       processes.push_back({entry.status, seconds_since(entry.came), bus::has_namesake(entry.status),
                            entry.samples > 1 || entry.age < 0.0 ? entry.age : 0.0});
@@ -49,7 +49,7 @@ situation::Situation Processes::situation() const {
 std::uint64_t Processes::late_cycles() const {
   std::uint64_t sum = 0;
   for (const auto& [instance, entry] : entries_)
-    sum += entry.status.late_cycles();
+    sum += entry.status.late_cycles;
   return sum;
 }
 
@@ -123,9 +123,9 @@ std::string who_is_there(const Processes& processes) {
     return "not heard (" + where + "): " + missing + "; saphira status shows what is" +
            remedy(options.profile);
   for (const SeenProcess& process : all)
-    if (process.status.state() != v1::SERVICE_RUNNING && !process.status.reason().empty())
-      return process.status.name() + " is " + name_of(process.status.state()) + ": " +
-             process.status.reason();
+    if (process.status.state != v1::SERVICE_RUNNING && !process.status.reason.empty())
+      return process.status.name + " is " + name_of(process.status.state) + ": " +
+             process.status.reason;
   if (const std::string trouble = situation::trouble(processes.situation()); !trouble.empty())
     return trouble + " (" + where + ")";
   return "bridge, behaviors and intentions are on the bus (" + where + ")";
@@ -184,8 +184,8 @@ v1::Answer ask_program(const std::string& program, bus::Node& node, bus::Request
     });
   } catch (const Absent& absent) {
     v1::Answer answer;
-    answer.code(v1::ANSWER_NOBODY);
-    answer.text(absent.words);
+    answer.code = v1::ANSWER_NOBODY;
+    answer.text = absent.words;
     return answer;
   }
 }

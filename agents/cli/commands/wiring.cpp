@@ -26,9 +26,9 @@ struct WiringOptions {
 void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProcess>& seen) {
   for (runtime::Unit& unit : units) {
     const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
-      return process.status.name() == unit.name;
+      return process.status.name == unit.name;
     });
-    unit.trouble = found == seen.end() ? "not on the bus" : found->status.reason();
+    unit.trouble = found == seen.end() ? "not on the bus" : found->status.reason;
   }
 }
 

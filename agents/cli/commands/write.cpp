@@ -62,13 +62,13 @@ nlohmann::json object_of(const std::string& text) {
 /// A motor command; missing members get their natural values.
 v1::MotorCommand motor_command(const std::string& text) {
   v1::MotorCommand command;
-  command.active(true);
+  command.active = true;
   bus::from_json(text, command);
   const nlohmann::json json = object_of(text);
   if (json.contains("velocity") && !json.contains("translation"))
-    command.translation(v1::TRANSLATION_VELOCITY);
+    command.translation = v1::TRANSLATION_VELOCITY;
   if (json.contains("rotation_velocity") && !json.contains("rotation"))
-    command.rotation(v1::ROTATION_VELOCITY);
+    command.rotation = v1::ROTATION_VELOCITY;
   return command;
 }
 
@@ -119,9 +119,9 @@ int ask(const WriteOptions& options, const bus::RequestTopic& topic,
     v1::Request request;
     bus::from_json(*line, request);
     const v1::Answer answer = client.ask(request, kAnswer, &stop);
-    print("%s%s%s\n", bus::well(answer.code()) ? "done" : "not done",
-          answer.text().empty() ? "" : ": ", answer.text().c_str());
-    if (!bus::well(answer.code()))
+    print("%s%s%s\n", bus::well(answer.code) ? "done" : "not done", answer.text.empty() ? "" : ": ",
+          answer.text.c_str());
+    if (!bus::well(answer.code))
       code = bus::kExitFailed;
   }
   return code;

@@ -277,56 +277,56 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
     rows.push_back({name, value});
   };
   const auto& d = devices;
-  std::string battery = format("%.1f V", robot.battery());
-  if (d && d->has_charge())
-    battery += format(", %.0f %% charged", d->charge() * 100.0);
-  if (d && d->charging() != 0)
+  std::string battery = format("%.1f V", robot.battery);
+  if (d && d->has_charge)
+    battery += format(", %.0f %% charged", d->charge * 100.0);
+  if (d && d->charging != 0)
     battery += ", charging";
   add("battery", battery);
-  if (d && d->has_flags())
-    add("motors", std::string(d->motors_on() ? "on" : "off") +
-                      (d->emergency_stop() ? ", EMERGENCY STOP PRESSED" : ""));
+  if (d && d->has_flags)
+    add("motors", std::string(d->motors_on ? "on" : "off") +
+                      (d->emergency_stop ? ", EMERGENCY STOP PRESSED" : ""));
   else
-    add("motors", robot.status() == v1::MOTORS_NO_POWER ? "off" : "on");
+    add("motors", robot.status == v1::MOTORS_NO_POWER ? "off" : "on");
   // Rounded to tens: the sonar of the last turn is no news.
-  const unsigned rate = (robot.sonar_readings_per_s() + 5U) / 10U * 10U;
+  const unsigned rate = (robot.sonar_readings_per_s + 5U) / 10U * 10U;
   add("sonar", rate == 0 ? "silent" : "about " + std::to_string(rate) + " readings/s");
-  add("servo", std::to_string(robot.ptu()) + " us" +
-                   (robot.head() == 0.0
-                        ? ""
-                        : format(", the cameras look to %.0f degrees", degrees(robot.head()))));
-  add("digital input", bits(robot.digital_input()));
-  add("digital output", bits(robot.digital_output()));
-  add("analog", format("%.2f V", robot.analog() * 5.0 / 255.0));
-  add("timer", std::to_string(robot.timer()));
+  add("servo",
+      std::to_string(robot.ptu) + " us" +
+          (robot.head == 0.0 ? ""
+                             : format(", the cameras look to %.0f degrees", degrees(robot.head))));
+  add("digital input", bits(robot.digital_input));
+  add("digital output", bits(robot.digital_output));
+  add("analog", format("%.2f V", robot.analog * 5.0 / 255.0));
+  add("timer", std::to_string(robot.timer));
   if (!d)
     return rows;
-  if (d->front_bumpers() != 0 || d->rear_bumpers() != 0)
-    add("bumpers", "front " + bits(d->front_bumpers()) + " rear " + bits(d->rear_bumpers()));
-  if (d->has_gripper() || d->gripper_state() != 0)
-    add("gripper", gripper_words(d->gripper_state()));
-  if (d->has_io()) {
-    add("inputs", list(d->digital_inputs(), true));
-    add("outputs", list(d->digital_outputs(), true));
-    add("analogs", list(d->analog_inputs(), false));
+  if (d->front_bumpers != 0 || d->rear_bumpers != 0)
+    add("bumpers", "front " + bits(d->front_bumpers) + " rear " + bits(d->rear_bumpers));
+  if (d->has_gripper || d->gripper_state != 0)
+    add("gripper", gripper_words(d->gripper_state));
+  if (d->has_io) {
+    add("inputs", list(d->digital_inputs, true));
+    add("outputs", list(d->digital_outputs, true));
+    add("analogs", list(d->analog_inputs, false));
   }
-  if (d->has_encoders())
+  if (d->has_encoders)
     add("encoders",
-        std::to_string(d->left_encoder()) + " " + std::to_string(d->right_encoder()) + " ticks");
-  if (d->has_compass())
-    add("compass", format("%.0f deg", degrees(d->compass())));
-  if (d->has_temperature())
-    add("temperature", format("%.0f C", d->temperature()));
-  if (d->faults() != 0)
-    add("faults", bits(d->faults() >> 8U) + " " + bits(d->faults() & 0xFFU));
-  if (d->has_configuration())
-    add("controller", "serial number " + d->serial_number() +
-                          (d->firmware().empty() ? "" : ", firmware " + d->firmware()) +
-                          ", watchdog " + std::to_string(d->watchdog()) + " ms");
-  for (const v1::PacketCount& packets : d->unread_packets())
-    add("unread packets", format("0x%02X: ", packets.type()) + std::to_string(packets.count()));
-  for (const v1::DeviceRequest& request : d->requests())
-    add("request", request.answer().text() + " (" + request.source() + ")");
+        std::to_string(d->left_encoder) + " " + std::to_string(d->right_encoder) + " ticks");
+  if (d->has_compass)
+    add("compass", format("%.0f deg", degrees(d->compass)));
+  if (d->has_temperature)
+    add("temperature", format("%.0f C", d->temperature));
+  if (d->faults != 0)
+    add("faults", bits(d->faults >> 8U) + " " + bits(d->faults & 0xFFU));
+  if (d->has_configuration)
+    add("controller", "serial number " + d->serial_number +
+                          (d->firmware.empty() ? "" : ", firmware " + d->firmware) + ", watchdog " +
+                          std::to_string(d->watchdog) + " ms");
+  for (const v1::PacketCount& packets : d->unread_packets)
+    add("unread packets", format("0x%02X: ", packets.type) + std::to_string(packets.count));
+  for (const v1::DeviceRequest& request : d->requests)
+    add("request", request.answer.text + " (" + request.source + ")");
   return rows;
 }
 

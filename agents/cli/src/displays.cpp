@@ -79,8 +79,8 @@ struct TreeLine {
 
 const v1::BehaviorState* find_state(const v1::BehaviorSet* behaviors, const std::string& name) {
   if (behaviors != nullptr)
-    for (const v1::BehaviorState& state : behaviors->behaviors())
-      if (state.name() == name)
+    for (const v1::BehaviorState& state : behaviors->behaviors)
+      if (state.name == name)
         return &state;
   return nullptr;
 }
@@ -97,21 +97,19 @@ TreeLine behavior_line(const std::string& indent, bool blocking, const std::stri
   TreeLine line{indent + (blocking ? "* " : "o ") + with_instance(schema, name) + " B", ""};
   if (const v1::BehaviorState* const state = find_state(behaviors, name))
     line.right = format("activity %.2f, goal %.2f",
-                        std::max(state->turn_activity(), state->speed_activity()), state->goal());
+                        std::max(state->turn_activity, state->speed_activity), state->goal);
   return line;
 }
 
 TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node) {
   TreeLine line{
-      indent + (node.blocking() ? "* " : "o ") +
-          with_instance(node.schema(),
-                        node.name().empty() ? "I" + std::to_string(node.id()) : node.name()),
-      node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
-          node.step()};
-  if (node.state() == v1::INTENTION_INIT || node.state() == v1::INTENTION_RUNNING)
+      indent + (node.blocking ? "* " : "o ") +
+          with_instance(node.schema, node.name.empty() ? "I" + std::to_string(node.id) : node.name),
+      node.arguments + (node.arguments.empty() || node.step.empty() ? "" : "; ") + node.step};
+  if (node.state == v1::INTENTION_INIT || node.state == v1::INTENTION_RUNNING)
     return line;
-  const std::string how = word_of(node.state(), {"", "", "suspended", "interrupted",
-                                                 "has succeeded", "has failed", "took too long"});
+  const std::string how = word_of(node.state, {"", "", "suspended", "interrupted", "has succeeded",
+                                               "has failed", "took too long"});
   line.right = how + (line.right.empty() ? "" : "; " + line.right);
   return line;
 }
@@ -119,53 +117,52 @@ TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node
 void add_tree(const v1::Intentions& all, const v1::BehaviorSet* behaviors, std::uint32_t parent,
               std::size_t depth, std::vector<TreeLine>& lines) {
   const std::string indent(2 * depth, ' ');
-  if (depth > all.nodes().size())
+  if (depth > all.nodes.size())
     return;  // a cyclic tree
-  for (const v1::IntentionNode& node : all.nodes()) {
-    if (node.parent() != parent)
+  for (const v1::IntentionNode& node : all.nodes) {
+    if (node.parent != parent)
       continue;
     if (is_behavior(node, all)) {
-      lines.push_back(
-          behavior_line(indent, node.blocking(), node.schema(), node.name(), behaviors));
-      if (node.state() == v1::INTENTION_SUSPENDED)
+      lines.push_back(behavior_line(indent, node.blocking, node.schema, node.name, behaviors));
+      if (node.state == v1::INTENTION_SUSPENDED)
         lines.back().right = "suspended";
       continue;
     }
     lines.push_back(intention_line(indent, node));
-    add_tree(all, behaviors, node.id(), depth + 1, lines);
+    add_tree(all, behaviors, node.id, depth + 1, lines);
   }
   if (parent == 0)
     return;
-  for (const v1::IntendedBehavior& behavior : all.behaviors())
-    if (behavior.intention() == parent)
-      lines.push_back(behavior_line(indent, behavior.blocking(), behavior.schema(), behavior.name(),
-                                    behaviors));
+  for (const v1::IntendedBehavior& behavior : all.behaviors)
+    if (behavior.intention == parent)
+      lines.push_back(
+          behavior_line(indent, behavior.blocking, behavior.schema, behavior.name, behaviors));
 }
 
 }  // namespace
 
 std::string value_text(const v1::Argument& argument) {
-  switch (argument.kind()) {
+  switch (argument.kind) {
     case v1::ARGUMENT_NUMBER:
-      return format("%.4g", argument.number());
+      return format("%.4g", argument.number);
     case v1::ARGUMENT_TEXT:
-      return "\"" + argument.text() + "\"";
+      return "\"" + argument.text + "\"";
     case v1::ARGUMENT_TRUTH:
-      return argument.number() != 0.0 ? "yes" : "no";
+      return argument.number != 0.0 ? "yes" : "no";
     case v1::ARGUMENT_UNBOUND:
       return "?";
     case v1::ARGUMENT_POINT:
       break;
   }
-  const v1::Pose2& point = argument.point();
-  const char* const frame = argument.frame() == v1::FRAME_ROBOT ? "robot"
-                            : argument.frame() == v1::FRAME_MAP ? "map"
-                                                                : "odom";
-  return format("(%.2f, %.2f, %.0f deg) in %s", point.x(), point.y(), degrees(point.th()), frame);
+  const v1::Pose2& point = argument.point;
+  const char* const frame = argument.frame == v1::FRAME_ROBOT ? "robot"
+                            : argument.frame == v1::FRAME_MAP ? "map"
+                                                              : "odom";
+  return format("(%.2f, %.2f, %.0f deg) in %s", point.x, point.y, degrees(point.th), frame);
 }
 
 std::string intentions_display(const v1::Intentions& intentions, const v1::BehaviorSet* behaviors) {
-  if (intentions.nodes().empty())
+  if (intentions.nodes.empty())
     return "nothing is intended\n";
   std::vector<TreeLine> lines;
   add_tree(intentions, behaviors, 0, 0, lines);
@@ -175,7 +172,7 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
   std::string text;
   for (const TreeLine& line : lines)
     text += (line.right.empty() ? line.left : padded(line.left, width + 3) + line.right) + "\n";
-  if (!intentions.behavior_control())
+  if (!intentions.behavior_control)
     text += "behavior control is off\n";
   return text;
 }
@@ -193,14 +190,14 @@ std::string instance_words(const std::string& name) {
 }
 
 std::string behaviors_display(const v1::BehaviorSet& behaviors) {
-  if (behaviors.behaviors().empty() && behaviors.trouble().empty())
+  if (behaviors.behaviors.empty() && behaviors.trouble.empty())
     return "no behavior is intended\n";
   std::size_t width = 9;
   std::vector<std::string> names;
-  for (const v1::BehaviorState& state : behaviors.behaviors()) {
-    names.push_back(state.name() == state.schema() || state.schema().empty()
-                        ? instance_words(state.name())
-                        : with_instance(state.schema(), state.name()));
+  for (const v1::BehaviorState& state : behaviors.behaviors) {
+    names.push_back(state.name == state.schema || state.schema.empty()
+                        ? instance_words(state.name)
+                        : with_instance(state.schema, state.name));
     width = std::max(width, names.back().size());
   }
   const auto row = [&](const std::string& mark, const std::string& name,
@@ -213,49 +210,48 @@ std::string behaviors_display(const v1::BehaviorSet& behaviors) {
   };
   std::string text = row(" ", "", "pri", padded("  turn", 2 * kBar + 3), "degrees",
                          padded("  speed", 2 * kBar + 3), "m/s");
-  for (std::size_t i = 0; i < behaviors.behaviors().size(); ++i) {
-    const v1::BehaviorState& state = behaviors.behaviors()[i];
-    if (!state.running()) {
-      text += row("o", names[i], std::to_string(state.priority()), turn_bar(0.0, 0.0, false), "",
+  for (std::size_t i = 0; i < behaviors.behaviors.size(); ++i) {
+    const v1::BehaviorState& state = behaviors.behaviors[i];
+    if (!state.running) {
+      text += row("o", names[i], std::to_string(state.priority), turn_bar(0.0, 0.0, false), "",
                   speed_bar(0.0, 0.0, false), "");
       continue;
     }
-    text += row("*", names[i], std::to_string(state.priority()),
-                turn_bar(state.turn_activity(), state.turn(), state.recommends_turn()),
-                turn_words(state.turn(), state.recommends_turn()),
-                speed_bar(state.speed_activity(), state.speed(), state.recommends_speed()),
-                speed_words(state.speed(), state.recommends_speed()));
+    text += row("*", names[i], std::to_string(state.priority),
+                turn_bar(state.turn_activity, state.turn, state.recommends_turn),
+                turn_words(state.turn, state.recommends_turn),
+                speed_bar(state.speed_activity, state.speed, state.recommends_speed),
+                speed_words(state.speed, state.recommends_speed));
   }
-  text += row(behaviors.control() ? "=" : " ", "Summation", "",
-              turn_bar(0.0, behaviors.turn(), behaviors.turning()),
-              turn_words(behaviors.turn(), behaviors.turning()),
-              speed_bar(0.0, behaviors.speed(), behaviors.moving()),
-              speed_words(behaviors.speed(), behaviors.moving()));
-  if (!behaviors.control())
+  text += row(behaviors.control ? "=" : " ", "Summation", "",
+              turn_bar(0.0, behaviors.turn, behaviors.turning),
+              turn_words(behaviors.turn, behaviors.turning),
+              speed_bar(0.0, behaviors.speed, behaviors.moving),
+              speed_words(behaviors.speed, behaviors.moving));
+  if (!behaviors.control)
     text += "behavior control is off: the summation does not drive\n";
-  if (!behaviors.trouble().empty())
-    text += "cannot be had: " + behaviors.trouble() + "\n";
+  if (!behaviors.trouble.empty())
+    text += "cannot be had: " + behaviors.trouble + "\n";
   return text;
 }
 
 std::string schema_display(const v1::BehaviorSchema& schema) {
-  std::string text = schema.name() + (schema.summary().empty() ? "" : ": " + schema.summary()) +
-                     "\nIt is loaded" +
-                     (schema.source().empty() ? "" : " from " + schema.source()) +
+  std::string text = schema.name + (schema.summary.empty() ? "" : ": " + schema.summary) +
+                     "\nIt is loaded" + (schema.source.empty() ? "" : " from " + schema.source) +
                      ", and no goal or activity intends it now.\n\nParams\n";
-  for (const v1::BehaviorParameter& parameter : schema.parameters()) {
-    text += "  " + parameter.name();
-    if (parameter.required())
+  for (const v1::BehaviorParameter& parameter : schema.parameters) {
+    text += "  " + parameter.name;
+    if (parameter.required)
       text += "  required";
-    else if (parameter.kind() == v1::ARGUMENT_NUMBER)
-      text += format("  usually %.4g", parameter.usual());
-    else if (!parameter.choices().empty())
-      text += "  usually " + parameter.choices().front();
-    text += (parameter.meaning().empty() ? "" : "  " + parameter.meaning()) + "\n";
+    else if (parameter.kind == v1::ARGUMENT_NUMBER)
+      text += format("  usually %.4g", parameter.usual);
+    else if (!parameter.choices.empty())
+      text += "  usually " + parameter.choices.front();
+    text += (parameter.meaning.empty() ? "" : "  " + parameter.meaning) + "\n";
   }
   text += "\nRules\n";
-  for (const v1::RuleText& rule : schema.rules())
-    text += "  " + rule.name() + "   if " + rule.antecedent() + " then " + rule.action() + "\n";
+  for (const v1::RuleText& rule : schema.rules)
+    text += "  " + rule.name + "   if " + rule.antecedent + " then " + rule.action + "\n";
   return text;
 }
 
@@ -270,34 +266,33 @@ std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::IntendedBehavior* intended,
                              const v1::BehaviorSchema* schema) {
   std::string text =
-      instance_words(behavior.name()) + (without_instance(behavior.name()) == behavior.schema()
-                                             ? ""
-                                             : " (" + behavior.schema() + ")");
-  if (schema != nullptr && !schema->summary().empty())
-    text += ": " + schema->summary();
+      instance_words(behavior.name) +
+      (without_instance(behavior.name) == behavior.schema ? "" : " (" + behavior.schema + ")");
+  if (schema != nullptr && !schema->summary.empty())
+    text += ": " + schema->summary;
   text += "\n\n";
 
   std::vector<std::string> left{"Params"};
   if (intended != nullptr)
-    for (const v1::Argument& parameter : intended->parameters())
-      left.push_back("  " + parameter.name() + " = " + value_text(parameter));
+    for (const v1::Argument& parameter : intended->parameters)
+      left.push_back("  " + parameter.name + " = " + value_text(parameter));
   if (schema != nullptr)
-    for (const v1::BehaviorParameter& parameter : schema->parameters()) {
+    for (const v1::BehaviorParameter& parameter : schema->parameters) {
       const bool given = intended != nullptr &&
-                         std::any_of(intended->parameters().begin(), intended->parameters().end(),
+                         std::any_of(intended->parameters.begin(), intended->parameters.end(),
                                      [&](const v1::Argument& argument) {
-                                       return argument.name() == parameter.name();
+                                       return argument.name == parameter.name;
                                      });
-      if (!given && parameter.kind() == v1::ARGUMENT_NUMBER)
-        left.push_back("  " + parameter.name() + format(" = %.4g (as usual)", parameter.usual()));
+      if (!given && parameter.kind == v1::ARGUMENT_NUMBER)
+        left.push_back("  " + parameter.name + format(" = %.4g (as usual)", parameter.usual));
     }
   const std::vector<std::string> right{
-      format("Running   %d", behavior.running() ? 1 : 0),
-      format("Priority  %d", static_cast<int>(behavior.priority())),
-      format("Act Turn  %.2f   weight %.2f", behavior.turn_activity(), behavior.turn_weight()),
-      format("Act Vel   %.2f   weight %.2f", behavior.speed_activity(), behavior.speed_weight()),
-      format("Goal      %.2f", behavior.goal()),
-      format("Progress  %.2f", behavior.progress())};
+      format("Running   %d", behavior.running ? 1 : 0),
+      format("Priority  %d", static_cast<int>(behavior.priority)),
+      format("Act Turn  %.2f   weight %.2f", behavior.turn_activity, behavior.turn_weight),
+      format("Act Vel   %.2f   weight %.2f", behavior.speed_activity, behavior.speed_weight),
+      format("Goal      %.2f", behavior.goal),
+      format("Progress  %.2f", behavior.progress)};
   std::size_t width = 0;
   for (const std::string& line : left)
     width = std::max(width, line.size());
@@ -309,57 +304,56 @@ std::string behavior_display(const v1::BehaviorState& behavior,
 
   text += "\nRules\n";
   width = 0;
-  for (const v1::RuleState& rule : behavior.rules())
-    width = std::max(width, rule.name().size());
-  for (const v1::RuleState& rule : behavior.rules()) {
-    const bool turn =
-        rule.action() == v1::CONTROL_TURN_LEFT || rule.action() == v1::CONTROL_TURN_RIGHT;
-    text += "  " + padded(rule.name(), width) +
-            format("  %.2f %s ", rule.strength(), sign_of(rule.action())) +
-            (turn ? format("%5.1f deg", degrees(rule.value())) : format("%5.2f m/s", rule.value()));
+  for (const v1::RuleState& rule : behavior.rules)
+    width = std::max(width, rule.name.size());
+  for (const v1::RuleState& rule : behavior.rules) {
+    const bool turn = rule.action == v1::CONTROL_TURN_LEFT || rule.action == v1::CONTROL_TURN_RIGHT;
+    text += "  " + padded(rule.name, width) +
+            format("  %.2f %s ", rule.strength, sign_of(rule.action)) +
+            (turn ? format("%5.1f deg", degrees(rule.value)) : format("%5.2f m/s", rule.value));
     if (schema != nullptr)
-      for (const v1::RuleText& written : schema->rules())
-        if (written.name() == rule.name() && !written.antecedent().empty())
-          text += "   if " + written.antecedent() +
-                  (written.action().empty() ? "" : " then " + written.action());
+      for (const v1::RuleText& written : schema->rules)
+        if (written.name == rule.name && !written.antecedent.empty())
+          text += "   if " + written.antecedent +
+                  (written.action.empty() ? "" : " then " + written.action);
     text += "\n";
   }
-  if (!behavior.variables().empty()) {
+  if (!behavior.variables.empty()) {
     text += "\nFuzzy variables\n";
     width = 0;
-    for (const v1::FuzzyVariable& variable : behavior.variables())
-      width = std::max(width, variable.name().size());
-    for (const v1::FuzzyVariable& variable : behavior.variables())
-      text += "  " + padded(variable.name(), width) + format("  %.2f", variable.value()) + "\n";
+    for (const v1::FuzzyVariable& variable : behavior.variables)
+      width = std::max(width, variable.name.size());
+    for (const v1::FuzzyVariable& variable : behavior.variables)
+      text += "  " + padded(variable.name, width) + format("  %.2f", variable.value) + "\n";
   }
   return text;
 }
 
 std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part) {
   std::vector<std::vector<std::string>> rows{{"NAME", "VALUE", "SINCE", "SAID BY"}};
-  for (const v1::Belief& belief : beliefs.beliefs())
-    if (belief.name().find(part) != std::string::npos)
-      rows.push_back({belief.name(), belief.value(), ago(belief.since(), beliefs.stamp().cycle()),
-                      belief.said_by()});
+  for (const v1::Belief& belief : beliefs.beliefs)
+    if (belief.name.find(part) != std::string::npos)
+      rows.push_back(
+          {belief.name, belief.value, ago(belief.since, beliefs.stamp.cycle), belief.said_by});
   return rows.size() == 1 ? "" : table(rows);
 }
 
 std::string state_text(const v1::Process& process) {
-  if (process.state() == v1::PROCESS_RUNNING && process.number() != 0)
-    return std::to_string(process.number());
-  return word_of(process.state(), {"INIT", "RUN", "SUSP", "RESUME", "INTERRUPT", "SLEEP"});
+  if (process.state == v1::PROCESS_RUNNING && process.number != 0)
+    return std::to_string(process.number);
+  return word_of(process.state, {"INIT", "RUN", "SUSP", "RESUME", "INTERRUPT", "SLEEP"});
 }
 
 std::string processes_table(std::vector<v1::ProcessSet> services) {
   std::stable_sort(
       services.begin(), services.end(),
-      [](const v1::ProcessSet& a, const v1::ProcessSet& b) { return a.service() < b.service(); });
+      [](const v1::ProcessSet& a, const v1::ProcessSet& b) { return a.service < b.service; });
   std::vector<std::vector<std::string>> rows{
       {"SERVICE", "PROCESS", "STATE", "SINCE CYCLE", "DOES"}};
   for (const v1::ProcessSet& service : services)
-    for (const v1::Process& process : service.processes())
-      rows.push_back({service.service(), instance_words(process.name()), state_text(process),
-                      std::to_string(process.since()), process.effect()});
+    for (const v1::Process& process : service.processes)
+      rows.push_back({service.service, instance_words(process.name), state_text(process),
+                      std::to_string(process.since), process.effect});
   return rows.size() == 1 ? "" : table(rows);
 }
 

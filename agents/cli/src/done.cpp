@@ -38,21 +38,21 @@ std::string trouble_of(const Move& move) {
 
 v1::MotorCommand command_of(const Move& move) {
   v1::MotorCommand command;
-  command.active(true);
-  command.move(1);
+  command.active = true;
+  command.move = 1;
   switch (move.kind) {
     case Move::Kind::move:
-      command.translation(v1::TRANSLATION_POSITION);
-      command.distance(move.value);
-      command.velocity(move.speed);
+      command.translation = v1::TRANSLATION_POSITION;
+      command.distance = move.value;
+      command.velocity = move.speed;
       break;
     case Move::Kind::turn:
-      command.rotation(v1::ROTATION_RELATIVE_HEADING);
-      command.heading(move.value);
+      command.rotation = v1::ROTATION_RELATIVE_HEADING;
+      command.heading = move.value;
       break;
     case Move::Kind::speed:
-      command.translation(v1::TRANSLATION_VELOCITY);
-      command.velocity(move.value);
+      command.translation = v1::TRANSLATION_VELOCITY;
+      command.velocity = move.value;
       break;
   }
   return command;
@@ -61,9 +61,9 @@ v1::MotorCommand command_of(const Move& move) {
 double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot) {
   switch (move.kind) {
     case Move::Kind::move:
-      return std::abs(grant.distance_left());
+      return std::abs(grant.distance_left);
     case Move::Kind::turn:
-      return std::abs(norm2_angle(grant.heading() - robot.pose_in_odom().th()));
+      return std::abs(norm2_angle(grant.heading - robot.pose_in_odom.th));
     case Move::Kind::speed:
       break;
   }
@@ -73,10 +73,10 @@ double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& r
 bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot) {
   switch (move.kind) {
     case Move::Kind::move:
-      return grant.distance_left() == 0.0 && std::abs(robot.velocity()) < kStands;
+      return grant.distance_left == 0.0 && std::abs(robot.velocity) < kStands;
     case Move::Kind::turn:
-      return grant.rotation() == v1::ROTATION_HEADING && left_of(move, grant, robot) <= kThere &&
-             std::abs(robot.rotation_velocity()) < kDoesNotTurn;
+      return grant.rotation == v1::ROTATION_HEADING && left_of(move, grant, robot) <= kThere &&
+             std::abs(robot.rotation_velocity) < kDoesNotTurn;
     case Move::Kind::speed:
       break;
   }

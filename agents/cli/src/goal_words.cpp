@@ -55,15 +55,15 @@ void read_point(std::string_view text, const std::string& word, v1::Argument& ar
     throw std::invalid_argument("expected a point x,y or x,y,th or x,y@frame in \"" + word +
                                 "\": " + what);
   };
-  argument.kind(v1::ARGUMENT_POINT);
-  argument.frame(v1::FRAME_ODOM);
+  argument.kind = v1::ARGUMENT_POINT;
+  argument.frame = v1::FRAME_ODOM;
   const std::size_t at = text.find('@');
   if (at != std::string_view::npos) {
     const std::string_view frame = text.substr(at + 1);
     if (frame == "robot")
-      argument.frame(v1::FRAME_ROBOT);
+      argument.frame = v1::FRAME_ROBOT;
     else if (frame == "map")
-      argument.frame(v1::FRAME_MAP);
+      argument.frame = v1::FRAME_MAP;
     else if (frame != "odom")
       fail("\"" + std::string(frame) + "\" is not a frame (odom, robot or map)");
   }
@@ -77,9 +77,9 @@ void read_point(std::string_view text, const std::string& word, v1::Argument& ar
       fail("\"" + std::string(parts[i]) + "\" is not a number");
     values[i] = value.value_or(0.0);
   }
-  argument.point().x(values[0]);
-  argument.point().y(values[1]);
-  argument.point().th(values[2]);
+  argument.point.x = values[0];
+  argument.point.y = values[1];
+  argument.point.th = values[2];
 }
 
 }  // namespace
@@ -95,15 +95,15 @@ v1::Argument parse_argument(const std::string& word) {
   if (value.size() > kLongestText)
     throw std::invalid_argument("the value of " + name + " is longer than 255 characters");
   v1::Argument argument;
-  argument.name(name);
+  argument.name = name;
   if (const auto number = parse_number(value)) {
-    argument.kind(v1::ARGUMENT_NUMBER);
-    argument.number(*number);
+    argument.kind = v1::ARGUMENT_NUMBER;
+    argument.number = *number;
   } else if (looks_like_point(value)) {
     read_point(value, word, argument);
   } else {
-    argument.kind(v1::ARGUMENT_TEXT);
-    argument.text(value);
+    argument.kind = v1::ARGUMENT_TEXT;
+    argument.text = value;
   }
   return argument;
 }
@@ -114,13 +114,13 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
   if (words.size() > kMostArguments)
     throw std::invalid_argument("a goal has at most 16 arguments");
   v1::Goal goal;
-  goal.functor(functor);
+  goal.functor = functor;
   for (const std::string& word : words) {
     const v1::Argument argument = parse_argument(word);
-    for (const v1::Argument& other : goal.arguments())
-      if (other.name() == argument.name())
-        throw std::invalid_argument("\"" + argument.name() + "\" is there twice");
-    goal.arguments().push_back(argument);
+    for (const v1::Argument& other : goal.arguments)
+      if (other.name == argument.name)
+        throw std::invalid_argument("\"" + argument.name + "\" is there twice");
+    goal.arguments.push_back(argument);
   }
   return goal;
 }
@@ -196,11 +196,11 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
 }
 
 std::string advice_after_failure(const v1::Goal& goal) {
-  const auto& arguments = goal.arguments();
+  const auto& arguments = goal.arguments;
   const bool off_the_map =
-      goal.functor() == "go_to" &&
+      goal.functor == "go_to" &&
       std::any_of(arguments.begin(), arguments.end(), [](const v1::Argument& one) {
-        return one.kind() == v1::ARGUMENT_POINT && one.frame() != v1::FRAME_MAP;
+        return one.kind == v1::ARGUMENT_POINT && one.frame != v1::FRAME_MAP;
       });
   return off_the_map ? "go X Y heads straight for a point of odom, where the robot began at 0 0; "
                        "saphira goal go X,Y@map takes the ways of the map"

@@ -163,37 +163,37 @@ const char* name_of(v1::RegistrationState state) {
 }
 
 std::string describe(const v1::Registration& registration, const maps::Map& map) {
-  const v1::Covariance2& c = registration.covariance();
+  const v1::Covariance2& c = registration.covariance;
   // The longer axis of the ellipse of one sigma.
-  const double middle = 0.5 * (c.xx() + c.yy());
-  const double spread = std::hypot(0.5 * (c.xx() - c.yy()), c.xy());
+  const double middle = 0.5 * (c.xx + c.yy);
+  const double spread = std::hypot(0.5 * (c.xx - c.yy), c.xy);
   const double sigma = std::sqrt(std::max(0.0, middle + spread));
-  std::string text = name_of(registration.state());
+  std::string text = name_of(registration.state);
   text.resize(8, ' ');
   if (sigma < kAnywhere) {
-    const v1::Pose2& pose = registration.pose_in_map();
-    text += format(" (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
-                   degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
-                   100.0 * registration.confidence());
+    const v1::Pose2& pose = registration.pose_in_map;
+    text += format(" (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x, pose.y,
+                   degrees(pose.th), sigma, degrees(std::sqrt(std::max(0.0, c.thth))),
+                   100.0 * registration.confidence);
   } else {
     text += " it may be anywhere";
   }
   if (const maps::Feature* in =
-          registration.environment() == 0 ? nullptr : maps::find(map, registration.environment()))
+          registration.environment == 0 ? nullptr : maps::find(map, registration.environment))
     text += ", in " + describe(*in);
   std::size_t accepted = 0;
-  for (const v1::Match& match : registration.matches())
-    accepted += match.accepted() ? 1U : 0U;
-  if (!registration.matches().empty())
-    text += ", " + std::to_string(accepted) + " of " +
-            std::to_string(registration.matches().size()) + " matched";
+  for (const v1::Match& match : registration.matches)
+    accepted += match.accepted ? 1U : 0U;
+  if (!registration.matches.empty())
+    text += ", " + std::to_string(accepted) + " of " + std::to_string(registration.matches.size()) +
+            " matched";
   std::size_t told = 0;
-  for (const std::uint32_t id : registration.closed_doors())
+  for (const std::uint32_t id : registration.closed_doors)
     if (const maps::Feature* const door = maps::find(map, id); door != nullptr && told++ < kDoors)
       text += ", " + describe(*door) + " closed";
   if (told > kDoors)
     text += " and " + std::to_string(told - kDoors) + " more";
-  return registration.reason().empty() ? text : text + ": " + registration.reason();
+  return registration.reason.empty() ? text : text + ": " + registration.reason;
 }
 
 }  // namespace saphira::cli

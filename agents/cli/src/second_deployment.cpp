@@ -7,9 +7,9 @@ std::string second_deployment(const std::vector<SeenProcess>& processes) {
   for (const SeenProcess& process : processes) {
     const v1::ServiceStatus& status = process.status;
     if (process.namesake && process.age <= kLostAge)
-      programs += (programs.empty() ? "" : ", ") + status.name() +
-                  (status.state() == v1::SERVICE_WAITING ? " (waits, process " : " (process ") +
-                  std::to_string(status.pid()) + " at " + status.host() + ")";
+      programs += (programs.empty() ? "" : ", ") + status.name +
+                  (status.state == v1::SERVICE_WAITING ? " (waits, process " : " (process ") +
+                  std::to_string(status.pid) + " at " + status.host + ")";
   }
   if (programs.empty())
     return {};

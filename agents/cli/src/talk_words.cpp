@@ -49,18 +49,18 @@ const char* frame_name(v1::Frame frame) {
 }
 
 nlohmann::ordered_json value_of(const v1::Argument& argument) {
-  switch (argument.kind()) {
+  switch (argument.kind) {
     case v1::ARGUMENT_NUMBER:
-      return argument.number();
+      return argument.number;
     case v1::ARGUMENT_TEXT:
-      return argument.text();
+      return argument.text;
     case v1::ARGUMENT_TRUTH:
-      return argument.number() != 0.0;
+      return argument.number != 0.0;
     case v1::ARGUMENT_POINT:
-      return {{"x", argument.point().x()},
-              {"y", argument.point().y()},
-              {"th", argument.point().th()},
-              {"frame", frame_name(argument.frame())}};
+      return {{"x", argument.point.x},
+              {"y", argument.point.y},
+              {"th", argument.point.th},
+              {"frame", frame_name(argument.frame)}};
     case v1::ARGUMENT_UNBOUND:
       break;
   }
@@ -74,29 +74,28 @@ std::string time_of(double time) {
 
 v1::Argument text_argument(const std::string& name, const std::string& text) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_TEXT);
-  argument.text(text);
+  argument.name = name;
+  argument.kind = v1::ARGUMENT_TEXT;
+  argument.text = text;
   return argument;
 }
 
 std::string describe(const v1::Agent& agent) {
-  std::string text = agent.name() + "  " + agent.summary() + "\n";
-  for (const v1::Capability& capability : agent.capabilities()) {
+  std::string text = agent.name + "  " + agent.summary + "\n";
+  for (const v1::Capability& capability : agent.capabilities) {
     std::string arguments;
-    for (const v1::CapabilityParameter& parameter : capability.parameters())
+    for (const v1::CapabilityParameter& parameter : capability.parameters)
       arguments += (arguments.empty() ? "" : ", ") +
-                   (parameter.required() ? parameter.name() : "[" + parameter.name() + "]");
-    text += "  " + capability.functor() + "(" + arguments + ")  " + capability.summary() + "\n";
-    for (const v1::CapabilityParameter& parameter : capability.parameters()) {
+                   (parameter.required ? parameter.name : "[" + parameter.name + "]");
+    text += "  " + capability.functor + "(" + arguments + ")  " + capability.summary + "\n";
+    for (const v1::CapabilityParameter& parameter : capability.parameters) {
       // An unbound one may be of any kind.
-      std::string words = parameter.kind() == v1::ARGUMENT_UNBOUND
-                              ? ""
-                              : saphira::describe(from_bus(parameter.kind()));
-      if (!parameter.meaning().empty())
-        words += (words.empty() ? "" : ", ") + parameter.meaning();
+      std::string words =
+          parameter.kind == v1::ARGUMENT_UNBOUND ? "" : saphira::describe(from_bus(parameter.kind));
+      if (!parameter.meaning.empty())
+        words += (words.empty() ? "" : ", ") + parameter.meaning;
       if (!words.empty())
-        text += "    " + parameter.name() + ": " + words + "\n";
+        text += "    " + parameter.name + ": " + words + "\n";
     }
   }
   return text;
@@ -109,10 +108,10 @@ v1::Argument parse_slot(const std::string& word) {
   if (open == std::string::npos || open == 0 || open != word.find('='))
     return parse_argument(word);
   v1::Argument argument;
-  argument.name(word.substr(0, open));
-  argument.kind(v1::ARGUMENT_UNBOUND);
-  argument.text(word.substr(open + 2));
-  const std::string& variable = argument.text();
+  argument.name = word.substr(0, open);
+  argument.kind = v1::ARGUMENT_UNBOUND;
+  argument.text = word.substr(open + 2);
+  const std::string& variable = argument.text;
   if (!std::all_of(variable.begin(), variable.end(),
                    [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }))
     throw std::invalid_argument("expected name=? or name=?VARIABLE, found \"" + word + "\"");
@@ -122,9 +121,9 @@ v1::Argument parse_slot(const std::string& word) {
 v1::Request parse_question(const std::vector<std::string>& words) {
   v1::Request request;
   if (words.at(0).find('(') == std::string::npos) {
-    request.functor(words[0]);
+    request.functor = words[0];
     for (std::size_t i = 1; i < words.size(); ++i)
-      request.arguments().push_back(parse_slot(words[i]));
+      request.arguments.push_back(parse_slot(words[i]));
     return request;
   }
   for (const std::string& word : words) {
@@ -133,9 +132,9 @@ v1::Request parse_question(const std::vector<std::string>& words) {
       throw std::invalid_argument("expected FUNCTOR(name=value, ...), found \"" + word + "\"");
     const std::string functor = word.substr(0, begin);
     if (&word == &words.front())
-      request.functor(functor);
+      request.functor = functor;
     else
-      request.arguments().push_back(text_argument("and", functor));
+      request.arguments.push_back(text_argument("and", functor));
     std::vector<std::string> slots;
     std::istringstream inside(word.substr(begin + 1, word.size() - begin - 2));
     for (std::string piece; std::getline(inside, piece, ',');)
@@ -144,47 +143,47 @@ v1::Request parse_question(const std::vector<std::string>& words) {
       else
         slots.back() += "," + piece;  // a value may have commas, as a point has
     for (const std::string& slot : slots)
-      request.arguments().push_back(parse_slot(slot));
+      request.arguments.push_back(parse_slot(slot));
   }
   return request;
 }
 
 bool is_for(const v1::Utterance& utterance, double age, std::uint64_t instance, double listened) {
-  return utterance.answers().writer() == instance || age <= listened;
+  return utterance.answers.writer == instance || age <= listened;
 }
 
 std::string line_of(const v1::Utterance& utterance, const std::string& robot) {
-  const std::string speaker = robot.empty() ? utterance.speaker() : robot;
-  return (speaker.empty() ? "somebody" : speaker) + ": " + utterance.text();
+  const std::string speaker = robot.empty() ? utterance.speaker : robot;
+  return (speaker.empty() ? "somebody" : speaker) + ": " + utterance.text;
 }
 
 std::string line_of(const v1::Answer& answer) {
-  const std::string code = words_of(answer.code()).word;
-  std::string line = answer.service() + ":";
+  const std::string code = words_of(answer.code).word;
+  std::string line = answer.service + ":";
   if (!code.empty())
-    line += " " + code + (answer.text().empty() ? "" : ":");
-  if (!answer.text().empty())
-    line += " " + answer.text();
-  if (!answer.results().empty())
-    line += " " + saphira::describe(from_bus(answer.results()));
-  return line == answer.service() + ":" ? line + " done" : line;
+    line += " " + code + (answer.text.empty() ? "" : ":");
+  if (!answer.text.empty())
+    line += " " + answer.text;
+  if (!answer.results.empty())
+    line += " " + saphira::describe(from_bus(answer.results));
+  return line == answer.service + ":" ? line + " done" : line;
 }
 
 bool repeats(const v1::Answer& answer, const v1::Answer& before) {
-  return answer.results().empty() && answer == before;
+  return answer.results.empty() && answer == before;
 }
 
 std::string to_json(const v1::Answer& answer, const std::string& robot) {
-  nlohmann::ordered_json json{{"agent", answer.service()},
-                              {"code", words_of(answer.code()).name},
-                              {"text", answer.text()},
+  nlohmann::ordered_json json{{"agent", answer.service},
+                              {"code", words_of(answer.code).name},
+                              {"text", answer.text},
                               {"values", nlohmann::ordered_json::object()}};
   if (!robot.empty())
     json["robot"] = robot;
   std::map<std::string, int> count;
-  for (const v1::Argument& result : answer.results()) {
-    nlohmann::ordered_json& value = json["values"][result.name()];
-    const int before = count[result.name()]++;
+  for (const v1::Argument& result : answer.results) {
+    nlohmann::ordered_json& value = json["values"][result.name];
+    const int before = count[result.name]++;
     if (before == 1)
       value = nlohmann::ordered_json::array({value});
     if (before == 0)
@@ -199,8 +198,8 @@ std::string describe(const std::vector<v1::Agent>& agents) {
   std::string text;
   std::string robot;
   for (const v1::Agent& agent : agents)
-    if (agent.name() == "robot")
-      robot += "robot  " + std::to_string(agent.capabilities().size()) +
+    if (agent.name == "robot")
+      robot += "robot  " + std::to_string(agent.capabilities.size()) +
                " activities: saphira goal activities lists them\n";
     else
       text += describe(agent);
@@ -212,26 +211,26 @@ bool is_among(const std::string& id, const std::string& ids) {
 }
 
 std::string describe(const v1::Trigger& trigger, const std::string& id, bool live) {
-  std::string when = "every " + plain(trigger.period()) + " s";
-  if (trigger.kind() == v1::TRIGGER_DATA)
-    when = "when the answer to " + trigger.condition() + " changes";
-  else if (trigger.kind() == v1::TRIGGER_EVENT)
-    when = "when " + trigger.condition() + " happens";
-  return "trigger " + id + " of " + (trigger.source().empty() ? "somebody" : trigger.source()) +
-         ": " + when + ": " + trigger.action() +
+  std::string when = "every " + plain(trigger.period) + " s";
+  if (trigger.kind == v1::TRIGGER_DATA)
+    when = "when the answer to " + trigger.condition + " changes";
+  else if (trigger.kind == v1::TRIGGER_EVENT)
+    when = "when " + trigger.condition + " happens";
+  return "trigger " + id + " of " + (trigger.source.empty() ? "somebody" : trigger.source) + ": " +
+         when + ": " + trigger.action +
          (live ? ""
                : "; it fires no more: it has fired its times, was withdrawn, or its period is "
                  "below 0.1 s");
 }
 
 std::string knowledge_table(const v1::Knowledge& knowledge) {
-  if (knowledge.known().empty())
+  if (knowledge.known.empty())
     return "the robot was told nothing that it knows now\n";
   std::vector<std::vector<std::string>> rows{{"number", "what", "said by", "when", "in the words"}};
-  for (const v1::Advice& advice : knowledge.known())
-    rows.push_back({std::to_string(advice.number()), advice.words(),
-                    advice.speaker().empty() ? "somebody" : advice.speaker(),
-                    time_of(advice.time()), advice.said()});
+  for (const v1::Advice& advice : knowledge.known)
+    rows.push_back({std::to_string(advice.number), advice.words,
+                    advice.speaker.empty() ? "somebody" : advice.speaker, time_of(advice.time),
+                    advice.said});
   return table(rows);
 }
 

@@ -46,7 +46,7 @@ std::array<std::string, 2> two_lines(const std::string& text, std::size_t width)
 
 std::string status_table(std::vector<SeenProcess> processes) {
   std::sort(processes.begin(), processes.end(), [](const SeenProcess& a, const SeenProcess& b) {
-    return std::pair(a.status.name(), a.status.pid()) < std::pair(b.status.name(), b.status.pid());
+    return std::pair(a.status.name, a.status.pid) < std::pair(b.status.name, b.status.pid);
   });
   std::vector<std::vector<std::string>> rows{{"NAME", "STATE", "AGE s", "EPOCH", "CYCLE", "LATE",
                                               "STEP ms", "MAX", "CPU %", "MB", "HOST", "PID",
@@ -56,14 +56,14 @@ std::string status_table(std::vector<SeenProcess> processes) {
     const double age = process.age;
     const bool lost = age > kLostAge;
     rows.push_back(
-        {status.name(), lost ? "lost" : name_of(status.state()), format("%.1f", age),
-         std::to_string(status.stamp().epoch()), std::to_string(status.stamp().cycle()),
-         std::to_string(status.late_cycles()), format("%.2f", status.step_ms_mean()),
-         format("%.2f", status.step_ms_max()), format("%.1f", status.cpu_percent()),
-         format("%.1f", status.rss_mb()), status.host(), std::to_string(status.pid()),
-         lost ? "not heard any more; its last words: " + std::string(name_of(status.state())) +
-                    (status.reason().empty() ? "" : ", " + status.reason())
-              : status.reason()});
+        {status.name, lost ? "lost" : name_of(status.state), format("%.1f", age),
+         std::to_string(status.stamp.epoch), std::to_string(status.stamp.cycle),
+         std::to_string(status.late_cycles), format("%.2f", status.step_ms_mean),
+         format("%.2f", status.step_ms_max), format("%.1f", status.cpu_percent),
+         format("%.1f", status.rss_mb), status.host, std::to_string(status.pid),
+         lost ? "not heard any more; its last words: " + std::string(name_of(status.state)) +
+                    (status.reason.empty() ? "" : ", " + status.reason)
+              : status.reason});
   }
   return table(rows);
 }

@@ -11,42 +11,42 @@ v1::IntentionNode node(std::uint32_t id, std::uint32_t parent, bool blocking,
                        const std::string& schema, const std::string& name, const std::string& label,
                        const std::string& step = "") {
   v1::IntentionNode result;
-  result.id(id);
-  result.parent(parent);
-  result.blocking(blocking);
-  result.schema(schema);
-  result.name(name);
-  result.label(label);
-  result.step(step);
-  result.state(v1::INTENTION_RUNNING);
+  result.id = id;
+  result.parent = parent;
+  result.blocking = blocking;
+  result.schema = schema;
+  result.name = name;
+  result.label = label;
+  result.step = step;
+  result.state = v1::INTENTION_RUNNING;
   return result;
 }
 
 v1::IntendedBehavior behavior(std::uint32_t intention, bool blocking, const std::string& schema,
                               const std::string& name) {
   v1::IntendedBehavior result;
-  result.intention(intention);
-  result.blocking(blocking);
-  result.schema(schema);
-  result.name(name);
+  result.intention = intention;
+  result.blocking = blocking;
+  result.schema = schema;
+  result.name = name;
   return result;
 }
 
 // The snapshot in the paper, without the next state: that may be the one for trouble.
 TEST(IntentionsDisplay, IsFigure10) {
   v1::Intentions all;
-  all.behavior_control(true);
-  all.nodes({node(1, 0, true, "Avoid", "Avoid1", "END"),
-             node(3674, 0, true, "Deliver-Object", "", "S171"),
-             node(3675, 3674, true, "Plan-And-Execute", "", "S146"),
-             node(3676, 3675, false, "Monitor-Planex", "", "CLEANUP"),
-             node(3679, 3675, true, "Follow-Path", "Follow-It", "S138"),
-             node(3677, 3679, true, "Corridor-To-Junction", "", "END"),
-             node(3678, 3677, true, "Follow-To-Target", "", "END")});
-  all.behaviors({behavior(1, true, "Avoid-Collision", "Collide"),
-                 behavior(3678, false, "Follow", "Follow-To-Target"),
-                 behavior(3678, false, "Orient", "Orient-To-Target"),
-                 behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")});
+  all.behavior_control = true;
+  all.nodes = {node(1, 0, true, "Avoid", "Avoid1", "END"),
+               node(3674, 0, true, "Deliver-Object", "", "S171"),
+               node(3675, 3674, true, "Plan-And-Execute", "", "S146"),
+               node(3676, 3675, false, "Monitor-Planex", "", "CLEANUP"),
+               node(3679, 3675, true, "Follow-Path", "Follow-It", "S138"),
+               node(3677, 3679, true, "Corridor-To-Junction", "", "END"),
+               node(3678, 3677, true, "Follow-To-Target", "", "END")};
+  all.behaviors = {behavior(1, true, "Avoid-Collision", "Collide"),
+                   behavior(3678, false, "Follow", "Follow-To-Target"),
+                   behavior(3678, false, "Orient", "Orient-To-Target"),
+                   behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1)
   * Avoid-Collision (Collide) B
 * Deliver-Object (I3674)
@@ -69,39 +69,40 @@ TEST(Displays, TheInstanceIsInWords) {
     EXPECT_EQ(without_instance(name), name);
   }
   v1::Intentions all;
-  all.behavior_control(true);
-  all.nodes({node(1, 0, true, "go_to", "go_to1", "S1")});
-  all.behaviors({behavior(1, true, "Stop", "rest#32"), behavior(1, false, "GoToPos", "GoToPos#7")});
+  all.behavior_control = true;
+  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1")};
+  all.behaviors = {behavior(1, true, "Stop", "rest#32"),
+                   behavior(1, false, "GoToPos", "GoToPos#7")};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
   * Stop (rest, instance 32) B
   o GoToPos (instance 7) B
 )");
   v1::BehaviorState state;
-  state.schema("Stop");
-  state.name("rest#32");
+  state.schema = "Stop";
+  state.name = "rest#32";
   EXPECT_TRUE(behavior_display(state, nullptr, nullptr).starts_with("rest, instance 32 (Stop)\n"));
   v1::ProcessSet set;
-  set.service("intentions");
+  set.service = "intentions";
   v1::Process process;
-  process.name("rest#32");
-  set.processes({process});
+  process.name = "rest#32";
+  set.processes = {process};
   EXPECT_NE(processes_table({set}).find("rest, instance 32"), std::string::npos);
 }
 
 TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
   v1::Intentions all;
-  all.behavior_control(false);
-  all.nodes({node(1, 0, true, "go_to", "go_to1", "S1", "driving to (3, 1)"),
-             node(2, 1, false, "watch", "w", "MONITOR", "waits for *failed*")});
-  all.nodes()[1].state(v1::INTENTION_SUSPENDED);
-  all.behaviors({behavior(1, true, "GoToPos", "GoToPos")});
+  all.behavior_control = false;
+  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1", "driving to (3, 1)"),
+               node(2, 1, false, "watch", "w", "MONITOR", "waits for *failed*")};
+  all.nodes[1].state = v1::INTENTION_SUSPENDED;
+  all.behaviors = {behavior(1, true, "GoToPos", "GoToPos")};
   v1::BehaviorSet behaviors;
   v1::BehaviorState state;
-  state.name("GoToPos");
-  state.turn_activity(0.5);
-  state.speed_activity(1.0);
-  state.goal(0.25);
-  behaviors.behaviors({state});
+  state.name = "GoToPos";
+  state.turn_activity = 0.5;
+  state.speed_activity = 1.0;
+  state.goal = 0.25;
+  behaviors.behaviors = {state};
   EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1)          driving to (3, 1)
   o watch (w)             suspended; waits for *failed*
   * GoToPos (GoToPos) B   activity 1.00, goal 0.25
@@ -113,11 +114,11 @@ behavior control is off
 // The intentions service has its behaviors in the tree, as leaves.
 TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
   v1::Intentions all;
-  all.behavior_control(true);
-  all.nodes({node(1, 0, true, "go_to", "go_to1", "S1"), node(2, 1, true, "GoToPos", "GoToPos", ""),
-             node(3, 1, false, "Stop", "end", "B")});
-  all.nodes()[2].state(v1::INTENTION_SUSPENDED);
-  all.behaviors({behavior(2, true, "GoToPos", "GoToPos")});
+  all.behavior_control = true;
+  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1"),
+               node(2, 1, true, "GoToPos", "GoToPos", ""), node(3, 1, false, "Stop", "end", "B")};
+  all.nodes[2].state = v1::INTENTION_SUSPENDED;
+  all.behaviors = {behavior(2, true, "GoToPos", "GoToPos")};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
   * GoToPos (GoToPos) B
   o Stop (end) B          suspended
@@ -126,68 +127,68 @@ TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
 
 TEST(IntentionsDisplay, ComesToAnEndWithWhatIsNoTree) {
   v1::Intentions all;
-  all.behavior_control(true);
-  all.nodes({node(1, 2, true, "a", "a", ""), node(2, 1, true, "b", "b", ""),
-             node(0, 0, true, "c", "c", "")});
+  all.behavior_control = true;
+  all.nodes = {node(1, 2, true, "a", "a", ""), node(2, 1, true, "b", "b", ""),
+               node(0, 0, true, "c", "c", "")};
   EXPECT_NE(intentions_display(all, nullptr), "");
 }
 
 v1::BehaviorState keep_off() {
   v1::BehaviorState state;
-  state.name("Keep Off");
-  state.schema("Keep Off");
-  state.priority(1);
-  state.running(true);
-  state.turn_activity(1.0);
-  state.turn_weight(0.5);
-  state.speed_activity(0.5);
-  state.speed_weight(0.5);
-  state.goal(0.0);
-  state.progress(1.0);
-  state.recommends_turn(true);
-  state.turn(radians(-15.0));
-  state.recommends_speed(true);
-  state.speed(0.2);
+  state.name = "Keep Off";
+  state.schema = "Keep Off";
+  state.priority = 1;
+  state.running = true;
+  state.turn_activity = 1.0;
+  state.turn_weight = 0.5;
+  state.speed_activity = 0.5;
+  state.speed_weight = 0.5;
+  state.goal = 0.0;
+  state.progress = 1.0;
+  state.recommends_turn = true;
+  state.turn = radians(-15.0);
+  state.recommends_speed = true;
+  state.speed = 0.2;
   v1::RuleState rule;
-  rule.name("Obstacle-Right");
-  rule.strength(0.0);
-  rule.action(v1::CONTROL_TURN_LEFT);
-  rule.value(radians(5.0));
-  state.rules().push_back(rule);
-  rule.name("Caution");
-  rule.strength(0.5);
-  rule.action(v1::CONTROL_DECELERATE);
-  rule.value(0.1);
-  state.rules().push_back(rule);
+  rule.name = "Obstacle-Right";
+  rule.strength = 0.0;
+  rule.action = v1::CONTROL_TURN_LEFT;
+  rule.value = radians(5.0);
+  state.rules.push_back(rule);
+  rule.name = "Caution";
+  rule.strength = 0.5;
+  rule.action = v1::CONTROL_DECELERATE;
+  rule.value = 0.1;
+  state.rules.push_back(rule);
   v1::FuzzyVariable variable;
-  variable.name("front");
-  variable.value(0.5);
-  state.variables().push_back(variable);
+  variable.name = "front";
+  variable.value = 0.5;
+  state.variables.push_back(variable);
   return state;
 }
 
 TEST(BehaviorsDisplay, HasActivityAsABarAndRecommendationsToTheSides) {
   v1::BehaviorSet all;
-  all.control(true);
+  all.control = true;
   v1::BehaviorState stop;
-  stop.name("end");
-  stop.schema("Stop");
-  stop.priority(4);
-  all.behaviors({keep_off(), stop});
-  all.turning(true);
-  all.turn(radians(-15.0));
-  all.moving(true);
-  all.speed(0.4);
+  stop.name = "end";
+  stop.schema = "Stop";
+  stop.priority = 4;
+  all.behaviors = {keep_off(), stop};
+  all.turning = true;
+  all.turn = radians(-15.0);
+  all.moving = true;
+  all.speed = 0.4;
   EXPECT_EQ(behaviors_display(all),
             R"(              pri    turn              degrees      speed             m/s
 * Keep Off    1    [========|>>>>====] 15 right   [    ====|>>>>    ] 0.20
 o Stop (end)  4    [        |        ]            [        |        ]
 = Summation        [        |>>>>    ] 15 right   [        |>>>>>>>>] 0.40
 )");
-  all.control(false);
-  all.turning(false);
-  all.moving(false);
-  all.trouble("Fly: unknown schema");
+  all.control = false;
+  all.turning = false;
+  all.moving = false;
+  all.trouble = "Fly: unknown schema";
   EXPECT_TRUE(behaviors_display(all).ends_with(
       "  Summation        [        |        ] -          [        |        ] -\n"
       "behavior control is off: the summation does not drive\n"
@@ -209,22 +210,22 @@ TEST(BehaviorDisplay, AnUnknownNameGetsAGuessAndTheList) {
 TEST(BehaviorDisplay, IsFigure26) {
   v1::IntendedBehavior intended;
   v1::Argument sensitivity;
-  sensitivity.name("sensitivity");
-  sensitivity.kind(v1::ARGUMENT_NUMBER);
-  sensitivity.number(2.0);
-  intended.parameters({sensitivity});
+  sensitivity.name = "sensitivity";
+  sensitivity.kind = v1::ARGUMENT_NUMBER;
+  sensitivity.number = 2.0;
+  intended.parameters = {sensitivity};
   v1::BehaviorSchema schema;
-  schema.summary("steers off what is ahead");
+  schema.summary = "steers off what is ahead";
   v1::BehaviorParameter distance;
-  distance.name("distance");
-  distance.kind(v1::ARGUMENT_NUMBER);
-  distance.usual(0.75);
-  schema.parameters({distance});
+  distance.name = "distance";
+  distance.kind = v1::ARGUMENT_NUMBER;
+  distance.usual = 0.75;
+  schema.parameters = {distance};
   v1::RuleText text;
-  text.name("Caution");
-  text.antecedent("front");
-  text.action("Slow Down");
-  schema.rules({text});
+  text.name = "Caution";
+  text.antecedent = "front";
+  text.action = "Slow Down";
+  schema.rules = {text};
   EXPECT_EQ(behavior_display(keep_off(), &intended, &schema), R"(Keep Off: steers off what is ahead
 
 Params                         Running   1
@@ -246,23 +247,23 @@ Fuzzy variables
 
 TEST(SchemaDisplay, SaysWhatABehaviorThatIsNotIntendedTakesAndDoes) {
   v1::BehaviorSchema schema;
-  schema.name("KeepOff");
-  schema.summary("steers off what is ahead");
-  schema.source("keep-off.beh");
+  schema.name = "KeepOff";
+  schema.summary = "steers off what is ahead";
+  schema.source = "keep-off.beh";
   v1::BehaviorParameter parameter;
-  parameter.name("distance");
-  parameter.usual(0.75);
-  parameter.meaning("[m] at which it begins");
-  schema.parameters().push_back(parameter);
-  parameter.name("goal");
-  parameter.required(true);
-  parameter.meaning("");
-  schema.parameters().push_back(parameter);
+  parameter.name = "distance";
+  parameter.usual = 0.75;
+  parameter.meaning = "[m] at which it begins";
+  schema.parameters.push_back(parameter);
+  parameter.name = "goal";
+  parameter.required = true;
+  parameter.meaning = "";
+  schema.parameters.push_back(parameter);
   v1::RuleText rule;
-  rule.name("caution");
-  rule.antecedent("front");
-  rule.action("Slow Down");
-  schema.rules().push_back(rule);
+  rule.name = "caution";
+  rule.antecedent = "front";
+  rule.action = "Slow Down";
+  schema.rules.push_back(rule);
   EXPECT_EQ(schema_display(schema), R"(KeepOff: steers off what is ahead
 It is loaded from keep-off.beh, and no goal or activity intends it now.
 
@@ -277,18 +278,18 @@ Rules
 
 TEST(BeliefsTable, SaysWhoSaidSoAndHowLongAgo) {
   v1::BeliefSet all;
-  all.stamp().cycle(100);
+  all.stamp.cycle = 100;
   v1::Belief belief;
-  belief.name("*failed-execution*");
-  belief.value("nil");
-  belief.said_by("plan-and-execute1");
-  belief.since(75);
-  all.beliefs().push_back(belief);
-  belief.name("in-corridor");
-  belief.value("t");
-  belief.said_by("perception");
-  belief.since(100);
-  all.beliefs().push_back(belief);
+  belief.name = "*failed-execution*";
+  belief.value = "nil";
+  belief.said_by = "plan-and-execute1";
+  belief.since = 75;
+  all.beliefs.push_back(belief);
+  belief.name = "in-corridor";
+  belief.value = "t";
+  belief.said_by = "perception";
+  belief.since = 100;
+  all.beliefs.push_back(belief);
   EXPECT_EQ(beliefs_table(all), R"(NAME                VALUE  SINCE  SAID BY
 *failed-execution*  nil    2.5 s  plan-and-execute1
 in-corridor         t      0.0 s  perception
@@ -301,27 +302,27 @@ in-corridor  t      0.0 s  perception
 
 TEST(ProcessesTable, IsFigure27ForAllServices) {
   v1::ProcessSet interpretation;
-  interpretation.service("interpretation");
+  interpretation.service = "interpretation";
   v1::Process process;
-  process.name("grid");
-  process.state(v1::PROCESS_RUNNING);
-  process.number(10);
-  process.since(1);
-  process.effect("puts readings into the grid");
-  interpretation.processes().push_back(process);
-  process.name("doors");
-  process.state(v1::PROCESS_SUSPENDED);
-  process.number(0);
-  process.since(12);
-  process.effect("finds doors");
-  interpretation.processes().push_back(process);
+  process.name = "grid";
+  process.state = v1::PROCESS_RUNNING;
+  process.number = 10;
+  process.since = 1;
+  process.effect = "puts readings into the grid";
+  interpretation.processes.push_back(process);
+  process.name = "doors";
+  process.state = v1::PROCESS_SUSPENDED;
+  process.number = 0;
+  process.since = 12;
+  process.effect = "finds doors";
+  interpretation.processes.push_back(process);
   v1::ProcessSet behaviors;
-  behaviors.service("behaviors");
-  process.name("executive");
-  process.state(v1::PROCESS_INIT);
-  process.since(0);
-  process.effect("evaluates behaviors");
-  behaviors.processes().push_back(process);
+  behaviors.service = "behaviors";
+  process.name = "executive";
+  process.state = v1::PROCESS_INIT;
+  process.since = 0;
+  process.effect = "evaluates behaviors";
+  behaviors.processes.push_back(process);
   EXPECT_EQ(processes_table({interpretation, behaviors}),
             R"(SERVICE         PROCESS    STATE  SINCE CYCLE  DOES
 behaviors       executive  INIT             0  evaluates behaviors

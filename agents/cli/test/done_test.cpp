@@ -10,20 +10,20 @@ namespace {
 TEST(Done, AMoveWhenNothingIsLeftOfItAndTheRobotRests) {
   const Move move{Move::Kind::move, "move", -0.5, 0.2};
   const v1::MotorCommand command = command_of(move);
-  EXPECT_TRUE(command.active());
-  EXPECT_EQ(command.translation(), v1::TRANSLATION_POSITION);
-  EXPECT_EQ(command.distance(), -0.5);
-  EXPECT_EQ(command.velocity(), 0.2);
-  EXPECT_EQ(command.rotation(), v1::ROTATION_NONE);
+  EXPECT_TRUE(command.active);
+  EXPECT_EQ(command.translation, v1::TRANSLATION_POSITION);
+  EXPECT_EQ(command.distance, -0.5);
+  EXPECT_EQ(command.velocity, 0.2);
+  EXPECT_EQ(command.rotation, v1::ROTATION_NONE);
   v1::Grant grant;
   v1::RobotState robot;
-  grant.distance_left(-0.35);
+  grant.distance_left = -0.35;
   EXPECT_FALSE(done(move, grant, robot));
   EXPECT_EQ(rest_of(move, grant, robot), ", 0.35 m left");
-  grant.distance_left(0.0);
-  robot.velocity(-0.1);
+  grant.distance_left = 0.0;
+  robot.velocity = -0.1;
   EXPECT_FALSE(done(move, grant, robot));
-  robot.velocity(0.0);
+  robot.velocity = 0.0;
   EXPECT_TRUE(done(move, grant, robot));
   EXPECT_EQ(rest_of(move, grant, robot), "");
 }
@@ -31,16 +31,16 @@ TEST(Done, AMoveWhenNothingIsLeftOfItAndTheRobotRests) {
 TEST(Done, ATurnWhenTheRobotPointsThereAndRests) {
   const Move turn{Move::Kind::turn, "turn", radians(90.0), 0.0};
   v1::Grant grant;
-  grant.rotation(v1::ROTATION_HEADING);
-  grant.heading(radians(-179.0));
+  grant.rotation = v1::ROTATION_HEADING;
+  grant.heading = radians(-179.0);
   v1::RobotState robot;
-  robot.pose_in_odom().th(radians(150.0));
+  robot.pose_in_odom.th = radians(150.0);
   EXPECT_FALSE(done(turn, grant, robot));
   EXPECT_EQ(rest_of(turn, grant, robot), ", 31 degrees left");
-  robot.pose_in_odom().th(radians(180.0));
-  robot.rotation_velocity(0.5);
+  robot.pose_in_odom.th = radians(180.0);
+  robot.rotation_velocity = 0.5;
   EXPECT_FALSE(done(turn, grant, robot));
-  robot.rotation_velocity(0.0);
+  robot.rotation_velocity = 0.0;
   EXPECT_TRUE(done(turn, grant, robot));
 }
 

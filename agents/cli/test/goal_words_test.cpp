@@ -19,31 +19,31 @@ TEST(GoalWords, Numbers) {
                                     {"a=1e-2", 0.01},
                                     {"a=.5", 0.5}}) {
     const v1::Argument argument = parse_argument(word);
-    EXPECT_EQ(argument.name(), "a");
-    EXPECT_EQ(argument.kind(), v1::ARGUMENT_NUMBER) << word;
-    EXPECT_DOUBLE_EQ(argument.number(), value);
+    EXPECT_EQ(argument.name, "a");
+    EXPECT_EQ(argument.kind, v1::ARGUMENT_NUMBER) << word;
+    EXPECT_DOUBLE_EQ(argument.number, value);
   }
-  EXPECT_DOUBLE_EQ(parse_argument("heading=-90deg").number(), -kPi / 2);
+  EXPECT_DOUBLE_EQ(parse_argument("heading=-90deg").number, -kPi / 2);
 }
 
 TEST(GoalWords, Points) {
   const v1::Argument plain = parse_argument("position=3,-1.5");
-  EXPECT_EQ(plain.kind(), v1::ARGUMENT_POINT);
-  EXPECT_EQ(plain.frame(), v1::FRAME_ODOM);
-  EXPECT_DOUBLE_EQ(plain.point().x(), 3.0);
-  EXPECT_DOUBLE_EQ(plain.point().y(), -1.5);
-  EXPECT_DOUBLE_EQ(plain.point().th(), 0.0);
+  EXPECT_EQ(plain.kind, v1::ARGUMENT_POINT);
+  EXPECT_EQ(plain.frame, v1::FRAME_ODOM);
+  EXPECT_DOUBLE_EQ(plain.point.x, 3.0);
+  EXPECT_DOUBLE_EQ(plain.point.y, -1.5);
+  EXPECT_DOUBLE_EQ(plain.point.th, 0.0);
   const v1::Argument full = parse_argument("position=3,1,180deg@robot");
-  EXPECT_EQ(full.frame(), v1::FRAME_ROBOT);
-  EXPECT_DOUBLE_EQ(full.point().th(), kPi);
-  EXPECT_EQ(parse_argument("p=1,2@map").frame(), v1::FRAME_MAP);
-  EXPECT_EQ(parse_argument("p=1,2@odom").frame(), v1::FRAME_ODOM);
+  EXPECT_EQ(full.frame, v1::FRAME_ROBOT);
+  EXPECT_DOUBLE_EQ(full.point.th, kPi);
+  EXPECT_EQ(parse_argument("p=1,2@map").frame, v1::FRAME_MAP);
+  EXPECT_EQ(parse_argument("p=1,2@odom").frame, v1::FRAME_ODOM);
 }
 
 TEST(GoalWords, Text) {
   for (const char* word : {"a=kitchen", "a=room=4", "a=deg", "a=nan", "a=inf", "a=a,b", "a=@odom"})
-    EXPECT_EQ(parse_argument(word).kind(), v1::ARGUMENT_TEXT) << word;
-  EXPECT_EQ(parse_argument("a=room=4").text(), "room=4");
+    EXPECT_EQ(parse_argument(word).kind, v1::ARGUMENT_TEXT) << word;
+  EXPECT_EQ(parse_argument("a=room=4").text, "room=4");
 }
 
 TEST(GoalWords, WhatIsWrongIsRefusedInWords) {
@@ -58,7 +58,7 @@ TEST(GoalWords, WhatIsWrongIsRefusedInWords) {
 
 TEST(GoalWords, AWholeGoal) {
   const v1::Goal goal = parse_goal("go_to", {"position=3,1", "speed=0.3", "note=now"});
-  EXPECT_EQ(goal.functor(), "go_to");
+  EXPECT_EQ(goal.functor, "go_to");
   EXPECT_EQ(describe(goal), "go_to(position=(3, 1) in odom, speed=0.3, note=\"now\")");
   EXPECT_EQ(describe(parse_goal("stop", {})), "stop()");
   EXPECT_THROW(parse_goal("go_to", {"speed=1", "speed=2"}), std::invalid_argument);

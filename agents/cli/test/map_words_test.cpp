@@ -96,15 +96,15 @@ TEST(MapWords, LoadRefusesAFileThatWasCutOff) {
 
 TEST(MapWords, DescribeWhereTheRobotIs) {
   v1::Registration registration;
-  registration.state(v1::REGISTRATION_TRACKING);
-  registration.pose_in_map().x(1.0);
-  registration.pose_in_map().y(2.0);
-  registration.covariance().xx(0.01);
-  registration.confidence(0.9);
-  registration.environment(1);
+  registration.state = v1::REGISTRATION_TRACKING;
+  registration.pose_in_map.x = 1.0;
+  registration.pose_in_map.y = 2.0;
+  registration.covariance.xx = 0.01;
+  registration.confidence = 0.9;
+  registration.environment = 1;
   EXPECT_EQ(describe(registration, a_map()),
             "tracking (1.00, 2.00, 0 deg) +-0.10 m, 0.0 deg, 90 % sure, in corridor 1 (hall)");
-  registration.closed_doors({3, 77});
+  registration.closed_doors = {3, 77};
   EXPECT_NE(describe(registration, a_map()).find("(hall), door 3 closed"), std::string::npos)
       << "and no word on one that the map does not have";
 }

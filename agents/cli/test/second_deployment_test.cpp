@@ -7,9 +7,9 @@ namespace {
 
 SeenProcess process(const std::string& name, std::uint32_t pid, bool namesake) {
   SeenProcess seen;
-  seen.status.name(name);
-  seen.status.pid(pid);
-  seen.status.host("attic");
+  seen.status.name = name;
+  seen.status.pid = pid;
+  seen.status.host = "attic";
   seen.namesake = namesake;
   return seen;
 }
@@ -27,7 +27,7 @@ TEST(SecondDeployment, IsNamedByWhatIsThereASecondTime) {
             std::string::npos)
       << words;
   SeenProcess waits = process("bridge", 8, true);
-  waits.status.state(v1::SERVICE_WAITING);
+  waits.status.state = v1::SERVICE_WAITING;
   EXPECT_NE(second_deployment({waits}).find("bridge (waits, process 8 at attic)"),
             std::string::npos);
   EXPECT_NE(words.find("saphira up"), std::string::npos);

@@ -7,68 +7,68 @@ namespace {
 
 v1::Argument named(const std::string& name, v1::ArgumentKind kind) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(kind);
+  argument.name = name;
+  argument.kind = kind;
   return argument;
 }
 
 TEST(TalkWords, AnAnswerIsOneObject) {
   v1::Answer answer;
-  answer.service("calendar");
-  answer.code(v1::ANSWER_DONE);
+  answer.service = "calendar";
+  answer.code = v1::ANSWER_DONE;
   EXPECT_EQ(to_json(answer), R"({"agent":"calendar","code":"done","text":"","values":{}})");
 
   v1::Argument place = named("place", v1::ARGUMENT_TEXT);
-  place.text("library");
+  place.text = "library";
   v1::Argument open = named("open", v1::ARGUMENT_TRUTH);
-  open.number(1.0);
+  open.number = 1.0;
   v1::Argument position = named("position", v1::ARGUMENT_POINT);
-  position.point().x(1.5);
-  position.point().y(-2.0);
-  position.frame(v1::FRAME_MAP);
+  position.point.x = 1.5;
+  position.point.y = -2.0;
+  position.frame = v1::FRAME_MAP;
   v1::Argument hour = named("hour", v1::ARGUMENT_NUMBER);
-  hour.number(9.5);
+  hour.number = 9.5;
   v1::Argument later = hour;
-  later.number(10.5);
+  later.number = 10.5;
   v1::Argument last = hour;
-  last.number(11.5);
-  answer.text("found");
-  answer.results({place, open, position, hour, later, last, named("who", v1::ARGUMENT_UNBOUND)});
+  last.number = 11.5;
+  answer.text = "found";
+  answer.results = {place, open, position, hour, later, last, named("who", v1::ARGUMENT_UNBOUND)};
   EXPECT_EQ(to_json(answer),
             R"({"agent":"calendar","code":"done","text":"found","values":{"place":"library",)"
             R"("open":true,"position":{"x":1.5,"y":-2.0,"th":0.0,"frame":"map"},)"
             R"("hour":[9.5,10.5,11.5],"who":null}})");
 
   v1::Answer refused;
-  refused.service("calendar");
-  refused.code(v1::ANSWER_BAD_ARGUMENT);
-  refused.text("no such person");
+  refused.service = "calendar";
+  refused.code = v1::ANSWER_BAD_ARGUMENT;
+  refused.text = "no such person";
   EXPECT_EQ(to_json(refused),
             R"({"agent":"calendar","code":"bad_argument","text":"no such person","values":{}})");
 }
 
 TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
   v1::CapabilityParameter place;
-  place.name("place");
-  place.kind(v1::ARGUMENT_UNBOUND);
-  place.meaning("a text");
+  place.name = "place";
+  place.kind = v1::ARGUMENT_UNBOUND;
+  place.meaning = "a text";
   v1::CapabilityParameter hour;
-  hour.name("hour");
-  hour.kind(v1::ARGUMENT_NUMBER);
+  hour.name = "hour";
+  hour.kind = v1::ARGUMENT_NUMBER;
   v1::CapabilityParameter anything;
-  anything.name("anything");
-  anything.kind(v1::ARGUMENT_UNBOUND);
+  anything.name = "anything";
+  anything.kind = v1::ARGUMENT_UNBOUND;
   v1::Capability capability;
-  capability.functor("meet");
-  capability.summary("meets somebody");
-  capability.parameters({place, hour, anything});
+  capability.functor = "meet";
+  capability.summary = "meets somebody";
+  capability.parameters = {place, hour, anything};
   v1::Agent robot;
-  robot.name("robot");
-  robot.capabilities({capability, capability});
+  robot.name = "robot";
+  robot.capabilities = {capability, capability};
   v1::Agent calendar;
-  calendar.name("calendar");
-  calendar.summary("knows the day");
-  calendar.capabilities({capability});
+  calendar.name = "calendar";
+  calendar.summary = "knows the day";
+  calendar.capabilities = {capability};
   EXPECT_EQ(describe({robot, calendar}),
             "calendar  knows the day\n"
             "  meet([place], [hour], [anything])  meets somebody\n"
@@ -79,23 +79,23 @@ TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
 
 TEST(TalkWords, EqualValuesOfTwoAgentsAreTwoAnswers) {
   v1::Answer answer;
-  answer.service("calendar");
-  answer.text("on its way");
+  answer.service = "calendar";
+  answer.text = "on its way";
   EXPECT_TRUE(repeats(answer, answer)) << "it says again that it is at work";
   EXPECT_FALSE(repeats(answer, v1::Answer()));
-  answer.results({named("place", v1::ARGUMENT_TEXT)});
+  answer.results = {named("place", v1::ARGUMENT_TEXT)};
   EXPECT_FALSE(repeats(answer, answer));
 }
 
 std::string told(const std::vector<std::string>& words) {
   const v1::Request request = parse_question(words);
-  std::string text = request.functor();
-  for (const v1::Argument& argument : request.arguments())
-    text += " " + argument.name() + "=" +
-            (argument.kind() == v1::ARGUMENT_POINT    ? "point"
-             : argument.kind() == v1::ARGUMENT_NUMBER ? "number"
-             : argument.kind() == v1::ARGUMENT_TEXT   ? argument.text()
-                                                      : "?" + argument.text());
+  std::string text = request.functor;
+  for (const v1::Argument& argument : request.arguments)
+    text += " " + argument.name + "=" +
+            (argument.kind == v1::ARGUMENT_POINT    ? "point"
+             : argument.kind == v1::ARGUMENT_NUMBER ? "number"
+             : argument.kind == v1::ARGUMENT_TEXT   ? argument.text
+                                                    : "?" + argument.text);
   return text;
 }
 
@@ -113,7 +113,7 @@ TEST(TalkWords, SeveralFunctorsAreOneRequest) {
 
 TEST(TalkWords, SentencesOfBeforeAreNotForAListener) {
   v1::Utterance said;
-  said.answers().writer(7);
+  said.answers.writer = 7;
   EXPECT_TRUE(is_for(said, 9.0, 7, 2.0)) << "its answer";
   EXPECT_TRUE(is_for(said, 1.9, 8, 2.0));
   EXPECT_FALSE(is_for(said, 2.1, 8, 2.0));
@@ -121,13 +121,13 @@ TEST(TalkWords, SentencesOfBeforeAreNotForAListener) {
 
 TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
   v1::Trigger trigger;
-  trigger.kind(v1::TRIGGER_TIME);
-  trigger.period(5.0);
-  trigger.action("note");
+  trigger.kind = v1::TRIGGER_TIME;
+  trigger.period = 5.0;
+  trigger.action = "note";
   EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of somebody: every 5 s: note");
-  trigger.source("ann");
-  trigger.kind(v1::TRIGGER_EVENT);
-  trigger.condition("door_opened");
+  trigger.source = "ann";
+  trigger.kind = v1::TRIGGER_EVENT;
+  trigger.condition = "door_opened";
   EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of ann: when door_opened happens: note");
   EXPECT_EQ(describe(trigger, "1f3a:2", false),
             "trigger 1f3a:2 of ann: when door_opened happens: note; it fires no more: it has fired "

@@ -11,10 +11,10 @@ namespace {
 
 SeenProcess process(const std::string& name, double age) {
   SeenProcess seen;
-  seen.status.name(name);
-  seen.status.state(v1::SERVICE_RUNNING);
-  seen.status.late_cycles(7);
-  seen.status.pid(42);
+  seen.status.name = name;
+  seen.status.state = v1::SERVICE_RUNNING;
+  seen.status.late_cycles = 7;
+  seen.status.pid = 42;
   seen.age = age;
   return seen;
 }

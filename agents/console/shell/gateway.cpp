@@ -185,7 +185,7 @@ void Gateway::feed_all() {
 }
 
 int Gateway::run(const bus::Stop& stop) {
-  node_.status().state(v1::SERVICE_RUNNING);
+  node_.status().state = v1::SERVICE_RUNNING;
   server_.run(stop.fd());
   return bus::kExitOk;
 }
@@ -199,7 +199,7 @@ void Gateway::poll() {
   for (bus::RequestClient* client : {&stops_, &resets_, &registration_, &processes_})
     take_answers(*client);
   if (const v1::RobotState* const robot = mind_.robot())
-    stamp_ = robot->stamp();
+    stamp_ = robot->stamp;
   if (auto grant = grants_.take_newest())
     grant_ = std::move(grant);
   if (any)
@@ -229,7 +229,7 @@ void Gateway::tick() {
   for (const auto& [connection, page] : pages_)
     if (!page.greeted && now() - page.opened > kGreeting)
       server_.close(connection);
-  node_.status().stamp(stamp_);
+  node_.status().stamp = stamp_;
   node_.publish_status();
 }
 
@@ -242,7 +242,7 @@ void Gateway::drive() {
 }
 
 void Gateway::press_estop() {
-  if (const auto command = pilot_.stop(grant_ && grant_->estopped()))
+  if (const auto command = pilot_.stop(grant_ && grant_->estopped))
     estop_.write(*command);
 }
 

@@ -23,8 +23,8 @@ std::optional<v1::GoalId> goal_id(const std::string& text) {
       static_cast<std::size_t>(used) != text.size())
     return std::nullopt;
   v1::GoalId id;
-  id.writer(writer);
-  id.number(number);
+  id.writer = writer;
+  id.number = number;
   return id;
 }
 
@@ -175,7 +175,7 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
 void Gateway::obey(Connection connection, Page& page, const Message& message) {
   if (const auto* ping = std::get_if<Ping>(&message)) {
     return say(connection, format("{\"type\":\"pong\",\"at\":%.3f,\"cycle\":%llu}", ping->at,
-                                  static_cast<unsigned long long>(stamp_.cycle())));
+                                  static_cast<unsigned long long>(stamp_.cycle)));
   }
   // The right to watch includes the right to stop.
   if (std::holds_alternative<EmergencyStop>(message)) {
@@ -229,11 +229,11 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
          connection, place->reference);
   else if (const auto* out = std::get_if<PointOut>(&message)) {
     v1::AgentEvent event;
-    event.stamp(stamp_);
-    event.source(operator_of(page.name));
-    event.functor("pointed_out");
-    event.arguments({bus::point("position", out->x, out->y, 0.0,
-                                out->in_map ? v1::FRAME_MAP : v1::FRAME_ODOM)});
+    event.stamp = stamp_;
+    event.source = operator_of(page.name);
+    event.functor = "pointed_out";
+    event.arguments = {
+        bus::point("position", out->x, out->y, 0.0, out->in_map ? v1::FRAME_MAP : v1::FRAME_ODOM)};
     pointed_out_.write(event);
   }
   show_control();
@@ -263,10 +263,9 @@ void Gateway::hand_back(Connection connection) {
 void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& ask) {
   try {
     v1::Goal goal = cli::parse_request(words_of(ask.words));
-    goal.requester(operator_of(page.name));
+    goal.requester = operator_of(page.name);
     const v1::GoalId id = goals_.ask(goal);
-    answer(connection, ask.reference, true, cli::describe(goal),
-           key_text({id.writer(), id.number()}));
+    answer(connection, ask.reference, true, cli::describe(goal), key_text({id.writer, id.number}));
   } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
     answer(connection, ask.reference, false, error.what());
   }
@@ -295,12 +294,11 @@ void Gateway::send(bus::RequestClient& client, v1::Request request, Connection c
 
 void Gateway::take_answers(bus::RequestClient& client) {
   for (const v1::Answer& given : client.poll()) {
-    const auto asked = asked_.find(given.number());
+    const auto asked = asked_.find(given.number);
     if (asked == asked_.end())
       continue;
-    answer(asked->second.connection, asked->second.reference, bus::well(given.code()),
-           given.text());
-    if (bus::ended(given.code()))
+    answer(asked->second.connection, asked->second.reference, bus::well(given.code), given.text);
+    if (bus::ended(given.code))
       asked_.erase(asked);
   }
 }

@@ -64,14 +64,14 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
 }
 
 void Door::hear_reply(const v1::Utterance& reply) {
-  const std::uint64_t answers = reply.answers().number();
+  const std::uint64_t answers = reply.answers.number;
   for (auto& [number, waiting] : waiting_)
     if (waiting.what == Waiting::For::words && waiting.number == answers) {
-      waiting.said += (waiting.said.empty() ? "" : "\n") + reply.text();
-      if (reply.end())
+      waiting.said += (waiting.said.empty() ? "" : "\n") + reply.text;
+      if (reply.end)
         waiting.until = now_;
     }
-  if (reply.end())
+  if (reply.end)
     words_.erase(answers);
   else if (const auto words = words_.find(answers);
            words != words_.end() && !std::exchange(words->second.acts, true) && left_)
@@ -82,7 +82,7 @@ void Door::hear_reply(const v1::Utterance& reply) {
 void Door::hear() {
   goals_.poll();
   for (const auto& sample : said_reader_.take())
-    if (sample.data.answers().writer() == node_.instance())
+    if (sample.data.answers.writer == node_.instance())
       hear_reply(sample.data);
   if (!said_reader_.take_lost().empty() && has_words_underway()) {
     take_back_words();  // the tasks of a program end with the dialogue
@@ -94,32 +94,32 @@ void Door::hear() {
   for (const auto& sample : event_reader_.take())
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::event && !waiting.result &&
-          (waiting.name.empty() || waiting.name == sample.data.functor())) {
-        const Json arguments = values_of(sample.data.arguments());
-        waiting.result = Result{sample.data.functor() + " " +
+          (waiting.name.empty() || waiting.name == sample.data.functor)) {
+        const Json arguments = values_of(sample.data.arguments);
+        waiting.result = Result{sample.data.functor + " " +
                                     arguments.dump(-1, ' ', false, Json::error_handler_t::replace) +
-                                    ", reported by " + sample.data.source(),
+                                    ", reported by " + sample.data.source,
                                 {{"happened", true},
-                                 {"event", sample.data.functor()},
-                                 {"source", sample.data.source()},
+                                 {"event", sample.data.functor},
+                                 {"source", sample.data.source},
                                  {"arguments", arguments}},
                                 false};
       }
   for (const v1::Answer& answer : requests_.poll()) {
     actions_.hear(answer);
     for (auto& [number, waiting] : waiting_)
-      if (waiting.what == Waiting::For::request && waiting.number == answer.number() &&
-          bus::ended(answer.code()))
-        waiting.result = Result{cli::line_of(answer), values_of(answer.results(), waiting.declared),
-                                !bus::well(answer.code())};
+      if (waiting.what == Waiting::For::request && waiting.number == answer.number &&
+          bus::ended(answer.code))
+        waiting.result = Result{cli::line_of(answer), values_of(answer.results, waiting.declared),
+                                !bus::well(answer.code)};
   }
   for (const v1::Answer& answer : stops_.poll())
     for (auto& [number, waiting] : waiting_)
-      if (waiting.what == Waiting::For::stop && waiting.number == answer.number() &&
-          bus::ended(answer.code()))
-        waiting.result = Result{answer.text(),
-                                {{"stopped", bus::well(answer.code())}, {"moves", robot_.moves()}},
-                                !bus::well(answer.code())};
+      if (waiting.what == Waiting::For::stop && waiting.number == answer.number &&
+          bus::ended(answer.code))
+        waiting.result = Result{answer.text,
+                                {{"stopped", bus::well(answer.code)}, {"moves", robot_.moves()}},
+                                !bus::well(answer.code)};
 }
 
 void Door::turn(double now) {
@@ -166,7 +166,7 @@ void Door::turn(double now) {
 /// Writes the due requests of the actions.
 void Door::write_due() {
   for (const v1::Request& request : actions_.due(now_))
-    requests_.again(request.number(), request);
+    requests_.again(request.number, request);
 }
 
 /// Logs each call that has ended.
@@ -232,11 +232,11 @@ void Door::say(const Call& call) {
     return;
   v1::Utterance utterance = situation::typed(node_.instance(), bus::next_request_number(), who_,
                                              call.arguments.value("text", ""), unix_time());
-  utterance.means(v1::UTTERANCE_PROGRAM);
+  utterance.means = v1::UTTERANCE_PROGRAM;
   heard_writer_.write(utterance);
-  words_[utterance.id().number()] = {now_};
+  words_[utterance.id.number] = {now_};
   waiting_[call.number] = {
-      .what = Waiting::For::words, .number = utterance.id().number(), .until = now_ + kReply};
+      .what = Waiting::For::words, .number = utterance.id.number, .until = now_ + kReply};
 }
 
 /// Waits for an event, or for another value of a belief.
@@ -261,28 +261,28 @@ void Door::wait_for(const Call& call) {
 /// Sends a request to any capable agent. The answer fills missing parameters. An action gets an id
 /// as a goal has.
 void Door::request(const Call& call, const v1::Capability& capability) {
-  if (capability.acts() && !has_room(call))
+  if (capability.acts && !has_room(call))
     return;
   v1::Request request;
-  request.functor(capability.functor());
-  request.deadline(capability.acts() ? kDeadline : kReply);
-  request.source(who_);
-  for (const v1::CapabilityParameter& parameter : capability.parameters())
-    request.arguments().push_back(call.arguments.contains(parameter.name())
-                                      ? argument(parameter.name(), call.arguments[parameter.name()])
-                                      : bus::open(parameter.name()));
+  request.functor = capability.functor;
+  request.deadline = capability.acts ? kDeadline : kReply;
+  request.source = who_;
+  for (const v1::CapabilityParameter& parameter : capability.parameters)
+    request.arguments.push_back(call.arguments.contains(parameter.name)
+                                    ? argument(parameter.name, call.arguments[parameter.name])
+                                    : bus::open(parameter.name));
   const std::uint64_t number = requests_.send(request);
-  if (!capability.acts()) {
+  if (!capability.acts) {
     waiting_[call.number] = {.what = Waiting::For::request,
                              .number = number,
                              .until = now_ + kReply + 1.0,
-                             .declared = capability.parameters()};
+                             .declared = capability.parameters};
     return;
   }
   v1::GoalId id;
-  id.writer(node_.instance());
-  id.number(number);
-  actions_.begin(id, std::move(request), capability.parameters(), now_);
+  id.writer = node_.instance();
+  id.number = number;
+  actions_.begin(id, std::move(request), capability.parameters, now_);
   follow(call, id);
 }
 
@@ -321,12 +321,12 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
   if (!has_room(call))
     return;
   v1::Goal goal;
-  goal.functor(schema.name());
+  goal.functor = schema.name;
   for (const auto& [name, value] : call.arguments.items())
     if (name != "wait_s")
-      goal.arguments().push_back(argument(name, value));
-  goal.deadline(kDeadline);
-  goal.writer_lost(v1::WRITER_LOST_CANCEL);
+      goal.arguments.push_back(argument(name, value));
+  goal.deadline = kDeadline;
+  goal.writer_lost = v1::WRITER_LOST_CANCEL;
   follow(call, goals_.ask(goal));
 }
 
@@ -339,7 +339,7 @@ Door::Own* Door::own(const v1::GoalId& id) {
 
 bool Door::has_ended(const v1::GoalId& id) const {
   const auto known = status(id);
-  return known && bus::ended(known->state());
+  return known && bus::ended(known->state);
 }
 
 bool Door::has_words_underway() const {
@@ -374,7 +374,7 @@ void Door::withdraw(Own& own, const std::string& why) {
 std::optional<v1::GoalStatus> Door::other(const v1::GoalId& id) const {
   auto known = goals_.status(id);
   if (known &&
-      (bus::ended(known->state()) || id.writer() != node_.instance() || known->requester() == who_))
+      (bus::ended(known->state) || id.writer != node_.instance() || known->requester == who_))
     known.reset();
   return known;
 }
@@ -390,7 +390,7 @@ void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
   if (!call.arguments.value("sure", false))
     return session_.answer(
         call.number,
-        {"not done: this is " + known->functor() + " of " + known->requester() + ", " +
+        {"not done: this is " + known->functor + " of " + known->requester + ", " +
              bus::describe(*known) +
              ". Shall it end? Ask the person; after a yes call cancel again with sure: true",
          nullptr, true});
@@ -424,14 +424,14 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
   switch (waiting.what) {
     case Waiting::For::goal: {
       const auto known = status(*waiting.goal);
-      const bool ended = known && bus::ended(known->state());
+      const bool ended = known && bus::ended(known->state);
       if (!late && (!ended || (now_ < waiting.still && robot_.moves()))) {
         if (!known)
           return false;
         const std::string news =
-            bus::describe(known->state()) + ("\n" + known->step() + "\n" + known->reason());
-        if (known->progress() > waiting.told || news != waiting.words) {
-          waiting.told = std::max(waiting.told + kNews, known->progress());
+            bus::describe(known->state) + ("\n" + known->step + "\n" + known->reason);
+        if (known->progress > waiting.told || news != waiting.words) {
+          waiting.told = std::max(waiting.told + kNews, known->progress);
           waiting.words = news;
           session_.progress(number, waiting.told, words(*waiting.goal, *known));
         }
@@ -500,13 +500,13 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
                           kNotConfirmed, {{"stopped", false}, {"moves", robot_.moves()}}, true}));
       return true;
     case Waiting::For::estop: {
-      const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
+      const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped;
       if (!late && !latched)
         return false;
       if (latched)
         press();  // releases, so that a person can reset it
       session_.answer(number, {latched ? "the emergency stop is latched, pressed by " +
-                                             robot_.mind().grant()->estop_source() +
+                                             robot_.mind().grant()->estop_source +
                                              "; a person releases it: saphira estop reset"
                                        : kNotConfirmed,
                                {{"latched", latched}, {"moves", robot_.moves()}},
@@ -519,12 +519,12 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
 
 /// Presses until the bridge has latched the stop, and then releases. The topic is best effort.
 void Door::press() {
-  const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
+  const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped;
   v1::MotorCommand command;
-  command.source(who_);
+  command.source = who_;
   for (int i = 0; i < 4; ++i) {
-    command.number(bus::next_request_number());
-    command.active(!latched);
+    command.number = bus::next_request_number();
+    command.active = !latched;
     stop_writer_.write(command);
   }
 }
@@ -547,12 +547,12 @@ Result Door::outcome(const v1::GoalId& id) const {
                 ": no answer yet; intentions may not run (robot_status says more)",
             {{"goal", bus::describe(id)}, {"state", "unknown"}},
             false};
-  const bool bad = bus::ended(known->state()) && known->state() != v1::GOAL_SUCCEEDED;
+  const bool bad = bus::ended(known->state) && known->state != v1::GOAL_SUCCEEDED;
   std::string text = "goal " + bus::describe(id) + ": " + words(id, *known);
-  if (!bus::ended(known->state()))
+  if (!bus::ended(known->state))
     text += "; it goes on: ask the tool goal for its end, or cancel it";
-  if (other(known->waits_for()))
-    text += "; the tool cancel ends " + bus::describe(known->waits_for()) +
+  if (other(known->waits_for))
+    text += "; the tool cancel ends " + bus::describe(known->waits_for) +
             " in front of it, once its person was asked";
   const Action* const action = actions_.find(id);
   return {text, action == nullptr ? json_of(*known) : json_of(*action), bad};
@@ -562,7 +562,7 @@ Json Door::goals() const {
   Json all = Json::array();
   for (const v1::GoalStatus& status : goals_.statuses()) {
     all.push_back(json_of(status));
-    all.back()["yours"] = status.id().writer() == node_.instance() && status.requester() == who_;
+    all.back()["yours"] = status.id.writer == node_.instance() && status.requester == who_;
   }
   for (const Action& action : actions_.all()) {
     all.push_back(json_of(action));

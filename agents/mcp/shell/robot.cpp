@@ -54,17 +54,16 @@ Json point() {
 }
 
 Json schema_of(const v1::ActivityParameter& parameter) {
-  const std::string unit = parameter.unit().empty() ? "" : " [" + parameter.unit() + "]";
-  Json json{
-      {"description", parameter.name() + unit +
-                          (parameter.usual().empty() ? "" : "; usually " + parameter.usual())}};
-  switch (parameter.kind()) {
+  const std::string unit = parameter.unit.empty() ? "" : " [" + parameter.unit + "]";
+  Json json{{"description", parameter.name + unit +
+                                (parameter.usual.empty() ? "" : "; usually " + parameter.usual)}};
+  switch (parameter.kind) {
     case v1::PARAMETER_NUMBER:
       json["type"] = "number";
-      if (parameter.low() < parameter.high() && std::isfinite(parameter.low()) &&
-          std::isfinite(parameter.high())) {
-        json["minimum"] = parameter.low();
-        json["maximum"] = parameter.high();
+      if (parameter.low < parameter.high && std::isfinite(parameter.low) &&
+          std::isfinite(parameter.high)) {
+        json["minimum"] = parameter.low;
+        json["maximum"] = parameter.high;
       }
       break;
     case v1::PARAMETER_TEXT:
@@ -81,18 +80,18 @@ Json schema_of(const v1::ActivityParameter& parameter) {
 
 Json schema_of(const v1::CapabilityParameter& parameter) {
   Json json;
-  switch (parameter.kind()) {
+  switch (parameter.kind) {
     case v1::ARGUMENT_NUMBER:
       json["type"] = "number";
-      if (parameter.low() < parameter.high()) {
-        json["minimum"] = parameter.low();
-        json["maximum"] = parameter.high();
+      if (parameter.low < parameter.high) {
+        json["minimum"] = parameter.low;
+        json["maximum"] = parameter.high;
       }
       break;
     case v1::ARGUMENT_TEXT:
       json["type"] = "string";
-      if (!parameter.choices().empty())
-        json["enum"] = parameter.choices();
+      if (!parameter.choices.empty())
+        json["enum"] = parameter.choices;
       break;
     case v1::ARGUMENT_POINT:
       json = point();
@@ -103,9 +102,9 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
     case v1::ARGUMENT_UNBOUND:
       break;
   }
-  std::string text = parameter.required() ? "" : "left out, the answer says it";
-  if (!parameter.meaning().empty())
-    text = "the agent says: " + quotation(parameter.meaning()) + (text.empty() ? "" : "; ") + text;
+  std::string text = parameter.required ? "" : "left out, the answer says it";
+  if (!parameter.meaning.empty())
+    text = "the agent says: " + quotation(parameter.meaning) + (text.empty() ? "" : "; ") + text;
   json["description"] = text;
   return json;
 }
@@ -113,9 +112,9 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
 /// True for an activity that needs a value without a declared kind, such as a path: only another
 /// activity has that.
 bool is_part(const v1::ActivitySchema& schema) {
-  return std::any_of(schema.parameters().begin(), schema.parameters().end(),
+  return std::any_of(schema.parameters.begin(), schema.parameters.end(),
                      [](const v1::ActivityParameter& parameter) {
-                       return parameter.required() && parameter.kind() == v1::PARAMETER_ANY;
+                       return parameter.required && parameter.kind == v1::PARAMETER_ANY;
                      });
 }
 
@@ -125,9 +124,9 @@ Json input_of(const Parameters& parameters) {
   Json properties;
   std::vector<std::string> required;
   for (const auto& parameter : parameters) {
-    properties[parameter.name()] = schema_of(parameter);
-    if (parameter.required())
-      required.push_back(parameter.name());
+    properties[parameter.name] = schema_of(parameter);
+    if (parameter.required)
+      required.push_back(parameter.name);
   }
   return object(std::move(properties), required);
 }
@@ -211,15 +210,15 @@ void Robot::poll(double now) {
   take(knowledge_reader_, knowledge_);
   bool changed = false;
   if (const auto newest = schema_reader_.take_newest()) {
-    schemas_ = newest->schemas();
+    schemas_ = newest->schemas;
     heard_schemas_ = true;
     changed = true;
   }
   for (const auto& sample : agent_reader_.take()) {
     if (sample.info.disposed)
-      agents_.erase(sample.data.id());
+      agents_.erase(sample.data.id);
     else
-      agents_[sample.data.id()] = sample;
+      agents_[sample.data.id] = sample;
     changed = true;
   }
   for (const bus::WriterId& writer : agent_reader_.take_lost())  // killed, perhaps
@@ -245,44 +244,44 @@ void Robot::make_tools() {
   };
   std::set<std::string> activities;
   for (const v1::ActivitySchema& schema : schemas_) {
-    const std::string name = tool_name(schema.name());
+    const std::string name = tool_name(schema.name);
     activities.insert(name);
     if (is_part(schema) || !is_new(name))
       continue;
-    Json input = input_of(schema.parameters());
+    Json input = input_of(schema.parameters);
     input["properties"]["wait_s"] = wait_of(kWait);
-    tools_.push_back({.name = name,
-                      .description = schema.summary().empty() ? "The activity " + schema.name()
-                                                              : schema.summary(),
-                      .input = std::move(input),
-                      .output = goal_form(),
-                      .lasts = true});
+    tools_.push_back(
+        {.name = name,
+         .description = schema.summary.empty() ? "The activity " + schema.name : schema.summary,
+         .input = std::move(input),
+         .output = goal_form(),
+         .lasts = true});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_) {
     // A description steers the model: it is shown where a person has allowed the agent.
     const bool is_shown =
-        std::find(described_.begin(), described_.end(), agent.data.name()) != described_.end();
-    for (v1::Capability capability : agent.data.capabilities()) {
-      const std::string name = tool_name(capability.functor());
+        std::find(described_.begin(), described_.end(), agent.data.name) != described_.end();
+    for (v1::Capability capability : agent.data.capabilities) {
+      const std::string name = tool_name(capability.functor);
       // The agent "robot" announces the activities once more.
       if (activities.contains(name) || !is_new(name))
         continue;
       capabilities_[name] = capability;
       if (!is_shown)
-        for (v1::CapabilityParameter& parameter : capability.parameters())
-          parameter.meaning("");
-      Json input = input_of(capability.parameters());
-      if (capability.acts())
+        for (v1::CapabilityParameter& parameter : capability.parameters)
+          parameter.meaning = "";
+      Json input = input_of(capability.parameters);
+      if (capability.acts)
         input["properties"]["wait_s"] = wait_of(kWait);
       tools_.push_back({.name = name,
-                        .description = "An agent " + quotation(agent.data.name()) +
-                                       (is_shown ? " says: " + quotation(capability.summary())
+                        .description = "An agent " + quotation(agent.data.name) +
+                                       (is_shown ? " says: " + quotation(capability.summary)
                                                  : " offers this; nobody has allowed its words"),
                         .input = std::move(input),
-                        .reads = !capability.acts(),
+                        .reads = !capability.acts,
                         .output = form_of(capability),
-                        .lasts = capability.acts()});
+                        .lasts = capability.acts});
     }
   }
   if (tools_ != before)
@@ -344,11 +343,11 @@ Result Robot::status() const {
              {"drive", situation::driver(now)},
              {"trouble", situation::trouble(now)}};
   if (const v1::RobotState* const robot = mind_.robot()) {
-    value["pose_in_odom"] = {{"x", robot->pose_in_odom().x()},
-                             {"y", robot->pose_in_odom().y()},
-                             {"heading", robot->pose_in_odom().th()}};
-    value["velocity"] = robot->velocity();
-    value["battery"] = robot->battery();
+    value["pose_in_odom"] = {{"x", robot->pose_in_odom.x},
+                             {"y", robot->pose_in_odom.y},
+                             {"heading", robot->pose_in_odom.th}};
+    value["velocity"] = robot->velocity;
+    value["battery"] = robot->battery;
   }
   return {text, value, false};
 }
@@ -360,24 +359,24 @@ Result Robot::why() const {
 
 std::optional<std::string> Robot::belief(const std::string& name) const {
   if (const v1::BeliefSet* const set = mind_.beliefs())
-    for (const v1::Belief& belief : set->beliefs())
-      if (belief.name() == name)
-        return belief.value();
+    for (const v1::Belief& belief : set->beliefs)
+      if (belief.name == name)
+        return belief.value;
   return std::nullopt;
 }
 
 std::string Robot::beliefs() const {
   std::string names;
   if (const v1::BeliefSet* const set = mind_.beliefs())
-    for (const v1::Belief& belief : set->beliefs())
-      names += (names.empty() ? "" : ", ") + belief.name();
+    for (const v1::Belief& belief : set->beliefs)
+      names += (names.empty() ? "" : ", ") + belief.name;
   return names;
 }
 
 bool Robot::moves() const {
   const v1::RobotState* const robot = mind_.robot();
   return robot != nullptr &&
-         (std::abs(robot->velocity()) > kStill || std::abs(robot->rotation_velocity()) > kStill);
+         (std::abs(robot->velocity) > kStill || std::abs(robot->rotation_velocity) > kStill);
 }
 
 }  // namespace saphira::mcp

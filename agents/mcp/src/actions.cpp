@@ -11,7 +11,7 @@ constexpr double kGrace = 10.0;        // [s] after the deadline of the request,
 constexpr std::size_t kMostKept = 64;  // actions that are remembered
 
 v1::GoalState state_of(const v1::Answer& answer, bool withdrawn) {
-  switch (answer.code()) {
+  switch (answer.code) {
     case v1::ANSWER_UNDERWAY:
       return v1::GOAL_UNDERWAY;
     case v1::ANSWER_DONE:
@@ -32,7 +32,7 @@ v1::GoalState state_of(const v1::Answer& answer, bool withdrawn) {
 }
 
 bool is_over(const Action& action) {
-  return bus::ended(action.status.state());
+  return bus::ended(action.status.state);
 }
 
 }  // namespace
@@ -41,44 +41,44 @@ void Actions::begin(const v1::GoalId& id, v1::Request request,
                     std::vector<v1::CapabilityParameter> declared, double now) {
   for (auto each = asked_.begin(); each != asked_.end() && asked_.size() >= kMostKept;)
     each = is_over(each->second.action) ? asked_.erase(each) : std::next(each);
-  request.asker(id.writer());
-  request.number(id.number());
-  Asked& asked = asked_[id.number()];
+  request.asker = id.writer;
+  request.number = id.number;
+  Asked& asked = asked_[id.number];
   asked = {{}, std::move(request), std::move(declared), false, now + kAgain, 0.0};
-  asked.end = now + asked.request.deadline() + kGrace;
+  asked.end = now + asked.request.deadline + kGrace;
   v1::GoalStatus& status = asked.action.status;
-  status.id(id);
-  status.functor(asked.request.functor());
-  status.requester(asked.request.source());
-  status.state(v1::GOAL_WAITING);
-  status.reason("no agent has answered yet; without saphira-facilitator none does");
+  status.id = id;
+  status.functor = asked.request.functor;
+  status.requester = asked.request.source;
+  status.state = v1::GOAL_WAITING;
+  status.reason = "no agent has answered yet; without saphira-facilitator none does";
 }
 
 void Actions::hear(const v1::Answer& answer) {
-  const auto found = asked_.find(answer.number());
-  if (found == asked_.end() || found->second.request.asker() != answer.asker())
+  const auto found = asked_.find(answer.number);
+  if (found == asked_.end() || found->second.request.asker != answer.asker)
     return;
   Asked& asked = found->second;
   v1::GoalStatus& status = asked.action.status;
   if (is_over(asked.action))
     return;
-  status.state(state_of(answer, asked.withdrawn));
-  const bool silent = answer.text().empty() && !bus::well(answer.code());
-  const std::string text = silent ? "no reason was given" : answer.text();
-  status.reason((answer.service().empty() || text.empty() ? "" : answer.service() + ": ") + text);
+  status.state = state_of(answer, asked.withdrawn);
+  const bool silent = answer.text.empty() && !bus::well(answer.code);
+  const std::string text = silent ? "no reason was given" : answer.text;
+  status.reason = (answer.service.empty() || text.empty() ? "" : answer.service + ": ") + text;
   if (is_over(asked.action))
-    asked.action.results = values_of(answer.results(), asked.declared);
+    asked.action.results = values_of(answer.results, asked.declared);
 }
 
 void Actions::withdraw(const v1::GoalId& id) {
-  const auto found = asked_.find(id.number());
+  const auto found = asked_.find(id.number);
   if (found == asked_.end() || found->second.withdrawn)
     return;
   Asked& asked = found->second;
   asked.withdrawn = true;
   asked.again = 0.0;
-  asked.request.functor(bus::kWithdraw);
-  asked.request.arguments().clear();
+  asked.request.functor = bus::kWithdraw;
+  asked.request.arguments.clear();
 }
 
 std::vector<v1::Request> Actions::due(double now) {
@@ -87,8 +87,9 @@ std::vector<v1::Request> Actions::due(double now) {
     if (is_over(asked.action))
       continue;
     if (now >= asked.end) {
-      asked.action.status.state(v1::GOAL_FAILED);
-      asked.action.status.reason("its end was not heard in time; whether it was done is not known");
+      asked.action.status.state = v1::GOAL_FAILED;
+      asked.action.status.reason =
+          "its end was not heard in time; whether it was done is not known";
     } else if (now >= asked.again) {
       asked.again = now + kAgain;
       requests.push_back(asked.request);
@@ -98,10 +99,9 @@ std::vector<v1::Request> Actions::due(double now) {
 }
 
 const Action* Actions::find(const v1::GoalId& id) const {
-  const auto found = asked_.find(id.number());
-  return found == asked_.end() || found->second.request.asker() != id.writer()
-             ? nullptr
-             : &found->second.action;
+  const auto found = asked_.find(id.number);
+  return found == asked_.end() || found->second.request.asker != id.writer ? nullptr
+                                                                           : &found->second.action;
 }
 
 std::vector<Action> Actions::all() const {
@@ -120,7 +120,7 @@ Json json_of(const Action& action) {
 
 std::string words_of(const Action& action) {
   const v1::GoalStatus& status = action.status;
-  return bus::describe(status.state()) + (status.reason().empty() ? "" : ": " + status.reason()) +
+  return bus::describe(status.state) + (status.reason.empty() ? "" : ": " + status.reason) +
          (action.results.empty()
               ? ""
               : "; results " + action.results.dump(-1, ' ', false, Json::error_handler_t::replace));

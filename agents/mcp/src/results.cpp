@@ -88,20 +88,20 @@ Json form_of(v1::ArgumentKind kind) {
 }
 
 Json json_of(const v1::Argument& argument) {
-  switch (argument.kind()) {
+  switch (argument.kind) {
     case v1::ARGUMENT_NUMBER:
-      return argument.number();
+      return argument.number;
     case v1::ARGUMENT_TEXT:
-      return argument.text();
+      return argument.text;
     case v1::ARGUMENT_POINT:
-      return {{"x", argument.point().x()},
-              {"y", argument.point().y()},
-              {"heading", argument.point().th()},
-              {"frame", argument.frame() == v1::FRAME_MAP    ? "map"
-                        : argument.frame() == v1::FRAME_ODOM ? "odom"
-                                                             : "robot"}};
+      return {{"x", argument.point.x},
+              {"y", argument.point.y},
+              {"heading", argument.point.th},
+              {"frame", argument.frame == v1::FRAME_MAP    ? "map"
+                        : argument.frame == v1::FRAME_ODOM ? "odom"
+                                                           : "robot"}};
     case v1::ARGUMENT_TRUTH:
-      return argument.number() != 0.0;
+      return argument.number != 0.0;
     case v1::ARGUMENT_UNBOUND:
       break;
   }
@@ -161,15 +161,15 @@ std::string quotation(const std::string& text) {
 }
 
 Json json_of(const v1::GoalStatus& status) {
-  Json json{{"goal", bus::describe(status.id())},
-            {"what", status.functor()},
-            {"asked_by", status.requester()},
-            {"state", bus::describe(status.state())},
-            {"step", status.step()},
-            {"reason", status.reason()},
-            {"progress", status.progress()}};
-  if (status.waits_for().writer() != 0)
-    json["waits_for"] = bus::describe(status.waits_for());
+  Json json{{"goal", bus::describe(status.id)},
+            {"what", status.functor},
+            {"asked_by", status.requester},
+            {"state", bus::describe(status.state)},
+            {"step", status.step},
+            {"reason", status.reason},
+            {"progress", status.progress}};
+  if (status.waits_for.writer != 0)
+    json["waits_for"] = bus::describe(status.waits_for);
   return json;
 }
 
@@ -177,13 +177,13 @@ Json values_of(const std::vector<v1::Argument>& arguments,
                const std::vector<v1::CapabilityParameter>& declared) {
   Json value = Json::object();
   for (const v1::Argument& result : arguments) {
-    const auto parameter = std::find_if(
-        declared.begin(), declared.end(),
-        [&](const v1::CapabilityParameter& each) { return each.name() == result.name(); });
-    if (parameter != declared.end() && parameter->kind() != v1::ARGUMENT_UNBOUND &&
-        parameter->kind() != result.kind())
+    const auto parameter =
+        std::find_if(declared.begin(), declared.end(),
+                     [&](const v1::CapabilityParameter& each) { return each.name == result.name; });
+    if (parameter != declared.end() && parameter->kind != v1::ARGUMENT_UNBOUND &&
+        parameter->kind != result.kind)
       continue;
-    Json& place = value[result.name()];
+    Json& place = value[result.name];
     if (place.is_null())
       place = json_of(result);
     else if (place.is_array())
@@ -262,14 +262,13 @@ Json form_of(const std::string& tool) {
 
 Json form_of(const v1::Capability& capability) {
   Json properties = Json::object();
-  for (const v1::CapabilityParameter& parameter : capability.parameters()) {
-    if (parameter.required())
+  for (const v1::CapabilityParameter& parameter : capability.parameters) {
+    if (parameter.required)
       continue;
-    const Json one = form_of(parameter.kind());
-    properties[parameter.name()] = {{"anyOf", Json::array({one, list_of(one)})}};
+    const Json one = form_of(parameter.kind);
+    properties[parameter.name] = {{"anyOf", Json::array({one, list_of(one)})}};
   }
-  return capability.acts() ? goal_with(object(std::move(properties)))
-                           : object(std::move(properties));
+  return capability.acts ? goal_with(object(std::move(properties))) : object(std::move(properties));
 }
 
 }  // namespace saphira::mcp

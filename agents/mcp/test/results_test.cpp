@@ -9,39 +9,39 @@ namespace {
 
 v1::CapabilityParameter declared(const std::string& name, v1::ArgumentKind kind, bool required) {
   v1::CapabilityParameter parameter;
-  parameter.name(name);
-  parameter.kind(kind);
-  parameter.required(required);
+  parameter.name = name;
+  parameter.kind = kind;
+  parameter.required = required;
   return parameter;
 }
 
 v1::Argument found(const std::string& name, v1::ArgumentKind kind) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(kind);
+  argument.name = name;
+  argument.kind = kind;
   return argument;
 }
 
 TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
   v1::Capability capability;
-  capability.parameters({declared("person", v1::ARGUMENT_TEXT, true),
-                         declared("place", v1::ARGUMENT_POINT, false),
-                         declared("age", v1::ARGUMENT_NUMBER, false)});
+  capability.parameters = {declared("person", v1::ARGUMENT_TEXT, true),
+                           declared("place", v1::ARGUMENT_POINT, false),
+                           declared("age", v1::ARGUMENT_NUMBER, false)};
   const Json form = form_of(capability);
   EXPECT_EQ(form["type"], "object");
   EXPECT_FALSE(form["properties"].contains("person"));
   v1::Answer answer;
-  answer.results({found("place", v1::ARGUMENT_POINT), found("place", v1::ARGUMENT_POINT),
-                  found("age", v1::ARGUMENT_NUMBER)});
-  answer.results()[2].number(std::numeric_limits<double>::infinity());
+  answer.results = {found("place", v1::ARGUMENT_POINT), found("place", v1::ARGUMENT_POINT),
+                    found("age", v1::ARGUMENT_NUMBER)};
+  answer.results[2].number = std::numeric_limits<double>::infinity();
   // As it arrives at the client.
-  const Json value = Json::parse(values_of(answer.results(), capability.parameters()).dump());
+  const Json value = Json::parse(values_of(answer.results, capability.parameters).dump());
   EXPECT_EQ(value["place"].size(), 2U);
   EXPECT_TRUE(value["age"].is_null());
   EXPECT_EQ(misfit(value, form), "");
   EXPECT_NE(misfit({{"age", "old"}}, form), "");
   EXPECT_NE(misfit({{"place", {{"x", 1.0}}}}, form), "");
-  capability.acts(true);
+  capability.acts = true;
   EXPECT_EQ(
       misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", value}}, form_of(capability)),
       "");
@@ -52,11 +52,11 @@ TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
 
 TEST(McpResults, AGoalHasItsForm) {
   v1::GoalStatus status;
-  status.waits_for().writer(1);
+  status.waits_for.writer = 1;
   for (const v1::GoalState state :
        {v1::GOAL_WAITING, v1::GOAL_REFUSED, v1::GOAL_UNDERWAY, v1::GOAL_SUSPENDED,
         v1::GOAL_SUCCEEDED, v1::GOAL_FAILED, v1::GOAL_CANCELED}) {
-    status.state(state);
+    status.state = state;
     EXPECT_EQ(misfit(json_of(status), goal_form()), "");
   }
   EXPECT_NE(misfit({{"goal", "1:1"}, {"state", "lazy"}}, goal_form()), "");

@@ -9,37 +9,37 @@ namespace {
 
 v1::Pose2 pose(double x, double y, double th) {
   v1::Pose2 made;
-  made.x(x);
-  made.y(y);
-  made.th(th);
+  made.x = x;
+  made.y = y;
+  made.th = th;
   return made;
 }
 
 v1::MapArtifact artifact(std::uint32_t id, v1::ArtifactType type, const std::string& name, double x,
                          double y) {
   v1::MapArtifact made;
-  made.id(id);
-  made.type(type);
-  made.name(name);
-  made.pose_in_map(pose(x, y, 0.0));
+  made.id = id;
+  made.type = type;
+  made.name = name;
+  made.pose_in_map = pose(x, y, 0.0);
   return made;
 }
 
 class SurroundingsTest : public testing::Test {
  protected:
   SurroundingsTest() {
-    map_.source("floor.map");
-    map_.artifacts({artifact(1, v1::ARTIFACT_OFFICE, "library", 9.0, 0.0),
-                    artifact(2, v1::ARTIFACT_OFFICE, "lobby", 2.0, 0.0),
-                    artifact(3, v1::ARTIFACT_DOOR, "lobby", 2.0, 1.0),
-                    artifact(4, v1::ARTIFACT_CORRIDOR, "", 0.0, 0.0)});
-    registration_.state(v1::REGISTRATION_TRACKING);
-    registration_.pose_in_map(pose(1.0, 0.0, 0.0));
-    registration_.covariance().xx(0.01);
-    registration_.covariance().yy(0.01);
-    registration_.environment(4);
-    registration_.closed_doors({3});
-    robot_.pose_in_odom(pose(5.0, 5.0, 1.5707963));  // it looks along y of odom
+    map_.source = "floor.map";
+    map_.artifacts = {artifact(1, v1::ARTIFACT_OFFICE, "library", 9.0, 0.0),
+                      artifact(2, v1::ARTIFACT_OFFICE, "lobby", 2.0, 0.0),
+                      artifact(3, v1::ARTIFACT_DOOR, "lobby", 2.0, 1.0),
+                      artifact(4, v1::ARTIFACT_CORRIDOR, "", 0.0, 0.0)};
+    registration_.state = v1::REGISTRATION_TRACKING;
+    registration_.pose_in_map = pose(1.0, 0.0, 0.0);
+    registration_.covariance.xx = 0.01;
+    registration_.covariance.yy = 0.01;
+    registration_.environment = 4;
+    registration_.closed_doors = {3};
+    robot_.pose_in_odom = pose(5.0, 5.0, 1.5707963);  // it looks along y of odom
   }
   v1::FloorMap map_;
   v1::Registration registration_;
@@ -67,8 +67,8 @@ TEST_F(SurroundingsTest, TheMapSaysWhereTheRobotIsAndWhereItCanBeSent) {
 }
 
 TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {
-  registration_.state(v1::REGISTRATION_LOST);
-  registration_.reason("the walls do not fit");
+  registration_.state = v1::REGISTRATION_LOST;
+  registration_.reason = "the walls do not fit";
   Surroundings around;
   around.map = &map_;
   around.registration = &registration_;
@@ -82,30 +82,30 @@ TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {
 
 TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
   v1::Percept wall;  // along y of odom, so along the robot's way, 1 m to its left
-  wall.type(v1::ARTIFACT_WALL);
-  wall.pose_in_odom(pose(4.0, 7.0, 1.5707963));
-  wall.length(6.0);
+  wall.type = v1::ARTIFACT_WALL;
+  wall.pose_in_odom = pose(4.0, 7.0, 1.5707963);
+  wall.length = 6.0;
   v1::Percept door;
-  door.type(v1::ARTIFACT_DOOR);
-  door.pose_in_odom(pose(6.0, 6.0, 0.0));
-  door.width(0.9);
-  perception_.percepts({door, wall});
+  door.type = v1::ARTIFACT_DOOR;
+  door.pose_in_odom = pose(6.0, 6.0, 0.0);
+  door.width = 0.9;
+  perception_.percepts = {door, wall};
   v1::SeenThing person;
-  person.kind(v1::SEEN_PERSON);
-  person.range_known(true);
-  person.pose_in_odom(pose(5.0, 7.5, 0.0));
-  person.points(3.0);
-  person.pointed(95);
-  vision_.stamp().cycle(100);
-  vision_.things({person});
+  person.kind = v1::SEEN_PERSON;
+  person.range_known = true;
+  person.pose_in_odom = pose(5.0, 7.5, 0.0);
+  person.points = 3.0;
+  person.pointed = 95;
+  vision_.stamp.cycle = 100;
+  vision_.things = {person};
   v1::SonarBucket behind;  // read half a metre further back
-  behind.reading().echo(true);
-  behind.pose_in_odom(pose(5.0, 4.5, 1.5707963));
-  behind.x(-2.5);
+  behind.reading.echo = true;
+  behind.pose_in_odom = pose(5.0, 4.5, 1.5707963);
+  behind.x = -2.5;
   v1::SonarBucket silent = behind;
-  silent.reading().echo(false);
-  silent.x(-0.1);
-  sonars_.buckets({behind, silent});
+  silent.reading.echo = false;
+  silent.x = -0.1;
+  sonars_.buckets = {behind, silent};
   const Result result = view_of({&robot_, &sonars_, nullptr, nullptr, &perception_, &vision_});
   EXPECT_EQ(result.text,
             "1.00 m left: wall, 6.0 m long\n"
@@ -119,9 +119,9 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
 
 TEST_F(SurroundingsTest, SamplesOfAnotherFrameAreLeftOut) {
   v1::Percept wall;
-  wall.type(v1::ARTIFACT_WALL);
-  perception_.percepts({wall});
-  perception_.odom(7);
+  wall.type = v1::ARTIFACT_WALL;
+  perception_.percepts = {wall};
+  perception_.odom = 7;
   EXPECT_EQ(view_of({&robot_, nullptr, nullptr, nullptr, &perception_, nullptr}).text,
             "nothing is near, or no sensor is heard");
   EXPECT_TRUE(view_of({}).is_error);
@@ -133,15 +133,15 @@ TEST(McpFacts, TheKnowledgeHasTheNumbersThatForgetTakes) {
   EXPECT_EQ(facts_of(&knowledge).text, "the robot was told nothing that it knows now");
   EXPECT_FALSE(facts_of(&knowledge).is_error);
   v1::Advice office;
-  office.number(3);
-  office.words("room EJ-231 is Karen's office");
-  office.speaker("ann");
-  office.said("Flakey, this is Karen's office");
-  office.time(1764160200.0);
+  office.number = 3;
+  office.words = "room EJ-231 is Karen's office";
+  office.speaker = "ann";
+  office.said = "Flakey, this is Karen's office";
+  office.time = 1764160200.0;
   v1::Advice hazard;
-  hazard.number(4);
-  hazard.words("there is a hole in the lobby");
-  knowledge.known({office, hazard});
+  hazard.number = 4;
+  hazard.words = "there is a hole in the lobby";
+  knowledge.known = {office, hazard};
   const Result result = facts_of(&knowledge);
   EXPECT_EQ(result.text,
             "what people told the robot, by number:\n"
@@ -154,7 +154,7 @@ TEST(McpFacts, TheKnowledgeHasTheNumbersThatForgetTakes) {
   EXPECT_FALSE(result.is_error);
   EXPECT_EQ(misfit(result.value, form_of("knows")), "");
 
-  knowledge.known(std::vector<v1::Advice>(201, office));
+  knowledge.known = std::vector<v1::Advice>(201, office);
   const Result many = facts_of(&knowledge);
   EXPECT_EQ(many.value["known"].size(), 200U);
   EXPECT_NE(many.text.find("(older ones are left out: 1)"), std::string::npos);

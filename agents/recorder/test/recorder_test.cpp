@@ -15,17 +15,17 @@ namespace {
 
 v1::RobotState state(std::uint64_t cycle) {
   v1::RobotState made;
-  made.stamp().epoch(7);
-  made.stamp().cycle(cycle);
-  made.velocity(0.1 * static_cast<double>(cycle));
-  made.battery(std::numeric_limits<double>::quiet_NaN());
+  made.stamp.epoch = 7;
+  made.stamp.cycle = cycle;
+  made.velocity = 0.1 * static_cast<double>(cycle);
+  made.battery = std::numeric_limits<double>::quiet_NaN();
   return made;
 }
 
 v1::Drawing drawing(std::uint64_t number) {
   v1::Drawing made;
-  made.instance(5);
-  made.number(number);
+  made.instance = 5;
+  made.number = number;
   return made;
 }
 
@@ -39,7 +39,7 @@ class Recorded : public testing::Test {
     auto commands = node.writer(bus::topics::kDriveDirect);
     auto goals = node.writer(bus::topics::kGoalStatus);
     v1::GoalStatus refused;
-    refused.code(v1::CODE_NO_ROBOT);
+    refused.code = v1::CODE_NO_ROBOT;
     goals.write(refused);
     Writer writer(file_);
     Recorder recorder(node, writer, recorded_topics(only));
@@ -80,23 +80,23 @@ TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
   EXPECT_TRUE(player.poll(0.05));
   auto came = states.take();
   ASSERT_EQ(came.size(), 1U);
-  EXPECT_EQ(came[0].data.stamp().cycle(), 1U);
-  EXPECT_TRUE(std::isnan(came[0].data.battery()));
+  EXPECT_EQ(came[0].data.stamp.cycle, 1U);
+  EXPECT_TRUE(std::isnan(came[0].data.battery));
   EXPECT_EQ(drawings.take().size(), 2U);
   EXPECT_TRUE(player.poll(0.1));
   const auto changed = drawings.take();
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_TRUE(changed[0].info.disposed);
-  EXPECT_EQ(changed[0].data.number(), 2U);
+  EXPECT_EQ(changed[0].data.number, 2U);
   EXPECT_FALSE(player.poll(10.0)) << "the end";
   came = states.take();
   ASSERT_FALSE(came.empty());
-  EXPECT_EQ(came.back().data.stamp().cycle(), 3U);
-  EXPECT_DOUBLE_EQ(came.back().data.velocity(), 0.3);
+  EXPECT_EQ(came.back().data.stamp.cycle, 3U);
+  EXPECT_DOUBLE_EQ(came.back().data.velocity, 0.3);
   EXPECT_EQ(player.written(), 7U);
   const auto refused = goals.take();
   ASSERT_EQ(refused.size(), 1U);
-  EXPECT_EQ(refused[0].data.code(), v1::CODE_NO_ROBOT) << "a number whose values have names";
+  EXPECT_EQ(refused[0].data.code, v1::CODE_NO_ROBOT) << "a number whose values have names";
   EXPECT_TRUE(commands.take().empty());
 }
 

@@ -42,20 +42,20 @@ bus::NodeOptions options_of(const std::string& robot) {
 
 protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
   protocol::RobotParameters parameters;
-  parameters.file = robot.parameter_file();
-  parameters.name = robot.name();
-  parameters.robot_class = robot.robot_class();
-  parameters.subclass = robot.robot_subclass();
-  parameters.radius = robot.radius();
-  parameters.diagonal = robot.diagonal();
-  parameters.max_velocity = robot.max_velocity();
-  parameters.max_rotation_velocity = robot.max_rotation_velocity();
-  parameters.acceleration = robot.acceleration();
-  parameters.deceleration = robot.deceleration();
-  parameters.rotation_acceleration = robot.rotation_acceleration();
-  parameters.front_buffer = robot.front_buffer();
-  parameters.side_buffer = robot.side_buffer();
-  parameters.front_max_range = robot.front_max_range();
+  parameters.file = robot.parameter_file;
+  parameters.name = robot.name;
+  parameters.robot_class = robot.robot_class;
+  parameters.subclass = robot.robot_subclass;
+  parameters.radius = robot.radius;
+  parameters.diagonal = robot.diagonal;
+  parameters.max_velocity = robot.max_velocity;
+  parameters.max_rotation_velocity = robot.max_rotation_velocity;
+  parameters.acceleration = robot.acceleration;
+  parameters.deceleration = robot.deceleration;
+  parameters.rotation_acceleration = robot.rotation_acceleration;
+  parameters.front_buffer = robot.front_buffer;
+  parameters.side_buffer = robot.side_buffer;
+  parameters.front_max_range = robot.front_max_range;
   for (const lps::SonarMount& mount : lps::mounts_from_bus(robot))
     parameters.sonars.push_back({static_cast<std::uint8_t>(mount.sonar), mount.in_robot});
   return parameters;
@@ -63,45 +63,45 @@ protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
 
 reflector::State state_of(const v1::RobotState& robot) {
   reflector::State state;
-  state.cycle = robot.stamp().cycle();
-  state.odom = robot.odom();
-  state.pose_in_odom = from_bus(robot.pose_in_odom());
-  state.target_velocity = robot.target_velocity();
-  state.target_heading_in_odom = robot.target_heading_in_odom();
-  state.motor_packets_per_s = robot.motor_packets_per_s();
-  state.sonar_readings_per_s = robot.sonar_readings_per_s();
+  state.cycle = robot.stamp.cycle;
+  state.odom = robot.odom;
+  state.pose_in_odom = from_bus(robot.pose_in_odom);
+  state.target_velocity = robot.target_velocity;
+  state.target_heading_in_odom = robot.target_heading_in_odom;
+  state.motor_packets_per_s = robot.motor_packets_per_s;
+  state.sonar_readings_per_s = robot.sonar_readings_per_s;
   protocol::Information& now = state.information;
-  now.motors = bridge::kMotors.ours(robot.status(), protocol::Motors::kStopped);
+  now.motors = bridge::kMotors.ours(robot.status, protocol::Motors::kStopped);
   now.th = state.pose_in_odom.th;
-  now.velocity = robot.velocity();
-  now.rotation_velocity = robot.rotation_velocity();
-  now.left_velocity = robot.left_velocity();
-  now.right_velocity = robot.right_velocity();
-  now.battery = robot.battery();
-  now.left_stalled = robot.left_stalled();
-  now.right_stalled = robot.right_stalled();
-  now.bumpers = robot.bumpers();
-  now.ptu = robot.ptu();
-  now.say = robot.say();
-  now.timer = robot.timer();
-  now.analog = robot.analog();
-  now.digital_input = robot.digital_input();
-  now.digital_output = robot.digital_output();
-  for (const v1::SonarReading& sonar : robot.sonars())
-    now.sonars.push_back({sonar.sonar(), static_cast<double>(sonar.range()), sonar.echo()});
+  now.velocity = robot.velocity;
+  now.rotation_velocity = robot.rotation_velocity;
+  now.left_velocity = robot.left_velocity;
+  now.right_velocity = robot.right_velocity;
+  now.battery = robot.battery;
+  now.left_stalled = robot.left_stalled;
+  now.right_stalled = robot.right_stalled;
+  now.bumpers = robot.bumpers;
+  now.ptu = robot.ptu;
+  now.say = robot.say;
+  now.timer = robot.timer;
+  now.analog = robot.analog;
+  now.digital_input = robot.digital_input;
+  now.digital_output = robot.digital_output;
+  for (const v1::SonarReading& sonar : robot.sonars)
+    now.sonars.push_back({sonar.sonar, static_cast<double>(sonar.range), sonar.echo});
   return state;
 }
 
 v1::MotorCommand command_of(const reflector::Motion& motion) {
   v1::MotorCommand command;
-  command.active(true);
-  command.translation(bridge::kTranslations.theirs(motion.translation));
-  command.rotation(bridge::kRotations.theirs(motion.rotation));
-  command.velocity(motion.velocity);
-  command.distance(motion.distance);
-  command.move(motion.move);
-  command.rotation_velocity(motion.rotation_velocity);
-  command.heading(motion.heading);
+  command.active = true;
+  command.translation = bridge::kTranslations.theirs(motion.translation);
+  command.rotation = bridge::kRotations.theirs(motion.rotation);
+  command.velocity = motion.velocity;
+  command.distance = motion.distance;
+  command.move = motion.move;
+  command.rotation_velocity = motion.rotation_velocity;
+  command.heading = motion.heading;
   return command;
 }
 
@@ -117,17 +117,17 @@ bool stands(const reflector::Motion& motion) {
 
 protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   protocol::VisionPacket seen;
-  for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels().size()); ++i) {
-    const v1::VisionChannel& from = channels.channels()[i];
+  for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels.size()); ++i) {
+    const v1::VisionChannel& from = channels.channels[i];
     protocol::VisionChannel& to = seen.channels[i];
-    to.mode = bridge::kVisionModes.ours(from.mode(), protocol::VisionChannel::Mode::kBlob);
-    to.x = from.x();
-    to.y = from.y();
-    to.area = from.area();
-    to.height = from.height();
-    to.width = from.width();
-    to.first = from.first();
-    to.count = from.count();
+    to.mode = bridge::kVisionModes.ours(from.mode, protocol::VisionChannel::Mode::kBlob);
+    to.x = from.x;
+    to.y = from.y;
+    to.area = from.area;
+    to.height = from.height;
+    to.width = from.width;
+    to.first = from.first;
+    to.count = from.count;
   }
   return seen;
 }
@@ -145,21 +145,21 @@ std::array<std::uint8_t, 3> color_of(int number) {
 
 v1::Drawing drawing_of(const Drawn& drawn) {
   v1::Drawing drawing;
-  drawing.frame(v1::FRAME_ROBOT);
-  drawing.shape(v1::DRAWING_RECTANGLE);
+  drawing.frame = v1::FRAME_ROBOT;
+  drawing.shape = v1::DRAWING_RECTANGLE;
   v1::DrawnPoint corner;
-  corner.x(drawn.x / 1000.0);
-  corner.y(drawn.y / 1000.0);
-  drawing.points().push_back(corner);
-  corner.x((drawn.x + drawn.dx) / 1000.0);
-  corner.y((drawn.y + drawn.dy) / 1000.0);
-  drawing.points().push_back(corner);
+  corner.x = drawn.x / 1000.0;
+  corner.y = drawn.y / 1000.0;
+  drawing.points.push_back(corner);
+  corner.x = (drawn.x + drawn.dx) / 1000.0;
+  corner.y = (drawn.y + drawn.dy) / 1000.0;
+  drawing.points.push_back(corner);
   const auto color = color_of(drawn.pen.line);
-  drawing.red(color[0]);
-  drawing.green(color[1]);
-  drawing.blue(color[2]);
-  drawing.width(drawn.pen.width * kPixel);
-  drawing.lifetime(kDrawnFor);
+  drawing.red = color[0];
+  drawing.green = color[1];
+  drawing.blue = color[2];
+  drawing.width = drawn.pen.width * kPixel;
+  drawing.lifetime = kDrawnFor;
   return drawing;
 }
 
@@ -182,31 +182,31 @@ v1::IntentionState intention_state(int state) {
 
 v1::ProgramMind mind_of(const SharedMind& mind) {
   v1::ProgramMind sample;
-  sample.behaviors(behaviors::to_bus(mind.behaviors));
-  v1::Intentions& intentions = sample.intended();
-  intentions.behavior_control(mind.behaviors.control);
+  sample.behaviors = behaviors::to_bus(mind.behaviors);
+  v1::Intentions& intentions = sample.intended;
+  intentions.behavior_control = mind.behaviors.control;
   for (const SharedIntention& one : mind.intentions) {
     v1::IntentionNode node;
-    node.id(one.id);
-    node.parent(one.parent);
-    node.name(one.name);
-    node.schema(one.behavior.empty() ? one.name : one.behavior);
-    node.state(intention_state(one.state));
-    node.label(!one.behavior.empty()         ? "B"
-               : one.state >= kFirstOwnState ? "state " + std::to_string(one.state)
-                                             : "");
-    intentions.nodes().push_back(node);
+    node.id = one.id;
+    node.parent = one.parent;
+    node.name = one.name;
+    node.schema = one.behavior.empty() ? one.name : one.behavior;
+    node.state = intention_state(one.state);
+    node.label = !one.behavior.empty()         ? "B"
+                 : one.state >= kFirstOwnState ? "state " + std::to_string(one.state)
+                                               : "";
+    intentions.nodes.push_back(node);
   }
   for (const behaviors::BehaviorState& one : mind.behaviors.behaviors) {
     v1::IntendedBehavior intended;
-    intended.name(one.name);
-    intended.schema(one.schema);
-    intended.priority(one.blended.priority);
-    intended.running(one.running);
+    intended.name = one.name;
+    intended.schema = one.schema;
+    intended.priority = one.blended.priority;
+    intended.running = one.running;
     for (const SharedIntention& intention : mind.intentions)
       if (intention.behavior == one.name)
-        intended.intention(intention.id);
-    intentions.behaviors().push_back(intended);
+        intended.intention = intention.id;
+    intentions.behaviors.push_back(intended);
   }
   return sample;
 }
@@ -263,8 +263,8 @@ class BusRobot final : public ServedRobot {
       return;
     stopped_ = false;
     wish_ = command_of(motion);
-    wish_->stamp().epoch(epoch_);
-    wish_->stamp().cycle(cycle);
+    wish_->stamp.epoch = epoch_;
+    wish_->stamp.cycle = cycle;
     wake();
   }
   bool take_stop() override {
@@ -380,7 +380,7 @@ class BusRobot final : public ServedRobot {
     }
     for (int i = 0; i < kReleases; ++i) {
       v1::MotorCommand release;
-      release.stamp(stamp_);
+      release.stamp = stamp_;
       write(node, ends, release);
       node.wait(kTurn);
     }
@@ -389,9 +389,9 @@ class BusRobot final : public ServedRobot {
   void tell_status(bus::Node& node) {
     const std::lock_guard lock(mutex_);
     const bool well = session_ != 0;
-    node.status().state(well ? v1::SERVICE_RUNNING : v1::SERVICE_STARTING);
-    node.status().reason(well ? "a program in C" : trouble_);
-    node.status().stamp(stamp_);
+    node.status().state = well ? v1::SERVICE_RUNNING : v1::SERVICE_STARTING;
+    node.status().reason = well ? "a program in C" : trouble_;
+    node.status().stamp = stamp_;
     node.publish_status();
   }
 
@@ -403,12 +403,12 @@ class BusRobot final : public ServedRobot {
       if (sample.info.disposed)
         continue;
       const v1::RobotState& robot = sample.data;
-      if (!description_ || description_->stamp().epoch() != robot.stamp().epoch())
+      if (!description_ || description_->stamp.epoch != robot.stamp.epoch)
         continue;
       heard_ = BootClock::seconds();
-      stamp_ = robot.stamp();
+      stamp_ = robot.stamp;
       const std::lock_guard lock(mutex_);
-      if (session_ == 0 || epoch_ != stamp_.epoch())
+      if (session_ == 0 || epoch_ != stamp_.epoch)
         begin();
       reflector::State state = state_of(robot);
       note_sonars(state);
@@ -423,7 +423,7 @@ class BusRobot final : public ServedRobot {
   void begin() {
     parameters_ = parameters_of(*description_);
     identity_ = {parameters_.name, parameters_.robot_class, parameters_.subclass};
-    epoch_ = stamp_.epoch();
+    epoch_ = stamp_.epoch;
     session_ = ++sessions_;
     readings_.clear();
     buckets_.clear();
@@ -463,34 +463,34 @@ class BusRobot final : public ServedRobot {
       map_ = std::make_shared<const maps::Map>(maps::from_bus(*map));
     if (!found_)
       return;
-    if (perception && perception->odom() == odom_) {
-      found_->left_wall = percept(*perception, perception->left_wall());
-      found_->right_wall = percept(*perception, perception->right_wall());
+    if (perception && perception->odom == odom_) {
+      found_->left_wall = percept(*perception, perception->left_wall);
+      found_->right_wall = percept(*perception, perception->right_wall);
     }
-    if (registration && registration->odom() == odom_) {
-      found_->environment = registration->environment();
-      if (registration->state() == v1::REGISTRATION_TRACKING)
-        found_->odom_in_map = from_bus(registration->odom_in_map());
+    if (registration && registration->odom == odom_) {
+      found_->environment = registration->environment;
+      if (registration->state == v1::REGISTRATION_TRACKING)
+        found_->odom_in_map = from_bus(registration->odom_in_map);
     }
     found_->map = map_;
   }
   void take_pointed_out(Ends& ends) {
     for (const auto& sample : ends.events.take()) {
-      const auto& arguments = sample.data.arguments();
-      if (sample.data.functor() != "pointed_out" || arguments.empty() ||
-          arguments.front().kind() != v1::ARGUMENT_POINT)
+      const auto& arguments = sample.data.arguments;
+      if (sample.data.functor != "pointed_out" || arguments.empty() ||
+          arguments.front().kind != v1::ARGUMENT_POINT)
         continue;
-      const Pose at = from_bus(arguments.front().point());
+      const Pose at = from_bus(arguments.front().point);
       const std::lock_guard lock(mutex_);
-      if (arguments.front().frame() == v1::FRAME_ODOM)
+      if (arguments.front().frame == v1::FRAME_ODOM)
         pointed_out_.push_back(at.position());
       else if (found_ && found_->odom_in_map)
         pointed_out_.push_back(relative(*found_->odom_in_map, at).position());
     }
   }
   static std::optional<lps::Percept> percept(const v1::Perception& perception, std::uint32_t id) {
-    for (const v1::Percept& each : perception.percepts())
-      if (id != 0 && each.id() == id)
+    for (const v1::Percept& each : perception.percepts)
+      if (id != 0 && each.id == id)
         return lps::from_bus(each);
     return std::nullopt;
   }
@@ -502,11 +502,11 @@ class BusRobot final : public ServedRobot {
       return;
     take_stop(ends, *grant);
     std::string news;
-    for (const v1::Refusal& refusal : grant->refused())
-      if (refusal.source() == source_)
-        news = "the robot's bridge refuses to drive: " + refusal.reason();
-    if (grant->source() == source_ && grant->guard() == v1::GUARD_STOP)
-      news = "the guard stops the robot: " + grant->guard_reason();
+    for (const v1::Refusal& refusal : grant->refused)
+      if (refusal.source == source_)
+        news = "the robot's bridge refuses to drive: " + refusal.reason;
+    if (grant->source == source_ && grant->guard == v1::GUARD_STOP)
+      news = "the guard stops the robot: " + grant->guard_reason;
     // Distances in a reason change all the time: only a new kind of trouble is news.
     const std::string kind = news.substr(0, news.find_first_of("0123456789"));
     if (kind != news_ && !news.empty())
@@ -527,15 +527,15 @@ class BusRobot final : public ServedRobot {
     }
     say_("stopped by " + who + ": sfSetVelocity(0) comes before driving again", false);
     v1::MotorCommand release;
-    release.stamp(stamp_);
+    release.stamp = stamp_;
     write(ends.node, ends, release);
   }
 
   void write(bus::Node& node, Ends& ends, v1::MotorCommand command) {
-    command.source(source_);
-    command.number(++number_);
+    command.source = source_;
+    command.number = ++number_;
     // Unique over restarts too, or the bridge would take the first for an old one.
-    command.move(node.instance() + command.move());
+    command.move = node.instance() + command.move;
     ends.commands.write(command);
   }
 
@@ -574,27 +574,27 @@ class BusRobot final : public ServedRobot {
       hear(client.poll());
     for (const std::string& text : told) {
       v1::Message message;
-      message.stamp(stamp_);
-      message.source(source_);
-      message.text(text);
+      message.stamp = stamp_;
+      message.source = source_;
+      message.text = text;
       ends.messages.write(message);
     }
     if (mind) {
       v1::ProgramMind sample = mind_of(*mind);
       v1::Stamp stamp = stamp_;
-      stamp.cycle(mind->cycle);
-      sample.instance(node.instance());
-      sample.source(source_);
-      sample.stamp(stamp);
-      sample.behaviors().stamp(stamp);
-      sample.intended().stamp(stamp);
+      stamp.cycle = mind->cycle;
+      sample.instance = node.instance();
+      sample.source = source_;
+      sample.stamp = stamp;
+      sample.behaviors.stamp = stamp;
+      sample.intended.stamp = stamp;
       ends.minds.write(sample);
     }
     for (std::size_t i = 0; i < drawn.size(); ++i) {
       v1::Drawing drawing = drawing_of(drawn[i]);
-      drawing.instance(node.instance());
-      drawing.number(i);
-      drawing.source(source_);
+      drawing.instance = node.instance();
+      drawing.number = i;
+      drawing.source = source_;
       ends.drawings.write(drawing);
     }
     return true;
@@ -619,8 +619,8 @@ class BusRobot final : public ServedRobot {
   }
   void hear(const std::vector<v1::Answer>& answers) {
     for (const v1::Answer& answer : answers)
-      if (bus::ended(answer.code()) && !bus::well(answer.code()))
-        say_("the robot does not do it: " + std::string(answer.text()), true);
+      if (bus::ended(answer.code) && !bus::well(answer.code))
+        say_("the robot does not do it: " + std::string(answer.text), true);
   }
 
   /// Shows the states of the program's micro-tasks, and takes requests from the bus to change them.

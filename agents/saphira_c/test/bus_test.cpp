@@ -42,7 +42,7 @@ class OnBus : public testing::Test {
     return wait_until(
         [&] {
           const auto grant = grants_.take_newest();
-          return grant && grant->role() == v1::ROLE_DIRECT && grant->source() == source;
+          return grant && grant->role == v1::ROLE_DIRECT && grant->source == source;
         },
         kPatience);
   }
@@ -51,10 +51,10 @@ class OnBus : public testing::Test {
     return wait_until(
         [&] {
           for (const auto& sample : tasks_.take())
-            shown_[sample.data.service()] = sample.data.processes();
+            shown_[sample.data.service] = sample.data.processes;
           const std::vector<v1::Process>& processes = shown_[service];
           return std::any_of(processes.begin(), processes.end(), [&](const v1::Process& one) {
-            return one.name() == name && one.state() == state;
+            return one.name == name && one.state == state;
           });
         },
         kPatience);
@@ -66,7 +66,7 @@ class OnBus : public testing::Test {
   v1::AnswerCode ask(const std::string& functor, const std::string& service,
                      const std::string& process) {
     bus::RequestClient client(system_.node(), bus::topics::kProcessRequest, "test");
-    return client.ask(bus::request(functor, {bus::text("process", process)}, service), 20.0).code();
+    return client.ask(bus::request(functor, {bus::text("process", process)}, service), 20.0).code;
   }
 
   test::System system_;
@@ -84,7 +84,7 @@ TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
   EXPECT_TRUE(shows("program", "patrol", v1::PROCESS_RUNNING));
   EXPECT_TRUE(wait_until([&] {
     const auto message = messages_.take_newest();
-    return message && message->text() == "patrols";
+    return message && message->text == "patrols";
   })) << "sfMessage is seen by others";
 
   EXPECT_EQ(ask("suspend", "program", "patrol"), v1::ANSWER_DONE);
@@ -105,7 +105,7 @@ TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
   EXPECT_LE(*system_.stood_still(cycle) - cycle, 8) << "0.3 s of lease, and the way to stop";
   const auto end = system_.wait_end(system_.go_to(1.0, 0.0));
   ASSERT_TRUE(end);
-  EXPECT_EQ(end->state(), v1::GOAL_SUCCEEDED) << end->reason();
+  EXPECT_EQ(end->state, v1::GOAL_SUCCEEDED) << end->reason;
   EXPECT_EQ(system_.truth().contacts, 0);
 }
 
@@ -115,8 +115,8 @@ TEST_F(OnBus, AStoppedProgramDoesNotDriveOn) {
   ASSERT_TRUE(system_.wait_moving()) << program.output();
   bus::RequestClient client(system_.node(), bus::topics::kDriveStop, "test");
   const v1::Answer answer = client.ask(bus::request("stop"), 10.0);
-  EXPECT_EQ(answer.code(), v1::ANSWER_DONE) << answer.text();
-  EXPECT_EQ(answer.text(), "stopped: program (direct); the robot is at rest");
+  EXPECT_EQ(answer.code, v1::ANSWER_DONE) << answer.text;
+  EXPECT_EQ(answer.text, "stopped: program (direct); the robot is at rest");
   const long begin = system_.truth().cycle;
   bool still = true;
   EXPECT_TRUE(wait_until([&] {
@@ -138,8 +138,8 @@ int main(void) { sfButtonProcFn(clicked); sfStartup(0); return 0; }
 )");
   bus::Writer<v1::AgentEvent> events = system_.node().writer(bus::topics::kAgentEvents);
   v1::AgentEvent event;
-  event.functor("pointed_out");
-  event.arguments({bus::point("position", 1.5, -0.5, 0.0, v1::FRAME_ODOM)});
+  event.functor = "pointed_out";
+  event.arguments = {bus::point("position", 1.5, -0.5, 0.0, v1::FRAME_ODOM)};
   EXPECT_TRUE(wait_until(
       [&] {
         events.write(event);

@@ -31,10 +31,10 @@ const Program* find(const std::vector<Program>& programs, const std::string& nam
       return heard;
     if (heard && a.namesake != b.namesake)
       return b.namesake;
-    return heard ? a.status.uptime() < b.status.uptime() : a.age < b.age;
+    return heard ? a.status.uptime < b.status.uptime : a.age < b.age;
   };
   for (const Program& program : programs)
-    if (program.status.name() == name && (found == nullptr || better(program, *found)))
+    if (program.status.name == name && (found == nullptr || better(program, *found)))
       found = &program;
   return found;
 }
@@ -90,10 +90,10 @@ Condition present_condition(const Situation& s, const Program& program, bool cou
     return {Health::lost, "has not been heard for " + seconds_text(program.age) +
                               " (it is dead, hangs, or is cut off)"};
   const v1::ServiceStatus& status = program.status;
-  if (status.state() == v1::SERVICE_STARTING || status.state() == v1::SERVICE_WAITING)
-    return {Health::waiting, std::string("is ") + name_of(status.state()) +
-                                 (status.reason().empty() ? "" : ": " + status.reason())};
-  const auto wanted = counts ? expected(s, status.name()) : std::nullopt;
+  if (status.state == v1::SERVICE_STARTING || status.state == v1::SERVICE_WAITING)
+    return {Health::waiting, std::string("is ") + name_of(status.state) +
+                                 (status.reason.empty() ? "" : ": " + status.reason)};
+  const auto wanted = counts ? expected(s, status.name) : std::nullopt;
   if (wanted && s.now > 0 && s.listened >= kListened) {
     if (wanted->known.newest == 0)
       return {Health::hung, "is on the bus, and says nothing (it hangs, or is cut off)"};
@@ -104,8 +104,8 @@ Condition present_condition(const Situation& s, const Program& program, bool cou
     if (behind >= kLateCycles)
       return {Health::late, "is " + seconds_text(seconds_of(behind)) + " behind"};
   }
-  if (status.uptime() < kFresh && status.stamp().cycle() > kLongRun)
-    return {Health::fresh, "was started " + seconds_text(status.uptime()) + " ago"};
+  if (status.uptime < kFresh && status.stamp.cycle > kLongRun)
+    return {Health::fresh, "was started " + seconds_text(status.uptime) + " ago"};
   return {};
 }
 
@@ -121,26 +121,26 @@ Condition present_condition(const Situation& s, const std::string& name) {
 
 nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
   const v1::ServiceStatus& status = program.status;
-  const bool counts = &program == find(s.programs, status.name());
+  const bool counts = &program == find(s.programs, status.name);
   const Condition how =
-      s.past ? past_condition(s, status.name()) : present_condition(s, program, counts);
+      s.past ? past_condition(s, status.name) : present_condition(s, program, counts);
   nlohmann::ordered_json json;
-  json["name"] = status.name();
-  json["state"] = program.age > kLostAge ? "lost" : name_of(status.state());
-  json["reason"] = status.reason();
+  json["name"] = status.name;
+  json["state"] = program.age > kLostAge ? "lost" : name_of(status.state);
+  json["reason"] = status.reason;
   json["condition"] = how.words;
   json["age"] = program.age;
-  json["epoch"] = status.stamp().epoch();
-  json["cycle"] = status.stamp().cycle();
-  json["late_cycles"] = status.late_cycles();
-  json["step_ms_mean"] = status.step_ms_mean();
-  json["step_ms_max"] = status.step_ms_max();
-  json["cpu_percent"] = status.cpu_percent();
-  json["rss_mb"] = status.rss_mb();
-  json["uptime"] = status.uptime();
-  json["host"] = status.host();
+  json["epoch"] = status.stamp.epoch;
+  json["cycle"] = status.stamp.cycle;
+  json["late_cycles"] = status.late_cycles;
+  json["step_ms_mean"] = status.step_ms_mean;
+  json["step_ms_max"] = status.step_ms_max;
+  json["cpu_percent"] = status.cpu_percent;
+  json["rss_mb"] = status.rss_mb;
+  json["uptime"] = status.uptime;
+  json["host"] = status.host;
   json["clock_behind"] = program.clock_behind;
-  json["pid"] = status.pid();
+  json["pid"] = status.pid;
   return json;
 }
 
@@ -151,7 +151,7 @@ std::string clocks_apart(const std::vector<Program>& programs) {
   std::map<std::string, double> machines;
   for (const Program& program : programs)
     if (std::abs(program.clock_behind) > kApart)
-      machines.emplace(program.status.host(), program.clock_behind);
+      machines.emplace(program.status.host, program.clock_behind);
   std::string text;
   for (const auto& [host, behind] : machines)
     text += "clock: that of " + host + " is " + seconds_text(std::abs(behind)) +
@@ -163,7 +163,7 @@ std::string clocks_apart(const std::vector<Program>& programs) {
 
 bool is_doubtful(const v1::Registration& registration) {
   constexpr double kDoubtful = 0.5;  // the confidence of an unconfirmed place is no greater
-  return registration.state() == v1::REGISTRATION_TRACKING && registration.confidence() < kDoubtful;
+  return registration.state == v1::REGISTRATION_TRACKING && registration.confidence < kDoubtful;
 }
 
 Condition condition(const Situation& situation, const std::string& program) {
@@ -204,12 +204,12 @@ std::string missing_services(const std::vector<Program>& programs) {
 std::string suspended(const Situation& situation) {
   std::string text;
   for (const v1::ProcessSet& service : situation.processes)
-    for (const v1::Process& process : service.processes())
+    for (const v1::Process& process : service.processes)
       // A task that was suspended later was not suspended then; one resumed since cannot be told
       // apart.
-      if (process.state() == v1::PROCESS_SUSPENDED &&
-          (!situation.past || process.since() <= situation.cycle))
-        text += (text.empty() ? "" : ", ") + process.name() + " of " + service.service();
+      if (process.state == v1::PROCESS_SUSPENDED &&
+          (!situation.past || process.since <= situation.cycle))
+        text += (text.empty() ? "" : ", ") + process.name + " of " + service.service;
   return text;
 }
 
@@ -231,22 +231,22 @@ std::string to_json(const Situation& situation) {
   json["drive"] = {{"known", situation.grant.has_value()}, {"text", driver(situation)}};
   if (situation.grant) {
     const v1::Grant& grant = *situation.grant;
-    json["drive"]["role"] = name_of(grant.role());
-    json["drive"]["source"] = grant.source();
-    json["drive"]["reason"] = grant.reason();
-    json["drive"]["velocity"] = grant.velocity();
-    json["drive"]["rotation_velocity"] = grant.rotation_velocity();
-    json["drive"]["estopped"] = grant.estopped();
-    json["drive"]["waits_for_hand_back"] = grant.waits_for_hand_back();
+    json["drive"]["role"] = name_of(grant.role);
+    json["drive"]["source"] = grant.source;
+    json["drive"]["reason"] = grant.reason;
+    json["drive"]["velocity"] = grant.velocity;
+    json["drive"]["rotation_velocity"] = grant.rotation_velocity;
+    json["drive"]["estopped"] = grant.estopped;
+    json["drive"]["waits_for_hand_back"] = grant.waits_for_hand_back;
   }
   json["goals"] = nlohmann::ordered_json::array();
   for (const v1::GoalStatus& status : situation.statuses)
-    json["goals"].push_back({{"functor", status.functor()},
-                             {"requester", status.requester()},
-                             {"state", name_of(status.state())},
-                             {"reason", status.reason()},
-                             {"step", status.step()},
-                             {"progress", status.progress()}});
+    json["goals"].push_back({{"functor", status.functor},
+                             {"requester", status.requester},
+                             {"state", name_of(status.state)},
+                             {"reason", status.reason},
+                             {"step", status.step},
+                             {"progress", status.progress}});
   json["missing"] = missing_services(situation.programs);
   json["trouble"] = trouble(situation);
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -34,9 +34,9 @@ Explanation Reason::finish(const Sentence& sentence, Cause cause) const {
   Explanation result;
   result.cycle = scene_.cycle;
   if (scene_.grant)
-    result.epoch = scene_.grant->stamp().epoch();
+    result.epoch = scene_.grant->stamp.epoch;
   else if (scene_.behaviors)
-    result.epoch = scene_.behaviors->stamp().epoch();
+    result.epoch = scene_.behaviors->stamp.epoch;
   result.sentence = sentence.text();
   result.cause = std::move(cause);
   add_conditions(result.cause);
@@ -55,8 +55,8 @@ void Reason::add_conditions(Cause& cause) const {
     const v1::Registration& place = *scene_.registration;
     cause.because.push_back({"registration",
                              format("the robot does not know where it is on the map, %.0f %% sure",
-                                    100.0 * place.confidence()) +
-                                 (place.reason().empty() ? "" : " (" + place.reason() + ")") +
+                                    100.0 * place.confidence) +
+                                 (place.reason.empty() ? "" : " (" + place.reason + ")") +
                                  ": saphira map place X Y TH",
                              {}});
   }
@@ -64,8 +64,8 @@ void Reason::add_conditions(Cause& cause) const {
     cause.because.push_back({"registration", words, {}});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
-    if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
-      cause.because.push_back({"program", "bridge is degraded: " + program.status.reason(), {}});
+    if (program.status.name == "bridge" && program.status.state == v1::SERVICE_DEGRADED)
+      cause.because.push_back({"program", "bridge is degraded: " + program.status.reason, {}});
 }
 
 void Reason::add_lost(Sentence& sentence) const {
@@ -90,10 +90,10 @@ Explanation Reason::stopped() const {
   std::vector<Part> reasons;
   if (const std::string held = latched(grant); !held.empty())
     reasons.push_back({held, {}});
-  else if (grant.stamp().epoch() == 0)
-    reasons.push_back({grant.reason(), {}});
+  else if (grant.stamp.epoch == 0)
+    reasons.push_back({grant.reason, {}});
   if (auto age = age_cause()) {
-    if (!scene_.behaviors->limit_reason().empty())
+    if (!scene_.behaviors->limit_reason.empty())
       reasons.push_back({age->text, {}});
     cause.because.push_back(std::move(*age));
   }
@@ -105,10 +105,10 @@ Explanation Reason::stopped() const {
     reasons.push_back({goal, goal_so_far(true)});
     cause.because.front().because.push_back({"goal", goal, {}});
   }
-  if (reasons.empty() && !grant.refused().empty())
-    reasons.push_back({"nobody drives it: " + refused(grant.refused().front()), {}});
+  if (reasons.empty() && !grant.refused.empty())
+    reasons.push_back({"nobody drives it: " + refused(grant.refused.front()), {}});
   if (reasons.empty())
-    reasons.push_back({"nobody drives it: " + grant.reason(), {}});
+    reasons.push_back({"nobody drives it: " + grant.reason, {}});
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     const std::string separator = i == 0 ? "" : "; ";
     const auto& [text, brief] = reasons[i];
@@ -121,19 +121,18 @@ Explanation Reason::stopped() const {
 Explanation Reason::by_hand() const {
   const v1::Grant& grant = *scene_.grant;
   Sentence sentence;
-  if (grant.role() == v1::ROLE_ESTOP) {
+  if (grant.role == v1::ROLE_ESTOP) {
     sentence.add(0, latched(grant));
     sentence.add(1, meanwhile());
   } else {
     sentence.add(0, told());
     sentence.add(2, meanwhile());
-    sentence.add(0,
-                 ": " + grant.source() + " drives it (" + situation::name_of(grant.role()) + ")");
+    sentence.add(0, ": " + grant.source + " drives it (" + situation::name_of(grant.role) + ")");
   }
   Cause cause{"wheels",
-              grant.role() == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
+              grant.role == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
               {grant_cause()}};
-  if (auto hindered = hindrance(); hindered && grant.role() != v1::ROLE_ESTOP) {
+  if (auto hindered = hindrance(); hindered && grant.role != v1::ROLE_ESTOP) {
     sentence.add(0, "; " + hindered->text);
     cause.because.push_back(std::move(*hindered));
   }
@@ -165,7 +164,7 @@ Explanation Reason::by_behaviors_unknown() const {
   Cause cause{"wheels", "not known", {}};
   const Condition how = condition(scene_, "behaviors");
   if (scene_.grant) {
-    sentence.add(0, told() + ": " + scene_.grant->source() + " drives it");
+    sentence.add(0, told() + ": " + scene_.grant->source + " drives it");
     cause = {"wheels", told(), {grant_cause()}};
     if (auto hindered = hindrance()) {
       sentence.add(0, "; " + hindered->text);
@@ -186,8 +185,8 @@ Explanation Reason::by_behaviors_known() {
   Sentence sentence;
   sentence.add(0, what);
   sentence.add(3, meanwhile());
-  const bool guarded = scene_.grant && scene_.grant->guard() != v1::GUARD_NONE;
-  const bool aged = !scene_.behaviors->limit_reason().empty();
+  const bool guarded = scene_.grant && scene_.grant->guard != v1::GUARD_NONE;
+  const bool aged = !scene_.behaviors->limit_reason.empty();
   std::vector<Say> speeds = says(Channel::speed);
   std::vector<Say> turns = says(Channel::turn);
   const auto few = [](std::vector<Say>& all) {
@@ -199,7 +198,7 @@ Explanation Reason::by_behaviors_known() {
   few(speeds);
   few(turns);
   // Straight on needs no reason unless some behavior wanted to turn.
-  std::erase_if(turns, [](const Say& say) { return std::abs(say.behavior->turn()) < kNoTurn; });
+  std::erase_if(turns, [](const Say& say) { return std::abs(say.behavior->turn) < kNoTurn; });
   if (std::abs(told_turn()) < kNoTurn && turns.size() < 2)
     turns.clear();
   std::vector<const v1::BehaviorState*> mentioned;
@@ -251,7 +250,7 @@ Explanation Reason::known_so_far() {
         sentence.add(0, ": " + wrong, bridge.words.empty() ? "" : ": bridge " + bridge.words);
     return finish(sentence, {"wheels", "nothing is known", {}});
   }
-  if (scene_.grant && scene_.grant->role() == v1::ROLE_NONE)
+  if (scene_.grant && scene_.grant->role == v1::ROLE_NONE)
     return stopped();
   if (!by_behaviors())
     return by_hand();

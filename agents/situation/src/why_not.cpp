@@ -7,8 +7,8 @@ namespace saphira::situation {
 /// True where the robot's command, from any program, is that motion.
 bool Reason::does(Wish wish) const {
   const double turn = told_turn();
-  const double speed = scene_.grant->role() == v1::ROLE_NONE ? 0.0 : told_speed();
-  const double velocity = scene_.robot ? scene_.robot->velocity() : speed;
+  const double speed = scene_.grant->role == v1::ROLE_NONE ? 0.0 : told_speed();
+  const double velocity = scene_.robot ? scene_.robot->velocity : speed;
   switch (wish) {
     case Wish::turn_left:
       return turn >= kNoTurn;
@@ -48,31 +48,31 @@ Explanation Reason::why_not(Wish wish) {
   const v1::BehaviorSet& all = *scene_.behaviors;
   const double speed = told_speed();
   Cause cause{"wheels", told(), {}};
-  if (wish == Wish::faster && scene_.grant->guard() != v1::GUARD_NONE &&
-      all.speed() > speed + kNoSpeed) {
+  if (wish == Wish::faster && scene_.grant->guard != v1::GUARD_NONE &&
+      all.speed > speed + kNoSpeed) {
     const Cause guard = *guard_cause();
     cause.because.push_back(guard);
     cause.because.push_back(channel_cause(channel));
     Sentence sentence;
     sentence.add(0, no + " because " + guard.text);
-    sentence.add(1, "; the behaviors want " + speed_text(all.speed()));
+    sentence.add(1, "; the behaviors want " + speed_text(all.speed));
     return finish(sentence, std::move(cause));
   }
 
   const auto would = [&](const v1::RuleState& rule) {
     switch (wish) {
       case Wish::turn_left:
-        return rule.action() == v1::CONTROL_TURN_LEFT && rule.value() > 0.0;
+        return rule.action == v1::CONTROL_TURN_LEFT && rule.value > 0.0;
       case Wish::turn_right:
-        return rule.action() == v1::CONTROL_TURN_RIGHT && rule.value() > 0.0;
+        return rule.action == v1::CONTROL_TURN_RIGHT && rule.value > 0.0;
       case Wish::faster:
-        return rule.action() == v1::CONTROL_ACCELERATE ||
-               (rule.action() == v1::CONTROL_SPEED && rule.value() > speed + kNoSpeed);
+        return rule.action == v1::CONTROL_ACCELERATE ||
+               (rule.action == v1::CONTROL_SPEED && rule.value > speed + kNoSpeed);
       case Wish::slower:
         break;
     }
-    return rule.action() == v1::CONTROL_DECELERATE ||
-           (rule.action() == v1::CONTROL_SPEED && rule.value() < speed - kNoSpeed);
+    return rule.action == v1::CONTROL_DECELERATE ||
+           (rule.action == v1::CONTROL_SPEED && rule.value < speed - kNoSpeed);
   };
   // The best reason comes from the rule that was nearest to success.
   enum Rank { not_true, too_little, no_activity, suppressed, outweighed };
@@ -87,38 +87,38 @@ Explanation Reason::why_not(Wish wish) {
       best = {rank, measure, std::move(text)};
   };
   const std::vector<Say> say = says(channel);
-  for (const v1::BehaviorState& behavior : all.behaviors()) {
+  for (const v1::BehaviorState& behavior : all.behaviors) {
     // The rules of a behavior that is not running are unknown.
-    if (!behavior.running())
+    if (!behavior.running)
       continue;
-    for (const v1::RuleState& rule : behavior.rules()) {
+    for (const v1::RuleState& rule : behavior.rules) {
       if (!would(rule))
         continue;
       // The setpoint of a rule that does not hold is no wish.
-      if (wish == Wish::faster && rule.action() == v1::CONTROL_SPEED && rule.strength() < kNoSay)
+      if (wish == Wish::faster && rule.action == v1::CONTROL_SPEED && rule.strength < kNoSay)
         continue;
       const std::string who =
-          name_of(behavior) + " would (rule " + rule.name() + ", " + control_text(rule) + ")";
+          name_of(behavior) + " would (rule " + rule.name + ", " + control_text(rule) + ")";
       const double weight = weight_of(behavior, channel);
       Cause detail = rule_cause(behavior, rule);
       detail.text = name_of(behavior) + ": " + detail.text;
-      if (rule.strength() < kNoSay) {
+      if (rule.strength < kNoSay) {
         const std::string text = antecedent(behavior, rule);
         consider(not_true, 0.0, who + ", but finds no cause" + (text.empty() ? "" : ": " + text),
                  std::move(detail));
-      } else if (turning && rule.strength() * rule.value() < kNoTurn) {
-        consider(too_little, rule.value(), who + ", but that turn is too small to matter",
+      } else if (turning && rule.strength * rule.value < kNoTurn) {
+        consider(too_little, rule.value, who + ", but that turn is too small to matter",
                  std::move(detail));
       } else if (activity_of(behavior, channel) < kNoSay) {
-        consider(no_activity, rule.strength(), who + ", but says itself that it does not count now",
+        consider(no_activity, rule.strength, who + ", but says itself that it does not count now",
                  std::move(detail));
       } else if (weight < kNoSay) {
         std::vector<std::string> above;
-        for (const v1::BehaviorState& other : all.behaviors())
-          if (other.running() && other.priority() < behavior.priority() &&
+        for (const v1::BehaviorState& other : all.behaviors)
+          if (other.running && other.priority < behavior.priority &&
               activity_of(other, channel) >= kNoSay)
             above.push_back(name_of(other));
-        consider(suppressed, rule.strength(),
+        consider(suppressed, rule.strength,
                  who + ", but " + (above.empty() ? "others of higher priority" : listed(above)) +
                      (above.size() == 1 ? " has a higher priority and decides alone"
                                         : " have a higher priority and decide alone"),
@@ -126,9 +126,9 @@ Explanation Reason::why_not(Wish wish) {
       } else {
         const Say* against = nullptr;
         for (const Say& other : say) {
-          const bool opposed = turning ? (wish == Wish::turn_left) != (other.behavior->turn() > 0.0)
-                               : wish == Wish::faster ? other.behavior->speed() < speed + kNoSpeed
-                                                      : other.behavior->speed() > speed - kNoSpeed;
+          const bool opposed = turning ? (wish == Wish::turn_left) != (other.behavior->turn > 0.0)
+                               : wish == Wish::faster ? other.behavior->speed < speed + kNoSpeed
+                                                      : other.behavior->speed > speed - kNoSpeed;
           if (opposed && other.weight >= kNoSay && against == nullptr)
             against = &other;
         }
@@ -138,7 +138,7 @@ Explanation Reason::why_not(Wish wish) {
           what += "it weighs too little for it";
         else
           what += name_of(*against->behavior) + " wants " + of_say(*against, channel, true);
-        consider(outweighed, rule.strength() * weight, std::move(what), std::move(detail));
+        consider(outweighed, rule.strength * weight, std::move(what), std::move(detail));
       }
     }
   }

@@ -36,12 +36,12 @@ class Reason {
 
  private:
   double told_speed() const {
-    return scene_.grant ? scene_.grant->velocity() : scene_.behaviors->speed();
+    return scene_.grant ? scene_.grant->velocity : scene_.behaviors->speed;
   }
   /// [rad], of a turn that goes on [rad/s]
   double told_turn() const;
   bool by_behaviors() const {
-    return !scene_.grant || scene_.grant->role() == v1::ROLE_BEHAVIORS || scene_.own_mind;
+    return !scene_.grant || scene_.grant->role == v1::ROLE_BEHAVIORS || scene_.own_mind;
   }
   std::string name_of(const v1::BehaviorState& behavior) const;
   std::vector<Say> says(Channel channel) const;
@@ -103,7 +103,7 @@ class Reason {
   void add_conditions(Cause& cause) const;
   bool lost() const {
     return !scene_.past && scene_.registration &&
-           scene_.registration->state() == v1::REGISTRATION_LOST;
+           scene_.registration->state == v1::REGISTRATION_LOST;
   }
   void add_lost(Sentence& sentence) const;
 

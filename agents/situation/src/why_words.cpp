@@ -50,43 +50,43 @@ double clamp01(double x) {
 }
 
 Channel channel_of(const v1::RuleState& rule) {
-  return rule.action() == v1::CONTROL_TURN_LEFT || rule.action() == v1::CONTROL_TURN_RIGHT
+  return rule.action == v1::CONTROL_TURN_LEFT || rule.action == v1::CONTROL_TURN_RIGHT
              ? Channel::turn
              : Channel::speed;
 }
 
 double weight_of(const v1::BehaviorState& behavior, Channel channel) {
-  return channel == Channel::turn ? behavior.turn_weight() : behavior.speed_weight();
+  return channel == Channel::turn ? behavior.turn_weight : behavior.speed_weight;
 }
 
 double activity_of(const v1::BehaviorState& behavior, Channel channel) {
-  return channel == Channel::turn ? behavior.turn_activity() : behavior.speed_activity();
+  return channel == Channel::turn ? behavior.turn_activity : behavior.speed_activity;
 }
 
 bool recommends(const v1::BehaviorState& behavior, Channel channel) {
-  return channel == Channel::turn ? behavior.recommends_turn() : behavior.recommends_speed();
+  return channel == Channel::turn ? behavior.recommends_turn : behavior.recommends_speed;
 }
 
 std::string wish_of(const v1::BehaviorState& behavior, Channel channel) {
-  return channel == Channel::turn ? turn_text(behavior.turn()) : speed_text(behavior.speed());
+  return channel == Channel::turn ? turn_text(behavior.turn) : speed_text(behavior.speed);
 }
 
 std::string control_text(const v1::RuleState& rule) {
-  if (channel_of(rule) == Channel::turn && degrees(std::abs(rule.value())) < 0.05)
+  if (channel_of(rule) == Channel::turn && degrees(std::abs(rule.value)) < 0.05)
     return "straight on";
-  switch (rule.action()) {
+  switch (rule.action) {
     case v1::CONTROL_TURN_LEFT:
-      return angle_text(rule.value()) + " to the left";
+      return angle_text(rule.value) + " to the left";
     case v1::CONTROL_TURN_RIGHT:
-      return angle_text(rule.value()) + " to the right";
+      return angle_text(rule.value) + " to the right";
     case v1::CONTROL_ACCELERATE:
-      return "faster by " + speed_text(rule.value());
+      return "faster by " + speed_text(rule.value);
     case v1::CONTROL_DECELERATE:
-      return "slower by " + speed_text(rule.value());
+      return "slower by " + speed_text(rule.value);
     case v1::CONTROL_SPEED:
       break;
   }
-  return speed_text(rule.value());
+  return speed_text(rule.value);
 }
 
 std::string without_number(const std::string& name) {
@@ -107,13 +107,13 @@ bool nameless(const std::string& name, const std::string& schema) {
 
 std::string intention_name(const v1::IntentionNode& node) {
   // The root of a goal's tree has the goal's id as its name.
-  return node.parent() == 0 || nameless(node.name(), node.schema())
-             ? node.schema()
-             : node.schema() + " (" + without_number(node.name()) + ")";
+  return node.parent == 0 || nameless(node.name, node.schema)
+             ? node.schema
+             : node.schema + " (" + without_number(node.name) + ")";
 }
 
 bool concerns(const v1::Belief& belief, const std::string& schema, const std::string& arguments) {
-  if (belief.name() == "hazards")
+  if (belief.name == "hazards")
     return schema == "go-to-place";
   const auto is_argument = [&](std::string word) {
     std::erase(word, '"');
@@ -125,12 +125,12 @@ bool concerns(const v1::Belief& belief, const std::string& schema, const std::st
     return false;
   };
   // Two persons may share an office: the person decides, not the place.
-  return is_argument(belief.name().substr(belief.name().rfind('-') + 1)) ||
-         (!belief.name().starts_with("place-of-") && is_argument(belief.value()));
+  return is_argument(belief.name.substr(belief.name.rfind('-') + 1)) ||
+         (!belief.name.starts_with("place-of-") && is_argument(belief.value));
 }
 
 std::string with_arguments(const v1::IntentionNode& node) {
-  return intention_name(node) + (node.arguments().empty() ? "" : " [" + node.arguments() + "]");
+  return intention_name(node) + (node.arguments.empty() ? "" : " [" + node.arguments + "]");
 }
 
 }  // namespace saphira::situation

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "behavior.h"
-#include "intention.h"
 #include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/intention.hpp"
 
 // The words and simple predicates of explanations.
 namespace saphira::situation {

@@ -33,54 +33,53 @@ const char* name_of(v1::GuardAction action) {
 }
 
 std::string latched(const v1::Grant& grant) {
-  if (grant.estopped())
+  if (grant.estopped)
     return "EMERGENCY STOP, pressed by " +
-           (grant.estop_source().empty() ? "a program without a name" : grant.estop_source()) +
+           (grant.estop_source.empty() ? "a program without a name" : grant.estop_source) +
            ": the robot stands until saphira estop reset";
-  if (grant.waits_for_hand_back())
+  if (grant.waits_for_hand_back)
     return "autonomy waits until the robot is handed back: saphira drive hand-back";
   return {};
 }
 
 std::string describe(const v1::Grant& grant) {
   std::string text;
-  if (grant.estopped()) {
+  if (grant.estopped) {
     text = latched(grant);
   } else {
-    text = name_of(grant.role());
-    text += grant.role() == v1::ROLE_NONE ? " drives" : " drives (" + grant.source() + ")";
-    if (!grant.reason().empty())
-      text += ": " + grant.reason();
-    if (grant.waits_for_hand_back() && grant.reason().find("hand-back") == std::string::npos)
+    text = name_of(grant.role);
+    text += grant.role == v1::ROLE_NONE ? " drives" : " drives (" + grant.source + ")";
+    if (!grant.reason.empty())
+      text += ": " + grant.reason;
+    if (grant.waits_for_hand_back && grant.reason.find("hand-back") == std::string::npos)
       text += "; " + latched(grant);
   }
-  if (grant.guard() != v1::GUARD_NONE)
-    text += "; the guard " + std::string(name_of(grant.guard())) + ": " + grant.guard_reason();
-  for (const v1::Refusal& refusal : grant.refused())
-    text +=
-        "; refused " + refusal.source() + " (" + name_of(refusal.role()) + "): " + refusal.reason();
+  if (grant.guard != v1::GUARD_NONE)
+    text += "; the guard " + std::string(name_of(grant.guard)) + ": " + grant.guard_reason;
+  for (const v1::Refusal& refusal : grant.refused)
+    text += "; refused " + refusal.source + " (" + name_of(refusal.role) + "): " + refusal.reason;
   return text;
 }
 
 std::string describe(const v1::Goal& goal) {
-  std::string text = goal.functor() + "(";
+  std::string text = goal.functor + "(";
   const char* separator = "";
-  for (const v1::Argument& argument : goal.arguments()) {
-    text += separator + argument.name() + "=";
+  for (const v1::Argument& argument : goal.arguments) {
+    text += separator + argument.name + "=";
     separator = ", ";
-    switch (argument.kind()) {
+    switch (argument.kind) {
       case v1::ARGUMENT_NUMBER:
-        text += plain(argument.number());
+        text += plain(argument.number);
         break;
       case v1::ARGUMENT_TEXT:
-        text += "\"" + argument.text() + "\"";
+        text += "\"" + argument.text + "\"";
         break;
       case v1::ARGUMENT_POINT:
-        text += "(" + plain(argument.point().x()) + ", " + plain(argument.point().y()) + ") in " +
-                name_of(argument.frame());
+        text += "(" + plain(argument.point.x) + ", " + plain(argument.point.y) + ") in " +
+                name_of(argument.frame);
         break;
       case v1::ARGUMENT_TRUTH:
-        text += argument.number() != 0.0 ? "yes" : "no";
+        text += argument.number != 0.0 ? "yes" : "no";
         break;
       case v1::ARGUMENT_UNBOUND:
         text += "?";
@@ -93,23 +92,23 @@ std::string describe(const v1::Goal& goal) {
 v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::string& speaker,
                     const std::string& text, double time) {
   v1::Utterance utterance;
-  utterance.id().writer(writer);
-  utterance.id().number(number);
-  utterance.speaker(speaker);
-  utterance.text(text);
-  utterance.means(v1::UTTERANCE_TYPED);
-  utterance.confidence(1.0);
-  utterance.time(time);
+  utterance.id.writer = writer;
+  utterance.id.number = number;
+  utterance.speaker = speaker;
+  utterance.text = text;
+  utterance.means = v1::UTTERANCE_TYPED;
+  utterance.confidence = 1.0;
+  utterance.time = time;
   return utterance;
 }
 
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
-  return node.label() == "B" ||
-         std::any_of(intentions.behaviors().begin(), intentions.behaviors().end(),
-                     [&](const v1::IntendedBehavior& behavior) {
-                       return behavior.intention() == node.id() && behavior.name() == node.name() &&
-                              behavior.schema() == node.schema();
-                     });
+  return node.label == "B" || std::any_of(intentions.behaviors.begin(), intentions.behaviors.end(),
+                                          [&](const v1::IntendedBehavior& behavior) {
+                                            return behavior.intention == node.id &&
+                                                   behavior.name == node.name &&
+                                                   behavior.schema == node.schema;
+                                          });
 }
 
 std::string seconds_text(double seconds) {

@@ -43,14 +43,14 @@ void all_is_well(std::vector<Case>& all) {
   all.push_back(while_driving("as fast as is wanted", "why not faster", well,
                               {"no running behavior wants that", "GoToPos wants 0.30 m/s"}));
   all.push_back(while_driving("it has just begun to drive", "why not faster",
-                              [](Situation& s) { s.robot->velocity(0.1); },
+                              [](Situation& s) { s.robot->velocity = 0.1; },
                               {"It does go faster", "now it drives at 0.10 m/s"}));
   all.push_back(while_driving("only one behavior, straight on", "why",
                               [](Situation& s) {
-                                auto& behaviors = s.behaviors->behaviors();
+                                auto& behaviors = s.behaviors->behaviors;
                                 behaviors.erase(behaviors.begin());
-                                behaviors[0].recommends_turn(false);
-                                s.behaviors->turning(false);
+                                behaviors[0].recommends_turn = false;
+                                s.behaviors->turning = false;
                               },
                               {"straight on", "GoToPos wants 0.30 m/s (rule Fast)", goal},
                               {"KeepOff", "left"}));
@@ -82,28 +82,28 @@ void all_is_well(std::vector<Case>& all) {
                               {"0.10 m/s", "slows it (0.6 m ahead)"}));
   all.push_back(while_driving("an activity monitors what may go wrong", "why tree",
                               [](Situation& s) {
-                                v1::IntentionNode& node = s.intentions->nodes()[0];
-                                node.schema("follow-path");
-                                node.label("TROUBLE");
-                                node.step("waits until the leg is done");
+                                v1::IntentionNode& node = s.intentions->nodes[0];
+                                node.schema = "follow-path";
+                                node.label = "TROUBLE";
+                                node.step = "waits until the leg is done";
                               },
                               {"for follow-path: waits until the leg is done"}, {"TROUBLE"}));
   all.push_back(while_driving("a long name of a place and of who asked", "why",
                               [](Situation& s) {
-                                s.goals[0].functor("go-to-place");
-                                s.goals[0].arguments()[0].kind(v1::ARGUMENT_TEXT);
-                                s.goals[0].arguments()[0].text(std::string(200, 'x'));
-                                s.goals[0].requester("the calendar of the third floor");
+                                s.goals[0].functor = "go-to-place";
+                                s.goals[0].arguments[0].kind = v1::ARGUMENT_TEXT;
+                                s.goals[0].arguments[0].text = std::string(200, 'x');
+                                s.goals[0].requester = "the calendar of the third floor";
                               },
                               {"drive ahead at 0.30 m/s", "go-to-place of the calendar"},
                               {"xxxx"}));
   all.push_back(while_driving("no behavior wants a speed any more, the rest of one is left", "why",
                               [](Situation& s) {
-                                s.behaviors->behaviors().clear();
-                                s.behaviors->turning(false);
-                                s.behaviors->moving(false);
-                                s.grant->velocity(0.06);
-                                s.robot->velocity(0.06);
+                                s.behaviors->behaviors.clear();
+                                s.behaviors->turning = false;
+                                s.behaviors->moving = false;
+                                s.grant->velocity = 0.06;
+                                s.robot->velocity = 0.06;
                               },
                               {"0.06 m/s", "it slows down, no behavior wants a speed any more"}));
   all.push_back(while_driving("a person who joined late does not know the goal", "why",
@@ -138,8 +138,8 @@ void goals(std::vector<Case>& all) {
   all.push_back(at_rest("a person has stopped it", "why",
                         [](Situation& s) {
                           s.statuses = {goal_status(v1::GOAL_SUCCEEDED, "it stands")};
-                          s.statuses[0].functor("stop");
-                          s.statuses[0].requester("somebody at the console");
+                          s.statuses[0].functor = "stop";
+                          s.statuses[0].requester = "somebody at the console";
                         },
                         {"somebody at the console stopped it, and no goal is underway"},
                         {"stop()", "succeeded"}));
@@ -147,14 +147,14 @@ void goals(std::vector<Case>& all) {
                         [](Situation& s) {
                           s.goals = driving().goals;
                           s.statuses = {goal_status(v1::GOAL_UNDERWAY)};
-                          s.statuses[0].step("waits for the door to open");
+                          s.statuses[0].step = "waits for the door to open";
                         },
                         {"is underway and intends no behavior now: waits for the door to open"},
                         {"nobody has asked", "no goal"}));
   const auto rolling = [](Situation& s) {
     stand(s);
-    s.robot->velocity(0.4);
-    s.intentions->behaviors().clear();
+    s.robot->velocity = 0.4;
+    s.intentions->behaviors.clear();
     s.statuses = {goal_status(v1::GOAL_CANCELED, "withdrawn by saphira goal")};
   };
   all.push_back(while_driving("just canceled: the robot still rolls", "why", rolling,
@@ -163,12 +163,12 @@ void goals(std::vector<Case>& all) {
   all.push_back(
       while_driving("the same", "why not slower", rolling, {"It does go slower"}, {"stands"}));
   all.push_back(at_rest("just stopped: it still turns", "why",
-                        [](Situation& s) { s.robot->rotation_velocity(radians(20.0)); },
+                        [](Situation& s) { s.robot->rotation_velocity = radians(20.0); },
                         {"told to stop", "turns at 20 degrees/s to the left"}, {"stands"}));
   all.push_back(at_rest("a micro-task is suspended", "why", [](Situation& s) { suspend(s, 900); },
                         {"execute-intentions of intentions is suspended"}, {"nobody has asked"}));
   all.push_back(at_rest("behavior control is switched off", "why",
-                        [](Situation& s) { s.intentions->behavior_control(false); },
+                        [](Situation& s) { s.intentions->behavior_control = false; },
                         {"behavior control is switched off"}, {"nobody has asked"}));
 }
 
@@ -190,9 +190,9 @@ void people(std::vector<Case>& all) {
   all.push_back(while_driving("a person gives it a heading", "why",
                               [](Situation& s) {
                                 by_keyboard(s, 0.0, 0.0);
-                                s.grant->rotation(v1::ROTATION_HEADING);
-                                s.grant->heading(radians(90.0));
-                                s.robot->pose_in_odom().th(radians(60.0));
+                                s.grant->rotation = v1::ROTATION_HEADING;
+                                s.grant->heading = radians(90.0);
+                                s.robot->pose_in_odom.th = radians(60.0);
                               },
                               {"turn on the spot, 30 degrees to the left"}));
   all.push_back(while_driving("a person holds it still", "why",
@@ -204,7 +204,7 @@ void people(std::vector<Case>& all) {
                                 guard(s, v1::GUARD_SLOW, "0.6 m ahead", 0.1);
                               },
                               {"keyboard of ann", "slows it (0.6 m ahead)"}));
-  const auto drove = [](Situation& s) { s.grant->waits_for_hand_back(true); };
+  const auto drove = [](Situation& s) { s.grant->waits_for_hand_back = true; };
   all.push_back(
       at_rest("a person drove minutes ago and has not handed back", "why", drove,
               {"autonomy waits until the robot is handed back", "saphira drive hand-back"},
@@ -215,9 +215,9 @@ void people(std::vector<Case>& all) {
                         [](Situation&) {}, {"no goal is underway"}, {"keyboard", "does not want"}));
   const auto pressed = [](Situation& s) {
     stand(s);
-    s.grant->role(v1::ROLE_ESTOP);
-    s.grant->estopped(true);
-    s.grant->estop_source("panel");
+    s.grant->role = v1::ROLE_ESTOP;
+    s.grant->estopped = true;
+    s.grant->estop_source = "panel";
   };
   all.push_back(while_driving("the emergency stop is pressed", "why", pressed,
                               {"EMERGENCY STOP, pressed by panel", "saphira estop reset"},
@@ -225,7 +225,7 @@ void people(std::vector<Case>& all) {
   all.push_back(while_driving("the same, and it still rolls", "why",
                               [&](Situation& s) {
                                 pressed(s);
-                                s.robot->velocity(0.35);
+                                s.robot->velocity = 0.35;
                               },
                               {"EMERGENCY STOP", "now it drives at 0.35 m/s"}));
   all.push_back(
@@ -251,8 +251,8 @@ void people(std::vector<Case>& all) {
   all.push_back(while_driving("a script drives over drive/direct", "why",
                               [](Situation& s) {
                                 by_keyboard(s, 0.25, 0.0);
-                                s.grant->role(v1::ROLE_DIRECT);
-                                s.grant->source("saphira write");
+                                s.grant->role = v1::ROLE_DIRECT;
+                                s.grant->source = "saphira write";
                               },
                               {"saphira write drives it (direct)", "0.25 m/s"}, {"behaviors"}));
 }

@@ -39,7 +39,7 @@ Change stands(const std::string& reason) {
   return [=](Situation& s) { stand(s, reason); };
 }
 void no_intent(Situation& s) {
-  s.behaviors->limit_reason("no newer intent has come for 3 cycles");
+  s.behaviors->limit_reason = "no newer intent has come for 3 cycles";
 }
 
 void intentions_gone(std::vector<Case>& all) {
@@ -54,15 +54,14 @@ void intentions_gone(std::vector<Case>& all) {
   all.push_back(
       when("intentions was killed 5 s ago", "why", before,
            {stands("nothing asks the robot to move"), silent("intentions", 50),
-            lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp().cycle(s.now - 58); }},
+            lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp.cycle = s.now - 58; }},
            {"intentions has not been heard for 5.2 s",
             "last known of go_to(position=(3, 1) in odom) of saphira goal: underway, 5.8 s ago"},
            never));
-  all.push_back(
-      when("the same, of a goal of before the robot's restart", "why", before,
-           {stands("nothing asks the robot to move"), silent("intentions", 50),
-            lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp().epoch(6); }},
-           {"intentions has not been heard for 5.2 s"}, {"underway", "ago"}));
+  all.push_back(when("the same, of a goal of before the robot's restart", "why", before,
+                     {stands("nothing asks the robot to move"), silent("intentions", 50),
+                      lost("intentions", 5.2), [](Situation& s) { s.statuses[0].stamp.epoch = 6; }},
+                     {"intentions has not been heard for 5.2 s"}, {"underway", "ago"}));
   all.push_back(
       when("intentions is on the far side of a cut link, and behaviors says so", "why", before,
            {stands("nothing asks the robot to move"), no_intent, silent("intentions", 40),
@@ -85,16 +84,16 @@ void intentions_gone(std::vector<Case>& all) {
   all.push_back(when("intentions was started again, and does not know the goal yet", "why", before,
                      {stands("nothing asks the robot to move"),
                       [](Situation& s) {
-                        s.intentions->behaviors().clear();
-                        s.intentions->nodes().clear();
-                        find(s, "intentions").status.uptime(0.8);
+                        s.intentions->behaviors.clear();
+                        s.intentions->nodes.clear();
+                        find(s, "intentions").status.uptime = 0.8;
                       }},
                      {"go_to(position=(3, 1) in odom) of saphira goal is underway"}, never));
   all.push_back(when("the same", "why tree", before,
                      {stands("nothing asks the robot to move"),
                       [](Situation& s) {
-                        s.intentions->behaviors().clear();
-                        find(s, "intentions").status.uptime(0.8);
+                        s.intentions->behaviors.clear();
+                        find(s, "intentions").status.uptime = 0.8;
                       }},
                      {"intentions was started 0.8 s ago"}));
   all.push_back(when(
@@ -102,8 +101,8 @@ void intentions_gone(std::vector<Case>& all) {
       {"drive ahead", "the goal behind it is not known: intentions is 0.4 s behind"}, {"stands"}));
   all.push_back(when("intentions waits for the robot", "trouble", before, {[](Situation& s) {
                        Program& program = find(s, "intentions");
-                       program.status.state(v1::SERVICE_WAITING);
-                       program.status.reason("waits for robot/state");
+                       program.status.state = v1::SERVICE_WAITING;
+                       program.status.reason = "waits for robot/state";
                      }},
                      {"intentions is waiting: waits for robot/state"}));
 }
@@ -132,17 +131,17 @@ void behaviors_gone(std::vector<Case>& all) {
                      {[](Situation& s) {
                        s.behaviors.reset();
                        s.behaviors_known = {s.now, s.now};
-                       s.grant->velocity(0.05);
-                       s.robot->velocity(0.05);
-                       find(s, "behaviors").status.uptime(0.2);
+                       s.grant->velocity = 0.05;
+                       s.robot->velocity = 0.05;
+                       find(s, "behaviors").status.uptime = 0.2;
                      }},
                      {"its reasons are not known", "behaviors was started 0.2 s ago"},
                      {"no behavior wants a speed"}));
   all.push_back(when("the network is slow, so it drives slower", "why", before, {[](Situation& s) {
-                       s.behaviors->limit_reason("intentions are 0.5 s old");
-                       s.behaviors->speed_limit(0.2);
-                       s.grant->velocity(0.2);
-                       s.robot->velocity(0.2);
+                       s.behaviors->limit_reason = "intentions are 0.5 s old";
+                       s.behaviors->speed_limit = 0.2;
+                       s.grant->velocity = 0.2;
+                       s.robot->velocity = 0.2;
                      }},
                      {"0.20 m/s", "intentions are 0.5 s old, so it drives no faster than 0.20"}));
 }
@@ -162,13 +161,13 @@ void bridge_gone(std::vector<Case>& all) {
                      {quiet,
                       [](Situation& s) {
                         Program& program = find(s, "bridge");
-                        program.status.state(v1::SERVICE_WAITING);
-                        program.status.reason("no answer from tcp:192.0.2.7:8101");
+                        program.status.state = v1::SERVICE_WAITING;
+                        program.status.reason = "no answer from tcp:192.0.2.7:8101";
                       }},
                      {"The robot's motion is not known", "bridge is waiting: no answer from"}));
   all.push_back(when("no robot is connected yet", "why", resting(), {[](Situation& s) {
-                       s.grant->stamp().epoch(0);
-                       s.grant->reason("no robot is connected");
+                       s.grant->stamp.epoch = 0;
+                       s.grant->reason = "no robot is connected";
                      }},
                      {"no robot is connected"}));
   Situation nothing;
@@ -183,13 +182,12 @@ void bridge_gone(std::vector<Case>& all) {
   const Change searching = [](Situation& s) {
     for (const char* const name : {"bridge", "behaviors", "intentions"}) {
       Program one = program(name);
-      one.status.state(v1::SERVICE_WAITING);
-      one.status.reason("waits for robot/state of cycle 162");
+      one.status.state = v1::SERVICE_WAITING;
+      one.status.reason = "waits for robot/state of cycle 162";
       s.programs.push_back(one);
     }
-    find(s, "bridge")
-        .status.reason(
-            "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
+    find(s, "bridge").status.reason =
+        "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)";
   };
   const std::string sync0 =
       "bridge is waiting: waits for the robot to answer SYNC0 (is it switched on, and the cable "
@@ -263,8 +261,8 @@ void past(std::vector<Case>& all) {
 void bad_line(std::vector<Case>& all) {
   const std::string words = "the line to the robot is bad: 17 of its last 50 packets were damaged";
   const Change says = [=](Situation& s) {
-    find(s, "bridge").status.state(v1::SERVICE_DEGRADED);
-    find(s, "bridge").status.reason(words);
+    find(s, "bridge").status.state = v1::SERVICE_DEGRADED;
+    find(s, "bridge").status.reason = words;
   };
   all.push_back(when("a third of the robot's packets are damaged", "why tree", driving(), {says},
                      {"bridge is degraded: " + words}));
@@ -273,12 +271,12 @@ void bad_line(std::vector<Case>& all) {
            {stands("nothing asks the robot to move"),
             [](Situation& s) {
               v1::Refusal refusal;
-              refusal.role(v1::ROLE_BEHAVIORS);
-              refusal.source("behaviors");
-              refusal.reason(
+              refusal.role = v1::ROLE_BEHAVIORS;
+              refusal.source = "behaviors";
+              refusal.reason =
                   "the robot is not heard while it moves (3 times now): it stands for "
-                  "another 20 s");
-              s.grant->refused().push_back(refusal);
+                  "another 20 s";
+              s.grant->refused.push_back(refusal);
             }},
            {"The robot stands", "behaviors (behaviors) was refused", "is not heard while it moves"},
            {"nobody asks"}));
@@ -288,15 +286,15 @@ void bad_line(std::vector<Case>& all) {
 void wheels(std::vector<Case>& all) {
   const std::string off = "its motors are off (saphira device motors on)";
   const Change no_power = [](Situation& s) {
-    s.robot->status(v1::MOTORS_NO_POWER);
-    s.robot->velocity(0.0);
-    find(s, "bridge").status.state(v1::SERVICE_DEGRADED);
-    find(s, "bridge")
-        .status.reason("the robot's motors are off (its own button, or: saphira device motors on)");
+    s.robot->status = v1::MOTORS_NO_POWER;
+    s.robot->velocity = 0.0;
+    find(s, "bridge").status.state = v1::SERVICE_DEGRADED;
+    find(s, "bridge").status.reason =
+        "the robot's motors are off (its own button, or: saphira device motors on)";
   };
   const Change by_hand = [](Situation& s) {
     by_keyboard(s, 0.2, 0.0);
-    s.robot->velocity(0.0);
+    s.robot->velocity = 0.0;
   };
   const Change failed = [](Situation& s) {
     s.goals = driving().goals;
@@ -319,7 +317,7 @@ void wheels(std::vector<Case>& all) {
   all.push_back(when("the motors are off, and nothing is asked for", "why", resting(), {no_power},
                      {"no goal is underway"}, {off}));
   all.push_back(when("the motors were switched off as it drove: it still rolls", "why", driving(),
-                     {no_power, [](Situation& s) { s.robot->velocity(0.2); }},
+                     {no_power, [](Situation& s) { s.robot->velocity = 0.2; }},
                      {"now it drives at 0.20 m/s"}, {off}));
   all.push_back(when("a goal failed, of a robot that does not report its motors", "why", resting(),
                      {failed},
@@ -327,12 +325,12 @@ void wheels(std::vector<Case>& all) {
                       "it has not moved at all: are its motors on? (saphira device motors "
                       "on)"}));
   all.push_back(when("its left wheel is stalled", "why", driving(),
-                     {[](Situation& s) { s.robot->left_stalled(true); }},
+                     {[](Situation& s) { s.robot->left_stalled = true; }},
                      {"its left wheel is stalled"}, {"right wheel", "motors are off"}));
   all.push_back(when("both wheels are stalled at a wall", "why", driving(), {[](Situation& s) {
-                       s.robot->left_stalled(true);
-                       s.robot->right_stalled(true);
-                       s.robot->velocity(0.0);
+                       s.robot->left_stalled = true;
+                       s.robot->right_stalled = true;
+                       s.robot->velocity = 0.0;
                      }},
                      {"both wheels are stalled"}, {"motors are off"}));
 }
@@ -341,21 +339,21 @@ void lost_on_the_map(std::vector<Case>& all) {
   const std::string words = "the robot does not know where it is on the map";
   const Change nowhere = [](Situation& s) {
     v1::Registration place;
-    place.stamp(s.robot->stamp());
-    place.state(v1::REGISTRATION_LOST);
-    place.reason("nothing that it hears fits the map");
+    place.stamp = s.robot->stamp;
+    place.state = v1::REGISTRATION_LOST;
+    place.reason = "nothing that it hears fits the map";
     s.registration = place;
   };
   const Change tracking = [](Situation& s) {
     s.registration.emplace();
-    s.registration->state(v1::REGISTRATION_TRACKING);
-    s.registration->confidence(0.97);
+    s.registration->state = v1::REGISTRATION_TRACKING;
+    s.registration->confidence = 0.97;
   };
   const Change straight_on = [](Situation& s) {
-    auto& behaviors = s.behaviors->behaviors();
+    auto& behaviors = s.behaviors->behaviors;
     behaviors.erase(behaviors.begin());
-    behaviors[0].recommends_turn(false);
-    s.behaviors->turning(false);
+    behaviors[0].recommends_turn = false;
+    s.behaviors->turning = false;
   };
   all.push_back(when("the robot is lost on the map, at rest", "why", resting(), {nowhere},
                      {"The robot stands: no goal is underway; " + words}));
@@ -376,7 +374,7 @@ void lost_on_the_map(std::vector<Case>& all) {
                       [](Situation& s) {
                         s.goals = driving().goals;
                         s.statuses = {goal_status(v1::GOAL_UNDERWAY)};
-                        s.statuses[0].step("waits to know where it is on the map");
+                        s.statuses[0].step = "waits to know where it is on the map";
                       }},
                      {"waits to know where it is on the map"}));
   all.push_back(when("the robot is lost on the map now; a standstill of before", "why", resting(),
@@ -388,9 +386,9 @@ void lost_on_the_map(std::vector<Case>& all) {
                      {"no goal was underway"}, {"map"}));
   const Change hardly = [&](Situation& s) {
     tracking(s);
-    s.registration->stamp(s.robot->stamp());
-    s.registration->confidence(0.3);
-    s.registration->reason("the readings hardly fit the map");
+    s.registration->stamp = s.robot->stamp;
+    s.registration->confidence = 0.3;
+    s.registration->reason = "the readings hardly fit the map";
     s.doubtful_since = s.now - 120;
   };
   const std::string doubt =

@@ -28,10 +28,10 @@ TEST(Condition, AMachineWithAnotherTimeIsNamedOnce) {
   Situation s = driving();
   EXPECT_EQ(clocks_apart(s.programs), "");
   for (Program& each : s.programs) {
-    each.status.host("board");
+    each.status.host = "board";
     each.clock_behind = 3.04;
   }
-  s.programs.back().status.host("laptop");
+  s.programs.back().status.host = "laptop";
   s.programs.back().clock_behind = -1.4;
   const std::string text = clocks_apart(s.programs);
   EXPECT_TRUE(text.starts_with("clock: that of board is 3.0 s behind this machine's")) << text;
@@ -44,8 +44,8 @@ TEST(Condition, AMachineWithAnotherTimeIsNamedOnce) {
 TEST(Condition, TheWaitingCopyOfASecondDeploymentDoesNotCount) {
   Situation s = driving();
   Program copy = test::program("bridge");
-  copy.status.uptime(1.0);
-  copy.status.state(v1::SERVICE_WAITING);
+  copy.status.uptime = 1.0;
+  copy.status.state = v1::SERVICE_WAITING;
   copy.namesake = true;
   s.programs.push_back(copy);
   EXPECT_EQ(condition(s, "bridge").health, Health::running);
@@ -58,8 +58,8 @@ TEST(Condition, InTheJsonEachInstanceHasItsOwn) {
   Situation s = driving();
   s.behaviors_known.newest = s.now - 10;  // hung
   Program waiting = test::program("behaviors");
-  waiting.status.state(v1::SERVICE_WAITING);
-  waiting.status.reason("another behaviors has this robot");
+  waiting.status.state = v1::SERVICE_WAITING;
+  waiting.status.reason = "another behaviors has this robot";
   waiting.namesake = true;
   Program silent = test::program("behaviors");
   silent.age = 9.0;

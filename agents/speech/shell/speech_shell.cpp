@@ -60,16 +60,16 @@ void SpeechShell::run(const bus::Stop& stop) {
 void SpeechShell::step() {
   if (const auto map = maps_.take_newest()) {
     std::set<std::string> names;
-    for (const auto& artifact : map->artifacts())
-      if (!artifact.name().empty())
-        names.insert(artifact.name());
+    for (const auto& artifact : map->artifacts)
+      if (!artifact.name.empty())
+        names.insert(artifact.name);
     conversation_.names({names.begin(), names.end()});
   }
   for (const auto& sample : said_.take()) {
     if (sample.info.disposed)
       continue;
-    conversation_.said(sample.data.text());
-    speaker_.play(voice_.say(sample.data.text()));
+    conversation_.said(sample.data.text);
+    speaker_.play(voice_.say(sample.data.text));
   }
   const Sound sound = microphone_.take();
   if (!sound.empty())
@@ -83,13 +83,13 @@ void SpeechShell::tell(const Conversation::Outputs& out) {
     speaker_.play(um_);
   for (const Heard& heard : out.utterances) {
     v1::Utterance utterance;
-    utterance.id().writer(node_.instance());
-    utterance.id().number(++number_);
-    utterance.speaker(options_.person);
-    utterance.text(heard.text);
-    utterance.means(v1::UTTERANCE_SPOKEN);
-    utterance.confidence(heard.confidence);
-    utterance.time(unix_time());
+    utterance.id.writer = node_.instance();
+    utterance.id.number = ++number_;
+    utterance.speaker = options_.person;
+    utterance.text = heard.text;
+    utterance.means = v1::UTTERANCE_SPOKEN;
+    utterance.confidence = heard.confidence;
+    utterance.time = unix_time();
     heard_.write(utterance);
     node_.info("heard: " + heard.text + (heard.confidence < kCertain ? " (not certain)" : ""));
   }
@@ -119,8 +119,8 @@ void SpeechShell::report() {
   told_ = std::move(trouble);
   if (!told_.empty())
     node_.warn(told_);
-  node_.status().state(told_.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED);
-  node_.status().reason(told_);
+  node_.status().state = told_.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
+  node_.status().reason = told_;
 }
 
 }  // namespace saphira::speech

@@ -42,13 +42,13 @@ TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
       utterances.push_back(sample.data);
     return !utterances.empty();
   }));
-  EXPECT_EQ(utterances[0].text(), "flakey turn left");
-  EXPECT_EQ(utterances[0].speaker(), "Alice");
-  EXPECT_EQ(utterances[0].means(), v1::UTTERANCE_SPOKEN);
+  EXPECT_EQ(utterances[0].text, "flakey turn left");
+  EXPECT_EQ(utterances[0].speaker, "Alice");
+  EXPECT_EQ(utterances[0].means, v1::UTTERANCE_SPOKEN);
   v1::Utterance answer;
-  answer.id().writer(7);
-  answer.id().number(1);
-  answer.text("I turn 90 degrees to the left");
+  answer.id.writer = 7;
+  answer.id.number = 1;
+  answer.text = "I turn 90 degrees to the left";
   person.writer(bus::topics::kSaid).write(answer);
   const auto spoken = [&](const char* file) {
     try {
@@ -74,8 +74,8 @@ TEST_F(SpeechOnTheBus, WithoutASoundCardItSaysSoAndGoesOn) {
   std::string reason;
   EXPECT_TRUE(test::wait_until([&] {
     for (const auto& sample : statuses.take())
-      if (sample.data.state() == v1::SERVICE_DEGRADED)
-        reason = sample.data.reason();
+      if (sample.data.state == v1::SERVICE_DEGRADED)
+        reason = sample.data.reason;
     return reason.find("no-such-device") != std::string::npos &&
            reason.find("no-such-speaker") != std::string::npos;
   })) << reason;

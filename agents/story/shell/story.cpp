@@ -37,21 +37,21 @@ Story::Story(bus::Node& node, Cast cast, StoryOptions options)
 
 void Story::take() {
   if (const auto robot = robots_.take_newest()) {
-    stamp_ = robot->stamp();
-    time_ = 0.1 * static_cast<double>(stamp_.cycle());
-    if (std::abs(robot->velocity()) > kStanding)
+    stamp_ = robot->stamp;
+    time_ = 0.1 * static_cast<double>(stamp_.cycle);
+    if (std::abs(robot->velocity) > kStanding)
       stands_since_ = time_;
   }
   if (const auto map = maps_.take_newest())
     map_ = maps::from_bus(*map);
   if (const auto registration = registrations_.take_newest()) {
-    const auto& pose = registration->pose_in_map();
-    pose_in_map_ = {pose.x(), pose.y(), pose.th()};
+    const auto& pose = registration->pose_in_map;
+    pose_in_map_ = {pose.x, pose.y, pose.th};
     place_ = agent_interface::place_at(map_, pose_in_map_.position());
   }
   for (const auto& sample : statuses_.take())
-    if (sample.data.state() == v1::SERVICE_RUNNING)
-      waiting_for_.erase(sample.data.name());
+    if (sample.data.state == v1::SERVICE_RUNNING)
+      waiting_for_.erase(sample.data.name);
   for (const auto& sample : said_.take())
     if (!sample.info.disposed)
       listen(sample.data);
@@ -110,29 +110,28 @@ bool Story::stands_at(const Cast::Spot& spot) const {
 
 std::uint64_t Story::say(const Cast::Line& line) {
   v1::Utterance utterance;
-  utterance.stamp(stamp_);
-  utterance.id().writer(node_.instance());
-  utterance.id().number(++number_);
-  utterance.speaker(line.speaker);
-  utterance.text(line.text);
-  utterance.means(v1::UTTERANCE_ACTED);
-  utterance.confidence(1.0);
-  utterance.time(now_);
+  utterance.stamp = stamp_;
+  utterance.id.writer = node_.instance();
+  utterance.id.number = ++number_;
+  utterance.speaker = line.speaker;
+  utterance.text = line.text;
+  utterance.means = v1::UTTERANCE_ACTED;
+  utterance.confidence = 1.0;
+  utterance.time = now_;
   show(line.speaker + ": " + line.text);
   heard_.write(utterance);
   return number_;
 }
 
 void Story::listen(const v1::Utterance& said) {
-  show("flakey: " + std::string(said.text()));
-  if (said.end() && said.answers().writer() == node_.instance() &&
-      said.answers().number() == line_) {
+  show("flakey: " + std::string(said.text));
+  if (said.end && said.answers.writer == node_.instance() && said.answers.number == line_) {
     waits_ = false;
-    outcome_ = said.text();
-  } else if (said.end() && errand_ && said.answers().writer() == node_.instance() &&
-             said.answers().number() == errand_->number) {
+    outcome_ = said.text;
+  } else if (said.end && errand_ && said.answers.writer == node_.instance() &&
+             said.answers.number == errand_->number) {
     errand_->over = true;
-  } else if (const auto answer = cast_.answer(said.text(), place_)) {
+  } else if (const auto answer = cast_.answer(said.text, place_)) {
     answer_ = answer;
     answer_time_ = time_ + kThought;
   }

@@ -12,17 +12,17 @@ struct AStory : testing::Test {
   explicit AStory(const std::string& has = "")
       : cast("PERSON alice hall\n" + has + "SAYS alice Flakey, stop\n") {
     v1::MapArtifact hall;
-    hall.id(1);
-    hall.type(v1::ARTIFACT_CORRIDOR);
-    hall.name("hall");
-    hall.length(10.0);
-    hall.width(2.0);
+    hall.id = 1;
+    hall.type = v1::ARTIFACT_CORRIDOR;
+    hall.name = "hall";
+    hall.length = 10.0;
+    hall.width = 2.0;
     v1::FloorMap map;
-    map.artifacts({hall});
+    map.artifacts = {hall};
     maps.write(map);
     v1::RobotState state;
-    state.stamp().epoch(7);
-    state.stamp().cycle(50);
+    state.stamp.epoch = 7;
+    state.stamp.cycle = 50;
     robots.write(state);
     registrations.write(v1::Registration());
   }
@@ -31,9 +31,9 @@ struct AStory : testing::Test {
   void answers(const std::string& text) {
     for (const auto& sample : heard.take()) {
       v1::Utterance utterance;
-      utterance.answers(sample.data.id());
-      utterance.text(text);
-      utterance.end(true);
+      utterance.answers = sample.data.id;
+      utterance.text = text;
+      utterance.end = true;
       answers_.write(utterance);
     }
   }
@@ -61,18 +61,18 @@ TEST_F(AStory, InLockstepTheTimeOfAnUtteranceIsTheCycle) {
   story.step();
   const auto said = heard.take();
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_EQ(said[0].data.text(), "Flakey, stop");
-  EXPECT_EQ(said[0].data.stamp().epoch(), 7U);
-  EXPECT_EQ(said[0].data.stamp().cycle(), 50U);
-  EXPECT_EQ(said[0].data.time(), 0.0);
+  EXPECT_EQ(said[0].data.text, "Flakey, stop");
+  EXPECT_EQ(said[0].data.stamp.epoch, 7U);
+  EXPECT_EQ(said[0].data.stamp.cycle, 50U);
+  EXPECT_EQ(said[0].data.time, 0.0);
 }
 
 TEST_F(AStory, LiveItIsAlsoTheGivenTime) {
   story.step(1e9);
   const auto said = heard.take();
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_EQ(said[0].data.stamp().cycle(), 50U);
-  EXPECT_EQ(said[0].data.time(), 1e9);
+  EXPECT_EQ(said[0].data.stamp.cycle, 50U);
+  EXPECT_EQ(said[0].data.time, 1e9);
 }
 
 TEST_F(WhoeverHasIt, EndsWell) {

@@ -15,22 +15,22 @@ std::optional<v1::MotorCommand> Pilot::drive(const Order& order, const v1::Stamp
   v1::MotorCommand command;
   // An old state on the person's screen makes the bridge slower, and a too old one is refused. A
   // release and a hand-back are valid with any stamp.
-  command.stamp(stamp);
+  command.stamp = stamp;
   if (order.active)
-    command.stamp().cycle(std::min(order.cycle, stamp.cycle()));
-  command.source(source_);
-  command.number(++number_);
-  command.active(order.active);
-  command.hand_back(hand_backs_left_ > 0);
+    command.stamp.cycle = std::min(order.cycle, stamp.cycle);
+  command.source = source_;
+  command.number = ++number_;
+  command.active = order.active;
+  command.hand_back = hand_backs_left_ > 0;
   hand_backs_left_ = std::max(0, hand_backs_left_ - 1);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(order.velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-  command.rotation_velocity(order.rotation);
+  command.translation = v1::TRANSLATION_VELOCITY;
+  command.velocity = order.velocity;
+  command.rotation = v1::ROTATION_VELOCITY;
+  command.rotation_velocity = order.rotation;
   if (order.turn) {
-    command.rotation(v1::ROTATION_RELATIVE_HEADING);
-    command.heading(order.turn->by);
-    command.move(order.turn->move);
+    command.rotation = v1::ROTATION_RELATIVE_HEADING;
+    command.heading = order.turn->by;
+    command.move = order.turn->move;
   }
   return command;
 }
@@ -54,16 +54,16 @@ std::optional<v1::MotorCommand> Pilot::stop(bool latched) {
     return std::nullopt;
   releases_left_ = std::max(0, releases_left_ - 1);
   v1::MotorCommand command;
-  command.source(presser_);
-  command.number(++number_);
-  command.active(pressing_);
+  command.source = presser_;
+  command.number = ++number_;
+  command.active = pressing_;
   return command;
 }
 
 void Pilot::heard(const v1::Grant& grant, double now) {
-  for (const v1::Refusal& refusal : grant.refused())
-    if (refusal.role() == v1::ROLE_TELEOP && refusal.source() == source_) {
-      refusal_ = refusal.reason();
+  for (const v1::Refusal& refusal : grant.refused)
+    if (refusal.role == v1::ROLE_TELEOP && refusal.source == source_) {
+      refusal_ = refusal.reason;
       refused_at_ = now;
     }
 }

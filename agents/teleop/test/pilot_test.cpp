@@ -17,8 +17,8 @@ Order held(double velocity = 0.3) {
 }
 v1::Stamp stamp(std::uint64_t cycle) {
   v1::Stamp stamp;
-  stamp.epoch(7);
-  stamp.cycle(cycle);
+  stamp.epoch = 7;
+  stamp.cycle = cycle;
   return stamp;
 }
 
@@ -28,37 +28,37 @@ TEST(Pilot, SaysNothingBeforeThePersonDrives) {
   ASSERT_TRUE(pilot.drive(held(), stamp(100)));
   const auto after = pilot.drive({}, stamp(100));
   ASSERT_TRUE(after) << "a release that got lost comes again";
-  EXPECT_FALSE(after->active());
-  EXPECT_EQ(after->source(), "ann");
+  EXPECT_FALSE(after->active);
+  EXPECT_EQ(after->source, "ann");
 }
 
 TEST(Pilot, ACommandAnswersWhatThePersonSees) {
   Pilot pilot("console");
   const auto first = pilot.drive(held(), stamp(100));
   ASSERT_TRUE(first);
-  EXPECT_TRUE(first->active());
-  EXPECT_EQ(first->stamp().epoch(), 7U);
-  EXPECT_EQ(first->stamp().cycle(), kCycle);
-  EXPECT_EQ(first->translation(), v1::TRANSLATION_VELOCITY);
-  EXPECT_EQ(first->velocity(), 0.3);
+  EXPECT_TRUE(first->active);
+  EXPECT_EQ(first->stamp.epoch, 7U);
+  EXPECT_EQ(first->stamp.cycle, kCycle);
+  EXPECT_EQ(first->translation, v1::TRANSLATION_VELOCITY);
+  EXPECT_EQ(first->velocity, 0.3);
   const auto second = pilot.drive(held(), stamp(80));
   ASSERT_TRUE(second);
-  EXPECT_EQ(second->stamp().cycle(), 80U) << "the future cannot be answered";
-  EXPECT_GT(second->number(), first->number());
-  EXPECT_EQ(pilot.drive({}, stamp(100))->stamp().cycle(), 100U);
+  EXPECT_EQ(second->stamp.cycle, 80U) << "the future cannot be answered";
+  EXPECT_GT(second->number, first->number);
+  EXPECT_EQ(pilot.drive({}, stamp(100))->stamp.cycle, 100U);
 }
 
 TEST(Pilot, TurnsByAnAngleOrAtASpeed) {
   Pilot pilot("keyboard");
   Order order = held();
   order.rotation = 0.5;
-  EXPECT_EQ(pilot.drive(order, stamp(100))->rotation(), v1::ROTATION_VELOCITY);
-  EXPECT_EQ(pilot.drive(order, stamp(100))->rotation_velocity(), 0.5);
+  EXPECT_EQ(pilot.drive(order, stamp(100))->rotation, v1::ROTATION_VELOCITY);
+  EXPECT_EQ(pilot.drive(order, stamp(100))->rotation_velocity, 0.5);
   order.turn = {0.2, 12};
   const auto turn = pilot.drive(order, stamp(100));
-  EXPECT_EQ(turn->rotation(), v1::ROTATION_RELATIVE_HEADING);
-  EXPECT_EQ(turn->heading(), 0.2);
-  EXPECT_EQ(turn->move(), 12U);
+  EXPECT_EQ(turn->rotation, v1::ROTATION_RELATIVE_HEADING);
+  EXPECT_EQ(turn->heading, 0.2);
+  EXPECT_EQ(turn->move, 12U);
 }
 
 TEST(Pilot, HandingBackIsRepeatedAndEndsWhenThePersonDrives) {
@@ -66,13 +66,13 @@ TEST(Pilot, HandingBackIsRepeatedAndEndsWhenThePersonDrives) {
   const auto hand_backs = [&] {
     int count = 0;
     for (int i = 0; i < 10; ++i)
-      count += pilot.drive({}, stamp(100))->hand_back() ? 1 : 0;
+      count += pilot.drive({}, stamp(100))->hand_back ? 1 : 0;
     return count;
   };
   pilot.hand_back();
   EXPECT_EQ(hand_backs(), 4);
   pilot.hand_back();
-  EXPECT_FALSE(pilot.drive(held(), stamp(100))->hand_back());
+  EXPECT_FALSE(pilot.drive(held(), stamp(100))->hand_back);
   EXPECT_EQ(hand_backs(), 0);
 }
 
@@ -82,10 +82,10 @@ TEST(Pilot, PressesUntilTheStopIsLatchedAndLetsGo) {
   EXPECT_FALSE(pilot.stop(true)) << "somebody else's";
   pilot.press("ann");
   for (int i = 0; i < 100; ++i)
-    ASSERT_TRUE(pilot.stop(false)->active()) << i;
-  EXPECT_EQ(pilot.stop(false)->source(), "ann");
+    ASSERT_TRUE(pilot.stop(false)->active) << i;
+  EXPECT_EQ(pilot.stop(false)->source, "ann");
   for (int i = 0; i < 4; ++i)
-    ASSERT_FALSE(pilot.stop(true)->active()) << i;
+    ASSERT_FALSE(pilot.stop(true)->active) << i;
   EXPECT_FALSE(pilot.stop(true));
 }
 
@@ -94,14 +94,14 @@ TEST(Pilot, KnowsThatItIsRefused) {
   pilot.drive(held(), stamp(100));
   v1::Grant grant;
   v1::Refusal refusal;
-  refusal.role(v1::ROLE_TELEOP);
-  refusal.source("bob");
-  refusal.reason("another one drives");
-  grant.refused({refusal});
+  refusal.role = v1::ROLE_TELEOP;
+  refusal.source = "bob";
+  refusal.reason = "another one drives";
+  grant.refused = {refusal};
   pilot.heard(grant, 1.0);
   EXPECT_EQ(pilot.refusal(1.0), "") << "somebody else is";
-  refusal.source("ann");
-  grant.refused({refusal});
+  refusal.source = "ann";
+  grant.refused = {refusal};
   pilot.heard(grant, 1.0);
   EXPECT_EQ(pilot.refusal(1.2), "another one drives");
   EXPECT_EQ(pilot.refusal(1.5), "");

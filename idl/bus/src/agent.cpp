@@ -14,16 +14,16 @@ constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
 v1::CapabilityParameter slot(const std::string& name, const std::string& meaning, bool required,
                              v1::ArgumentKind kind) {
   v1::CapabilityParameter parameter;
-  parameter.name(name);
-  parameter.kind(kind);
-  parameter.meaning(meaning);
-  parameter.required(required);
+  parameter.name = name;
+  parameter.kind = kind;
+  parameter.meaning = meaning;
+  parameter.required = required;
   return parameter;
 }
 
 const v1::Argument* find(const std::vector<v1::Argument>& arguments, const std::string& name) {
   const auto found = std::find_if(arguments.begin(), arguments.end(),
-                                  [&](const v1::Argument& one) { return one.name() == name; });
+                                  [&](const v1::Argument& one) { return one.name == name; });
   return found == arguments.end() ? nullptr : &*found;
 }
 
@@ -37,10 +37,10 @@ Agent::Agent(Node& node, std::string name, std::string summary)
       requests_(node.reader<v1::Request>(topics::kAgentRequest)),
       answers_(node.writer(topics::kAgentAnswers)),
       solver_(node, topics::kSolve, name, &topics::kAgentAnswers) {
-  self_.id(next_request_number() ^ node.instance());  // several agents may share a node
-  self_.name(std::move(name));
-  self_.summary(std::move(summary));
-  address_ = agent_address(self_.id(), self_.name());
+  self_.id = next_request_number() ^ node.instance();  // several agents may share a node
+  self_.name = std::move(name);
+  self_.summary = std::move(summary);
+  address_ = agent_address(self_.id, self_.name);
 }
 
 Agent::~Agent() {
@@ -49,55 +49,55 @@ Agent::~Agent() {
 }
 
 void Agent::can(const v1::Capability& capability, Answerer answerer) {
-  answerers_[capability.functor()] = std::move(answerer);
-  auto& all = self_.capabilities();
+  answerers_[capability.functor] = std::move(answerer);
+  auto& all = self_.capabilities;
   const auto same = std::find_if(all.begin(), all.end(), [&](const v1::Capability& one) {
-    return one.functor() == capability.functor();
+    return one.functor == capability.functor;
   });
   if (same == all.end())
     all.push_back(capability);
   else
     *same = capability;
   if (!announcements_.write(self_))
-    throw std::runtime_error("the bus did not take what agent " + self_.name() + " can do");
+    throw std::runtime_error("the bus did not take what agent " + self_.name + " can do");
 }
 
 void Agent::poll() {
   if (answering_)
     return;
-  if (node_.status().state() == v1::SERVICE_STARTING)
-    node_.status().state(v1::SERVICE_RUNNING);
+  if (node_.status().state == v1::SERVICE_STARTING)
+    node_.status().state = v1::SERVICE_RUNNING;
   answering_ = true;
   for (const auto& sample : requests_.take())
-    if (!sample.info.disposed && sample.data.service() == address_)
+    if (!sample.info.disposed && sample.data.service == address_)
       handle(sample.data);
   answering_ = false;
 }
 
 void Agent::handle(const v1::Request& request) {
-  const Id id{request.asker(), request.number()};
+  const Id id{request.asker, request.number};
   const auto known =
       std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == id; });
-  const bool withdrawn = request.functor() == kWithdraw;
+  const bool withdrawn = request.functor == kWithdraw;
   if (known != known_.end()) {
-    if (withdrawn && stop_ && !ended(known->second.code()))
+    if (withdrawn && stop_ && !ended(known->second.code))
       stop_(request);
     answers_.write(known->second);
     return;
   }
   v1::Answer underway;
-  underway.code(v1::ANSWER_UNDERWAY);
+  underway.code = v1::ANSWER_UNDERWAY;
   known_.emplace_back(id, underway);
   if (known_.size() > kKnown)
     known_.pop_front();
-  const auto answerer = answerers_.find(request.functor());
+  const auto answerer = answerers_.find(request.functor);
   v1::Answer said;
   try {
     if (withdrawn) {
       said = refused("withdrawn before it was begun");
     } else if (answerer == answerers_.end()) {
-      said = refused("agent " + self_.name() + " cannot do " + request.functor());
-      said.code(v1::ANSWER_UNKNOWN_FUNCTOR);
+      said = refused("agent " + self_.name + " cannot do " + request.functor);
+      said.code = v1::ANSWER_UNKNOWN_FUNCTOR;
     } else {
       said = answerer->second(request);
     }
@@ -108,11 +108,11 @@ void Agent::handle(const v1::Request& request) {
 }
 
 void Agent::answer(const v1::Request& request, v1::Answer answer) {
-  answer.asker(request.asker());
-  answer.number(request.number());
-  answer.service(address_);
+  answer.asker = request.asker;
+  answer.number = request.number;
+  answer.service = address_;
   for (auto& [id, newest] : known_)
-    if (id == Id{request.asker(), request.number()})
+    if (id == Id{request.asker, request.number})
       newest = answer;
   answers_.write(answer);
 }
@@ -122,26 +122,26 @@ v1::Answer Agent::ask(const v1::Request& request, double patience, const Stop* s
 }
 
 v1::GoalId Agent::set(v1::Trigger trigger) {
-  trigger.id().writer(node_.instance());
-  trigger.id().number(next_request_number());
-  if (trigger.source().empty())
-    trigger.source(self_.name());
+  trigger.id.writer = node_.instance();
+  trigger.id.number = next_request_number();
+  if (trigger.source.empty())
+    trigger.source = self_.name;
   if (!triggers_.write(trigger))
-    throw std::runtime_error("the bus did not take a trigger of agent " + self_.name());
-  return trigger.id();
+    throw std::runtime_error("the bus did not take a trigger of agent " + self_.name);
+  return trigger.id;
 }
 
 void Agent::take_back(const v1::GoalId& trigger) {
   v1::Trigger withdrawn;
-  withdrawn.id(trigger);
+  withdrawn.id = trigger;
   triggers_.dispose(withdrawn);
 }
 
 void Agent::tell(const std::string& functor, std::vector<v1::Argument> arguments) {
   v1::AgentEvent event;
-  event.source(self_.name());
-  event.functor(functor);
-  event.arguments(std::move(arguments));
+  event.source = self_.name;
+  event.functor = functor;
+  event.arguments = std::move(arguments);
   events_.write(event);
 }
 
@@ -152,16 +152,16 @@ std::string agent_address(std::uint64_t id, const std::string& name) {
 v1::Capability capability(const std::string& functor, const std::string& summary,
                           std::vector<v1::CapabilityParameter> parameters) {
   v1::Capability result;
-  result.functor(functor);
-  result.summary(summary);
-  result.parameters(std::move(parameters));
+  result.functor = functor;
+  result.summary = summary;
+  result.parameters = std::move(parameters);
   return result;
 }
 
 v1::Capability action(const std::string& functor, const std::string& summary,
                       std::vector<v1::CapabilityParameter> parameters) {
   v1::Capability result = capability(functor, summary, std::move(parameters));
-  result.acts(true);
+  result.acts = true;
   return result;
 }
 
@@ -177,33 +177,33 @@ v1::CapabilityParameter number_slot(const std::string& name, const std::string& 
 
 v1::Answer done(std::vector<v1::Argument> results, const std::string& text) {
   v1::Answer answer;
-  answer.code(v1::ANSWER_DONE);
-  answer.text(text);
-  answer.results(std::move(results));
+  answer.code = v1::ANSWER_DONE;
+  answer.text = text;
+  answer.results = std::move(results);
   return answer;
 }
 
 v1::Answer refused(const std::string& text) {
   v1::Answer answer;
-  answer.code(v1::ANSWER_REFUSED);
-  answer.text(text);
+  answer.code = v1::ANSWER_REFUSED;
+  answer.text = text;
   return answer;
 }
 
 std::string text_of(const std::vector<v1::Argument>& arguments, const std::string& name) {
   const v1::Argument* const found = find(arguments, name);
-  return found == nullptr ? std::string() : found->text();
+  return found == nullptr ? std::string() : found->text;
 }
 
 double number_of(const std::vector<v1::Argument>& arguments, const std::string& name) {
   const v1::Argument* const found = find(arguments, name);
-  return found == nullptr ? 0.0 : found->number();
+  return found == nullptr ? 0.0 : found->number;
 }
 
 v1::Argument open(const std::string& name) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_UNBOUND);
+  argument.name = name;
+  argument.kind = v1::ARGUMENT_UNBOUND;
   return argument;
 }
 

@@ -59,13 +59,12 @@ struct Cycle::Impl {
         statuses(the_node.reader(topics::kStatus)) {}
 
   void refuse(const char* topic, const v1::Stamp& stamp, const std::string& why) {
-    ++status.refused_samples();
+    ++status.refused_samples;
     refusal = std::string("refuses samples of ") + topic + " " + why;
-    refusal_until = status.steps() + kDegradedSteps;
+    refusal_until = status.steps + kDegradedSteps;
     if (told.size() < kMostTold && told.insert(std::string(topic) + why).second)
       node.warn(std::string("refused a sample of ") + topic + ", epoch " +
-                std::to_string(stamp.epoch()) + " cycle " + std::to_string(stamp.cycle()) + ", " +
-                why);
+                std::to_string(stamp.epoch) + " cycle " + std::to_string(stamp.cycle) + ", " + why);
   }
 
   // The program of a writer, for people.
@@ -78,7 +77,7 @@ struct Cycle::Impl {
 
   void trouble(std::string text) {
     degraded = std::move(text);
-    degraded_until = status.steps() + kDegradedSteps;
+    degraded_until = status.steps + kDegradedSteps;
   }
 
   // Forgets the steps of the epoch, or of a part of it that was wrong.
@@ -104,7 +103,7 @@ struct Cycle::Impl {
     statuses.visit([&](const v1::ServiceStatus& other, const SampleInfo& info) {
       if (info.disposed)
         neighbours.lose(info.writer);
-      else if (other.instance() != status.instance())
+      else if (other.instance != status.instance)
         neighbours.hear(info.writer, other, Clock::now());
     });
   }
@@ -114,8 +113,8 @@ struct Cycle::Impl {
     const auto other = neighbours.serves_instead(status);
     if (!other)
       return false;
-    status.state() = v1::SERVICE_WAITING;
-    status.reason() = *other;
+    status.state = v1::SERVICE_WAITING;
+    status.reason = *other;
     joining = true;
     return true;
   }
@@ -134,10 +133,10 @@ struct Cycle::Impl {
     for (const WriterId& gone : robot.take_lost())
       epochs.lose(Peers::program_of(gone));
     descriptions.visit([&](const v1::RobotDescription& description, const SampleInfo& info) {
-      if (info.disposed || description.stamp().epoch() == 0)
+      if (info.disposed || description.stamp.epoch == 0)
         return;
-      epochs.describe(Peers::program_of(info.writer), description.instance(),
-                      description.stamp().epoch());
+      epochs.describe(Peers::program_of(info.writer), description.instance,
+                      description.stamp.epoch);
       described.push_back(description);
       if (described.size() > kDescriptions)
         described.pop_front();
@@ -145,8 +144,8 @@ struct Cycle::Impl {
     robot.visit([&](const v1::RobotState& state, const SampleInfo& info) {
       if (info.disposed)
         return;
-      if (state.stamp().epoch() == 0 || state.stamp().cycle() == 0)
-        return refuse(topics::kRobotState.name, state.stamp(), "without epoch or cycle");
+      if (state.stamp.epoch == 0 || state.stamp.cycle == 0)
+        return refuse(topics::kRobotState.name, state.stamp, "without epoch or cycle");
       arrived.push_back({state, info.writer, Clock::now()});
     });
     // States whose description has not come yet stay, in their order.
@@ -157,11 +156,11 @@ struct Cycle::Impl {
     }
     for (auto& slot : inputs)
       slot->drain([&](const v1::Stamp& stamp) {
-        const bool good = stamp.epoch() != 0 && epochs.useful(stamp.epoch());
+        const bool good = stamp.epoch != 0 && epochs.useful(stamp.epoch);
         if (!good)
           refuse(slot->name(), stamp,
-                 stamp.epoch() == 0 ? "without epoch"
-                                    : "of an epoch that was left, or of another bridge's");
+                 stamp.epoch == 0 ? "without epoch"
+                                  : "of an epoch that was left, or of another bridge's");
         return good;
       });
   }
@@ -170,7 +169,7 @@ struct Cycle::Impl {
   // many others meanwhile, the writers of those use this robot's name wrongly.
   v1::RobotDescription description_of(std::uint64_t epoch) const {
     for (auto one = described.rbegin(); one != described.rend(); ++one)
-      if (one->stamp().epoch() == epoch)
+      if (one->stamp.epoch == epoch)
         return *one;
     return robot_now;
   }
@@ -183,7 +182,7 @@ struct Cycle::Impl {
 
   bool undecided(const Arrived& one) {
     const std::uint64_t before = epochs.epoch();
-    switch (epochs.judge(Peers::program_of(one.writer), one.state.stamp().epoch())) {
+    switch (epochs.judge(Peers::program_of(one.writer), one.state.stamp.epoch)) {
       case Epochs::Verdict::adopt:
         adopt(before);
         robot_now = description_of(epochs.epoch());
@@ -197,26 +196,26 @@ struct Cycle::Impl {
         refuse_stray(one);
         return false;
       case Epochs::Verdict::foreign:
-        refuse(topics::kRobotState.name, one.state.stamp(),
+        refuse(topics::kRobotState.name, one.state.stamp,
                "of another bridge, " + program(one.writer) + ", with a robot of the same name");
         return false;
       case Epochs::Verdict::left:
-        refuse(topics::kRobotState.name, one.state.stamp(), "of an epoch that was left");
+        refuse(topics::kRobotState.name, one.state.stamp, "of an epoch that was left");
         return false;
     }
     return false;
   }
 
   void refuse_stray(const Arrived& one) {
-    refuse(topics::kRobotState.name, one.state.stamp(),
+    refuse(topics::kRobotState.name, one.state.stamp,
            "of " + program(one.writer) + ", which has described no robot for this epoch");
   }
 
   // Of the bridge and the epoch that are followed.
   void take(const v1::RobotState& state) {
-    const std::uint64_t cycle = state.stamp().cycle();
-    if (cycle <= (pending.empty() ? last : pending.back().stamp().cycle())) {
-      refuse(topics::kRobotState.name, state.stamp(), "behind the newest one");
+    const std::uint64_t cycle = state.stamp.cycle;
+    if (cycle <= (pending.empty() ? last : pending.back().stamp.cycle)) {
+      refuse(topics::kRobotState.name, state.stamp, "behind the newest one");
       // The bridge counts up. One wrong number must not block all later states.
       behind = cycle == behind_cycle + 1 ? behind + 1 : 1;
       behind_cycle = cycle;
@@ -242,9 +241,9 @@ struct Cycle::Impl {
     Step step;
     step.robot = std::move(pending.back());
     pending.clear();
-    const std::uint64_t cycle = step.robot.stamp().cycle();
+    const std::uint64_t cycle = step.robot.stamp.cycle;
     if (!joining && cycle > last + 1) {
-      status.late_cycles() += cycle - last - 1;
+      status.late_cycles += cycle - last - 1;
       trouble("skipped a cycle");
     }
     for (auto& slot : inputs) {
@@ -259,7 +258,7 @@ struct Cycle::Impl {
                 slot->name());
     }
     if (step.stale && !joining)
-      ++status.late_cycles();
+      ++status.late_cycles;
     return step;
   }
 
@@ -283,9 +282,9 @@ struct Cycle::Impl {
   // Lockstep: each state in its order, with every input.
   std::optional<Step> due_lockstep() {
     while (!pending.empty()) {
-      const std::uint64_t cycle = pending.front().stamp().cycle();
+      const std::uint64_t cycle = pending.front().stamp.cycle;
       if (!joining && cycle > last + 1) {
-        status.late_cycles() += cycle - last - 1;
+        status.late_cycles += cycle - last - 1;
         trouble("lost a state of the robot");
         node.warn("lockstep: no robot/state between cycles " + std::to_string(last) + " and " +
                   std::to_string(cycle));
@@ -298,7 +297,7 @@ struct Cycle::Impl {
         pending.pop_front();
         // Only a service that joins a running lockstep late may skip a cycle.
         if (!joining) {
-          ++status.late_cycles();
+          ++status.late_cycles;
           trouble("lost an input");
           node.warn("lockstep: an input for cycle " + std::to_string(cycle) + " will not come");
           joining = true;
@@ -335,7 +334,7 @@ struct Cycle::Impl {
     if (pending.empty())
       return std::string("waits for ") + topics::kRobotState.name +
              (last > 0 ? " of cycle " + std::to_string(last + 1) : "") + nobody(robot.matched());
-    const std::uint64_t cycle = pending.front().stamp().cycle();
+    const std::uint64_t cycle = pending.front().stamp.cycle;
     for (const auto& slot : inputs)
       if (slot->newest(epochs.epoch(), cycle - 1) + 1 != cycle)
         return std::string("waits for ") + slot->name() + " of cycle " + std::to_string(cycle - 1) +
@@ -347,25 +346,25 @@ struct Cycle::Impl {
     quiet = since(waiting_since) > (lockstep ? kQuietLockstep : kQuietLive);
     if (!quiet)
       return;
-    status.state() = v1::SERVICE_WAITING;
-    status.reason() = awaited();
+    status.state = v1::SERVICE_WAITING;
+    status.reason = awaited();
   }
 
   void note_step(const Step& step) {
-    status.stamp() = step.robot.stamp();
-    ++status.steps();
-    if (!degraded.empty() && status.steps() >= degraded_until)
+    status.stamp = step.robot.stamp;
+    ++status.steps;
+    if (!degraded.empty() && status.steps >= degraded_until)
       degraded.clear();
-    if (!refusal.empty() && status.steps() >= refusal_until)
+    if (!refusal.empty() && status.steps >= refusal_until)
       refusal.clear();
     // A refused sample is worse than a late one, and may be its cause.
-    status.reason() = refusal.empty() ? degraded : refusal;
-    status.state() = status.reason().empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
+    status.reason = refusal.empty() ? degraded : refusal;
+    status.state = status.reason.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
   }
 
   void publish_status() {
-    status.step_ms_mean() = timed > 0 ? total_ms / static_cast<double>(timed) : 0.0;
-    status.step_ms_max() = max_ms;
+    status.step_ms_mean = timed > 0 ? total_ms / static_cast<double>(timed) : 0.0;
+    status.step_ms_max = max_ms;
     if (node.publish_status()) {
       timed = 0;
       total_ms = 0.0;
@@ -435,7 +434,7 @@ std::optional<Step> Cycle::poll() {
   step->description = &self.robot_now;
   step->new_epoch = std::exchange(self.fresh, false);
   self.joining = false;
-  self.last = step->robot.stamp().cycle();
+  self.last = step->robot.stamp.cycle;
   self.note_step(*step);
   self.began = Clock::now();
   return step;
@@ -494,7 +493,7 @@ bool Cycle::connected() const {
 }
 
 const v1::Stamp& Cycle::stamp() const {
-  return impl_->status.stamp();
+  return impl_->status.stamp;
 }
 
 }  // namespace saphira::bus

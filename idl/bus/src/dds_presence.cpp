@@ -18,7 +18,7 @@ namespace fdds = eprosima::fastdds::dds;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 Presence::Presence(Peers& peers, std::uint64_t instance) : peers_(peers) {
-  own_.instance() = instance;
+  own_.instance = instance;
   for (Part& part : parts_)
     part.owner = this;
 }
@@ -77,7 +77,7 @@ void Presence::matched(Side side, const fdds::SubscriptionMatchedStatus& status)
 }
 
 void Presence::tick() {
-  ++own_.count();
+  ++own_.count;
   std::set<Peers::Program> heard;
   {
     const std::scoped_lock parts(parts_mutex_);

@@ -16,7 +16,7 @@ namespace saphira::bus {
 namespace {
 
 std::pair<std::uint64_t, std::uint64_t> key_of(const v1::GoalId& id) {
-  return {id.writer(), id.number()};
+  return {id.writer, id.number};
 }
 
 constexpr std::chrono::milliseconds kToldAgain{10000};  // by a service that is started again
@@ -32,8 +32,8 @@ GoalClient::GoalClient(Node& node, std::string requester, std::chrono::milliseco
 
 v1::GoalId GoalClient::ask(v1::Goal goal) {
   v1::GoalId id;
-  id.writer(node_.instance());
-  id.number(next_request_number());
+  id.writer = node_.instance();
+  id.number = next_request_number();
   own_[key_of(id)];  // before the writing, which may fail
   change(id, std::move(goal));
   return id;
@@ -45,9 +45,9 @@ void GoalClient::adopt(const v1::GoalId& id, v1::Goal goal) {
 }
 
 void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
-  goal.id(id);
-  if (goal.requester().empty())
-    goal.requester(requester_);
+  goal.id = id;
+  if (goal.requester.empty())
+    goal.requester = requester_;
   if (!writer_.write(goal))
     throw std::runtime_error("the bus did not take goal " + describe(id));
   if (const auto own = own_.find(key_of(id)); own != own_.end())
@@ -60,8 +60,8 @@ void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
   if (own == own_.end() && !why.empty())
     own = own_.try_emplace(key_of(id)).first;
   v1::Goal goal = own == own_.end() ? v1::Goal() : own->second.goal;
-  goal.id(id);
-  goal.withdrawn(why);
+  goal.id = id;
+  goal.withdrawn = why;
   if (why.empty() ? !writer_.dispose(goal) : !writer_.write(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
   if (own != own_.end() && !own->second.over)
@@ -70,7 +70,7 @@ void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
 
 void GoalClient::poll() {
   for (const auto& sample : reader_.take()) {
-    const Key key = key_of(sample.data.id());
+    const Key key = key_of(sample.data.id);
     const auto own = own_.find(key);
     if (!sample.info.disposed)
       known_[key] = sample.data;
@@ -82,7 +82,7 @@ void GoalClient::poll() {
       own->second.withdrawn = Clock::now();
     else
       own->second.withdrawn.reset();
-    if (!sample.info.disposed && ended(sample.data.state()))
+    if (!sample.info.disposed && ended(sample.data.state))
       own->second.over = Clock::now();
   }
   forget();
@@ -96,13 +96,13 @@ void GoalClient::miss() {
     if (own.over || !own.withdrawn || now - *own.withdrawn < std::min(keep_, kToldAgain))
       continue;
     v1::GoalStatus& status = known_[key];
-    status.id().writer(key.first);
-    status.id().number(key.second);
-    status.state(v1::GOAL_FAILED);
-    status.code(v1::CODE_FORGOTTEN);
-    status.reason(
+    status.id.writer = key.first;
+    status.id.number = key.second;
+    status.state = v1::GOAL_FAILED;
+    status.code = v1::CODE_FORGOTTEN;
+    status.reason =
         "it has ended, and this program has not heard how: it did not listen for more than a "
-        "minute");
+        "minute";
     own.over = now;
   }
 }
@@ -116,8 +116,8 @@ void GoalClient::forget() {
       continue;
     }
     v1::Goal goal;
-    goal.id().writer(own->first.first);
-    goal.id().number(own->first.second);
+    goal.id.writer = own->first.first;
+    goal.id.number = own->first.second;
     if (!writer_.dispose(goal))
       return;  // the bus is full: later
     known_.erase(own->first);
@@ -138,8 +138,8 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
   for (const auto& [key, status] : known_)
     all.push_back(status);
   std::stable_sort(all.begin(), all.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
-    return std::tuple(a.stamp().epoch(), a.stamp().cycle(), a.functor(), a.id().number()) <
-           std::tuple(b.stamp().epoch(), b.stamp().cycle(), b.functor(), b.id().number());
+    return std::tuple(a.stamp.epoch, a.stamp.cycle, a.functor, a.id.number) <
+           std::tuple(b.stamp.epoch, b.stamp.cycle, b.functor, b.id.number);
   });
   return all;
 }
@@ -168,8 +168,8 @@ std::string describe(v1::GoalState state) {
 }
 
 std::string describe(const v1::GoalId& id) {
-  return format("%llx:%llu", static_cast<unsigned long long>(id.writer()),
-                static_cast<unsigned long long>(id.number()));
+  return format("%llx:%llu", static_cast<unsigned long long>(id.writer),
+                static_cast<unsigned long long>(id.number));
 }
 
 std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
@@ -181,27 +181,26 @@ std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
   if (!writer || !count)
     return std::nullopt;
   v1::GoalId id;
-  id.writer(*writer);
-  id.number(*count);
+  id.writer = *writer;
+  id.number = *count;
   return id;
 }
 
 std::string describe(const v1::GoalStatus& status) {
-  std::string line = describe(status.state());
-  if (!ended(status.state()) && !status.step().empty())
-    line += ": " + status.step();
-  if (status.state() == v1::GOAL_UNDERWAY) {
-    line += format(" (%.0f %% done", 100.0 * status.progress());
+  std::string line = describe(status.state);
+  if (!ended(status.state) && !status.step.empty())
+    line += ": " + status.step;
+  if (status.state == v1::GOAL_UNDERWAY) {
+    line += format(" (%.0f %% done", 100.0 * status.progress);
     // The level of most activities is the part that is done.
-    if (std::abs(status.level() - status.progress()) >= 0.01)
-      line += format(", level %.2f", status.level());
+    if (std::abs(status.level - status.progress) >= 0.01)
+      line += format(", level %.2f", status.level);
     line += ")";
   }
-  if (!status.reason().empty())
-    line += (ended(status.state()) ? ": " : " [") + status.reason() +
-            (ended(status.state()) ? "" : "]");
-  if (!status.note().empty())
-    line += "; it " + status.note();
+  if (!status.reason.empty())
+    line += (ended(status.state) ? ": " : " [") + status.reason + (ended(status.state) ? "" : "]");
+  if (!status.note.empty())
+    line += "; it " + status.note;
   return line;
 }
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <string>
 
-#include "system.h"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::bus::internal {
 

@@ -14,13 +14,13 @@ constexpr double kMoment = 3.0;
 constexpr std::chrono::seconds kBreak{3};
 
 bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
-  if (!serves(other) || other.instance() == own.instance())
+  if (!serves(other) || other.instance == own.instance)
     return false;
   if (!serves(own))
     return true;
-  const bool own_newcomer = own.uptime() < kMoment;
-  const bool other_newcomer = other.uptime() < kMoment;
-  return own_newcomer == other_newcomer ? other.instance() < own.instance() : own_newcomer;
+  const bool own_newcomer = own.uptime < kMoment;
+  const bool other_newcomer = other.uptime < kMoment;
+  return own_newcomer == other_newcomer ? other.instance < own.instance : own_newcomer;
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
 void Neighbours::hear(const WriterId& writer, const v1::ServiceStatus& status, Time now) {
   const auto [known, is_new] = all_.try_emplace(writer, Neighbour{status, now, now});
   Neighbour& neighbour = known->second;
-  if (!is_new && neighbour.status.stamp() != status.stamp()) {
+  if (!is_new && neighbour.status.stamp != status.stamp) {
     if (now - neighbour.changed > kBreak)
       neighbour.began = now;
     neighbour.changed = now;
@@ -43,7 +43,7 @@ void Neighbours::lose(const WriterId& writer) {
 std::optional<std::string> Neighbours::serves_instead(const v1::ServiceStatus& own) const {
   for (const auto& [writer, neighbour] : all_) {
     const v1::ServiceStatus& other = neighbour.status;
-    if (other.name() == own.name() && yields(own, other))
+    if (other.name == own.name && yields(own, other))
       return another(other) + " serves this robot; waits until that is gone";
   }
   return std::nullopt;

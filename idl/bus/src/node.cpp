@@ -59,15 +59,15 @@ std::uint64_t random_instance() {
 
 struct Node::Impl {
   explicit Impl(NodeOptions the_options) : options(std::move(the_options)) {
-    status.instance() = random_instance();
+    status.instance = random_instance();
   }
 
   void start() {
-    status.name() = options.name;
-    status.host() = internal::host_name();
-    status.pid() = static_cast<std::uint32_t>(getpid());
-    status.state() = v1::SERVICE_STARTING;
-    status.lockstep() = options.lockstep;
+    status.name = options.name;
+    status.host = internal::host_name();
+    status.pid = static_cast<std::uint32_t>(getpid());
+    status.state = v1::SERVICE_STARTING;
+    status.lockstep = options.lockstep;
     last_cpu = cpu_seconds();
     last_published = started;
     status_writer.emplace(transport->make_writer(
@@ -87,7 +87,7 @@ struct Node::Impl {
       flags |= Heartbeat::kWaitsForRobot;
     if (writes_robot)
       flags |= Heartbeat::kWritesRobot;
-    internal::send({status.instance(), status.stamp().epoch(), status.stamp().cycle(), flags});
+    internal::send({status.instance, status.stamp.epoch, status.stamp.cycle, flags});
   }
 
   void note_troubles() {
@@ -97,7 +97,7 @@ struct Node::Impl {
       health.incompatible_text = std::move(text);
     }
     const internal::Refusals refusals = transport->take_refusals();
-    status.refused_samples() += refusals.samples;
+    status.refused_samples += refusals.samples;
     for (const auto& text : refusals.texts)
       log(v1::LOG_WARNING, text);
   }
@@ -110,14 +110,14 @@ struct Node::Impl {
     if (level == v1::LOG_DEBUG)
       return;
     v1::LogRecord record;
-    record.instance() = status.instance();
-    record.name() = options.name;
-    record.level() = level;
-    record.time_ns() = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                           std::chrono::system_clock::now().time_since_epoch())
-                           .count();
-    record.stamp() = status.stamp();
-    record.text() = text;
+    record.instance = status.instance;
+    record.name = options.name;
+    record.level = level;
+    record.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                         std::chrono::system_clock::now().time_since_epoch())
+                         .count();
+    record.stamp = status.stamp;
+    record.text = text;
     log_writer->write(record);
   }
 
@@ -141,7 +141,7 @@ Node::Node(NodeOptions options) : impl_(std::make_unique<Impl>(std::move(options
   impl_->transport =
       impl_->options.dry_run
           ? internal::make_memory_transport(impl_->options, make_memory_bus(), impl_->wake)
-          : internal::make_dds_transport(impl_->options, impl_->status.instance(), impl_->wake);
+          : internal::make_dds_transport(impl_->options, impl_->status.instance, impl_->wake);
   impl_->start();
 }
 
@@ -153,7 +153,7 @@ Node::Node(NodeOptions options, std::shared_ptr<MemoryBus> memory)
 }
 
 Node::~Node() {
-  if (impl_->status.stamp().cycle() > 0)
+  if (impl_->status.stamp.cycle > 0)
     internal::has_worked() = true;
   impl_->beat(Heartbeat::kEnds);
   // A clean end: nobody has to wait until the status is old.
@@ -247,7 +247,7 @@ const NodeOptions& Node::options() const {
   return impl_->options;
 }
 std::uint64_t Node::instance() const {
-  return impl_->status.instance();
+  return impl_->status.instance;
 }
 
 NodeHealth Node::health() const {
@@ -263,27 +263,27 @@ bool Node::publish_status() {
   Impl& self = *impl_;
   const auto now = Clock::now();
   const double since = std::chrono::duration<double>(now - self.last_published).count();
-  if (self.published && since < 1.0 && self.status.state() == self.published_state &&
-      self.status.reason() == self.published_reason)
+  if (self.published && since < 1.0 && self.status.state == self.published_state &&
+      self.status.reason == self.published_reason)
     return false;
   self.note_troubles();
-  self.status.incompatible() = self.health.incompatible;
-  self.status.uptime() = std::chrono::duration<double>(now - self.started).count();
-  self.status.rss_mb() = resident_mb();
+  self.status.incompatible = self.health.incompatible;
+  self.status.uptime = std::chrono::duration<double>(now - self.started).count();
+  self.status.rss_mb = resident_mb();
   // A share over too short a time would show only the resolution of the clock.
   if (since > 0.5) {
     const double cpu = cpu_seconds();
-    self.status.cpu_percent() = 100.0 * (cpu - self.last_cpu) / since;
+    self.status.cpu_percent = 100.0 * (cpu - self.last_cpu) / since;
     self.last_cpu = cpu;
     self.last_published = now;
   }
   v1::ServiceStatus told = self.status;
   for (const std::string& notice : self.transport->notices())
-    told.reason() += (told.reason().empty() ? "" : "; ") + notice;
+    told.reason += (told.reason.empty() ? "" : "; ") + notice;
   self.status_writer->write(told);
   self.beat(0);
-  self.published_state = self.status.state();
-  self.published_reason = self.status.reason();
+  self.published_state = self.status.state;
+  self.published_reason = self.status.reason;
   self.published = true;
   return true;
 }

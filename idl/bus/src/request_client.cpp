@@ -36,10 +36,10 @@ RequestClient::RequestClient(Node& node, const RequestTopic& topic, std::string 
 }
 
 v1::Request RequestClient::complete(v1::Request request, std::uint64_t number) {
-  request.asker(node_.instance());
-  request.number(number);
-  if (request.source().empty())
-    request.source(source_);
+  request.asker = node_.instance();
+  request.number = number;
+  if (request.source.empty())
+    request.source = source_;
   return request;
 }
 
@@ -47,7 +47,7 @@ std::uint64_t RequestClient::send(v1::Request request) {
   request = complete(std::move(request), next_request_number());
   if (!writer_.write(request))
     throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
-  return request.number();
+  return request.number;
 }
 
 void RequestClient::again(std::uint64_t number, v1::Request request) {
@@ -57,7 +57,7 @@ void RequestClient::again(std::uint64_t number, v1::Request request) {
 std::vector<v1::Answer> RequestClient::poll() {
   std::vector<v1::Answer> answers;
   for (auto& sample : reader_.take())
-    if (!sample.info.disposed && sample.data.asker() == node_.instance())
+    if (!sample.info.disposed && sample.data.asker == node_.instance())
       answers.push_back(std::move(sample.data));
   return answers;
 }
@@ -70,15 +70,15 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
   std::optional<v1::Answer> end;
   for (auto& sample : direct_->take()) {
     v1::Answer& answer = sample.data;
-    if (sample.info.disposed || answer.asker() != request.asker() ||
-        answer.number() != request.number() || !ended(answer.code()) || !well(answer.code()))
+    if (sample.info.disposed || answer.asker != request.asker || answer.number != request.number ||
+        !ended(answer.code) || !well(answer.code))
       continue;
-    answer.service(answer.service().substr(answer.service().find('/') + 1));  // of agent_address()
+    answer.service = answer.service.substr(answer.service.find('/') + 1);  // of agent_address()
     end = std::move(answer);
   }
-  const auto& arguments = request.arguments();
+  const auto& arguments = request.arguments;
   const bool several = std::any_of(arguments.begin(), arguments.end(),
-                                   [](const v1::Argument& one) { return one.name() == "answers"; });
+                                   [](const v1::Argument& one) { return one.name == "answers"; });
   return several ? std::nullopt : end;
 }
 
@@ -86,10 +86,10 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
                               const std::function<void()>& meanwhile) {
   request = complete(std::move(request), next_request_number());
   v1::Answer newest;
-  newest.asker(request.asker());
-  newest.number(request.number());
-  newest.code(v1::ANSWER_NOBODY);
-  newest.text(std::string("no program takes what is asked on ") + topic_.name);
+  newest.asker = request.asker;
+  newest.number = request.number;
+  newest.code = v1::ANSWER_NOBODY;
+  newest.text = std::string("no program takes what is asked on ") + topic_.name;
   bool heard = false;
   std::size_t matched = writer_.matched();
   auto again = Clock::now();
@@ -104,8 +104,8 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
     }
     if (!heard && now >= again && matched > 0 && writer_.write(request)) {
       again = now + kAgain;
-      newest.code(v1::ANSWER_TOO_LATE);
-      newest.text("nothing was heard of the request within " + seconds(patience));
+      newest.code = v1::ANSWER_TOO_LATE;
+      newest.text = "nothing was heard of the request within " + seconds(patience);
       node_.spin(kSpin);
     }
     node_.wait(std::min(kLook, std::chrono::ceil<std::chrono::milliseconds>(end - now)), stop);
@@ -114,19 +114,19 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
     if (auto answer = take_direct(request))
       return *std::move(answer);
     for (v1::Answer& answer : poll()) {
-      if (answer.number() != request.number())
+      if (answer.number != request.number)
         continue;
       heard = true;
       newest = std::move(answer);
-      if (ended(newest.code()))
+      if (ended(newest.code))
         return newest;
-      if (request.deadline() <= 0.0)
+      if (request.deadline <= 0.0)
         end = Clock::now() + limit;
     }
   }
-  if (!ended(newest.code())) {
-    newest.code(v1::ANSWER_TOO_LATE);
-    newest.text("the request is still under way");
+  if (!ended(newest.code)) {
+    newest.code = v1::ANSWER_TOO_LATE;
+    newest.text = "the request is still under way";
   }
   return newest;
 }
@@ -134,42 +134,42 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
 v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments,
                     const std::string& service) {
   v1::Request made;
-  made.functor(functor);
-  made.arguments(std::move(arguments));
-  made.service(service);
+  made.functor = functor;
+  made.arguments = std::move(arguments);
+  made.service = service;
   return made;
 }
 
 v1::Argument number(const std::string& name, double value) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_NUMBER);
-  argument.number(value);
+  argument.name = name;
+  argument.kind = v1::ARGUMENT_NUMBER;
+  argument.number = value;
   return argument;
 }
 
 v1::Argument text(const std::string& name, const std::string& value) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_TEXT);
-  argument.text(value);
+  argument.name = name;
+  argument.kind = v1::ARGUMENT_TEXT;
+  argument.text = value;
   return argument;
 }
 
 v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame) {
   v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_POINT);
-  argument.point().x(x);
-  argument.point().y(y);
-  argument.point().th(th);
-  argument.frame(frame);
+  argument.name = name;
+  argument.kind = v1::ARGUMENT_POINT;
+  argument.point.x = x;
+  argument.point.y = y;
+  argument.point.th = th;
+  argument.frame = frame;
   return argument;
 }
 
 v1::Argument truth(const std::string& name, bool value) {
   v1::Argument argument = number(name, value ? 1.0 : 0.0);
-  argument.kind(v1::ARGUMENT_TRUTH);
+  argument.kind = v1::ARGUMENT_TRUTH;
   return argument;
 }
 

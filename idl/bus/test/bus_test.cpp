@@ -23,10 +23,10 @@ TEST_P(Bus, WhatIsWrittenIsRead) {
   ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
   auto state = robot_state(3, 4);
-  state.pose_in_odom().x(1.25);
-  state.sonars().resize(2);
-  state.sonars()[1].range(0.5F);
-  state.battery(12.5);
+  state.pose_in_odom.x = 1.25;
+  state.sonars.resize(2);
+  state.sonars[1].range = 0.5F;
+  state.battery = 12.5;
   ASSERT_TRUE(writer.write(state));
   const auto samples = take_at_least(*b, reader, 1);
   ASSERT_EQ(samples.size(), 1U);
@@ -45,7 +45,7 @@ TEST_P(Bus, NewestOfWhatHasCome) {
   std::uint64_t newest = 0;
   EXPECT_TRUE(eventually(*b, [&] {
     if (const auto state = reader.take_newest())
-      newest = state->stamp().cycle();
+      newest = state->stamp.cycle;
     return newest == 5;
   }));
   EXPECT_FALSE(reader.take_newest().has_value());
@@ -62,9 +62,9 @@ TEST_P(Bus, LateReaderOfLatchedTopicGetsTheNewestOfEachKey) {
   auto reader = b->reader(topics::kGoals);
   const auto samples = take_at_least(*b, reader, 2);
   ASSERT_EQ(samples.size(), 2U);
-  EXPECT_EQ(samples[0].data.functor(), "new");
-  EXPECT_EQ(samples[1].data.functor(), "new");
-  EXPECT_NE(samples[0].data.id().number(), samples[1].data.id().number());
+  EXPECT_EQ(samples[0].data.functor, "new");
+  EXPECT_EQ(samples[1].data.functor, "new");
+  EXPECT_NE(samples[0].data.id.number, samples[1].data.id.number);
 }
 
 // As the map that registration had in a cycle.
@@ -79,12 +79,12 @@ TEST_P(Bus, InLockstepAReaderOfALatchedTopicGetsWhatCameInBetween) {
   std::vector<std::uint64_t> revisions;
   for (const std::uint64_t revision : {1U, 2U, 3U}) {
     v1::FloorMap map;
-    map.revision(revision);
+    map.revision = revision;
     ASSERT_TRUE(writer.write(map));
   }
   EXPECT_TRUE(eventually(*tool, [&] {
     for (const auto& sample : reader.take())
-      revisions.push_back(sample.data.revision());
+      revisions.push_back(sample.data.revision);
     return !revisions.empty() && revisions.back() == 3;
   }));
   EXPECT_EQ(revisions, (std::vector<std::uint64_t>{1, 2, 3}));
@@ -112,12 +112,12 @@ TEST_P(Bus, DisposeTellsWhatWasWithdrawn) {
   const auto gone = take_at_least(*b, reader, 1);
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_TRUE(gone[0].info.disposed);
-  EXPECT_EQ(gone[0].data.functor(), "one");
+  EXPECT_EQ(gone[0].data.functor, "one");
   // It may be asked for again.
   writer.write(goal(1, "again"));
   const auto again = take_at_least(*b, reader, 1);
   EXPECT_FALSE(again[0].info.disposed);
-  EXPECT_EQ(again[0].data.functor(), "again");
+  EXPECT_EQ(again[0].data.functor, "again");
 }
 
 TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
@@ -130,7 +130,7 @@ TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
   auto reader = b->reader(topics::kGoals);
   const auto samples = take_at_least(*b, reader, 1);
   ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.id().number(), 2U);
+  EXPECT_EQ(samples[0].data.id.number, 2U);
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -232,23 +232,23 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
   auto reader_fleet = fleet->reader(topics::kGoals);
   const std::uint64_t mark = a->instance();
   auto goal_a = goal(1);
-  goal_a.id().writer(mark);
+  goal_a.id.writer = mark;
   auto goal_b = goal(2);
-  goal_b.id().writer(mark);
+  goal_b.id.writer = mark;
   writer_a.write(goal_a);
   writer_b.write(goal_b);
   std::vector<std::uint64_t> heard;
   EXPECT_TRUE(eventually(*fleet, [&] {
     for (const auto& sample : reader_fleet.take())
-      if (sample.data.id().writer() == mark)
-        heard.push_back(sample.data.id().number());
+      if (sample.data.id.writer == mark)
+        heard.push_back(sample.data.id.number);
     return heard.size() >= 2;
   }));
   std::sort(heard.begin(), heard.end());
   EXPECT_EQ(heard, (std::vector<std::uint64_t>{1, 2}));
   const auto samples = take_at_least(*b, reader_b, 1);
   ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.id().number(), 2U);
+  EXPECT_EQ(samples[0].data.id.number, 2U);
   EXPECT_EQ(reader_b.matched(), 1U);
 }
 
@@ -256,17 +256,17 @@ TEST_P(Bus, CommandsAreNotForLateReaders) {
   auto a = node("a");
   auto writer = a->writer<v1::Request>(topics::kTimer);
   v1::Request command;
-  command.number(1);
+  command.number = 1;
   writer.write(command);
   auto b = node("b");
   auto reader = b->reader<v1::Request>(topics::kTimer);
   ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
-  command.number(2);
+  command.number = 2;
   writer.write(command);
   const auto samples = take_at_least(*b, reader, 1);
   ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.number(), 2U);
+  EXPECT_EQ(samples[0].data.number, 2U);
 }
 
 TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {
@@ -286,7 +286,7 @@ TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {
   EXPECT_NE(text_b.find("reliability: offered best effort, requested reliable"), std::string::npos)
       << text_b;
   b->publish_status();
-  EXPECT_EQ(b->status().incompatible(), 1U);
+  EXPECT_EQ(b->status().incompatible, 1U);
 }
 
 TEST(Mismatch, NamesTheProgramAndTheRemedyAndIsNoneBetweenTwoRobots) {
@@ -333,20 +333,20 @@ TEST_P(Bus, StatusComesAtOnceAndIsWithdrawnAtTheEnd) {
   auto a = node("a");
   EXPECT_TRUE(a->publish_status());
   EXPECT_FALSE(a->publish_status());
-  a->status().state() = v1::SERVICE_RUNNING;
+  a->status().state = v1::SERVICE_RUNNING;
   EXPECT_TRUE(a->publish_status());
   bool running = false;
   EXPECT_TRUE(eventually(*b, [&] {
     for (const auto& sample : reader.take())
-      running |= sample.data.name() == "a" && sample.data.state() == v1::SERVICE_RUNNING &&
-                 sample.data.rss_mb() > 1.0 && sample.data.instance() == a->instance();
+      running |= sample.data.name == "a" && sample.data.state == v1::SERVICE_RUNNING &&
+                 sample.data.rss_mb > 1.0 && sample.data.instance == a->instance();
     return running;
   }));
   a.reset();
   bool gone = false;
   EXPECT_TRUE(eventually(*b, [&] {
     for (const auto& sample : reader.take())
-      gone |= sample.data.name() == "a" && sample.info.disposed;
+      gone |= sample.data.name == "a" && sample.info.disposed;
     return gone;
   }));
 }
@@ -357,9 +357,9 @@ TEST_P(Bus, LogIsReadByWhoComesLater) {
   auto b = node("b");
   auto reader = b->reader(topics::kLog);
   const auto samples = take_at_least(*b, reader, 1);
-  EXPECT_EQ(samples[0].data.text(), "odd things");
-  EXPECT_EQ(samples[0].data.level(), v1::LOG_WARNING);
-  EXPECT_EQ(samples[0].data.name(), "a");
+  EXPECT_EQ(samples[0].data.text, "odd things");
+  EXPECT_EQ(samples[0].data.level, v1::LOG_WARNING);
+  EXPECT_EQ(samples[0].data.name, "a");
 }
 
 TEST_P(Bus, StopEndsAWait) {
@@ -375,13 +375,13 @@ TEST_P(Bus, EchoSpeaksJson) {
   auto a = node("a");
   auto writer = a->writer(topics::kGoalStatus);
   v1::GoalStatus status;
-  status.id().writer(18446744073709551615ULL);
-  status.id().number(2);
-  status.state() = v1::GOAL_FAILED;
-  status.code() = v1::CODE_BLOCKED;
-  status.reason() = "a \"wall\"\n";
-  status.progress() = 0.1;
-  status.elapsed() = std::numeric_limits<double>::quiet_NaN();
+  status.id.writer = 18446744073709551615ULL;
+  status.id.number = 2;
+  status.state = v1::GOAL_FAILED;
+  status.code = v1::CODE_BLOCKED;
+  status.reason = "a \"wall\"\n";
+  status.progress = 0.1;
+  status.elapsed = std::numeric_limits<double>::quiet_NaN();
   writer.write(status);
   auto b = node("b");
   Echo echo(*b, "goals/status");
@@ -403,7 +403,7 @@ TEST_P(Bus, EchoSpeaksJsonOfAnyText) {
   auto a = node("a");
   auto writer = a->writer(topics::kGoalStatus);
   v1::GoalStatus status;
-  status.reason() =
+  status.reason =
       "K\xFC"
       "che, K\u00fcche, \U0001f600 \xE2\x82";
   writer.write(status);

@@ -14,7 +14,7 @@ TEST(Clocks, ARequestCountsHoweverFarApartTheClocksAre) {
     ASSERT_TRUE(writer.write(bytes_of_request("reset"), ahead));
     const auto came = take_at_least(node, reader, 1);
     ASSERT_EQ(came.size(), 1U) << ahead;
-    EXPECT_EQ(came[0].data.functor(), "reset");
+    EXPECT_EQ(came[0].data.functor, "reset");
     EXPECT_NEAR(came[0].info.age, -ahead, 2.0);
   }
 }

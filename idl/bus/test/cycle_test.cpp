@@ -48,7 +48,7 @@ class Cycles : public OnEachBus {
     if (!result)
       return 0;
     cycle_->done();
-    return result->robot.stamp().cycle();
+    return result->robot.stamp.cycle;
   }
   bool no_step() { return !next(absence()).has_value(); }
 
@@ -84,8 +84,8 @@ TEST_P(Cycles, LiveStepsOnEachStateWithTheInputOfTheCycleBefore) {
   ASSERT_TRUE(first);
   EXPECT_TRUE(first->new_epoch);
   EXPECT_EQ(input_->value(), nullptr);
-  EXPECT_EQ(cycle_->stamp().epoch(), 1U);
-  EXPECT_EQ(cycle_->stamp().cycle(), 1U);
+  EXPECT_EQ(cycle_->stamp().epoch, 1U);
+  EXPECT_EQ(cycle_->stamp().cycle, 1U);
   cycle_->done();
   send_intentions(1, 1);
   send(1, 2);
@@ -94,11 +94,11 @@ TEST_P(Cycles, LiveStepsOnEachStateWithTheInputOfTheCycleBefore) {
   EXPECT_FALSE(second->new_epoch);
   EXPECT_FALSE(second->stale);
   ASSERT_NE(input_->value(), nullptr);
-  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+  EXPECT_EQ(input_->value()->stamp.cycle, 1U);
   cycle_->done();
-  EXPECT_EQ(service_->status().steps(), 2U);
-  EXPECT_EQ(service_->status().late_cycles(), 0U);
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_RUNNING);
+  EXPECT_EQ(service_->status().steps, 2U);
+  EXPECT_EQ(service_->status().late_cycles, 0U);
+  EXPECT_EQ(service_->status().state, v1::SERVICE_RUNNING);
   EXPECT_TRUE(no_step());
 }
 
@@ -113,12 +113,12 @@ TEST_P(Cycles, LiveGoesOnWithAnOldInputAndSaysSo) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->stale, number > 2);
     ASSERT_NE(input_->value(), nullptr);
-    EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+    EXPECT_EQ(input_->value()->stamp.cycle, 1U);
     cycle_->done();
   }
-  EXPECT_EQ(service_->status().late_cycles(), 2U);
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
-  EXPECT_NE(service_->status().reason().find("intentions"), std::string::npos);
+  EXPECT_EQ(service_->status().late_cycles, 2U);
+  EXPECT_EQ(service_->status().state, v1::SERVICE_DEGRADED);
+  EXPECT_NE(service_->status().reason.find("intentions"), std::string::npos);
 }
 
 TEST_P(Cycles, LiveNeverReadsTheCycleThatIsBeingComputed) {
@@ -130,7 +130,7 @@ TEST_P(Cycles, LiveNeverReadsTheCycleThatIsBeingComputed) {
   send(1, 2);
   ASSERT_EQ(step(), 2U);
   ASSERT_NE(input_->value(), nullptr);
-  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+  EXPECT_EQ(input_->value()->stamp.cycle, 1U);
 }
 
 TEST_P(Cycles, LiveSkipsToTheNewestAndCounts) {
@@ -145,11 +145,11 @@ TEST_P(Cycles, LiveSkipsToTheNewestAndCounts) {
     ASSERT_GT(stepped, number);
     number = stepped;
   }
-  const std::uint64_t steps = service_->status().steps();
-  EXPECT_GE(service_->status().late_cycles(), 6U - steps);
+  const std::uint64_t steps = service_->status().steps;
+  EXPECT_GE(service_->status().late_cycles, 6U - steps);
   if (GetParam() == "memory") {
     EXPECT_EQ(steps, 2U);
-    EXPECT_EQ(service_->status().late_cycles(), 4U + 1U);  // four skipped, one on stale input
+    EXPECT_EQ(service_->status().late_cycles, 4U + 1U);  // four skipped, one on stale input
   }
 }
 
@@ -161,17 +161,17 @@ TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
   const auto fresh = next(milliseconds(10000));
   ASSERT_TRUE(fresh);
   EXPECT_TRUE(fresh->new_epoch);
-  EXPECT_EQ(cycle_->stamp().epoch(), 2U);
+  EXPECT_EQ(cycle_->stamp().epoch, 2U);
   cycle_->done();
-  EXPECT_EQ(service_->status().refused_samples(), 0U);
+  EXPECT_EQ(service_->status().refused_samples, 0U);
   send(1, 2);
   send_intentions(1, 1);
   EXPECT_TRUE(no_step());
-  EXPECT_EQ(service_->status().refused_samples(), 2U);
+  EXPECT_EQ(service_->status().refused_samples, 2U);
   send(2, 2);
   ASSERT_EQ(step(), 2U);
   EXPECT_EQ(input_->value(), nullptr);
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
+  EXPECT_EQ(service_->status().state, v1::SERVICE_DEGRADED);
 }
 
 TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
@@ -183,11 +183,11 @@ TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
   ASSERT_TRUE(eventually(*stray, [&] { return writer.matched() == 1; }));
   // The reader may know of the writer later than the writer of the reader.
   const auto refused = [&](const v1::RobotState& state) {
-    const auto before = service_->status().refused_samples();
+    const auto before = service_->status().refused_samples;
     return eventually(*service_, [&] {
       writer.write(state);
       next(milliseconds(1));
-      return service_->status().refused_samples() > before;
+      return service_->status().refused_samples > before;
     });
   };
   ASSERT_TRUE(refused(robot_state(77, 5)));       // an epoch that nobody has described
@@ -196,7 +196,7 @@ TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
     send(1, number);
     EXPECT_EQ(step(), number);
   }
-  EXPECT_EQ(cycle_->stamp().epoch(), 1U);
+  EXPECT_EQ(cycle_->stamp().epoch, 1U);
 }
 
 TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
@@ -213,13 +213,13 @@ TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
   ASSERT_TRUE(eventually(*service_, [&] {
     writer.write(robot_state(2, 50));
     next(milliseconds(1));
-    return service_->status().refused_samples() > 0;
+    return service_->status().refused_samples > 0;
   }));
   send(1, 2);
   EXPECT_EQ(step(), 2U);
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
-  EXPECT_NE(service_->status().reason().find("second-bridge"), std::string::npos)
-      << service_->status().reason();
+  EXPECT_EQ(service_->status().state, v1::SERVICE_DEGRADED);
+  EXPECT_NE(service_->status().reason.find("second-bridge"), std::string::npos)
+      << service_->status().reason;
   robot_.reset();
   description_.reset();
   bridge_.reset();
@@ -227,7 +227,7 @@ TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
     writer.write(robot_state(2, 51));
     return next(milliseconds(1)).has_value();
   }));
-  EXPECT_EQ(cycle_->stamp().epoch(), 2U);
+  EXPECT_EQ(cycle_->stamp().epoch, 2U);
 }
 
 TEST_P(Cycles, OfTwoServicesOfOneNameOneWaitsUntilTheOtherIsGone) {
@@ -243,7 +243,7 @@ TEST_P(Cycles, OfTwoServicesOfOneNameOneWaitsUntilTheOtherIsGone) {
     return step;
   };
   const auto waits = [](Node& node) {
-    return node.status().reason().starts_with("another service, process ");
+    return node.status().reason.starts_with("another service, process ");
   };
   ASSERT_TRUE(eventually(*bridge_, [&] {
     send(1, ++number);
@@ -256,7 +256,7 @@ TEST_P(Cycles, OfTwoServicesOfOneNameOneWaitsUntilTheOtherIsGone) {
     std::swap(service_, second);
     std::swap(cycle_, other);
   }
-  EXPECT_EQ(second->status().state(), v1::SERVICE_WAITING);
+  EXPECT_EQ(second->status().state, v1::SERVICE_WAITING);
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(eventually(*bridge_, [&] {
       send(1, ++number);
@@ -291,7 +291,7 @@ TEST_P(Cycles, StateWithoutEpochIsRefused) {
   start(false);
   send(0, 0);
   EXPECT_TRUE(no_step());
-  EXPECT_EQ(service_->status().refused_samples(), 1U);
+  EXPECT_EQ(service_->status().refused_samples, 1U);
 }
 
 TEST_P(Cycles, LockstepWaitsForItsInput) {
@@ -305,7 +305,7 @@ TEST_P(Cycles, LockstepWaitsForItsInput) {
   ASSERT_TRUE(second);
   EXPECT_FALSE(second->stale);
   ASSERT_NE(input_->value(), nullptr);
-  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+  EXPECT_EQ(input_->value()->stamp.cycle, 1U);
 }
 
 TEST_P(Cycles, LockstepStepsEveryStateInOrder) {
@@ -318,11 +318,11 @@ TEST_P(Cycles, LockstepStepsEveryStateInOrder) {
     ASSERT_EQ(step(), number);
     if (number > 1) {
       ASSERT_NE(input_->value(), nullptr);
-      EXPECT_EQ(input_->value()->stamp().cycle(), number - 1);
+      EXPECT_EQ(input_->value()->stamp.cycle, number - 1);
     }
   }
   EXPECT_TRUE(no_step());
-  EXPECT_EQ(service_->status().late_cycles(), 0U);
+  EXPECT_EQ(service_->status().late_cycles, 0U);
 }
 
 TEST_P(Cycles, LockstepKeepsTheInputsOfAnEpochThatIsNotKnownYet) {
@@ -336,7 +336,7 @@ TEST_P(Cycles, LockstepKeepsTheInputsOfAnEpochThatIsNotKnownYet) {
   send(2, 2);
   ASSERT_EQ(step(), 2U);
   ASSERT_NE(input_->value(), nullptr);
-  EXPECT_EQ(input_->value()->stamp().epoch(), 2U);
+  EXPECT_EQ(input_->value()->stamp.epoch, 2U);
 }
 
 TEST_P(Cycles, LockstepSaysWhatItWaitsFor) {
@@ -345,11 +345,11 @@ TEST_P(Cycles, LockstepSaysWhatItWaitsFor) {
   EXPECT_EQ(step(), 1U);
   send(1, 2);
   EXPECT_FALSE(next(milliseconds(2500)).has_value());
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_WAITING);
-  EXPECT_EQ(service_->status().reason(), "waits for intentions of cycle 1");
+  EXPECT_EQ(service_->status().state, v1::SERVICE_WAITING);
+  EXPECT_EQ(service_->status().reason, "waits for intentions of cycle 1");
   intentions_.reset();
   EXPECT_FALSE(next(milliseconds(2500)).has_value());
-  EXPECT_EQ(service_->status().reason(), "waits for intentions of cycle 1: nobody writes it");
+  EXPECT_EQ(service_->status().reason, "waits for intentions of cycle 1: nobody writes it");
 }
 
 TEST_P(Cycles, LockstepServiceThatComesLateGivesTheOthersWhatTheyWaitFor) {
@@ -367,7 +367,7 @@ TEST_P(Cycles, LockstepServiceThatComesLateGivesTheOthersWhatTheyWaitFor) {
   EXPECT_LE(number, 19U);
   while (number < 20) {
     ASSERT_NE(input_->value(), nullptr);
-    EXPECT_EQ(input_->value()->stamp().cycle(), number - 1);
+    EXPECT_EQ(input_->value()->stamp.cycle, number - 1);
     ASSERT_EQ(step(), number + 1);
     ++number;
   }
@@ -380,7 +380,7 @@ TEST_P(Cycles, LockstepBeginsWithoutAnInputThatNobodyHas) {
   const auto result = next(milliseconds(10000));
   ASSERT_TRUE(result);
   EXPECT_TRUE(result->stale);
-  EXPECT_GE(result->robot.stamp().cycle(), 13U);
+  EXPECT_GE(result->robot.stamp.cycle, 13U);
   EXPECT_EQ(input_->value(), nullptr);
 }
 
@@ -390,8 +390,8 @@ TEST_P(Cycles, QuietBridgeIsSaid) {
   EXPECT_EQ(step(), 1U);
   robot_.reset();
   EXPECT_FALSE(next(milliseconds(1200)).has_value());
-  EXPECT_EQ(service_->status().state(), v1::SERVICE_WAITING);
-  EXPECT_EQ(service_->status().reason(), "waits for robot/state of cycle 2: nobody writes it");
+  EXPECT_EQ(service_->status().state, v1::SERVICE_WAITING);
+  EXPECT_EQ(service_->status().reason, "waits for robot/state of cycle 2: nobody writes it");
 }
 
 // Two services that read each other and a bridge that waits for one of them, each in a thread: the
@@ -411,10 +411,10 @@ class Lockstep : public OnEachBus {
       auto& input = cycle.input(in);
       auto writer = own->writer(out);
       while (const auto step = cycle.next(stop_)) {
-        seen.push_back(step->robot.stamp().cycle() * 1000 +
-                       (input.value() == nullptr ? 0 : input.value()->stamp().cycle()));
+        seen.push_back(step->robot.stamp.cycle * 1000 +
+                       (input.value() == nullptr ? 0 : input.value()->stamp.cycle));
         Out sample;
-        sample.stamp(cycle.stamp());
+        sample.stamp = cycle.stamp();
         writer.write(sample);
         cycle.done();
       }
@@ -432,7 +432,7 @@ class Lockstep : public OnEachBus {
         arrived_ = arrived_ && eventually(*own, [&] {
                      bool there = false;
                      for (const auto& sample : reader.take())
-                       there |= sample.data.stamp().cycle() == number;
+                       there |= sample.data.stamp.cycle == number;
                      return there;
                    });
       }

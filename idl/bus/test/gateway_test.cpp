@@ -41,18 +41,18 @@ TEST_F(GatewayTest, WhatIsWrittenInsideIsReadOutside) {
     seen = states.take_newest();
     return seen.has_value();
   }));
-  EXPECT_EQ(seen->stamp().epoch(), 1U);
+  EXPECT_EQ(seen->stamp.epoch, 1U);
 }
 
 TEST_F(GatewayTest, WhatIsKeptIsThereForWhoComesLate) {
   v1::BeliefSet sample;
-  sample.stamp().cycle(5);
+  sample.stamp.cycle = 5;
   beliefs_.write(sample);
   gateway_.carry();
   Reader<v1::BeliefSet> beliefs(person_.reader(topics::kBeliefs));
   EXPECT_TRUE(carried([&] {
     const auto seen = beliefs.take_newest();
-    return seen && seen->stamp().cycle() == 5;
+    return seen && seen->stamp.cycle == 5;
   }));
 }
 
@@ -72,7 +72,7 @@ TEST_F(GatewayTest, GoalsComeInOnceAndGoWithTheirWriter) {
       return !heard.empty();
     }));
     ASSERT_EQ(heard.size(), 1U);
-    EXPECT_EQ(heard[0].data.id().number(), 3U);
+    EXPECT_EQ(heard[0].data.id.number, 3U);
     goals.dispose(goal(3));
     EXPECT_TRUE(carried([&] {
       hear();

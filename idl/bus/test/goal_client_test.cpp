@@ -24,49 +24,49 @@ class GoalClients : public testing::Test {
 TEST_F(GoalClients, AsksChangesAndCancels) {
   GoalClient client(agent_, "an agent");
   v1::Goal goal;
-  goal.functor("stop");
+  goal.functor = "stop";
   const v1::GoalId id = client.ask(goal);
   EXPECT_TRUE(client.delivered(1000));
   auto heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.id(), id);
-  EXPECT_EQ(heard[0].data.requester(), "an agent");
-  goal.priority(3);
-  goal.requester("somebody else");
+  EXPECT_EQ(heard[0].data.id, id);
+  EXPECT_EQ(heard[0].data.requester, "an agent");
+  goal.priority = 3;
+  goal.requester = "somebody else";
   client.change(id, goal);
   heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.id(), id);
-  EXPECT_EQ(heard[0].data.priority(), 3);
-  EXPECT_EQ(heard[0].data.requester(), "somebody else");
+  EXPECT_EQ(heard[0].data.id, id);
+  EXPECT_EQ(heard[0].data.priority, 3);
+  EXPECT_EQ(heard[0].data.requester, "somebody else");
   client.cancel(id);
   heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_TRUE(heard[0].info.disposed);
-  EXPECT_EQ(heard[0].data.id(), id);
+  EXPECT_EQ(heard[0].data.id, id);
 }
 
 TEST_F(GoalClients, ACancelMayHaveAReasonAndTheGoalIsDisposedLater) {
   GoalClient client(agent_, "an agent", std::chrono::milliseconds(0));
   v1::Goal goal;
-  goal.functor("stop");
+  goal.functor = "stop";
   v1::GoalId foreign;
-  foreign.writer(7);
-  foreign.number(8);
+  foreign.writer = 7;
+  foreign.number = 8;
   for (const v1::GoalId& id : {client.ask(goal), foreign}) {
     goals_.take();
     client.cancel(id, "it is late");
     auto heard = goals_.take();
     ASSERT_EQ(heard.size(), 1U);
     EXPECT_FALSE(heard[0].info.disposed);
-    EXPECT_EQ(heard[0].data.id(), id);
-    EXPECT_EQ(heard[0].data.functor(), id == foreign ? "" : "stop");
-    EXPECT_EQ(heard[0].data.withdrawn(), "it is late");
+    EXPECT_EQ(heard[0].data.id, id);
+    EXPECT_EQ(heard[0].data.functor, id == foreign ? "" : "stop");
+    EXPECT_EQ(heard[0].data.withdrawn, "it is late");
     client.poll();
     heard = goals_.take();
     ASSERT_EQ(heard.size(), 1U);
     EXPECT_TRUE(heard[0].info.disposed);
-    EXPECT_EQ(heard[0].data.id(), id);
+    EXPECT_EQ(heard[0].data.id, id);
   }
 }
 
@@ -80,40 +80,40 @@ TEST(GoalClient, IsNotDeliveredWhereNobodyReads) {
 TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
   GoalClient client(agent_, "an agent");
   v1::GoalStatus own;
-  own.id(client.ask(v1::Goal()));
+  own.id = client.ask(v1::Goal());
   v1::GoalStatus foreign;
-  foreign.id().writer(7);
-  foreign.id().number(8);
-  EXPECT_FALSE(client.status(own.id()));
+  foreign.id.writer = 7;
+  foreign.id.number = 8;
+  EXPECT_FALSE(client.status(own.id));
   for (v1::GoalStatus* const status : {&own, &foreign}) {
     statuses_.write(*status);
-    status->state(v1::GOAL_SUCCEEDED);
+    status->state = v1::GOAL_SUCCEEDED;
     statuses_.write(*status);
   }
   client.poll();
-  EXPECT_EQ(client.status(own.id())->state(), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(client.status(own.id)->state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(client.statuses().size(), 2U);
   // Withdrawn a minute after the end: the requester may still read the final state.
   statuses_.dispose(own);
   statuses_.dispose(foreign);
   client.poll();
-  EXPECT_TRUE(client.status(own.id()));
-  EXPECT_FALSE(client.status(foreign.id()));
+  EXPECT_TRUE(client.status(own.id));
+  EXPECT_FALSE(client.status(foreign.id));
 }
 
 TEST_F(GoalClients, TheNewestStatusIsTheLast) {
   GoalClient client(agent_, "an agent");
   for (const std::uint64_t number : {1U, 2U, 3U}) {
     v1::GoalStatus status;
-    status.id().writer(number);
-    status.stamp().epoch(number == 1 ? 8 : 7);
-    status.stamp().cycle(100 - number);
+    status.id.writer = number;
+    status.stamp.epoch = number == 1 ? 8 : 7;
+    status.stamp.cycle = 100 - number;
     statuses_.write(status);
   }
   client.poll();
   std::vector<std::uint64_t> order;
   for (const v1::GoalStatus& status : client.statuses())
-    order.push_back(status.id().writer());
+    order.push_back(status.id.writer);
   EXPECT_EQ(order, (std::vector<std::uint64_t>{3, 2, 1}));
 }
 
@@ -122,25 +122,25 @@ TEST_F(GoalClients, AGoalWhoseEndWasMissedIsOver) {
   GoalClient patient(agent_, "an agent");
   GoalClient hasty(agent_, "an agent", std::chrono::milliseconds(0));
   v1::GoalStatus never_heard;
-  never_heard.id(hasty.ask(v1::Goal()));
+  never_heard.id = hasty.ask(v1::Goal());
   v1::GoalStatus told_again;
-  told_again.id(patient.ask(v1::Goal()));
+  told_again.id = patient.ask(v1::Goal());
   for (v1::GoalStatus* const status : {&never_heard, &told_again}) {
-    status->state(v1::GOAL_UNDERWAY);
+    status->state = v1::GOAL_UNDERWAY;
     statuses_.write(*status);
     statuses_.dispose(*status);
   }
   hasty.poll();
-  ASSERT_TRUE(hasty.status(never_heard.id()));
-  EXPECT_EQ(hasty.status(never_heard.id())->state(), v1::GOAL_FAILED);
-  EXPECT_EQ(hasty.status(never_heard.id())->code(), v1::CODE_FORGOTTEN);
+  ASSERT_TRUE(hasty.status(never_heard.id));
+  EXPECT_EQ(hasty.status(never_heard.id)->state, v1::GOAL_FAILED);
+  EXPECT_EQ(hasty.status(never_heard.id)->code, v1::CODE_FORGOTTEN);
   // A service that is started again tells the status anew.
   patient.poll();
-  EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_UNDERWAY);
-  told_again.state(v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(patient.status(told_again.id)->state, v1::GOAL_UNDERWAY);
+  told_again.state = v1::GOAL_SUCCEEDED;
   statuses_.write(told_again);
   patient.poll();
-  EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(patient.status(told_again.id)->state, v1::GOAL_SUCCEEDED);
 }
 
 TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
@@ -150,11 +150,11 @@ TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
   const v1::GoalId canceled = client.ask(v1::Goal());
   EXPECT_EQ(goals_.take().size(), 3U);
   v1::GoalStatus status;
-  status.id(underway);
-  status.state(v1::GOAL_UNDERWAY);
+  status.id = underway;
+  status.state = v1::GOAL_UNDERWAY;
   statuses_.write(status);
-  status.id(done);
-  status.state(v1::GOAL_SUCCEEDED);
+  status.id = done;
+  status.state = v1::GOAL_SUCCEEDED;
   statuses_.write(status);
   client.cancel(canceled);
   EXPECT_EQ(goals_.take().size(), 1U);
@@ -165,7 +165,7 @@ TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
   const auto withdrawn = goals_.take();
   ASSERT_EQ(withdrawn.size(), 1U);
   EXPECT_TRUE(withdrawn[0].info.disposed);
-  EXPECT_EQ(withdrawn[0].data.id(), done);
+  EXPECT_EQ(withdrawn[0].data.id, done);
   // A forgotten goal is not withdrawn again.
   client.poll();
   EXPECT_TRUE(goals_.take().empty());
@@ -185,8 +185,8 @@ TEST_F(GoalClients, NoTwoGoalsHaveTheSameId) {
 
 TEST(GoalClient, ReadsIdsAsItWritesThem) {
   v1::GoalId id;
-  id.writer(0xfedcba9876543210ULL);
-  id.number(18446744073709551615ULL);
+  id.writer = 0xfedcba9876543210ULL;
+  id.number = 18446744073709551615ULL;
   EXPECT_EQ(describe(id), "fedcba9876543210:18446744073709551615");
   EXPECT_EQ(parse_goal_id(describe(id)), id);
   for (const char* const wrong : {"", ":", "1", "1:", ":1", "x:1", "1:x", "1:2:3", " 1:2", "1:2 ",
@@ -196,19 +196,19 @@ TEST(GoalClient, ReadsIdsAsItWritesThem) {
 
 TEST(GoalClient, TellsAStatusInALine) {
   v1::GoalStatus status;
-  status.state(v1::GOAL_UNDERWAY);
-  status.step("driving");
-  status.progress(0.25);
-  status.trend(v1::TREND_RISING);
+  status.state = v1::GOAL_UNDERWAY;
+  status.step = "driving";
+  status.progress = 0.25;
+  status.trend = v1::TREND_RISING;
   EXPECT_EQ(describe(status), "underway: driving (25 % done, level 0.00)");
-  status.level(0.25);
+  status.level = 0.25;
   EXPECT_EQ(describe(status), "underway: driving (25 % done)");
-  status.state(v1::GOAL_SUSPENDED);
-  status.step("");
-  status.reason("interrupted");
+  status.state = v1::GOAL_SUSPENDED;
+  status.step = "";
+  status.reason = "interrupted";
   EXPECT_EQ(describe(status), "suspended [interrupted]");
-  status.state(v1::GOAL_FAILED);
-  status.reason("no way");
+  status.state = v1::GOAL_FAILED;
+  status.reason = "no way";
   EXPECT_EQ(describe(status), "failed: no way");
 }
 

@@ -33,7 +33,7 @@ class MalformedSamples : public testing::Test {
  protected:
   std::uint64_t refused() {
     node_->health();
-    return node_->status().refused_samples();
+    return node_->status().refused_samples;
   }
 
   const std::string robot_ = robot("m");
@@ -62,7 +62,7 @@ TEST_F(MalformedSamples, AreCountedAndTheNextGoodOneIsRead) {
     ASSERT_TRUE(writer.write(bytes_of_motor_command(0.25, true)));
     const auto good = take_at_least(*node_, reader, 1);
     ASSERT_EQ(good.size(), 1U);
-    EXPECT_EQ(good[0].data.velocity(), 0.25);
+    EXPECT_EQ(good[0].data.velocity, 0.25);
     EXPECT_EQ(refused(), count);
   }
 }
@@ -84,7 +84,7 @@ TEST_F(MalformedSamples, OfAKeyedTopicHurtNobody) {
   goals.write(goal(7));
   const auto good = take_at_least(*node_, reader, 1);
   ASSERT_EQ(good.size(), 1U);
-  EXPECT_EQ(good[0].data.id().number(), 7U);
+  EXPECT_EQ(good[0].data.id.number, 7U);
 }
 
 }  // namespace

@@ -13,12 +13,12 @@ using std::chrono::seconds;
 v1::ServiceStatus program(std::uint64_t instance, double uptime, v1::ServiceState state,
                           const std::string& name = "behaviors") {
   v1::ServiceStatus status;
-  status.instance(instance);
-  status.name(name);
-  status.pid(static_cast<std::uint32_t>(instance));
-  status.host("attic");
-  status.uptime(uptime);
-  status.state(state);
+  status.instance = instance;
+  status.name = name;
+  status.pid = static_cast<std::uint32_t>(instance);
+  status.host = "attic";
+  status.uptime = uptime;
+  status.state = state;
   return status;
 }
 
@@ -64,7 +64,7 @@ TEST(Neighbours, WhoYieldsTakesOverWhenTheOtherIsGone) {
             "another behaviors, process 9 at attic, serves this robot; waits until that is gone");
   auto status = own;
   EXPECT_FALSE(has_namesake(status));
-  status.reason(*words);
+  status.reason = *words;
   EXPECT_TRUE(has_namesake(status));
   neighbours.lose({1});
   EXPECT_FALSE(neighbours.serves_instead(own));
@@ -76,14 +76,14 @@ TEST(Neighbours, OneThatStepsWithoutABreakHearsTheRobot) {
   auto status = program(9, 100.0, kRuns, "bridge");
   const auto begin = now + seconds(1);
   for (int i = 0; i < 12; ++i) {
-    status.stamp().cycle(static_cast<std::uint64_t>(i));
+    status.stamp.cycle = static_cast<std::uint64_t>(i);
     neighbours.hear({1}, status, now += seconds(1));
   }
   EXPECT_TRUE(neighbours.stepping_since(begin, now));
   EXPECT_FALSE(neighbours.stepping_since(begin - seconds(1), now));
   EXPECT_FALSE(neighbours.stepping_since(begin, now + seconds(4)));
   // The program stood still for a while: earlier steps do not count.
-  status.stamp().cycle(100);
+  status.stamp.cycle = 100;
   neighbours.hear({1}, status, now += seconds(5));
   EXPECT_FALSE(neighbours.stepping_since(begin, now));
   EXPECT_TRUE(neighbours.stepping_since(now, now));

@@ -33,16 +33,16 @@ int write(Node& node, const Wanted& wanted, const Stop& stop) {
   auto goals = node.writer(topics::kGoals);
   auto robot = node.writer(topics::kRobotState);
   v1::Goal goal;
-  goal.id().writer(node.instance());
-  goal.id().number(1);
-  goal.functor("stop");
+  goal.id.writer = node.instance();
+  goal.id.number = 1;
+  goal.functor = "stop";
   goals.write(goal);
   v1::RobotState state;
-  state.stamp().epoch(node.instance());
+  state.stamp.epoch = node.instance();
   auto next = Clock::now();
   while (!stop.requested()) {
     if (Clock::now() >= next) {
-      ++state.stamp().cycle();
+      ++state.stamp.cycle;
       robot.write(state);
       next += std::chrono::duration_cast<Clock::duration>(
           std::chrono::duration<double>(1.0 / wanted.hz));

@@ -113,7 +113,7 @@ TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
   auto read_wishes = node_->reader(topics::kGoals);
   v1::GridTile tile;
   for (int i = 0; i < 3; ++i) {
-    tile.column(i);
+    tile.column = i;
     tiles.write(tile);
   }
   tiles.dispose(tile);
@@ -136,7 +136,7 @@ TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
   said.write(v1::Message());
   const auto next = take_at_least(*node_, read_wishes, 1);
   ASSERT_EQ(next.size(), 1U);
-  EXPECT_EQ(next[0].data.id().number(), 2U);
+  EXPECT_EQ(next[0].data.id.number, 2U);
   EXPECT_EQ(take_at_least(*node_, log, 1).size(), 1U);
 }
 
@@ -148,7 +148,7 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   auto reads = sleeper.reader(topics::kGoals);
   auto writer = peer("writer");
   v1::Message message;
-  message.text("one");
+  message.text = "one";
   said.write(message);
   wishes.write(goal(5));
   EXPECT_EQ(take_at_least(sleeper, hears, 1).size(), 1U);
@@ -157,15 +157,15 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   writer.signal(SIGKILL);  // a death during the sleep
   writer.wait();
   internal::transport_of(sleeper).renew();
-  message.text("two");
+  message.text = "two";
   said.write(message);
   wishes.write(goal(6));
   const auto heard = take_at_least(sleeper, hears, 1);
   ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.text(), "two");
+  EXPECT_EQ(heard[0].data.text, "two");
   const auto read = take_at_least(sleeper, reads, 1);
   ASSERT_EQ(read.size(), 1U);
-  EXPECT_EQ(read[0].data.id().number(), 6U);
+  EXPECT_EQ(read[0].data.id.number, 6U);
   EXPECT_TRUE(eventually(sleeper, [&] { return reads.take_lost().size() == 1; }));
   EXPECT_TRUE(reads.take().empty());
 }
@@ -178,7 +178,7 @@ TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {
     std::uint64_t epoch = 0;
     ASSERT_TRUE(eventually(*node_, [&] {
       for (const auto& sample : states.take())
-        epoch = sample.data.stamp().epoch();
+        epoch = sample.data.stamp.epoch;
       return epoch != 0;
     }));
     // Usually 50 ms; a lost announcement costs a quarter of a second.

@@ -137,8 +137,8 @@ Bytes bytes_of_request(const std::string& functor) {
 
 Bytes bytes_of_motor_command(double velocity, bool active) {
   v1::MotorCommand command;
-  command.velocity(velocity);
-  command.active(active);
+  command.velocity = velocity;
+  command.active = active;
   return bytes_of<v1::MotorCommandPubSubType>(command);
 }
 

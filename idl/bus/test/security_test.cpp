@@ -113,7 +113,7 @@ std::unique_ptr<AnyEndpoint> endpoint(Node& node, const std::string& name, bool 
 
 v1::MotorCommand command_of(const std::string& source) {
   v1::MotorCommand command;
-  command.source(source);
+  command.source = source;
   return command;
 }
 
@@ -419,7 +419,7 @@ TEST(Security, AStrangerIsNotHeardAndHearsNothing) {
     bridge->wait(milliseconds(10));
   }
   for (const auto& sample : commands.take())
-    EXPECT_EQ(sample.data.source(), "operator");
+    EXPECT_EQ(sample.data.source, "operator");
   EXPECT_EQ(commands.matched(), 1U);
   EXPECT_EQ(states.matched(), 0U);
   EXPECT_EQ(forged.matched(), 0U);
@@ -470,7 +470,7 @@ TEST(Security, AMemberOfAnotherSiteIsAStranger) {
     forged.write(command_of("foreign"));
     bool heard = false;
     for (const auto& sample : commands.take()) {
-      EXPECT_EQ(sample.data.source(), "operator");
+      EXPECT_EQ(sample.data.source, "operator");
       heard = true;
     }
     return heard;

@@ -16,25 +16,25 @@ constexpr EnumPairs<TriggerKind, v1::TriggerKind, 3> kKinds{{{
 
 Parameter from_bus(const v1::CapabilityParameter& parameter) {
   Parameter result;
-  result.name = parameter.name();
-  result.kind = saphira::from_bus(parameter.kind());
-  result.meaning = parameter.meaning();
-  result.required = parameter.required();
-  const bool limited = parameter.low() != 0.0 || parameter.high() != 0.0;
-  result.low = limited ? parameter.low() : -kUnlimited;
-  result.high = limited ? parameter.high() : kUnlimited;
-  result.choices = parameter.choices();
-  result.frame = saphira::from_bus(parameter.frame());
+  result.name = parameter.name;
+  result.kind = saphira::from_bus(parameter.kind);
+  result.meaning = parameter.meaning;
+  result.required = parameter.required;
+  const bool limited = parameter.low != 0.0 || parameter.high != 0.0;
+  result.low = limited ? parameter.low : -kUnlimited;
+  result.high = limited ? parameter.high : kUnlimited;
+  result.choices = parameter.choices;
+  result.frame = saphira::from_bus(parameter.frame);
   return result;
 }
 
 }  // namespace
 
 AgentInfo from_bus(const v1::Agent& agent) {
-  AgentInfo result{agent.id(), agent.name(), bus::agent_address(agent.id(), agent.name()), {}};
-  for (const v1::Capability& one : agent.capabilities()) {
-    Capability capability{{one.functor(), one.summary(), {}}, one.acts(), one.cost()};
-    for (const v1::CapabilityParameter& parameter : one.parameters())
+  AgentInfo result{agent.id, agent.name, bus::agent_address(agent.id, agent.name), {}};
+  for (const v1::Capability& one : agent.capabilities) {
+    Capability capability{{one.functor, one.summary, {}}, one.acts, one.cost};
+    for (const v1::CapabilityParameter& parameter : one.parameters)
       capability.functor.parameters.push_back(from_bus(parameter));
     result.capabilities.push_back(std::move(capability));
   }
@@ -42,27 +42,27 @@ AgentInfo from_bus(const v1::Agent& agent) {
 }
 
 Trigger from_bus(const v1::Trigger& trigger) {
-  return {{trigger.id().writer(), trigger.id().number()},
-          trigger.source(),
-          kKinds.ours(trigger.kind(), TriggerKind::event),
-          trigger.period(),
-          trigger.condition(),
-          saphira::from_bus(trigger.condition_arguments()),
-          trigger.action(),
-          saphira::from_bus(trigger.action_arguments()),
-          trigger.times()};
+  return {{trigger.id.writer, trigger.id.number},
+          trigger.source,
+          kKinds.ours(trigger.kind, TriggerKind::event),
+          trigger.period,
+          trigger.condition,
+          saphira::from_bus(trigger.condition_arguments),
+          trigger.action,
+          saphira::from_bus(trigger.action_arguments),
+          trigger.times};
 }
 
 v1::Advice to_bus(const Advice& advice) {
   v1::Advice result;
-  result.number(static_cast<std::uint32_t>(advice.number));
-  result.functor(describe(advice.kind));
-  result.arguments({bus::text("about", advice.about), bus::text("value", advice.value)});
-  result.words(describe(advice));
-  result.speaker(advice.speaker);
-  result.said(advice.said);
-  result.time(advice.time);
-  result.artifact(advice.artifact);
+  result.number = static_cast<std::uint32_t>(advice.number);
+  result.functor = describe(advice.kind);
+  result.arguments = {bus::text("about", advice.about), bus::text("value", advice.value)};
+  result.words = describe(advice);
+  result.speaker = advice.speaker;
+  result.said = advice.said;
+  result.time = advice.time;
+  result.artifact = advice.artifact;
   return result;
 }
 

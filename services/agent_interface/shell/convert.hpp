@@ -1,8 +1,8 @@
 #pragma once
 
-#include "agents.h"
 #include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/agent_interface/knowledge.hpp"
+#include "saphira/idl/agents.hpp"
 
 /// Conversions between the bus and plain types: pure functions.
 namespace saphira::agent_interface {

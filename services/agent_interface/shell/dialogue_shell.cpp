@@ -82,8 +82,8 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
     claim(one);
   for (const LastingGoal& goal : dialogue_.lasting()) {
     v1::GoalId id;
-    id.writer(goal.ref.first);
-    id.number(goal.ref.second);
+    id.writer = goal.ref.first;
+    id.number = goal.ref.second;
     asked_[goal.tag] = id;
     if (!goal.sample.empty())
       orphans_[goal.tag] = goal.sample;
@@ -97,13 +97,13 @@ void DialogueShell::announce() {
                  "place_of", "where a person may be, by what people said",
                  {bus::text_slot("person", "a name", true), bus::text_slot("place", "of the map")}),
              [this](const v1::Request& request) {
-               return to_bus(dialogue_.place_of(bus::text_of(request.arguments(), "person")));
+               return to_bus(dialogue_.place_of(bus::text_of(request.arguments, "person")));
              });
   agent_.can(bus::action("forget", "takes back what the robot was told",
                          {bus::number_slot("number", "of the advice (saphira knows)", true)}),
              [this](const v1::Request& request) {
                const Dialogue::Outputs out =
-                   dialogue_.forget(bus::number_of(request.arguments(), "number"));
+                   dialogue_.forget(bus::number_of(request.arguments, "number"));
                perform(out);
                return to_bus(out.answer);
              });
@@ -131,13 +131,13 @@ void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
 void DialogueShell::take_stops(double seconds) {
   std::vector<Outcome> ended;
   for (const v1::Answer& answer : stops_.poll()) {
-    const auto found = stopping_.find(answer.number());
+    const auto found = stopping_.find(answer.number);
     if (found == stopping_.end())
       continue;
     found->second.until = seconds + kStopsWithin;
-    if (!bus::ended(answer.code()))
+    if (!bus::ended(answer.code))
       continue;
-    ended.push_back({found->second.tag, bus::well(answer.code()), answer.text()});
+    ended.push_back({found->second.tag, bus::well(answer.code), answer.text});
     stopping_.erase(found);
   }
   for (auto one = stopping_.begin(); one != stopping_.end();) {
@@ -159,18 +159,17 @@ void DialogueShell::want(const WantedGoal& wanted) {
   if (wanted.functor == "stop" && !node_.options().lockstep)
     return ask_to_stop(wanted);
   v1::Goal goal;
-  goal.functor(wanted.functor);
-  goal.arguments(to_bus(wanted.arguments));
-  goal.deadline(wanted.deadline);
-  goal.priority(wanted.priority);
-  goal.requester(wanted.requester());
+  goal.functor = wanted.functor;
+  goal.arguments = to_bus(wanted.arguments);
+  goal.deadline = wanted.deadline;
+  goal.priority = wanted.priority;
+  goal.requester = wanted.requester();
   const bool lasting = wanted.lasting && !options_.memory.empty();
-  goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
+  goal.writer_lost = lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL;
   const v1::GoalId id = goals_.ask(goal);
   asked_[wanted.tag] = id;
   if (lasting)
-    dialogue_.asked(wanted.tag, {id.writer(), id.number()},
-                    bus::type_of<v1::Goal>().json(&goal, ""));
+    dialogue_.asked(wanted.tag, {id.writer, id.number}, bus::type_of<v1::Goal>().json(&goal, ""));
 }
 
 void DialogueShell::claim(const Claimed& claim) {
@@ -183,13 +182,12 @@ void DialogueShell::claim(const Claimed& claim) {
     return;
   }
   v1::BeliefClaim sample;
-  sample.id().writer(node_.instance());
-  sample.id().number(known == claimed_.end() ? ++number_
-                                             : std::uint64_t{known->second.id().number()});
-  sample.source(claim.source);
-  sample.name(claim.name);
-  sample.value(literal(claim));
-  sample.writer_lost(v1::WRITER_LOST_CANCEL);
+  sample.id.writer = node_.instance();
+  sample.id.number = known == claimed_.end() ? ++number_ : std::uint64_t{known->second.id.number};
+  sample.source = claim.source;
+  sample.name = claim.name;
+  sample.value = literal(claim);
+  sample.writer_lost = v1::WRITER_LOST_CANCEL;
   claimed_[claim.name] = sample;
   claims_.write(sample);
 }
@@ -197,15 +195,15 @@ void DialogueShell::claim(const Claimed& claim) {
 void DialogueShell::perform(const Dialogue::Outputs& out) {
   for (const Said& said : out.said) {
     v1::Utterance sample;
-    sample.id().writer(node_.instance());
-    sample.id().number(bus::next_request_number());
-    sample.answers().writer(said.answers.first);
-    sample.answers().number(said.answers.second);
-    sample.listener(said.listener);
-    sample.text(said.text);
-    sample.confidence(1.0);
-    sample.refused(said.refused);
-    sample.end(said.end);
+    sample.id.writer = node_.instance();
+    sample.id.number = bus::next_request_number();
+    sample.answers.writer = said.answers.first;
+    sample.answers.number = said.answers.second;
+    sample.listener = said.listener;
+    sample.text = said.text;
+    sample.confidence = 1.0;
+    sample.refused = said.refused;
+    sample.end = said.end;
     said_.write(sample);
   }
   for (const std::uint64_t tag : out.canceled)
@@ -236,7 +234,7 @@ void DialogueShell::remember() {
 void DialogueShell::publish() {
   v1::Knowledge sample;
   for (const Advice& advice : dialogue_.knowledge().all())
-    sample.known().push_back(to_bus(advice));
+    sample.known.push_back(to_bus(advice));
   knows_.write(sample);
 }
 
@@ -264,8 +262,8 @@ void DialogueShell::take_goals(double seconds) {
     const auto status = goals_.status(id);
     if (!status)
       without_status.push_back(tag);
-    else if (bus::ended(status->state()))
-      ended.push_back({tag, status->state() == v1::GOAL_SUCCEEDED, status->reason()});
+    else if (bus::ended(status->state))
+      ended.push_back({tag, status->state == v1::GOAL_SUCCEEDED, status->reason});
     else
       adopt(tag, id);
   }
@@ -281,15 +279,15 @@ void DialogueShell::take_beliefs() {
   if (!set)
     return;
   std::vector<Belief> beliefs;
-  for (const v1::Belief& one : set->beliefs())
-    beliefs.push_back({one.name(), one.value(), one.said_by(), one.since()});
+  for (const v1::Belief& one : set->beliefs)
+    beliefs.push_back({one.name, one.value, one.said_by, one.since});
   perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
 }
 
 /// Of the robot, and of a person who points.
 void DialogueShell::take_places() {
   if (const auto robot = robots_.take_newest())
-    situation_.turns_cameras = robot->head_reach() > 0.0;
+    situation_.turns_cameras = robot->head_reach > 0.0;
   if (auto vision = visions_.take_newest())
     seen_ = std::move(*vision);
   const auto registration = registrations_.take_newest();
@@ -297,35 +295,34 @@ void DialogueShell::take_places() {
     return;
   situation_.pose_in_map.reset();
   situation_.pointing_in_map.reset();
-  if (registration->state() != v1::REGISTRATION_TRACKING)
+  if (registration->state != v1::REGISTRATION_TRACKING)
     return;
-  situation_.pose_in_map = saphira::from_bus(registration->pose_in_map());
-  if (seen_.stamp().epoch() != registration->stamp().epoch() ||
-      seen_.odom() != registration->odom())
+  situation_.pose_in_map = saphira::from_bus(registration->pose_in_map);
+  if (seen_.stamp.epoch != registration->stamp.epoch || seen_.odom != registration->odom)
     return;
   std::vector<lps::SeenThing> things;
-  for (const v1::SeenThing& thing : seen_.things())
+  for (const v1::SeenThing& thing : seen_.things)
     things.push_back(lps::from_bus(thing));
   situation_.pointing_in_map =
-      pointing(things, std::max(seen_.stamp().cycle(), registration->stamp().cycle()),
-               saphira::from_bus(registration->odom_in_map()), situation_.pose_in_map->position());
+      pointing(things, std::max(seen_.stamp.cycle, registration->stamp.cycle),
+               saphira::from_bus(registration->odom_in_map), situation_.pose_in_map->position());
 }
 
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : goals_.statuses()) {
     KnownGoal& goal = goals.emplace_back();
-    goal.functor = status.functor();
+    goal.functor = status.functor;
     const auto mine = std::find_if(asked_.begin(), asked_.end(),
-                                   [&](const auto& one) { return one.second == status.id(); });
+                                   [&](const auto& one) { return one.second == status.id; });
     if (mine != asked_.end())
       goal.tag = mine->first;
-    else if (status.id().writer() != node_.instance())
-      goal.asker = status.requester();
-    goal.state = state_of(status.state());
-    goal.reason = status.reason();
-    goal.note = status.note();
-    goal.step = status.step();
+    else if (status.id.writer != node_.instance())
+      goal.asker = status.requester;
+    goal.state = state_of(status.state);
+    goal.reason = status.reason;
+    goal.note = status.note;
+    goal.step = status.step;
   }
   return goals;
 }
@@ -337,12 +334,12 @@ void DialogueShell::take_utterances() {
     if (sample.info.disposed)
       continue;
     Utterance utterance;
-    utterance.id = {sample.data.id().writer(), sample.data.id().number()};
-    utterance.speaker = first_letters(sample.data.speaker(), kLongestName);
-    utterance.text = sample.data.text();
-    utterance.confidence = sample.data.confidence();
-    utterance.time = sample.data.time();
-    if (sample.data.means() == v1::UTTERANCE_PROGRAM)
+    utterance.id = {sample.data.id.writer, sample.data.id.number};
+    utterance.speaker = first_letters(sample.data.speaker, kLongestName);
+    utterance.text = sample.data.text;
+    utterance.confidence = sample.data.confidence;
+    utterance.time = sample.data.time;
+    if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;
     situation_.goals = known_goals();
     perform(dialogue_.hear(utterance, situation_));
@@ -355,16 +352,15 @@ void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
   if (const auto map = maps_.take_newest()) {
     situation_.map = maps::from_bus(*map);
-    node_.status().state(v1::SERVICE_RUNNING);
-    node_.status().reason("");
+    node_.status().state = v1::SERVICE_RUNNING;
+    node_.status().reason = "";
   }
   take_places();
   registration_.poll();
   take_beliefs();
   for (const auto& sample : messages_.take())
     if (!sample.info.disposed)
-      perform(dialogue_.says(sample.data.text(),
-                             {sample.data.stamp().epoch(), sample.data.stamp().cycle()}));
+      perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
   take_stops(seconds);
   take_utterances();
@@ -377,8 +373,8 @@ void DialogueShell::run(const bus::Stop& stop) {
   const auto seconds = [] {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   };
-  node_.status().state(v1::SERVICE_WAITING);
-  node_.status().reason("no map has come: places have no names yet");
+  node_.status().state = v1::SERVICE_WAITING;
+  node_.status().reason = "no map has come: places have no names yet";
   double looked = seconds();
   while (!stop.requested()) {
     node_.wait(kLook, &stop);

@@ -55,10 +55,10 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memo
 void FacilitatorShell::take_agents() {
   for (const auto& sample : agents_.take()) {
     if (sample.info.disposed) {
-      facilitator_.leave(sample.data.id());
+      facilitator_.leave(sample.data.id);
       continue;
     }
-    note(agents_of_, sample.info.writer, std::uint64_t{sample.data.id()});
+    note(agents_of_, sample.info.writer, std::uint64_t{sample.data.id});
     facilitator_.announce(from_bus(sample.data));
   }
   for (const bus::WriterId& writer : agents_.take_lost()) {
@@ -114,7 +114,7 @@ void FacilitatorShell::take_requests(double now) {
   });
   for (const auto& sample : asked_.take())
     if (!sample.info.disposed) {
-      const RequestId id{sample.data.asker(), sample.data.number()};
+      const RequestId id{sample.data.asker, sample.data.number};
       note(requests_of_, sample.info.writer, id);
       facilitator_.ask(saphira::from_bus(sample.data), now);
     }
@@ -135,12 +135,12 @@ void FacilitatorShell::step(double now) {
   take_triggers(now);
   for (const auto& sample : answers_.take())
     if (!sample.info.disposed)
-      facilitator_.hear(sample.data.service(), sample.data.asker(), sample.data.number(),
+      facilitator_.hear(sample.data.service, sample.data.asker, sample.data.number,
                         saphira::from_bus(sample.data), now);
   // The bus repeats older events to a new reader: triggers fired on them before.
   for (const auto& sample : events_.take())
     if (!sample.info.disposed && sample.info.age <= now - begun_)
-      facilitator_.happened(sample.data.functor(), saphira::from_bus(sample.data.arguments()), now);
+      facilitator_.happened(sample.data.functor, saphira::from_bus(sample.data.arguments), now);
   take_requests(now);
   const auto robot_says = [&](const Request& request, const Answer& answer) {
     facilitator_.hear(robot_.address(), request.asker, request.number, answer, now);
@@ -159,9 +159,9 @@ void FacilitatorShell::step(double now) {
       requests_.write(to_bus(request));
   for (const Solved& solved : out.solved) {
     v1::Answer answer = to_bus(solved.answer);
-    answer.asker(solved.asker);
-    answer.number(solved.number);
-    answer.service(solved.service);
+    answer.asker = solved.asker;
+    answer.number = solved.number;
+    answer.service = solved.service;
     solved_.write(answer);
   }
   for (const std::string& text : out.notes)
@@ -176,7 +176,7 @@ double FacilitatorShell::seconds() {
 
 void FacilitatorShell::run(const bus::Stop& stop) {
   constexpr double kStatusTime = 0.45;  // [s] twice a second
-  node_.status().state(v1::SERVICE_RUNNING);
+  node_.status().state = v1::SERVICE_RUNNING;
   while (!stop.requested()) {
     const double now = seconds();
     const double due = facilitator_.due().value_or(now + kStatusTime);

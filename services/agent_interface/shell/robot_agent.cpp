@@ -15,11 +15,11 @@ constexpr std::size_t kMostArguments = 16;  // of a goal
 
 std::string meaning_of(const v1::ActivityParameter& parameter) {
   static const char* const kinds[] = {"a value", "a number", "a text", "a point"};
-  std::string text = kinds[parameter.kind()];
-  if (!parameter.unit().empty())
-    text += " [" + parameter.unit() + "]";
-  if (!parameter.usual().empty())
-    text += ", usually " + parameter.usual();
+  std::string text = kinds[parameter.kind];
+  if (!parameter.unit.empty())
+    text += " [" + parameter.unit + "]";
+  if (!parameter.usual.empty())
+    text += ", usually " + parameter.usual;
   return text;
 }
 
@@ -29,26 +29,25 @@ RobotAgent::RobotAgent(bus::Node& node)
     : announcements_(node.writer(bus::topics::kAgents)),
       goals_(node, "robot"),
       schemas_(node.reader(bus::topics::kActivitySchemas)) {
-  self_.id(bus::next_request_number() ^ node.instance());
-  self_.name("robot");
-  self_.summary("pursues goals");
-  address_ = bus::agent_address(self_.id(), self_.name());
+  self_.id = bus::next_request_number() ^ node.instance();
+  self_.name = "robot";
+  self_.summary = "pursues goals";
+  address_ = bus::agent_address(self_.id, self_.name);
 }
 
 void RobotAgent::announce(const v1::ActivitySchemas& schemas) {
-  self_.capabilities().clear();
-  for (const v1::ActivitySchema& schema : schemas.schemas()) {
+  self_.capabilities.clear();
+  for (const v1::ActivitySchema& schema : schemas.schemas) {
     std::vector<v1::CapabilityParameter> parameters;
-    for (const v1::ActivityParameter& one : schema.parameters()) {
+    for (const v1::ActivityParameter& one : schema.parameters) {
       v1::CapabilityParameter parameter;
-      parameter.name(one.name());
-      parameter.kind(v1::ARGUMENT_UNBOUND);  // the intentions check it
-      parameter.meaning(meaning_of(one));
-      parameter.required(one.required());
+      parameter.name = one.name;
+      parameter.kind = v1::ARGUMENT_UNBOUND;  // the intentions check it
+      parameter.meaning = meaning_of(one);
+      parameter.required = one.required;
       parameters.push_back(std::move(parameter));
     }
-    self_.capabilities().push_back(
-        bus::action(schema.name(), schema.summary(), std::move(parameters)));
+    self_.capabilities.push_back(bus::action(schema.name, schema.summary, std::move(parameters)));
   }
   announcements_.write(self_);
 }
@@ -66,11 +65,11 @@ Answer RobotAgent::begin(const Request& request, double now) {
     return {AnswerCode::refused,
             "a goal has " + std::to_string(kMostArguments) + " arguments at most"};
   v1::Goal goal;
-  goal.functor(request.functor);
-  goal.arguments(to_bus(request.arguments));
-  goal.requester(request.source);
-  goal.deadline(goal_deadline(request.deadline));
-  goal.writer_lost(v1::WRITER_LOST_CANCEL);
+  goal.functor = request.functor;
+  goal.arguments = to_bus(request.arguments);
+  goal.requester = request.source;
+  goal.deadline = goal_deadline(request.deadline);
+  goal.writer_lost = v1::WRITER_LOST_CANCEL;
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
   return {AnswerCode::underway, ""};
 }
@@ -82,11 +81,11 @@ std::vector<RobotAgent::Report> RobotAgent::step(double now) {
   std::vector<Report> reports;
   std::erase_if(begun_, [&](Begun& one) {
     const auto status = goals_.status(one.goal);
-    Answer answer{AnswerCode::underway, status ? status->reason() : ""};
-    if (status && bus::ended(status->state())) {
-      answer.code = status->state() == v1::GOAL_SUCCEEDED ? AnswerCode::done
-                    : status->state() == v1::GOAL_REFUSED ? AnswerCode::refused
-                                                          : AnswerCode::given_up;
+    Answer answer{AnswerCode::underway, status ? status->reason : ""};
+    if (status && bus::ended(status->state)) {
+      answer.code = status->state == v1::GOAL_SUCCEEDED ? AnswerCode::done
+                    : status->state == v1::GOAL_REFUSED ? AnswerCode::refused
+                                                        : AnswerCode::given_up;
     } else if (!status && now >= one.when + kTakenUp) {
       goals_.cancel(one.goal);
       answer = {AnswerCode::refused, kNotTakenUp};

@@ -28,11 +28,11 @@ class DialogueOnTheBus : public testing::Test {
   /// The robot's answer, in one line.
   std::string say(const std::string& text, const std::string& speaker = "Alice") {
     v1::Utterance utterance;
-    utterance.id().writer(5);
-    utterance.id().number(++number);
-    utterance.speaker(speaker);
-    utterance.text(text);
-    utterance.confidence(1.0);
+    utterance.id.writer = 5;
+    utterance.id.number = ++number;
+    utterance.speaker = speaker;
+    utterance.text = text;
+    utterance.confidence = 1.0;
     heard.write(utterance);
     dialogue->step();
     return answers();
@@ -40,26 +40,26 @@ class DialogueOnTheBus : public testing::Test {
   std::string answers() {
     std::string all;
     for (const auto& sample : said.take()) {
-      all += (all.empty() ? "" : " / ") + sample.data.text();
-      refused = sample.data.refused();
+      all += (all.empty() ? "" : " / ") + sample.data.text;
+      refused = sample.data.refused;
     }
     return all;
   }
   /// The newest status of a goal; the robot's words then.
   std::string tell(const v1::GoalId& goal, v1::GoalState state, const std::string& reason = {}) {
     v1::GoalStatus status;
-    status.id(goal);
-    status.state(state);
-    status.reason(reason);
+    status.id = goal;
+    status.state = state;
+    status.reason = reason;
     statuses.write(status);
     dialogue->step();
     return answers();
   }
   std::string message(std::uint64_t cycle, const std::string& text) {
     v1::Message made;
-    made.stamp().epoch(3);
-    made.stamp().cycle(cycle);
-    made.text(text);
+    made.stamp.epoch = 3;
+    made.stamp.cycle = cycle;
+    made.text = text;
     messages.write(made);
     dialogue->step();
     return answers();
@@ -88,7 +88,7 @@ TEST_F(DialogueOnTheBus, ALongNameOfASpeakerIsCutBehindALetter) {
   say("Flakey, turn left", letters + "\u00fc");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.requester(), letters + " (by words)");
+  EXPECT_EQ(asked[0].data.requester, letters + " (by words)");
 }
 
 TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
@@ -98,31 +98,31 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   v1::FloorMap map;
   for (const auto& [id, name, y] : {std::tuple(1U, "north", 1.0), {2U, "south", -1.2}}) {
     v1::MapArtifact door;
-    door.id(id);
-    door.type(v1::ARTIFACT_DOOR);
-    door.name(name);
-    door.pose_in_map().x(2.0);
-    door.pose_in_map().y(y);
-    door.width(0.9);
-    map.artifacts().push_back(door);
+    door.id = id;
+    door.type = v1::ARTIFACT_DOOR;
+    door.name = name;
+    door.pose_in_map.x = 2.0;
+    door.pose_in_map.y = y;
+    door.width = 0.9;
+    map.artifacts.push_back(door);
   }
   maps.write(map);
   v1::Registration registration;
-  registration.state(v1::REGISTRATION_TRACKING);
-  registration.stamp().cycle(100);
-  registration.odom_in_map().x(-3.0);
+  registration.state = v1::REGISTRATION_TRACKING;
+  registration.stamp.cycle = 100;
+  registration.odom_in_map.x = -3.0;
   registrations.write(registration);
   v1::SeenThing alice;
-  alice.kind(v1::SEEN_PERSON);
-  alice.pose_in_odom().x(5.0);
-  alice.points(-1.5);
-  alice.pointed(90);
+  alice.kind = v1::SEEN_PERSON;
+  alice.pose_in_odom.x = 5.0;
+  alice.points = -1.5;
+  alice.pointed = 90;
   v1::Vision vision;
-  vision.stamp().cycle(100);
-  vision.things({alice});
+  vision.stamp.cycle = 100;
+  vision.things = {alice};
   visions.write(vision);
   EXPECT_EQ(say("Flakey, this is Karen's office"), "I know now that south is karen's office");
-  registration.stamp().cycle(111);
+  registration.stamp.cycle = 111;
   registrations.write(registration);
   EXPECT_EQ(say("Flakey, this is Bob's office"), "I know now that north is bob's office");
 }
@@ -140,12 +140,12 @@ TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.functor(), "turn_to");
-  EXPECT_EQ(asked[0].data.requester(), "Alice (by words)");
-  tell(asked[0].data.id(), v1::GOAL_SUSPENDED, "a more important goal");
+  EXPECT_EQ(asked[0].data.functor, "turn_to");
+  EXPECT_EQ(asked[0].data.requester, "Alice (by words)");
+  tell(asked[0].data.id, v1::GOAL_SUSPENDED, "a more important goal");
   EXPECT_EQ(say("Flakey, why are you standing?"),
             "the turn for Alice is suspended: a more important goal");
-  EXPECT_EQ(tell(asked[0].data.id(), v1::GOAL_SUCCEEDED, "turned"), "done: turned");
+  EXPECT_EQ(tell(asked[0].data.id, v1::GOAL_SUCCEEDED, "turned"), "done: turned");
 }
 
 TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNothing) {
@@ -167,7 +167,7 @@ TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNot
   ASSERT_TRUE(test::wait_until([&] {
     dialogue->reload();
     for (const auto& record : logs.take())
-      told += record.data.text();
+      told += record.data.text;
     return told.find("own.grammar:2:") != std::string::npos;
   })) << told;
   EXPECT_EQ(say("robot, cease"), "I stop at once");
@@ -190,14 +190,14 @@ TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
   say("Flakey, John usually knows where Karen is");
   const auto claimed = claims.take();
   ASSERT_EQ(claimed.size(), 1u);
-  EXPECT_EQ(claimed[0].data.name(), "knows-where-karen");
-  EXPECT_EQ(claimed[0].data.value(), "(\"john\")");
-  EXPECT_EQ(claimed[0].data.source(), "Alice said \"Flakey, John usually knows where Karen is\"");
+  EXPECT_EQ(claimed[0].data.name, "knows-where-karen");
+  EXPECT_EQ(claimed[0].data.value, "(\"john\")");
+  EXPECT_EQ(claimed[0].data.source, "Alice said \"Flakey, John usually knows where Karen is\"");
   start();
   const auto known = knows.take_newest();
   ASSERT_TRUE(known);
-  ASSERT_EQ(known->known().size(), 1u);
-  EXPECT_EQ(known->known()[0].words(), "john knows where karen is");
+  ASSERT_EQ(known->known.size(), 1u);
+  EXPECT_EQ(known->known[0].words, "john knows where karen is");
   EXPECT_FALSE(claims.take().empty());
 }
 
@@ -205,23 +205,23 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.writer_lost(), v1::WRITER_LOST_KEEP);
-  tell(asked[0].data.id(), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(asked[0].data.writer_lost, v1::WRITER_LOST_KEEP);
+  tell(asked[0].data.id, v1::GOAL_UNDERWAY);
   EXPECT_EQ(message(40, "Is anybody here?"), "Is anybody here?");
   // The writer keeps earlier sentences.
   start();
   EXPECT_EQ(message(52, "Please give me the mail"), "Please give me the mail");
   v1::GoalStatus status;
-  status.id(asked[0].data.id());
-  status.state(v1::GOAL_SUCCEEDED);
-  status.reason("brought");
+  status.id = asked[0].data.id;
+  status.state = v1::GOAL_SUCCEEDED;
+  status.reason = "brought";
   statuses.write(status);
   dialogue->step();
   const auto told = said.take();
   ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].data.text(), "done: brought");
-  EXPECT_EQ(told[0].data.listener(), "Alice");
-  EXPECT_EQ(told[0].data.answers().number(), number);
+  EXPECT_EQ(told[0].data.text, "done: brought");
+  EXPECT_EQ(told[0].data.listener, "Alice");
+  EXPECT_EQ(told[0].data.answers.number, number);
   // Its end is not reported again.
   start();
   dialogue->step();
@@ -239,11 +239,11 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsAskedForAgainWhileItIsUnderway) 
   EXPECT_TRUE(std::all_of(unknown.begin(), unknown.end(), [](const auto& sample) {
     return sample.info.disposed;
   })) << "a goal that nobody knows may be from yesterday";
-  tell(first[0].data.id(), v1::GOAL_UNDERWAY);
+  tell(first[0].data.id, v1::GOAL_UNDERWAY);
   const auto again = goals.take();
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(again[0].data, first[0].data);
-  tell(first[0].data.id(), v1::GOAL_UNDERWAY);
+  tell(first[0].data.id, v1::GOAL_UNDERWAY);
   EXPECT_TRUE(goals.take().empty());
 }
 
@@ -256,19 +256,19 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   say("Flakey, stop");
   const auto then = goals.take();
   EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
-    return sample.info.disposed && sample.data.id() == first[0].data.id();
+    return sample.info.disposed && sample.data.id == first[0].data.id;
   }));
 }
 
 TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsProgram) {
   const auto says = [&](v1::UtteranceMeans means, const std::string& text) {
     v1::Utterance utterance;
-    utterance.id().writer(6);
-    utterance.id().number(++number);
-    utterance.speaker("model");
-    utterance.text(text);
-    utterance.means(means);
-    utterance.confidence(1.0);
+    utterance.id.writer = 6;
+    utterance.id.number = ++number;
+    utterance.speaker = "model";
+    utterance.text = text;
+    utterance.means = means;
+    utterance.confidence = 1.0;
     auto writer = std::make_unique<bus::Writer<v1::Utterance>>(person.writer(bus::topics::kHeard));
     writer->write(utterance);
     dialogue->step();
@@ -278,7 +278,7 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   auto writer = says(v1::UTTERANCE_TYPED, "Flakey, take the mail from EJ-231 to EJ-233");
   auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.writer_lost(), v1::WRITER_LOST_KEEP);
+  EXPECT_EQ(asked[0].data.writer_lost, v1::WRITER_LOST_KEEP);
   writer.reset();
   dialogue->step();
   EXPECT_TRUE(goals.take().empty());
@@ -286,25 +286,25 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   writer = says(v1::UTTERANCE_PROGRAM, "Flakey, take the mail from EJ-233 to EJ-231");
   asked = goals.take();
   ASSERT_EQ(asked.size(), 2u) << "the task before is dropped";
-  EXPECT_EQ(asked[1].data.writer_lost(), v1::WRITER_LOST_CANCEL);
+  EXPECT_EQ(asked[1].data.writer_lost, v1::WRITER_LOST_CANCEL);
   writer.reset();
   dialogue->step();
   EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
   const auto ended = goals.take();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_TRUE(ended[0].info.disposed);
-  EXPECT_EQ(ended[0].data.id(), asked[1].data.id());
+  EXPECT_EQ(ended[0].data.id, asked[1].data.id);
 }
 
 // The words of a program may come in the same moment as the news of its end.
 TEST_F(DialogueOnTheBus, WordsOfAProgramThatHasEndedBeginNothingThatStays) {
   {
     v1::Utterance utterance;
-    utterance.id().writer(6);
-    utterance.id().number(1);
-    utterance.text("Flakey, go forward");
-    utterance.means(v1::UTTERANCE_PROGRAM);
-    utterance.confidence(1.0);
+    utterance.id.writer = 6;
+    utterance.id.number = 1;
+    utterance.text = "Flakey, go forward";
+    utterance.means = v1::UTTERANCE_PROGRAM;
+    utterance.confidence = 1.0;
     person.writer(bus::topics::kHeard).write(utterance);
   }
   dialogue->step();
@@ -316,14 +316,14 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
   say("Flakey, take the mail from EJ-231 to EJ-233");
   auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.priority(), 0);
-  const v1::GoalId first = asked[0].data.id();
+  EXPECT_EQ(asked[0].data.priority, 0);
+  const v1::GoalId first = asked[0].data.id;
   EXPECT_EQ(say("Flakey, turn left", "Bob"),
             "I turn 90 degrees to the left, and then I go on with the mail for Alice");
   asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_FALSE(asked[0].info.disposed);
-  EXPECT_EQ(asked[0].data.priority(), 1);
+  EXPECT_EQ(asked[0].data.priority, 1);
   EXPECT_EQ(say("Flakey, explore", "Bob"), "I am bringing the mail for Alice. Shall I drop that?");
   EXPECT_TRUE(goals.take().empty());
   const std::string dropped = say("yes", "Bob");  // both drops, and the task
@@ -331,8 +331,8 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
   asked = goals.take();
   ASSERT_EQ(asked.size(), 3u);
   EXPECT_TRUE(asked[0].info.disposed);
-  EXPECT_EQ(asked[0].data.id(), first);
-  EXPECT_EQ(asked[2].data.functor(), "explore");
+  EXPECT_EQ(asked[0].data.id, first);
+  EXPECT_EQ(asked[2].data.functor, "explore");
 }
 
 TEST_F(DialogueOnTheBus, TheNextStepBeginsWhereTheOneBeforeHasEnded) {
@@ -340,37 +340,37 @@ TEST_F(DialogueOnTheBus, TheNextStepBeginsWhereTheOneBeforeHasEnded) {
             "I turn 90 degrees to the left, and then I go forward 1 m");
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(tell(asked[0].data.id(), v1::GOAL_SUCCEEDED, "turned"),
+  EXPECT_EQ(tell(asked[0].data.id, v1::GOAL_SUCCEEDED, "turned"),
             "done: turned / I go forward 1 m");
   const auto next = goals.take();
   ASSERT_FALSE(next.empty());
-  EXPECT_EQ(next.back().data.functor(), "go_to");
+  EXPECT_EQ(next.back().data.functor, "go_to");
 }
 
 TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
   v1::BeliefSet asked;
-  asked.beliefs().resize(1);
-  asked.beliefs()[0].name("asking-about");
-  asked.beliefs()[0].value("\"given\"");
+  asked.beliefs.resize(1);
+  asked.beliefs[0].name = "asking-about";
+  asked.beliefs[0].value = "\"given\"";
   beliefs.write(asked);
   EXPECT_EQ(say("here you are"), "thank you");
   const auto claimed = claims.take();
   ASSERT_EQ(claimed.size(), 1u);
-  EXPECT_EQ(claimed[0].data.name(), "given");
-  EXPECT_EQ(claimed[0].data.value(), "\"yes\"");
+  EXPECT_EQ(claimed[0].data.name, "given");
+  EXPECT_EQ(claimed[0].data.value, "\"yes\"");
 }
 
 TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt) {
   v1::BeliefSet found;
-  found.beliefs().resize(3);
-  found.beliefs()[0].name("asking-about");
-  found.beliefs()[0].value("\"answer\"");
-  found.beliefs()[1].name("asking-for");
-  found.beliefs()[1].value("\"john\"");
-  found.beliefs()[2].name("place-of-karen");
-  found.beliefs()[2].value("\"EJ-231\"");
-  found.beliefs()[2].said_by("find-person");
-  found.beliefs()[2].since(70);
+  found.beliefs.resize(3);
+  found.beliefs[0].name = "asking-about";
+  found.beliefs[0].value = "\"answer\"";
+  found.beliefs[1].name = "asking-for";
+  found.beliefs[1].value = "\"john\"";
+  found.beliefs[2].name = "place-of-karen";
+  found.beliefs[2].value = "\"EJ-231\"";
+  found.beliefs[2].said_by = "find-person";
+  found.beliefs[2].since = 70;
   beliefs.write(found);
   dialogue->step();
   beliefs.write(found);
@@ -380,12 +380,12 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   EXPECT_EQ(say("ask Karen"), "thank you");
   std::vector<std::string> told;
   for (const auto& sample : claims.take())
-    told.push_back(sample.data.name() + " " + sample.data.value());
+    told.push_back(sample.data.name + " " + sample.data.value);
   EXPECT_EQ(told, (std::vector<std::string>{"answer \"karen\"", "knows-where-john (\"karen\")"}));
   EXPECT_EQ(say("Flakey, Karen left"), "I no longer believe that karen is at EJ-231");
   std::vector<std::string> values;
   for (const auto& sample : claims.take())
-    values.push_back(sample.info.disposed ? "disposed" : sample.data.value());
+    values.push_back(sample.info.disposed ? "disposed" : sample.data.value);
   EXPECT_EQ(values, (std::vector<std::string>{"disposed", "nil"}));
   // What is believed since before a restart is older than that.
   start();
@@ -397,21 +397,21 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
 TEST_F(DialogueOnTheBus, APersonWhosePlaceAnotherProgramBelievesIsLookedFor) {
   auto maps = person.writer(bus::topics::kMap);
   v1::MapArtifact door;
-  door.id(1);
-  door.type(v1::ARTIFACT_DOOR);
-  door.name("north");
-  door.width(0.9);
+  door.id = 1;
+  door.type = v1::ARTIFACT_DOOR;
+  door.name = "north";
+  door.width = 0.9;
   v1::FloorMap map;
-  map.artifacts({door});
+  map.artifacts = {door};
   maps.write(map);
   v1::BeliefSet believed;
-  believed.beliefs().resize(3);
-  believed.beliefs()[0].name("place-of-karen");
-  believed.beliefs()[0].value("\"north\"");
-  believed.beliefs()[1].name("knows-where-john");
-  believed.beliefs()[1].value("(\"karen\")");
-  believed.beliefs()[2].name("place-of-bob");
-  believed.beliefs()[2].value("nil");
+  believed.beliefs.resize(3);
+  believed.beliefs[0].name = "place-of-karen";
+  believed.beliefs[0].value = "\"north\"";
+  believed.beliefs[1].name = "knows-where-john";
+  believed.beliefs[1].value = "(\"karen\")";
+  believed.beliefs[2].name = "place-of-bob";
+  believed.beliefs[2].value = "nil";
   beliefs.write(believed);
   EXPECT_EQ(say("Flakey, go to Bob"),
             "I know no place or person called bob, but north. Which one, or where is bob?");
@@ -426,15 +426,15 @@ TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   FacilitatorShell facilitator(hub, 0.0);
   bus::RequestClient client(person, bus::topics::kSolve, "a person");
   v1::Request request;
-  request.functor("forget");
-  request.arguments({bus::number("number", 1.0)});
+  request.functor = "forget";
+  request.arguments = {bus::number("number", 1.0)};
   double now = 0.0;
   const auto others = [&] {
     facilitator.step(now += 0.01);
     dialogue->step();
   };
-  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(), "forgotten");
-  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(),
+  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text, "forgotten");
+  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text,
             "nothing is known under 1: saphira knows lists what is");
 }
 
@@ -443,17 +443,17 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
   bus::Node hub(test::memory_options("facilitator"), memory);
   FacilitatorShell facilitator(hub, 0.0);
   v1::ActivitySchema schema;
-  schema.name("go-to-place");
-  schema.parameters().resize(1);
-  schema.parameters()[0].name("place");
-  schema.parameters()[0].kind(v1::PARAMETER_TEXT);
-  schema.parameters()[0].required(true);
+  schema.name = "go-to-place";
+  schema.parameters.resize(1);
+  schema.parameters[0].name = "place";
+  schema.parameters[0].kind = v1::PARAMETER_TEXT;
+  schema.parameters[0].required = true;
   v1::ActivitySchemas schemas;
-  schemas.schemas({schema});
+  schemas.schemas = {schema};
   person.writer(bus::topics::kActivitySchemas).write(schemas);
   auto client = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   v1::Request request;
-  request.functor("go-to-place");
+  request.functor = "go-to-place";
   double now = 3.0;
   std::optional<v1::Goal> goal;
   v1::GoalState state = v1::GOAL_SUCCEEDED;
@@ -463,33 +463,33 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
       if (!sample.info.disposed) {
         goal = sample.data;
         v1::GoalStatus status;
-        status.id(goal->id());
-        status.state(state);
-        status.reason("as the intentions say");
+        status.id = goal->id;
+        status.state = state;
+        status.reason = "as the intentions say";
         statuses.write(status);
       }
   };
   others();  // the robot announces what it can do
-  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code(), v1::ANSWER_BAD_ARGUMENT);
-  request.arguments({bus::text("place", "library")});
-  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code(), v1::ANSWER_DONE);
+  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code, v1::ANSWER_BAD_ARGUMENT);
+  request.arguments = {bus::text("place", "library")};
+  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code, v1::ANSWER_DONE);
   ASSERT_TRUE(goal);
-  EXPECT_EQ(goal->functor(), "go-to-place");
-  EXPECT_EQ(goal->requester(), "a person");
-  EXPECT_EQ(bus::text_of(goal->arguments(), "place"), "library");
+  EXPECT_EQ(goal->functor, "go-to-place");
+  EXPECT_EQ(goal->requester, "a person");
+  EXPECT_EQ(bus::text_of(goal->arguments, "place"), "library");
   state = v1::GOAL_FAILED;
   const v1::Answer failed = client->ask(request, 30.0, nullptr, others);
-  EXPECT_EQ(failed.code(), v1::ANSWER_GIVEN_UP);
-  EXPECT_EQ(failed.text(), "as the intentions say");
+  EXPECT_EQ(failed.code, v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(failed.text, "as the intentions say");
 }
 
 TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {
   v1::Utterance old;
-  old.id().writer(6);
-  old.id().number(1);
-  old.text("Flakey, go forward");
-  old.confidence(1.0);
-  old.time(1e9);
+  old.id.writer = 6;
+  old.id.number = 1;
+  old.text = "Flakey, go forward";
+  old.confidence = 1.0;
+  old.time = 1e9;
   heard.write(old);
   dialogue->step(0.0, 1e9 + 61.0);
   EXPECT_TRUE(answers().empty());
@@ -509,10 +509,10 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   auto done = bridge.writer(bus::topics::kRobotAnswers);
   const auto answer = [&](const v1::Request& request, v1::AnswerCode code) {
     v1::Answer sample;
-    sample.asker(request.asker());
-    sample.number(request.number());
-    sample.code(code);
-    sample.text("stopped: a program (direct)");
+    sample.asker = request.asker;
+    sample.number = request.number;
+    sample.code = code;
+    sample.text = "stopped: a program (direct)";
     done.write(sample);
     dialogue->step();
     return answers();
@@ -520,7 +520,7 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   EXPECT_EQ(say("Flakey, stop"), "I stop");
   auto request = stops.take_newest();
   ASSERT_TRUE(request);
-  EXPECT_EQ(bus::text_of(request->arguments(), "by"), "Alice (by words)");
+  EXPECT_EQ(bus::text_of(request->arguments, "by"), "Alice (by words)");
   EXPECT_EQ(answer(*request, v1::ANSWER_UNDERWAY), "");
   EXPECT_EQ(answer(*request, v1::ANSWER_DONE), "done: stopped: a program (direct)");
 

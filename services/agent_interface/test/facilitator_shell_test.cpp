@@ -16,8 +16,8 @@ using std::chrono::milliseconds;
 
 v1::Request where_is_karen() {
   v1::Request request;
-  request.functor("place_of");
-  request.arguments({bus::text("person", "karen"), bus::open("place")});
+  request.functor = "place_of";
+  request.arguments = {bus::text("person", "karen"), bus::open("place")};
   return request;
 }
 
@@ -48,7 +48,7 @@ class OnTheBus : public testing::Test {
     v1::Answer answer;
     test::wait_until([&] {
       answer = asker.ask(where_is_karen(), 2.0);
-      return answer.code() == code;
+      return answer.code == code;
     });
     return answer;
   }
@@ -73,11 +73,11 @@ TEST_F(OnTheBus, ARequestIsRoutedAndWhatADeadAgentCouldDoIsForgotten) {
       }
     });
     const v1::Answer answer = ask_until(person, v1::ANSWER_DONE);
-    EXPECT_EQ(answer.service(), "calendar");
-    EXPECT_EQ(bus::text_of(answer.results(), "place"), "library");
+    EXPECT_EQ(answer.service, "calendar");
+    EXPECT_EQ(bus::text_of(answer.results, "place"), "library");
     stop.request();
   }
-  EXPECT_EQ(ask_until(person, v1::ANSWER_NOBODY).text(), "no agent can do \"place_of\"");
+  EXPECT_EQ(ask_until(person, v1::ANSWER_NOBODY).text, "no agent can do \"place_of\"");
 }
 
 TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
@@ -92,8 +92,8 @@ TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
   facilitator->signal(SIGKILL);
   start();
   const v1::Answer answer = person.ask(where_is_karen(), 20.0);
-  EXPECT_EQ(answer.code(), v1::ANSWER_DONE) << "the first one: " << answer.text();
-  EXPECT_EQ(answer.service(), "ann");
+  EXPECT_EQ(answer.code, v1::ANSWER_DONE) << "the first one: " << answer.text;
+  EXPECT_EQ(answer.service, "ann");
   EXPECT_GE(asked, 2);
 }
 
@@ -104,18 +104,18 @@ class FacilitatorInMemory : public testing::Test {
   FacilitatorInMemory() {
     restart();
     worker.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request& request) {
-      begun.push_back(request.number());
+      begun.push_back(request.number);
       begun_request = request;
       v1::Answer answer;
-      answer.code(v1::ANSWER_UNDERWAY);
-      answer.text("sweeps");
+      answer.code = v1::ANSWER_UNDERWAY;
+      answer.text = "sweeps";
       return answer;
     });
     worker.when_withdrawn([&](const v1::Request& request) {
-      stopped.push_back(request.number());
+      stopped.push_back(request.number);
       v1::Answer end;
-      end.code(v1::ANSWER_GIVEN_UP);
-      end.text("half of the floor is clean");
+      end.code = v1::ANSWER_GIVEN_UP;
+      end.text = "half of the floor is clean";
       worker.answer(request, end);
     });
   }
@@ -134,7 +134,7 @@ class FacilitatorInMemory : public testing::Test {
   }
   static v1::Request sweep() {
     v1::Request request;
-    request.functor("sweep");
+    request.functor = "sweep";
     return request;
   }
 
@@ -157,21 +157,21 @@ TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   turn();
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
   v1::Request withdrawal;
-  withdrawal.functor(bus::kWithdraw);
+  withdrawal.functor = bus::kWithdraw;
   asker.again(number, withdrawal);
   turn();
   EXPECT_EQ(stopped, begun);
   const auto answers = asker.poll();
   ASSERT_EQ(answers.size(), 2u);
-  EXPECT_EQ(answers[0].text(), "sweeps");
-  EXPECT_EQ(answers[1].code(), v1::ANSWER_GIVEN_UP);
-  EXPECT_EQ(answers[1].text(), "half of the floor is clean");
+  EXPECT_EQ(answers[0].text, "sweeps");
+  EXPECT_EQ(answers[1].code, v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(answers[1].text, "half of the floor is clean");
 }
 
 TEST_F(FacilitatorInMemory, AnAgentIsRunningOnceItTakesRequests) {
-  EXPECT_EQ(other.status().state(), v1::SERVICE_STARTING);
+  EXPECT_EQ(other.status().state, v1::SERVICE_STARTING);
   turn();
-  EXPECT_EQ(other.status().state(), v1::SERVICE_RUNNING);
+  EXPECT_EQ(other.status().state, v1::SERVICE_RUNNING);
 }
 
 TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
@@ -204,7 +204,7 @@ TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
   worker.answer(begun_request, bus::done({}, "clean"));
   turn();
-  EXPECT_EQ(asker.poll().back().text(), "clean");
+  EXPECT_EQ(asker.poll().back().text, "clean");
 }
 
 TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
@@ -222,16 +222,16 @@ TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
     if (turns == 5)
       worker.answer(begun_request, bus::done({}, "clean"));
   };
-  EXPECT_EQ(asker.ask(sweep(), 30.0, nullptr, others).text(), "clean");
+  EXPECT_EQ(asker.ask(sweep(), 30.0, nullptr, others).text, "clean");
   EXPECT_EQ(begun.size(), 1u);
 }
 
 TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
   v1::Trigger trigger;
-  trigger.kind(v1::TRIGGER_TIME);
-  trigger.period(1.0);
-  trigger.action("sweep");
-  trigger.times(1);
+  trigger.kind = v1::TRIGGER_TIME;
+  trigger.period = 1.0;
+  trigger.action = "sweep";
+  trigger.times = 1;
   worker.set(trigger);
   turn();
   for (int i = 0; i < 3; ++i) {
@@ -245,9 +245,9 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
 
 TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) {
   v1::Trigger trigger;
-  trigger.kind(v1::TRIGGER_EVENT);
-  trigger.condition("dust");
-  trigger.action("sweep");
+  trigger.kind = v1::TRIGGER_EVENT;
+  trigger.condition = "dust";
+  trigger.action = "sweep";
   worker.set(trigger);
   turn();
   bus::set_silent(*memory, "sweeper", true);
@@ -255,7 +255,7 @@ TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) 
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
   auto events = person.writer(bus::topics::kAgentEvents);
   v1::AgentEvent dust;
-  dust.functor("dust");
+  dust.functor = "dust";
   events.write(dust);
   turn();
   EXPECT_EQ(begun.size(), 0u);
@@ -272,11 +272,11 @@ TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) 
 
 TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
   v1::Trigger trigger;
-  trigger.id().writer(3);
-  trigger.id().number(1);
-  trigger.kind(v1::TRIGGER_EVENT);
-  trigger.condition("dust");
-  trigger.action("sweep");
+  trigger.id.writer = 3;
+  trigger.id.number = 1;
+  trigger.kind = v1::TRIGGER_EVENT;
+  trigger.condition = "dust";
+  trigger.action = "sweep";
   std::optional<bus::Writer<v1::Trigger>> first = person.writer(bus::topics::kTriggers);
   std::optional<bus::Writer<v1::Trigger>> second = other.writer(bus::topics::kTriggers);
   first->write(trigger);
@@ -310,9 +310,9 @@ TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
 struct TheRobotInMemory : FacilitatorInMemory {
   TheRobotInMemory() {
     v1::ActivitySchema schema;
-    schema.name("explore");
+    schema.name = "explore";
     v1::ActivitySchemas schemas;
-    schemas.schemas({schema});
+    schemas.schemas = {schema};
     activities.write(schemas);
     turn();
   }
@@ -324,27 +324,27 @@ TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
   auto statuses = person.writer(bus::topics::kGoalStatus);
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
   v1::Request request;
-  request.functor("explore");
-  request.deadline(1.5);
+  request.functor = "explore";
+  request.deadline = 1.5;
   asker.send(request);
   turn();
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_NEAR(asked[0].data.deadline(), 1.0, 1e-9);
+  EXPECT_NEAR(asked[0].data.deadline, 1.0, 1e-9);
   v1::GoalStatus status;
-  status.id(asked[0].data.id());
-  status.state(v1::GOAL_SUCCEEDED);
-  status.reason("drove 0.10 m until the deadline");
+  status.id = asked[0].data.id;
+  status.state = v1::GOAL_SUCCEEDED;
+  status.reason = "drove 0.10 m until the deadline";
   now += 1.2;  // its deadline, and the way of the status
   statuses.write(status);
   turn();
-  EXPECT_EQ(asker.poll().back().text(), "drove 0.10 m until the deadline");
+  EXPECT_EQ(asker.poll().back().text, "drove 0.10 m until the deadline");
 }
 
 TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   auto asker = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
   v1::Request request;
-  request.functor("explore");
+  request.functor = "explore";
   asker->send(request);
   turn();
   const auto asked = goals.take();
@@ -355,7 +355,7 @@ TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   const auto ended = goals.take();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_TRUE(ended[0].info.disposed);
-  EXPECT_EQ(ended[0].data.id(), asked[0].data.id());
+  EXPECT_EQ(ended[0].data.id, asked[0].data.id);
 }
 
 }  // namespace

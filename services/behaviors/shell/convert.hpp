@@ -1,10 +1,10 @@
 #pragma once
 
-#include "behavior.h"
-#include "intention.h"
-#include "motion.h"
-#include "robot.h"
 #include "saphira/behaviors/executive.hpp"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/robot.hpp"
 
 /// Conversions between the types of the bus and those of the library: pure functions.
 namespace saphira::behaviors {

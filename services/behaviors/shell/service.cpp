@@ -49,11 +49,11 @@ void Service::step(const runtime::Turn& turn) {
 
   const Core::Outputs outputs = core_.step(inputs);
   v1::MotorCommand command = command_to_bus(outputs.output);
-  command.source(ports_.name());
-  command.number(outputs.number);
+  command.source = ports_.name();
+  command.number = outputs.number;
   if (const v1::Intentions* const intentions = intentions_.value()) {
-    command.heeds(intentions->heeds());
-    command.edges(intentions->edges());
+    command.heeds = intentions->heeds;
+    command.edges = intentions->edges;
   }
   commands_.write(command);
   const v1::BehaviorSet sample = to_bus(outputs.output);
@@ -66,10 +66,10 @@ void Service::step(const runtime::Turn& turn) {
 
 std::optional<double> Service::command_age(const runtime::Turn& turn) {
   const auto grant = grants_ ? grants_->take_newest() : std::nullopt;
-  if (!grant || grant->role() != v1::ROLE_BEHAVIORS || grant->stamp().epoch() != turn.stamp.epoch ||
-      grant->source() != ports_.name())
+  if (!grant || grant->role != v1::ROLE_BEHAVIORS || grant->stamp.epoch != turn.stamp.epoch ||
+      grant->source != ports_.name())
     return std::nullopt;
-  return grant->command_age();
+  return grant->command_age;
 }
 
 void Service::look() {

@@ -15,11 +15,11 @@ namespace {
 v1::IntendedBehavior behavior(const char* schema, int priority,
                               std::vector<v1::Argument> parameters = {}) {
   v1::IntendedBehavior b;
-  b.name(schema);
-  b.schema(schema);
-  b.priority(priority);
-  b.running(true);
-  b.parameters(std::move(parameters));
+  b.name = schema;
+  b.schema = schema;
+  b.priority = priority;
+  b.running = true;
+  b.parameters = std::move(parameters);
   return b;
 }
 
@@ -32,30 +32,30 @@ class ShellTest : public testing::TestWithParam<bool> {
  protected:
   void describe() {
     v1::RobotDescription description;
-    description.stamp().epoch(epoch);
-    description.radius(0.22);
-    description.max_velocity(0.4);
-    description.max_rotation_velocity(1.7);
-    description.front_buffer(30);
-    description.side_buffer(40);
-    description.front_max_range(2.5);
+    description.stamp.epoch = epoch;
+    description.radius = 0.22;
+    description.max_velocity = 0.4;
+    description.max_rotation_velocity = 1.7;
+    description.front_buffer = 30;
+    description.side_buffer = 40;
+    description.front_max_range = 2.5;
     descriptions.write(description);
   }
   /// RobotState of the next cycle.
   void state() {
     v1::RobotState sample;
-    sample.stamp().epoch(epoch);
-    sample.stamp().cycle(++cycle);
-    sample.odom(1);
-    sample.pose_in_odom().th(heading);
+    sample.stamp.epoch = epoch;
+    sample.stamp.cycle = ++cycle;
+    sample.odom = 1;
+    sample.pose_in_odom.th = heading;
     states.write(sample);
   }
   void intend(std::vector<v1::IntendedBehavior> set) {
     v1::Intentions sample;
-    sample.stamp().epoch(epoch);
-    sample.stamp().cycle(cycle);
-    sample.behavior_control(true);
-    sample.behaviors(std::move(set));
+    sample.stamp.epoch = epoch;
+    sample.stamp.cycle = cycle;
+    sample.behavior_control = true;
+    sample.behaviors = std::move(set);
     intentions.write(sample);
   }
   void step() {
@@ -66,9 +66,9 @@ class ShellTest : public testing::TestWithParam<bool> {
     const std::optional<v1::BehaviorSet> told_now = behaviors.take_newest();
     ASSERT_TRUE(told_now);
     told = *told_now;
-    EXPECT_EQ(command.stamp().epoch(), epoch);
-    EXPECT_EQ(command.stamp().cycle(), cycle);
-    EXPECT_EQ(told.stamp().cycle(), cycle);
+    EXPECT_EQ(command.stamp.epoch, epoch);
+    EXPECT_EQ(command.stamp.cycle, cycle);
+    EXPECT_EQ(told.stamp.cycle, cycle);
   }
   void one(std::vector<v1::IntendedBehavior> set) {
     state();
@@ -99,36 +99,36 @@ INSTANTIATE_TEST_SUITE_P(LiveAndLockstep, ShellTest, testing::Bool());
 TEST_P(ShellTest, CommandsWhatIsIntended) {
   describe();
   one({behavior("ConstantVelocity", 2, {bus::number("speed", 0.25)})});
-  EXPECT_FALSE(command.active());
-  const std::uint64_t first = command.number();
+  EXPECT_FALSE(command.active);
+  const std::uint64_t first = command.number;
   one({});
-  EXPECT_TRUE(command.active());
-  EXPECT_EQ(command.velocity(), 0.25);
-  EXPECT_EQ(command.heading(), 1.0);
-  EXPECT_EQ(command.source(), "behaviors");
-  EXPECT_GT(command.number(), first);
-  ASSERT_EQ(told.behaviors().size(), 1U);
-  EXPECT_EQ(told.behaviors()[0].speed_weight(), 1.0);
+  EXPECT_TRUE(command.active);
+  EXPECT_EQ(command.velocity, 0.25);
+  EXPECT_EQ(command.heading, 1.0);
+  EXPECT_EQ(command.source, "behaviors");
+  EXPECT_GT(command.number, first);
+  ASSERT_EQ(told.behaviors.size(), 1U);
+  EXPECT_EQ(told.behaviors[0].speed_weight, 1.0);
   // Nothing is intended any more.
   state();
   step();
-  EXPECT_FALSE(command.active());
-  EXPECT_TRUE(told.behaviors().empty());
+  EXPECT_FALSE(command.active);
+  EXPECT_TRUE(told.behaviors.empty());
 }
 
 TEST_P(ShellTest, ANewEpochBeginsAnew) {
   describe();
   one({behavior("ConstantVelocity", 2)});
   one({behavior("ConstantVelocity", 2)});
-  EXPECT_TRUE(command.active());
+  EXPECT_TRUE(command.active);
   epoch = 78;
   cycle = 0;
   describe();
   one({behavior("Stop", 2)});
-  EXPECT_FALSE(command.active());
+  EXPECT_FALSE(command.active);
   one({});
-  EXPECT_TRUE(command.active());
-  EXPECT_EQ(told.behaviors().at(0).schema(), "Stop");
+  EXPECT_TRUE(command.active);
+  EXPECT_EQ(told.behaviors.at(0).schema, "Stop");
 }
 
 class LiveShellTest : public ShellTest {};
@@ -140,7 +140,7 @@ TEST_P(LiveShellTest, ReleasesWhenTheIntentIsOld) {
   for (int age = 1; age <= 4; ++age) {
     state();
     step();
-    EXPECT_EQ(command.active(), age <= 2) << age;
+    EXPECT_EQ(command.active, age <= 2) << age;
   }
 }
 
@@ -153,7 +153,7 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
       state();  // refused after a while: the robot has no description
       bridge.wait(std::chrono::milliseconds(50));
       for (const auto& sample : statuses.take())
-        said = said || sample.data.reason() == "waits for robot/description";
+        said = said || sample.data.reason == "waits for robot/description";
     }
     describe();
     state();
@@ -165,9 +165,9 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   commands.take();
   behaviors.take();
   one({});
-  EXPECT_TRUE(command.active());
+  EXPECT_TRUE(command.active);
   // The status may report a skipped cycle.
-  EXPECT_NE(service.status().state(), v1::SERVICE_WAITING) << service.status().reason();
+  EXPECT_NE(service.status().state, v1::SERVICE_WAITING) << service.status().reason;
 }
 
 // A minute of published samples is kept for late readers.
@@ -178,8 +178,8 @@ TEST_P(ShellTest, RecallsWhatItPublished) {
   bus::Reader<v1::BehaviorSet> late{bridge.reader(bus::topics::kRecallBehaviors)};
   const auto samples = late.take();
   ASSERT_EQ(samples.size(), 20U);
-  EXPECT_EQ(samples.front().data.stamp().cycle(), 1U);
-  EXPECT_EQ(samples.back().data.stamp().cycle(), cycle);
+  EXPECT_EQ(samples.front().data.stamp.cycle, 1U);
+  EXPECT_EQ(samples.back().data.stamp.cycle, cycle);
 }
 
 /// A shell with a user's folder, and the example plug-in.
@@ -204,41 +204,41 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   auto schemas = bridge.reader(bus::topics::kBehaviorSchemas);
   runtime::Shell shell(service, with({folder.string(), {SAPHIRA_EXAMPLE_PLUGIN}}));
   const auto find = [](const v1::BehaviorSchemas& all, const std::string& name) {
-    for (const v1::BehaviorSchema& schema : all.schemas())
-      if (schema.name() == name)
+    for (const v1::BehaviorSchema& schema : all.schemas)
+      if (schema.name == name)
         return schema;
     return v1::BehaviorSchema();
   };
   std::optional<v1::BehaviorSchemas> told = schemas.take_newest();
   ASSERT_TRUE(told);
-  EXPECT_GE(told->schemas().size(), 12U);
-  EXPECT_EQ(told->trouble(), "");
-  EXPECT_EQ(find(*told, "HoldDistance").source(), SAPHIRA_EXAMPLE_PLUGIN);
-  EXPECT_EQ(find(*told, "ConstantVelocity").parameters().size(), 2U) << "speed, contact";
+  EXPECT_GE(told->schemas.size(), 12U);
+  EXPECT_EQ(told->trouble, "");
+  EXPECT_EQ(find(*told, "HoldDistance").source, SAPHIRA_EXAMPLE_PLUGIN);
+  EXPECT_EQ(find(*told, "ConstantVelocity").parameters.size(), 2U) << "speed, contact";
 
   bus::Stop stop;
   std::uint64_t cycle = 0;
   v1::RobotDescription description;
-  description.stamp().epoch(7);
-  description.max_velocity(0.4);
+  description.stamp.epoch = 7;
+  description.max_velocity = 0.4;
   descriptions.write(description);
   // Twice as many cycles as are between two looks.
   const auto drive = [&] {
     double speed = 0.0;
     for (int i = 0; i < 20; ++i) {
       v1::Intentions intended;
-      intended.stamp().epoch(7);
-      intended.stamp().cycle(cycle);
-      intended.behavior_control(true);
-      intended.behaviors({behavior("ConstantVelocity", 2)});
+      intended.stamp.epoch = 7;
+      intended.stamp.cycle = cycle;
+      intended.behavior_control = true;
+      intended.behaviors = {behavior("ConstantVelocity", 2)};
       v1::RobotState state;
-      state.stamp().epoch(7);
-      state.stamp().cycle(++cycle);
+      state.stamp.epoch = 7;
+      state.stamp.cycle = ++cycle;
       states.write(state);
       intentions.write(intended);
       EXPECT_TRUE(shell.step(stop));
       if (const auto newest = behaviors.take_newest())
-        speed = newest->speed();
+        speed = newest->speed;
     }
     return speed;
   };
@@ -247,16 +247,15 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   EXPECT_DOUBLE_EQ(drive(), 0.05);
   told = schemas.take_newest();
   ASSERT_TRUE(told);
-  EXPECT_EQ(find(*told, "ConstantVelocity").source(), (folder / "mine.beh").string());
-  ASSERT_EQ(find(*told, "ConstantVelocity").rules().size(), 1U);
-  EXPECT_EQ(find(*told, "ConstantVelocity").rules()[0].action(), "Speed 50");
+  EXPECT_EQ(find(*told, "ConstantVelocity").source, (folder / "mine.beh").string());
+  ASSERT_EQ(find(*told, "ConstantVelocity").rules.size(), 1U);
+  EXPECT_EQ(find(*told, "ConstantVelocity").rules[0].action, "Speed 50");
   write(head + "If 1.0 Then Speed" + tail);
   EXPECT_DOUBLE_EQ(drive(), 0.05);
   told = schemas.take_newest();
   ASSERT_TRUE(told);
-  EXPECT_NE(told->trouble().find("mine.beh:5:1: expected a variable or a number"),
-            std::string::npos)
-      << told->trouble();
+  EXPECT_NE(told->trouble.find("mine.beh:5:1: expected a variable or a number"), std::string::npos)
+      << told->trouble;
 }
 
 TEST(ShellFiles, APluginThatIsNoneEndsItAtItsStart) {

@@ -82,217 +82,215 @@ constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
 }  // namespace
 
 GoalId from_bus(const v1::GoalId& id) {
-  return {id.writer(), id.number()};
+  return {id.writer, id.number};
 }
 
 v1::GoalId to_bus(const GoalId& id) {
   v1::GoalId result;
-  result.writer(id.writer);
-  result.number(id.number);
+  result.writer = id.writer;
+  result.number = id.number;
   return result;
 }
 
 Goal from_bus(const v1::Goal& goal) {
   Goal result;
-  result.id = from_bus(goal.id());
-  result.requester = goal.requester();
-  result.functor = goal.functor();
-  result.arguments = saphira::from_bus(goal.arguments());
-  result.priority = goal.priority();
-  result.deadline = goal.deadline();
-  result.level = goal.level();
-  result.writer_lost = kPolicies.ours(goal.writer_lost(), WriterLost::kCancel);
+  result.id = from_bus(goal.id);
+  result.requester = goal.requester;
+  result.functor = goal.functor;
+  result.arguments = saphira::from_bus(goal.arguments);
+  result.priority = goal.priority;
+  result.deadline = goal.deadline;
+  result.level = goal.level;
+  result.writer_lost = kPolicies.ours(goal.writer_lost, WriterLost::kCancel);
   return result;
 }
 
 v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   v1::GoalStatus result;
-  result.id(to_bus(status.id));
-  result.stamp(stamp);
-  result.requester(status.requester);
-  result.functor(status.functor);
-  result.state(kStates.theirs(status.state));
-  result.code(kCodes.theirs(status.code));
-  result.reason(status.reason);
-  result.step(status.step);
-  result.progress(status.progress);
-  result.level(status.level);
-  result.trend(kTrends.theirs(status.trend));
-  result.elapsed(status.elapsed);
-  result.note(status.note);
-  result.waits_for(to_bus(status.waits_for));
+  result.id = to_bus(status.id);
+  result.stamp = stamp;
+  result.requester = status.requester;
+  result.functor = status.functor;
+  result.state = kStates.theirs(status.state);
+  result.code = kCodes.theirs(status.code);
+  result.reason = status.reason;
+  result.step = status.step;
+  result.progress = status.progress;
+  result.level = status.level;
+  result.trend = kTrends.theirs(status.trend);
+  result.elapsed = status.elapsed;
+  result.note = status.note;
+  result.waits_for = to_bus(status.waits_for);
   return result;
 }
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
   v1::IntendedBehavior result;
-  result.name(behavior.name);
-  result.schema(behavior.schema);
-  result.priority(behavior.priority);
-  result.running(behavior.running);
-  result.parameters(saphira::to_bus(behavior.parameters));
-  result.intention(behavior.intention);
-  result.blocking(behavior.blocking);
+  result.name = behavior.name;
+  result.schema = behavior.schema;
+  result.priority = behavior.priority;
+  result.running = behavior.running;
+  result.parameters = saphira::to_bus(behavior.parameters);
+  result.intention = behavior.intention;
+  result.blocking = behavior.blocking;
   return result;
 }
 
 v1::IntentionNode to_bus(const IntentionNode& node) {
   v1::IntentionNode result;
-  result.id(node.id);
-  result.parent(node.parent);
-  result.name(node.name);
-  result.schema(node.schema);
-  result.arguments(node.arguments);
-  result.state(kIntentionStates.theirs(node.state));
-  result.blocking(node.blocking);
-  result.label(node.label);
-  result.step(node.step);
-  result.since(static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)));
-  result.priority(node.priority);
-  result.goal(to_bus(node.goal));
+  result.id = node.id;
+  result.parent = node.parent;
+  result.name = node.name;
+  result.schema = node.schema;
+  result.arguments = node.arguments;
+  result.state = kIntentionStates.theirs(node.state);
+  result.blocking = node.blocking;
+  result.label = node.label;
+  result.step = node.step;
+  result.since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0));
+  result.priority = node.priority;
+  result.goal = to_bus(node.goal);
   return result;
 }
 
 Robot from_bus(const v1::RobotState& robot) {
   Robot result;
-  result.connected = robot.status() != v1::MOTORS_NOT_CONNECTED;
-  result.has_power = robot.status() != v1::MOTORS_NO_POWER;
-  result.odom = robot.odom();
-  result.pose_in_odom = lps::from_bus(robot.pose_in_odom());
-  result.velocity = robot.velocity();
-  result.rotation_velocity = robot.rotation_velocity();
-  result.head = robot.head();
-  result.left_stalled = robot.left_stalled();
-  result.right_stalled = robot.right_stalled();
-  result.bumpers = robot.bumpers();
-  result.target_velocity = robot.target_velocity();
-  result.target_heading_in_odom = robot.target_heading_in_odom();
+  result.connected = robot.status != v1::MOTORS_NOT_CONNECTED;
+  result.has_power = robot.status != v1::MOTORS_NO_POWER;
+  result.odom = robot.odom;
+  result.pose_in_odom = lps::from_bus(robot.pose_in_odom);
+  result.velocity = robot.velocity;
+  result.rotation_velocity = robot.rotation_velocity;
+  result.head = robot.head;
+  result.left_stalled = robot.left_stalled;
+  result.right_stalled = robot.right_stalled;
+  result.bumpers = robot.bumpers;
+  result.target_velocity = robot.target_velocity;
+  result.target_heading_in_odom = robot.target_heading_in_odom;
   return result;
 }
 
 Core::Heard::Grant from_bus(const v1::Grant& grant) {
-  Core::Heard::Grant result{grant.estopped(), grant.estop_source()};
-  if (grant.role() != v1::ROLE_BEHAVIORS)
-    for (const v1::Refusal& refusal : grant.refused())
-      if (refusal.role() == v1::ROLE_BEHAVIORS && result.refusal.empty())
-        result.refusal = refusal.reason();
-  result.stop = {grant.stop().asker(), grant.stop().number()};
-  result.stop_source = grant.stop_source();
-  if (grant.role() == v1::ROLE_TELEOP || grant.role() == v1::ROLE_DIRECT)
-    result.driver = grant.source();
-  if (grant.role() == v1::ROLE_TELEOP)
-    result.person = grant.source().empty() ? "a person" : grant.source();
-  result.waits_for_hand_back = grant.waits_for_hand_back();
+  Core::Heard::Grant result{grant.estopped, grant.estop_source};
+  if (grant.role != v1::ROLE_BEHAVIORS)
+    for (const v1::Refusal& refusal : grant.refused)
+      if (refusal.role == v1::ROLE_BEHAVIORS && result.refusal.empty())
+        result.refusal = refusal.reason;
+  result.stop = {grant.stop.asker, grant.stop.number};
+  result.stop_source = grant.stop_source;
+  if (grant.role == v1::ROLE_TELEOP || grant.role == v1::ROLE_DIRECT)
+    result.driver = grant.source;
+  if (grant.role == v1::ROLE_TELEOP)
+    result.person = grant.source.empty() ? "a person" : grant.source;
+  result.waits_for_hand_back = grant.waits_for_hand_back;
   return result;
 }
 
 std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors) {
-  return converted(behaviors.behaviors(), [](const v1::BehaviorState& behavior) {
-    return BehaviorLevel{behavior.name(), behavior.goal(), behavior.progress()};
+  return converted(behaviors.behaviors, [](const v1::BehaviorState& behavior) {
+    return BehaviorLevel{behavior.name, behavior.goal, behavior.progress};
   });
 }
 
 std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
   // A behaviors service without an age uses the intent of the cycle before.
-  const double cycles = std::clamp(behaviors.input_age() / kTick, 1.0, 1e6);
+  const double cycles = std::clamp(behaviors.input_age / kTick, 1.0, 1e6);
   return static_cast<std::uint64_t>(std::llround(std::isfinite(cycles) ? cycles : 1.0));
 }
 
 std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors) {
-  return converted(behaviors.missing(), [](const v1::MissingBehavior& missing) {
-    return BehaviorTrouble{missing.name(), missing.reason()};
+  return converted(behaviors.missing, [](const v1::MissingBehavior& missing) {
+    return BehaviorTrouble{missing.name, missing.reason};
   });
 }
 
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
   const auto parameter = [](const v1::BehaviorParameter& given) {
     Parameter result;
-    result.name = given.name();
-    result.kind = saphira::from_bus(given.kind());
-    result.low = given.low();
-    result.high = given.high();
-    result.required = given.required();
+    result.name = given.name;
+    result.kind = saphira::from_bus(given.kind);
+    result.low = given.low;
+    result.high = given.high;
+    result.required = given.required;
     return result;
   };
-  return converted(schemas.schemas(), [&](const v1::BehaviorSchema& schema) {
-    return BehaviorSignature{schema.name(), converted(schema.parameters(), parameter)};
+  return converted(schemas.schemas, [&](const v1::BehaviorSchema& schema) {
+    return BehaviorSignature{schema.name, converted(schema.parameters, parameter)};
   });
 }
 
 v1::ActivitySchema to_bus(const Schema& schema) {
   v1::ActivitySchema result;
-  result.name(schema.name);
-  result.summary(schema.summary);
-  result.source(schema.source);
+  result.name = schema.name;
+  result.summary = schema.summary;
+  result.source = schema.source;
   for (const Parameter& parameter : schema.parameters) {
     v1::ActivityParameter out;
-    out.name(parameter.name);
-    out.kind(parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind));
-    out.unit(parameter.unit);
-    out.required(parameter.required);
-    out.low(parameter.low);
-    out.high(parameter.high);
+    out.name = parameter.name;
+    out.kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind);
+    out.unit = parameter.unit;
+    out.required = parameter.required;
+    out.low = parameter.low;
+    out.high = parameter.high;
     if (parameter.usual)
-      out.usual(plain(*parameter.usual));
+      out.usual = plain(*parameter.usual);
     else if (parameter.usual_text)
-      out.usual(*parameter.usual_text);
-    result.parameters().push_back(std::move(out));
+      out.usual = *parameter.usual_text;
+    result.parameters.push_back(std::move(out));
   }
   return result;
 }
 
 v1::Belief to_bus(const Belief& belief) {
   v1::Belief result;
-  result.name(belief.name);
-  result.value(to_text(belief.value));
-  result.said_by(belief.said_by);
-  result.since(static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0)));
+  result.name = belief.name;
+  result.value = to_text(belief.value);
+  result.said_by = belief.said_by;
+  result.since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0));
   return result;
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
   ClaimEvent result;
   result.kind = kind;
-  result.id = from_bus(claim.id());
-  result.source = claim.source();
-  result.name = claim.name();
+  result.id = from_bus(claim.id);
+  result.source = claim.source;
+  result.name = claim.name;
   if (kind == ClaimEvent::Kind::kSaid)
-    result.value = parse_value(claim.value(), "belief " + quoted(claim.name()));
+    result.value = parse_value(claim.value, "belief " + quoted(claim.name));
   return result;
 }
 
 Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle) {
   Registered result;
-  if (registration.stamp().cycle() + kRegistrationLease < cycle)
+  if (registration.stamp.cycle + kRegistrationLease < cycle)
     return result;
-  result.state = kLocalizations.ours(registration.state(), Localization::kLost);
-  result.pose_in_map = lps::from_bus(registration.pose_in_map());
-  result.confidence = registration.confidence();
-  result.environment = registration.environment();
-  result.adds_features = registration.adds_features();
-  result.closed_doors.insert(registration.closed_doors().begin(),
-                             registration.closed_doors().end());
+  result.state = kLocalizations.ours(registration.state, Localization::kLost);
+  result.pose_in_map = lps::from_bus(registration.pose_in_map);
+  result.confidence = registration.confidence;
+  result.environment = registration.environment;
+  result.adds_features = registration.adds_features;
+  result.closed_doors.insert(registration.closed_doors.begin(), registration.closed_doors.end());
   return result;
 }
 
 std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
                                          std::uint64_t odom) {
-  const bool known = registration.state() == v1::REGISTRATION_TRACKING ||
-                     registration.state() == v1::REGISTRATION_OFF;
-  if (!known || registration.odom() != odom ||
-      registration.stamp().cycle() + kRegistrationLease < cycle)
+  const bool known =
+      registration.state == v1::REGISTRATION_TRACKING || registration.state == v1::REGISTRATION_OFF;
+  if (!known || registration.odom != odom || registration.stamp.cycle + kRegistrationLease < cycle)
     return std::nullopt;
-  return lps::from_bus(registration.odom_in_map());
+  return lps::from_bus(registration.odom_in_map);
 }
 
 std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,
                                                            std::uint64_t cycle,
                                                            std::uint64_t odom) {
-  if (perception.stamp().cycle() + kRegistrationLease < cycle)
+  if (perception.stamp.cycle + kRegistrationLease < cycle)
     return std::nullopt;
-  if (perception.odom() != odom)
+  if (perception.odom != odom)
     return std::vector<lps::Percept>();
-  return converted(perception.percepts(), [](const auto& each) { return lps::from_bus(each); });
+  return converted(perception.percepts, [](const auto& each) { return lps::from_bus(each); });
 }
 
 }  // namespace saphira::intentions

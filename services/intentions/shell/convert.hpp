@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "behavior.h"
-#include "intention.h"
-#include "map.h"
-#include "motion.h"
-#include "perception.h"
-#include "robot.h"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/map.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/perception.hpp"
+#include "saphira/idl/robot.hpp"
 #include "saphira/intentions/core.hpp"
 #include "saphira/lps/percept.hpp"
 

@@ -92,10 +92,10 @@ std::string Service::missing() {
   take_maps();
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
-  if (registration == nullptr || core_.knows_map(registration->map_revision()))
+  if (registration == nullptr || core_.knows_map(registration->map_revision))
     return {};
   return std::string(bus::topics::kMap.name) + " of revision " +
-         std::to_string(registration->map_revision());
+         std::to_string(registration->map_revision);
 }
 
 void Service::step(const runtime::Turn& turn) {
@@ -130,9 +130,9 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
     robot_ = lps::settings_from_bus(turn.description);
     inputs.new_robot = &robot_;
   }
-  inputs.robot_radius = turn.description.radius();
-  inputs.deceleration = turn.description.deceleration();
-  inputs.head_reach = turn.description.head_reach();
+  inputs.robot_radius = turn.description.radius;
+  inputs.deceleration = turn.description.deceleration;
+  inputs.head_reach = turn.description.head_reach;
   robot_turns_head_ = inputs.head_reach > 0.0;
   inputs.new_frame = turn.new_frame;
   inputs.robot = from_bus(turn.robot);
@@ -141,14 +141,14 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   if (const v1::BehaviorSet* const behaviors = behaviors_.value()) {
     inputs.behaviors = from_bus(*behaviors);
     inputs.troubles = troubles_from_bus(*behaviors);
-    inputs.behaviors_cycle = behaviors->stamp().cycle();
+    inputs.behaviors_cycle = behaviors->stamp.cycle;
     inputs.intent_age = intent_age_from_bus(*behaviors);
   }
   if (const v1::Registration* const registration =
           registration_ == nullptr ? nullptr : registration_->value()) {
     inputs.robot.odom_in_map = odom_in_map_from_bus(*registration, cycle, inputs.robot.odom);
     inputs.registered = registered_from_bus(*registration, cycle);
-    inputs.map_revision = registration->map_revision();
+    inputs.map_revision = registration->map_revision;
   }
   if (const v1::Perception* const perception =
           perception_ == nullptr ? nullptr : perception_->value())
@@ -171,12 +171,11 @@ std::optional<Core::Vision> Service::vision() {
                                                       : nullptr;
   if (sample == nullptr)
     return std::nullopt;
-  Core::Vision vision{{sample->stamp().epoch(), sample->stamp().cycle()},
-                      sample->odom(),
-                      sample->sees_people() || sample->sees_colors(),
+  Core::Vision vision{{sample->stamp.epoch, sample->stamp.cycle},
+                      sample->odom,
+                      sample->sees_people || sample->sees_colors,
                       {}};
-  vision.things =
-      converted(sample->things(), [](const auto& thing) { return lps::from_bus(thing); });
+  vision.things = converted(sample->things, [](const auto& thing) { return lps::from_bus(thing); });
   return vision;
 }
 
@@ -184,7 +183,7 @@ void Service::take_maps() {
   for (const auto& sample : maps_.take())
     if (!sample.info.disposed)
       core_.know_map(
-          {sample.data.revision(), std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
+          {sample.data.revision, std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
 }
 
 void Service::take_behavior_schemas() {
@@ -192,7 +191,7 @@ void Service::take_behavior_schemas() {
   if (!sample)
     return;
   knows_behaviors_ = true;
-  if (sample->schemas().empty())
+  if (sample->schemas.empty())
     return;  // no evaluator of behaviors has none
   const std::vector<BehaviorSignature> behaviors = from_bus(*sample);
   folders_.know_behaviors(behaviors);
@@ -206,7 +205,7 @@ void Service::take_goals(Core::Heard& heard) {
   for (const auto& sample : goals_.take()) {
     Core::Heard::Goal goal;
     goal.event.goal = from_bus(sample.data);
-    goal.event.why = sample.data.withdrawn();
+    goal.event.why = sample.data.withdrawn;
     goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
                                                                       : GoalEvent::Kind::kWritten;
     goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
@@ -222,14 +221,14 @@ void Service::take_claims(Core::Heard& heard) {
   heard.lost_claimants = claims_.take_lost();
   Notes notes;
   for (auto& sample : claims_.take()) {
-    sample.data.source() = bus::named(sample.data.source(), sample.info);
+    sample.data.source = bus::named(sample.data.source, sample.info);
     try {
       heard.claims.push_back(
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
-           sample.info.writer, sample.data.writer_lost() == v1::WRITER_LOST_CANCEL});
+           sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL});
     } catch (const FileError& error) {
-      notes.warn("a claim of " + saphira::quoted(sample.data.source()) + ": " + error.what());
+      notes.warn("a claim of " + saphira::quoted(sample.data.source) + ": " + error.what());
     }
   }
   ports_.say(notes.lines());
@@ -237,8 +236,8 @@ void Service::take_claims(Core::Heard& heard) {
 
 void Service::take_answers(Core::Heard& heard) {
   for (const auto& sample : answers_.take()) {
-    const auto question = questions_.find(sample.data.number());
-    if (sample.info.disposed || sample.data.asker() != ports_.instance() ||
+    const auto question = questions_.find(sample.data.number);
+    if (sample.info.disposed || sample.data.asker != ports_.instance() ||
         question == questions_.end())
       continue;
     const Answer answer = saphira::from_bus(sample.data);
@@ -263,9 +262,9 @@ void Service::look() {
   if (!news.changed)
     return;
   v1::ActivitySchemas sample;
-  sample.schemas(converted(core_.executor().registry().all(),
-                           [](const Schema* schema) { return to_bus(*schema); }));
-  sample.trouble(folders_.trouble());
+  sample.schemas = converted(core_.executor().registry().all(),
+                             [](const Schema* schema) { return to_bus(*schema); });
+  sample.trouble = folders_.trouble();
   schemas_.write(std::move(sample));
 }
 
@@ -301,8 +300,8 @@ void Service::publish(const News& news) {
   }
   if (!news.changed.empty() || !news.withdrawn.empty()) {
     v1::GoalStatusSet all;
-    all.goals(converted(
-        told_, [](const auto& told) { return told.second; }, kMostGoals));
+    all.goals = converted(
+        told_, [](const auto& told) { return told.second; }, kMostGoals);
     goal_recall_.write(std::move(all));
   }
   ports_.say(notes.lines());
@@ -318,58 +317,53 @@ void Service::publish(const Core::Outputs& said) {
   while (questions_.size() > kMostQuestions)  // never answered
     questions_.erase(questions_.begin());
   v1::Intentions sample;
-  sample.behavior_control(outputs.behavior_control);
-  sample.speed_limit(std::max(0.0, limit.speed));
-  sample.limit_reason(limit.reason);
-  sample.heeds().asker(core_.executor().heeds().asker);
-  sample.heeds().number(core_.executor().heeds().number);
+  sample.behavior_control = outputs.behavior_control;
+  sample.speed_limit = std::max(0.0, limit.speed);
+  sample.limit_reason = limit.reason;
+  sample.heeds.asker = core_.executor().heeds().asker;
+  sample.heeds.number = core_.executor().heeds().number;
   const auto carried = [](const auto& each) { return to_bus(each); };
-  sample.behaviors(converted(outputs.behaviors, carried));
-  sample.nodes(converted(outputs.nodes, carried, kMostNodes));
-  sample.edges(converted(said.edges, [](const Edge& edge) {
-    v1::Edge result;
-    result.x1(edge.from.x());
-    result.y1(edge.from.y());
-    result.x2(edge.to.x());
-    result.y2(edge.to.y());
-    return result;
-  }));
+  sample.behaviors = converted(outputs.behaviors, carried);
+  sample.nodes = converted(outputs.nodes, carried, kMostNodes);
+  sample.edges = converted(said.edges, [](const Edge& edge) {
+    return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
+  });
   intentions_.write(sample);
   recall_.write(std::move(sample));
   for (const Said& one : outputs.said) {
     v1::Message message;
-    message.source(ports_.name() + ": " + one.schema);
-    message.text(one.text);
+    message.source = ports_.name() + ": " + one.schema;
+    message.text = one.text;
     messages_.write(std::move(message));
   }
 }
 
 void Service::draw_way(const std::vector<Vec2>& way) {
   v1::Drawing drawing;
-  drawing.instance(ports_.instance());
+  drawing.instance = ports_.instance();
   if (way.empty()) {
     drawings_.dispose(drawing);
     return;
   }
-  drawing.source(ports_.name());
-  drawing.frame(v1::FRAME_MAP);
-  drawing.shape(v1::DRAWING_LINE);
-  drawing.points(converted(way, [](const Vec2& at) {
+  drawing.source = ports_.name();
+  drawing.frame = v1::FRAME_MAP;
+  drawing.shape = v1::DRAWING_LINE;
+  drawing.points = converted(way, [](const Vec2& at) {
     v1::DrawnPoint drawn;
-    drawn.x(at.x());
-    drawn.y(at.y());
+    drawn.x = at.x();
+    drawn.y = at.y();
     return drawn;
-  }));
-  drawing.red(70);
-  drawing.green(130);
-  drawing.blue(180);
+  });
+  drawing.red = 70;
+  drawing.green = 130;
+  drawing.blue = 180;
   drawings_.write(std::move(drawing));
 }
 
 void Service::publish(const std::vector<Belief>& beliefs) {
   v1::BeliefSet sample;
-  sample.beliefs(converted(
-      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs));
+  sample.beliefs = converted(
+      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs);
   beliefs_.write(std::move(sample));
 }
 

@@ -15,15 +15,15 @@ Arguments all_kinds() {
 
 TEST(Convert, AGoalIsTakenWhole) {
   v1::Goal theirs;
-  theirs.id().writer(0xffffffffffffffffULL);
-  theirs.id().number(3);
-  theirs.requester("somebody");
-  theirs.functor("go_to");
-  theirs.arguments(saphira::to_bus(all_kinds()));
-  theirs.priority(-7);
-  theirs.deadline(12.5);
-  theirs.level(0.25);
-  theirs.writer_lost(v1::WRITER_LOST_KEEP);
+  theirs.id.writer = 0xffffffffffffffffULL;
+  theirs.id.number = 3;
+  theirs.requester = "somebody";
+  theirs.functor = "go_to";
+  theirs.arguments = saphira::to_bus(all_kinds());
+  theirs.priority = -7;
+  theirs.deadline = 12.5;
+  theirs.level = 0.25;
+  theirs.writer_lost = v1::WRITER_LOST_KEEP;
   EXPECT_EQ(from_bus(theirs), (Goal{{0xffffffffffffffffULL, 3},
                                     "somebody",
                                     "go_to",
@@ -50,35 +50,35 @@ TEST(Convert, AStatusIsToldWhole) {
   status.note = "note";
   status.waits_for = {0xfffffffffffffffeULL, 7};
   v1::Stamp stamp;
-  stamp.epoch(5);
-  stamp.cycle(6);
+  stamp.epoch = 5;
+  stamp.cycle = 6;
   const v1::GoalStatus told = to_bus(status, stamp);
-  EXPECT_EQ(told.stamp(), stamp);
-  EXPECT_EQ(told.id(), to_bus(status.id));
-  EXPECT_EQ(told.requester(), "somebody");
-  EXPECT_EQ(told.functor(), "drive");
-  EXPECT_EQ(told.state(), v1::GOAL_CANCELED);
-  EXPECT_EQ(told.code(), v1::CODE_PREEMPTED);
-  EXPECT_EQ(told.reason(), "why");
-  EXPECT_EQ(told.step(), "driving");
-  EXPECT_EQ(told.progress(), 0.3);
-  EXPECT_EQ(told.level(), 0.4);
-  EXPECT_EQ(told.trend(), v1::TREND_FALLING);
-  EXPECT_EQ(told.elapsed(), 4.1);
-  EXPECT_EQ(told.note(), "note");
-  EXPECT_EQ(told.waits_for(), to_bus(status.waits_for));
+  EXPECT_EQ(told.stamp, stamp);
+  EXPECT_EQ(told.id, to_bus(status.id));
+  EXPECT_EQ(told.requester, "somebody");
+  EXPECT_EQ(told.functor, "drive");
+  EXPECT_EQ(told.state, v1::GOAL_CANCELED);
+  EXPECT_EQ(told.code, v1::CODE_PREEMPTED);
+  EXPECT_EQ(told.reason, "why");
+  EXPECT_EQ(told.step, "driving");
+  EXPECT_EQ(told.progress, 0.3);
+  EXPECT_EQ(told.level, 0.4);
+  EXPECT_EQ(told.trend, v1::TREND_FALLING);
+  EXPECT_EQ(told.elapsed, 4.1);
+  EXPECT_EQ(told.note, "note");
+  EXPECT_EQ(told.waits_for, to_bus(status.waits_for));
 }
 
 TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {
   const IntendedBehavior behavior{"GoToPos#3", "GoToPos", 2, false, all_kinds(), 3, false};
   const v1::IntendedBehavior intended = to_bus(behavior);
-  EXPECT_EQ(intended.name(), "GoToPos#3");
-  EXPECT_EQ(intended.schema(), "GoToPos");
-  EXPECT_EQ(intended.priority(), 2);
-  EXPECT_FALSE(intended.running());
-  EXPECT_EQ(saphira::from_bus(intended.parameters()), all_kinds());
-  EXPECT_EQ(intended.intention(), 3U);
-  EXPECT_FALSE(intended.blocking());
+  EXPECT_EQ(intended.name, "GoToPos#3");
+  EXPECT_EQ(intended.schema, "GoToPos");
+  EXPECT_EQ(intended.priority, 2);
+  EXPECT_FALSE(intended.running);
+  EXPECT_EQ(saphira::from_bus(intended.parameters), all_kinds());
+  EXPECT_EQ(intended.intention, 3U);
+  EXPECT_FALSE(intended.blocking);
 
   IntentionNode node;
   node.id = 3;
@@ -90,45 +90,45 @@ TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {
   node.state = IntentionState::kResumed;
   node.goal = {1, 2};
   const v1::IntentionNode told = to_bus(node);
-  EXPECT_EQ(told.id(), 3U);
-  EXPECT_EQ(told.parent(), 2U);
-  EXPECT_EQ(told.name(), "GoToPos#3");
-  EXPECT_EQ(told.schema(), "GoToPos");
-  EXPECT_FALSE(told.blocking());
-  EXPECT_EQ(told.step(), "B");
-  EXPECT_EQ(told.state(), v1::INTENTION_RUNNING);
-  EXPECT_EQ(told.goal(), to_bus(node.goal));
+  EXPECT_EQ(told.id, 3U);
+  EXPECT_EQ(told.parent, 2U);
+  EXPECT_EQ(told.name, "GoToPos#3");
+  EXPECT_EQ(told.schema, "GoToPos");
+  EXPECT_FALSE(told.blocking);
+  EXPECT_EQ(told.step, "B");
+  EXPECT_EQ(told.state, v1::INTENTION_RUNNING);
+  EXPECT_EQ(told.goal, to_bus(node.goal));
 }
 
 TEST(Convert, WhatDoesNotKeepToTheContractIsRefusedLater) {
   v1::Argument argument;
-  argument.kind(static_cast<v1::ArgumentKind>(77));
-  argument.frame(static_cast<v1::Frame>(77));
+  argument.kind = static_cast<v1::ArgumentKind>(77);
+  argument.frame = static_cast<v1::Frame>(77);
   EXPECT_EQ(saphira::from_bus(argument).kind, ArgumentKind::unbound);
   v1::Goal goal;
-  goal.writer_lost(static_cast<v1::WriterLost>(77));
+  goal.writer_lost = static_cast<v1::WriterLost>(77);
   EXPECT_EQ(from_bus(goal).writer_lost, WriterLost::kCancel);
 }
 
 TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
   v1::Grant grant;
-  grant.refused().resize(2);
-  grant.refused()[0].role(v1::ROLE_DIRECT);
-  grant.refused()[0].reason("of another");
-  grant.refused()[1].role(v1::ROLE_BEHAVIORS);
-  grant.refused()[1].reason("a person drives");
-  grant.role(v1::ROLE_TELEOP);
-  grant.waits_for_hand_back(true);
+  grant.refused.resize(2);
+  grant.refused[0].role = v1::ROLE_DIRECT;
+  grant.refused[0].reason = "of another";
+  grant.refused[1].role = v1::ROLE_BEHAVIORS;
+  grant.refused[1].reason = "a person drives";
+  grant.role = v1::ROLE_TELEOP;
+  grant.waits_for_hand_back = true;
   Core::Heard::Grant heard = from_bus(grant);
   EXPECT_FALSE(heard.pressed);
   EXPECT_EQ(heard.refusal, "a person drives");
   EXPECT_EQ(heard.person, "a person");
   EXPECT_TRUE(heard.waits_for_hand_back);
-  grant.source("Ann");
+  grant.source = "Ann";
   EXPECT_EQ(from_bus(grant).person, "Ann");
-  grant.role(v1::ROLE_BEHAVIORS);
-  grant.estopped(true);
-  grant.estop_source("a button");
+  grant.role = v1::ROLE_BEHAVIORS;
+  grant.estopped = true;
+  grant.estop_source = "a button";
   heard = from_bus(grant);
   EXPECT_TRUE(heard.pressed);
   EXPECT_EQ(heard.source, "a button");
@@ -138,15 +138,15 @@ TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
 
 TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   v1::RobotState state;
-  state.odom(4);
-  state.pose_in_odom().x(1.0);
-  state.pose_in_odom().y(2.0);
-  state.pose_in_odom().th(3.0);
-  state.velocity(0.4);
-  state.rotation_velocity(-0.5);
-  state.target_velocity(0.3);
-  state.target_heading_in_odom(1.5);
-  state.status(v1::MOTORS_MOVING);
+  state.odom = 4;
+  state.pose_in_odom.x = 1.0;
+  state.pose_in_odom.y = 2.0;
+  state.pose_in_odom.th = 3.0;
+  state.velocity = 0.4;
+  state.rotation_velocity = -0.5;
+  state.target_velocity = 0.3;
+  state.target_heading_in_odom = 1.5;
+  state.status = v1::MOTORS_MOVING;
   Robot robot = from_bus(state);
   EXPECT_TRUE(robot.connected);
   EXPECT_TRUE(robot.has_power);
@@ -156,21 +156,21 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   EXPECT_EQ(robot.rotation_velocity, -0.5);
   EXPECT_EQ(robot.target_velocity, 0.3);
   EXPECT_EQ(robot.target_heading_in_odom, 1.5);
-  state.status(v1::MOTORS_NO_POWER);
+  state.status = v1::MOTORS_NO_POWER;
   EXPECT_FALSE(from_bus(state).has_power);
-  state.status(v1::MOTORS_NOT_CONNECTED);
+  state.status = v1::MOTORS_NOT_CONNECTED;
   EXPECT_FALSE(from_bus(state).connected);
 
   v1::BehaviorSet behaviors;
   v1::BehaviorState behavior;
-  behavior.name("GoToPos#3");
-  behavior.goal(0.7);
-  behavior.progress(0.2);
-  behaviors.behaviors().push_back(behavior);
+  behavior.name = "GoToPos#3";
+  behavior.goal = 0.7;
+  behavior.progress = 0.2;
+  behaviors.behaviors.push_back(behavior);
   v1::MissingBehavior missing;
-  missing.name("Fly#4");
-  missing.reason("unknown schema");
-  behaviors.missing().push_back(missing);
+  missing.name = "Fly#4";
+  missing.reason = "unknown schema";
+  behaviors.missing.push_back(missing);
   const std::vector<BehaviorTrouble> troubles = troubles_from_bus(behaviors);
   ASSERT_EQ(troubles.size(), 1U);
   EXPECT_EQ(troubles[0].name, "Fly#4");
@@ -184,28 +184,28 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
 
 TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
   v1::Registration registration;
-  registration.state(v1::REGISTRATION_TRACKING);
-  registration.odom(4);
-  registration.stamp().cycle(100);
-  registration.odom_in_map().x(2.0);
-  registration.odom_in_map().th(0.5);
+  registration.state = v1::REGISTRATION_TRACKING;
+  registration.odom = 4;
+  registration.stamp.cycle = 100;
+  registration.odom_in_map.x = 2.0;
+  registration.odom_in_map.th = 0.5;
   EXPECT_EQ(odom_in_map_from_bus(registration, 101, 4), (Pose{2.0, 0.0, 0.5}));
   EXPECT_TRUE(odom_in_map_from_bus(registration, 100 + kRegistrationLease, 4));
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101 + kRegistrationLease, 4));
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 5));
-  registration.state(v1::REGISTRATION_LOST);
+  registration.state = v1::REGISTRATION_LOST;
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 4));
-  registration.state(v1::REGISTRATION_UNPLACED);
+  registration.state = v1::REGISTRATION_UNPLACED;
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 4));
-  registration.state(v1::REGISTRATION_OFF);
+  registration.state = v1::REGISTRATION_OFF;
   EXPECT_TRUE(odom_in_map_from_bus(registration, 101, 4));
 }
 
 TEST(Convert, WhatInterpretationSawCountsForAWhile) {
   v1::Perception perception;
-  perception.stamp().cycle(100);
-  perception.odom(4);
-  perception.percepts().emplace_back();
+  perception.stamp.cycle = 100;
+  perception.odom = 4;
+  perception.percepts.emplace_back();
   EXPECT_EQ(percepts_from_bus(perception, 100 + kRegistrationLease, 4).value().size(), 1U);
   EXPECT_FALSE(percepts_from_bus(perception, 101 + kRegistrationLease, 4));
   EXPECT_TRUE(percepts_from_bus(perception, 101, 5).value().empty()) << "of another odom frame";

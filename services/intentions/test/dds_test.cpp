@@ -52,7 +52,7 @@ class IntentionsProgram : public testing::Test {
       requester.wait(milliseconds(20));
       goals.poll();
       const auto status = goals.status(id);
-      return status && status->state() == state;
+      return status && status->state == state;
     });
   }
   std::string told(const v1::GoalId& id) {
@@ -91,11 +91,11 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
     }
     goals.poll();
     const auto status = goals.status(id);
-    return status && bus::ended(status->state());
+    return status && bus::ended(status->state);
   })) << told(id);
   EXPECT_TRUE(killed);
-  EXPECT_EQ(goals.status(id)->state(), v1::GOAL_SUCCEEDED) << told(id);
-  EXPECT_EQ(goals.status(id)->note(), "");
+  EXPECT_EQ(goals.status(id)->state, v1::GOAL_SUCCEEDED) << told(id);
+  EXPECT_EQ(goals.status(id)->note, "");
   EXPECT_NEAR(turned, kPi, 0.15);
 }
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "goals.hpp"
-#include "intention.h"
 #include "requests/shell/convert.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
+#include "saphira/idl/intention.hpp"
 #include "scripted_robot.hpp"
 
 namespace saphira::intentions {
@@ -20,13 +20,13 @@ inline v1::Goal go_to(double x, double y) {
 }
 
 inline IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
-  return {behavior.name(),
-          behavior.schema(),
-          behavior.priority(),
-          behavior.running(),
-          saphira::from_bus(behavior.parameters()),
-          behavior.intention(),
-          behavior.blocking()};
+  return {behavior.name,
+          behavior.schema,
+          behavior.priority,
+          behavior.running,
+          saphira::from_bus(behavior.parameters),
+          behavior.intention,
+          behavior.blocking};
 }
 
 /// The bridge and the behaviors service in one, in the simplest form, on the bus.
@@ -45,8 +45,8 @@ class ScriptedBus {
   void have(const std::vector<std::string>& names) {
     v1::BehaviorSchemas sample;
     for (const std::string& name : names) {
-      sample.schemas().emplace_back();
-      sample.schemas().back().name(name);
+      sample.schemas.emplace_back();
+      sample.schemas.back().name = name;
     }
     schemas_.write(sample);
   }
@@ -60,21 +60,21 @@ class ScriptedBus {
     ++cycle;
     if (std::exchange(described_, epoch) != epoch) {
       v1::RobotDescription description;
-      description.stamp(stamp());
-      description.front_buffer(30);
-      description.side_buffer(20);
-      description.front_max_range(2.5);
+      description.stamp = stamp();
+      description.front_buffer = 30;
+      description.side_buffer = 20;
+      description.front_max_range = 2.5;
       description_.write(description);
     }
     v1::RobotState state;
-    state.stamp(stamp());
-    state.odom(world.robot.odom);
-    state.pose_in_odom().x(world.robot.pose_in_odom.x);
-    state.pose_in_odom().y(world.robot.pose_in_odom.y);
-    state.pose_in_odom().th(world.robot.pose_in_odom.th);
-    state.velocity(world.robot.velocity);
-    state.rotation_velocity(world.robot.rotation_velocity);
-    state.status(v1::MOTORS_MOVING);
+    state.stamp = stamp();
+    state.odom = world.robot.odom;
+    state.pose_in_odom.x = world.robot.pose_in_odom.x;
+    state.pose_in_odom.y = world.robot.pose_in_odom.y;
+    state.pose_in_odom.th = world.robot.pose_in_odom.th;
+    state.velocity = world.robot.velocity;
+    state.rotation_velocity = world.robot.rotation_velocity;
+    state.status = v1::MOTORS_MOVING;
     state_.write(state);
   }
 
@@ -82,23 +82,23 @@ class ScriptedBus {
   /// and moves the world on.
   bool act() {
     for (const auto& sample : intentions_.take()) {
-      if (sample.data.stamp().cycle() == cycle && sample.data.stamp().epoch() == epoch)
+      if (sample.data.stamp.cycle == cycle && sample.data.stamp.epoch == epoch)
         intended = sample.data;
     }
-    if (!intended || intended->stamp().cycle() != cycle || intended->stamp().epoch() != epoch)
+    if (!intended || intended->stamp.cycle != cycle || intended->stamp.epoch != epoch)
       return false;
     std::vector<IntendedBehavior> behaviors;
-    for (const v1::IntendedBehavior& behavior : intended->behaviors())
+    for (const v1::IntendedBehavior& behavior : intended->behaviors)
       behaviors.push_back(from_bus(behavior));
     world.move(behaviors);
     v1::BehaviorSet sample;
-    sample.stamp(stamp());
-    sample.control(true);
+    sample.stamp = stamp();
+    sample.control = true;
     for (const BehaviorLevel& level : world.levels) {
       v1::BehaviorState state;
-      state.name(level.name);
-      state.goal(level.goal);
-      sample.behaviors().push_back(state);
+      state.name = level.name;
+      state.goal = level.goal;
+      sample.behaviors.push_back(state);
     }
     behaviors_.write(sample);
     return true;
@@ -109,8 +109,8 @@ class ScriptedBus {
  private:
   v1::Stamp stamp() const {
     v1::Stamp made;
-    made.epoch(epoch);
-    made.cycle(cycle);
+    made.epoch = epoch;
+    made.cycle = cycle;
     return made;
   }
 

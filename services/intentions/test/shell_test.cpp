@@ -44,7 +44,7 @@ class ShellTest : public testing::Test {
     ASSERT_TRUE(acted);
     goals.poll();
   }
-  v1::GoalState state(const v1::GoalId& id) { return goals.status(id)->state(); }
+  v1::GoalState state(const v1::GoalId& id) { return goals.status(id)->state; }
 
   std::shared_ptr<bus::MemoryBus> bus = bus::make_memory_bus();
   bus::Stop stop;
@@ -63,12 +63,12 @@ TEST_F(ShellTest, DrivesToAGoalAndSaysSo) {
   for (int i = 0; i < 100 && (!goals.status(id) || !bus::ended(state(id))); ++i)
     cycle();
   EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED) << bus::describe(*goals.status(id));
-  EXPECT_EQ(goals.status(id)->requester(), "a test");
-  EXPECT_EQ(goals.status(id)->stamp().epoch(), robot.epoch);
-  EXPECT_EQ(goals.status(id)->stamp().cycle(), robot.cycle);
+  EXPECT_EQ(goals.status(id)->requester, "a test");
+  EXPECT_EQ(goals.status(id)->stamp.epoch, robot.epoch);
+  EXPECT_EQ(goals.status(id)->stamp.cycle, robot.cycle);
   EXPECT_LE((robot.world.robot.pose_in_odom.position() - Vec2(1.0, 0.5)).norm(), 0.15);
-  EXPECT_TRUE(robot.intended->behaviors().empty());
-  EXPECT_TRUE(robot.intended->behavior_control());
+  EXPECT_TRUE(robot.intended->behaviors.empty());
+  EXPECT_TRUE(robot.intended->behavior_control);
 }
 
 TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
@@ -79,14 +79,14 @@ TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
   cycle();
   ASSERT_EQ(state(id), v1::GOAL_UNDERWAY);
   v1::Grant grant;
-  grant.estopped(true);
-  grant.estop_source("button");
+  grant.estopped = true;
+  grant.estop_source = "button";
   grants.write(grant);
   grants.write(v1::Grant());  // reset before the service read it
   cycle();
   EXPECT_EQ(state(id), v1::GOAL_CANCELED) << bus::describe(*goals.status(id));
-  EXPECT_EQ(goals.status(id)->reason().find("emergency stop, pressed by \"button\""), 0U);
-  EXPECT_TRUE(robot.intended->behaviors().empty());
+  EXPECT_EQ(goals.status(id)->reason.find("emergency stop, pressed by \"button\""), 0U);
+  EXPECT_TRUE(robot.intended->behaviors.empty());
   grants.write(v1::Grant());
   const v1::GoalId next = goals.ask(go_to(5.0, 0.0));
   cycle();
@@ -101,8 +101,8 @@ TEST_F(ShellTest, CancelsByDispose) {
   goals.cancel(id);
   cycle();
   EXPECT_EQ(state(id), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(id)->code(), v1::CODE_DISPOSED);
-  EXPECT_TRUE(robot.intended->behaviors().empty());
+  EXPECT_EQ(goals.status(id)->code, v1::CODE_DISPOSED);
+  EXPECT_TRUE(robot.intended->behaviors.empty());
 }
 
 TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
@@ -113,15 +113,15 @@ TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
   goals.cancel(own, "the meeting is off");
   cycle();
   EXPECT_EQ(state(own), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(own)->reason(),
+  EXPECT_EQ(goals.status(own)->reason,
             "withdrawn by the program that asked for it: the meeting is off");
   bus::Node somebody(test::memory_options("somebody", true), bus);
   bus::GoalClient others(somebody, "somebody");
   others.cancel(other, "the floor is wet");
   cycle();
   EXPECT_EQ(state(other), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(other)->code(), v1::CODE_DISPOSED);
-  EXPECT_EQ(goals.status(other)->reason(), "withdrawn by another program: the floor is wet");
+  EXPECT_EQ(goals.status(other)->code, v1::CODE_DISPOSED);
+  EXPECT_EQ(goals.status(other)->reason, "withdrawn by another program: the floor is wet");
 }
 
 TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
@@ -133,14 +133,14 @@ TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
     bus::GoalClient another(node, "another");
     canceled = another.ask(go_to(5.0, 0.0));
     v1::Goal goal = go_to(0.5, 0.0);
-    goal.writer_lost(v1::WRITER_LOST_KEEP);
+    goal.writer_lost = v1::WRITER_LOST_KEEP;
     kept = another.ask(goal);
     cycle();
     EXPECT_EQ(state(canceled), v1::GOAL_UNDERWAY);
   }
   cycle();
   EXPECT_EQ(state(canceled), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(canceled)->code(), v1::CODE_WRITER_LOST);
+  EXPECT_EQ(goals.status(canceled)->code, v1::CODE_WRITER_LOST);
   for (int i = 0; i < 100 && !bus::ended(state(kept)); ++i)
     cycle();
   EXPECT_EQ(state(kept), v1::GOAL_SUCCEEDED);
@@ -153,28 +153,28 @@ TEST_F(ShellTest, AProgramThatWasSilentIsBelievedAgainAndItsEndedGoalsStayEnded)
     cycle();
     cycle();
     const auto newest = beliefs.take_newest();
-    return newest && std::any_of(newest->beliefs().begin(), newest->beliefs().end(),
-                                 [](const v1::Belief& one) { return one.name() == "door"; });
+    return newest && std::any_of(newest->beliefs.begin(), newest->beliefs.end(),
+                                 [](const v1::Belief& one) { return one.name == "door"; });
   };
   bus::Node node(test::memory_options("another", true), bus);
   bus::GoalClient another(node, "another");
   auto claims = node.writer(bus::topics::kBeliefClaims);
   v1::BeliefClaim claim;
-  claim.id().number(1);
-  claim.name("door");
-  claim.value("open");
-  claim.writer_lost(v1::WRITER_LOST_CANCEL);
+  claim.id.number = 1;
+  claim.name = "door";
+  claim.value = "open";
+  claim.writer_lost = v1::WRITER_LOST_CANCEL;
   claims.write(claim);
   const v1::GoalId id = another.ask(go_to(5.0, 0.0));
   EXPECT_TRUE(believed());
   EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
   bus::set_silent(*bus, "another", true);
   EXPECT_FALSE(believed());
-  EXPECT_EQ(goals.status(id)->code(), v1::CODE_WRITER_LOST);
+  EXPECT_EQ(goals.status(id)->code, v1::CODE_WRITER_LOST);
   bus::set_silent(*bus, "another", false);
   EXPECT_TRUE(believed());
   EXPECT_EQ(state(id), v1::GOAL_CANCELED);
-  EXPECT_TRUE(robot.intended->behaviors().empty());
+  EXPECT_TRUE(robot.intended->behaviors.empty());
 }
 
 TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
@@ -214,7 +214,7 @@ TEST_F(ShellTest, ARefusalReachesItsRequesterWithoutARobot) {
   thread.join();
   EXPECT_EQ(state(refused), v1::GOAL_REFUSED);
   EXPECT_EQ(state(waiting), v1::GOAL_WAITING);
-  EXPECT_EQ(goals.status(waiting)->code(), v1::CODE_NO_ROBOT);
+  EXPECT_EQ(goals.status(waiting)->code, v1::CODE_NO_ROBOT);
 }
 
 TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
@@ -238,18 +238,18 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
   EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED);
   auto said = messages.take_newest();
   ASSERT_TRUE(said);
-  EXPECT_EQ(said->text(), "hello Karen");
+  EXPECT_EQ(said->text, "hello Karen");
   const auto known = schemas.take_newest();
   ASSERT_TRUE(known);
-  EXPECT_EQ(known->trouble(), "");
-  EXPECT_TRUE(std::any_of(known->schemas().begin(), known->schemas().end(),
-                          [](const v1::ActivitySchema& one) { return one.name() == "greet"; }));
+  EXPECT_EQ(known->trouble, "");
+  EXPECT_TRUE(std::any_of(known->schemas.begin(), known->schemas.end(),
+                          [](const v1::ActivitySchema& one) { return one.name == "greet"; }));
 
   // A broken file gives an error and changes nothing; the next good one is accepted.
   write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" ", 2);
   for (int i = 0; i < 120; ++i)
     cycle();
-  EXPECT_NE(schemas.take_newest().value_or(v1::ActivitySchemas{}).trouble().find("mine.act:1:"),
+  EXPECT_NE(schemas.take_newest().value_or(v1::ActivitySchemas{}).trouble.find("mine.act:1:"),
             std::string::npos);
   write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" who))))", 3);
   for (int i = 0; i < 120; ++i)
@@ -259,7 +259,7 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
     cycle();
   said = messages.take_newest();
   ASSERT_TRUE(said);
-  EXPECT_EQ(said->text(), "bye Karen");
+  EXPECT_EQ(said->text, "bye Karen");
 }
 
 TEST_F(ShellTest, AnActivityAsksAgents) {
@@ -276,20 +276,20 @@ TEST_F(ShellTest, AnActivityAsksAgents) {
   for (int i = 0; i < 20; ++i) {
     cycle();
     for (const auto& sample : asked.take()) {
-      EXPECT_EQ(sample.data.functor(), "place_of");
-      EXPECT_EQ(bus::text_of(sample.data.arguments(), "person"), "karen");
+      EXPECT_EQ(sample.data.functor, "place_of");
+      EXPECT_EQ(bus::text_of(sample.data.arguments, "person"), "karen");
       v1::Answer answer;
-      answer.asker(sample.data.asker());
-      answer.number(sample.data.number());
-      answer.code(v1::ANSWER_UNDERWAY);
+      answer.asker = sample.data.asker;
+      answer.number = sample.data.number;
+      answer.code = v1::ANSWER_UNDERWAY;
       answers.write(answer);
-      answer.code(v1::ANSWER_DONE);
-      answer.results().push_back(bus::text("place", "EJ-231"));
+      answer.code = v1::ANSWER_DONE;
+      answer.results.push_back(bus::text("place", "EJ-231"));
       answers.write(answer);
     }
   }
   EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED);
-  EXPECT_EQ(goals.status(id)->reason(), "in EJ-231");
+  EXPECT_EQ(goals.status(id)->reason, "in EJ-231");
 }
 
 TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
@@ -301,26 +301,26 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
     if (auto news = beliefs.take_newest())
       newest = std::move(news);
     if (newest)
-      for (const v1::Belief& belief : newest->beliefs())
-        if (belief.name() == name)
+      for (const v1::Belief& belief : newest->beliefs)
+        if (belief.name == name)
           return belief;
     return std::nullopt;
   };
   v1::BeliefClaim claim;
-  claim.id().writer(7);
-  claim.id().number(1);
-  claim.source("a person");
-  claim.name("karen-is-in");
-  claim.value("(a \"b\" 2.5)");
+  claim.id.writer = 7;
+  claim.id.number = 1;
+  claim.source = "a person";
+  claim.name = "karen-is-in";
+  claim.value = "(a \"b\" 2.5)";
   claims.write(claim);
   cycle();
   const auto believed = find("karen-is-in");
   ASSERT_TRUE(believed);
-  EXPECT_EQ(believed->value(), "(a b 2.5)");
-  EXPECT_EQ(believed->said_by(), "a person");
+  EXPECT_EQ(believed->value, "(a b 2.5)");
+  EXPECT_EQ(believed->said_by, "a person");
   EXPECT_TRUE(find("connected"));
   // A file that cannot be read changes nothing.
-  claim.value("(a");
+  claim.value = "(a";
   claims.write(claim);
   cycle();
   EXPECT_TRUE(find("karen-is-in"));
@@ -340,9 +340,8 @@ TEST_F(ShellTest, InLockstepItKnowsWhatBehaviorsThereAre) {
   for (int i = 0; i < 20; ++i)
     cycle();
   EXPECT_EQ(state(id), v1::GOAL_FAILED);
-  EXPECT_NE(goals.status(id)->reason().find("neither an activity nor a behavior"),
-            std::string::npos)
-      << goals.status(id)->reason();
+  EXPECT_NE(goals.status(id)->reason.find("neither an activity nor a behavior"), std::string::npos)
+      << goals.status(id)->reason;
 }
 
 }  // namespace

@@ -11,25 +11,25 @@ constexpr std::size_t kMostPercepts = 256;  // the bound of Perception.percepts
 
 v1::Perception to_bus(const Output& output) {
   v1::Perception sample;
-  sample.percepts(converted(
-      output.percepts, [](const auto& percept) { return lps::to_bus(percept); }, kMostPercepts));
-  sample.left_wall(output.left_wall ? output.left_wall->id : 0);
-  sample.right_wall(output.right_wall ? output.right_wall->id : 0);
+  sample.percepts = converted(
+      output.percepts, [](const auto& percept) { return lps::to_bus(percept); }, kMostPercepts);
+  sample.left_wall = output.left_wall ? output.left_wall->id : 0;
+  sample.right_wall = output.right_wall ? output.right_wall->id : 0;
   return sample;
 }
 
 v1::GridTile to_bus(const TileKey& key) {
   v1::GridTile tile;
-  tile.column(static_cast<std::int32_t>(key.column));
-  tile.row(static_cast<std::int32_t>(key.row));
+  tile.column = static_cast<std::int32_t>(key.column);
+  tile.row = static_cast<std::int32_t>(key.row);
   return tile;
 }
 
 v1::GridTile to_bus(const Grid& grid, const TileKey& key) {
   v1::GridTile tile = to_bus(key);
-  tile.resolution(grid.settings().resolution);
-  tile.side(static_cast<std::uint32_t>(Grid::kTile));
-  tile.cells(grid.cells(key));
+  tile.resolution = grid.settings().resolution;
+  tile.side = static_cast<std::uint32_t>(Grid::kTile);
+  tile.cells = grid.cells(key);
   return tile;
 }
 

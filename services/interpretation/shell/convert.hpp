@@ -1,6 +1,6 @@
 #pragma once
 
-#include "perception.h"
+#include "saphira/idl/perception.hpp"
 #include "saphira/interpretation/grid.hpp"
 #include "saphira/interpretation/interpretation.hpp"
 

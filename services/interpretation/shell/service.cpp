@@ -18,18 +18,18 @@ void Service::step(const runtime::Turn& turn) {
     inputs.new_robot = &sonars;
   }
   inputs.new_frame = turn.new_frame;
-  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom());
+  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom);
   inputs.readings = lps::sonars_from_bus(turn.robot);
 
   const Core::Outputs outputs = core_.step(inputs);
   v1::Perception sample = to_bus(*outputs.output);
-  sample.odom(turn.robot.odom());
+  sample.odom = turn.robot.odom;
   perceptions_.write(std::move(sample));
   for (const TileKey& key : outputs.gone)
     tiles_.dispose(to_bus(key));
   for (const TileKey& key : outputs.tiles) {
     v1::GridTile tile = to_bus(core_.grid(), key);
-    tile.odom(turn.robot.odom());
+    tile.odom = turn.robot.odom;
     tiles_.write(std::move(tile));
   }
 }

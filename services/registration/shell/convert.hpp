@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "map.h"
+#include "saphira/idl/map.hpp"
 #include "saphira/registration/core.hpp"
 
 /// Conversions between the types of the bus and those of the library: pure functions.

@@ -75,20 +75,20 @@ void Service::step(const runtime::Turn& turn) {
     sonars = lps::mounts_from_bus(turn.description);
     inputs.new_robot = &sonars;
   }
-  inputs.odom = turn.robot.odom();
-  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom());
+  inputs.odom = turn.robot.odom;
+  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom);
   inputs.readings = lps::sonars_from_bus(turn.robot);
   const v1::Perception* const seen = perception_.value();
-  if (seen != nullptr && seen->odom() == inputs.odom)
-    for (const v1::Percept& percept : seen->percepts())
+  if (seen != nullptr && seen->odom == inputs.odom)
+    for (const v1::Percept& percept : seen->percepts)
       inputs.percepts.push_back(lps::from_bus(percept));
 
   const Core::Outputs outputs = core_->step(inputs);
   v1::Registration sample = to_bus(outputs, inputs.pose_in_odom);
-  sample.odom(inputs.odom);
-  sample.map_revision(core_->map_revision());
-  sample.adds_features(core_->adds_features());
-  sample.snaps(core_->snaps());
+  sample.odom = inputs.odom;
+  sample.map_revision = core_->map_revision();
+  sample.adds_features = core_->adds_features();
+  sample.snaps = core_->snaps();
   registrations_.write(std::move(sample));
   publish_map();
   ports_.say(outputs.notes.lines());
@@ -104,9 +104,9 @@ void Service::publish_map() {
     return;
   published_ = core_->map_revision();
   v1::FloorMap sample = maps::to_bus(core_->map());
-  sample.revision(core_->map_revision());
-  sample.source(core_->map_source());
-  sample.changed(core_->map_changed());
+  sample.revision = core_->map_revision();
+  sample.source = core_->map_source();
+  sample.changed = core_->map_changed();
   maps_.write(std::move(sample));
 }
 

@@ -58,13 +58,13 @@ class RegistrationShell : public testing::Test {
   RegistrationShell() {
     drive.scene().set_door("n2", true);
     v1::RobotDescription description;
-    description.stamp().epoch(7);
-    description.radius(0.22);
+    description.stamp.epoch = 7;
+    description.radius = 0.22;
     for (const lps::SonarMount& mount : drive.mounts()) {
       v1::SonarPose pose;
-      pose.sonar(static_cast<std::uint8_t>(mount.sonar));
-      pose.pose_in_robot(lps::to_bus(mount.in_robot));
-      description.sonars().push_back(pose);
+      pose.sonar = static_cast<std::uint8_t>(mount.sonar);
+      pose.pose_in_robot = lps::to_bus(mount.in_robot);
+      description.sonars.push_back(pose);
     }
     descriptions.write(description);
   }
@@ -80,16 +80,16 @@ class RegistrationShell : public testing::Test {
   void cycle() {
     const test::Seen& seen = drive.advance();
     v1::RobotState state;
-    state.stamp().epoch(7);
-    state.stamp().cycle(seen.cycle);
-    state.odom(odom);
-    state.pose_in_odom(lps::to_bus(seen.pose_in_odom));
+    state.stamp.epoch = 7;
+    state.stamp.cycle = seen.cycle;
+    state.odom = odom;
+    state.pose_in_odom = lps::to_bus(seen.pose_in_odom);
     for (const lps::SonarReading& reading : seen.readings) {
       v1::SonarReading sample;
-      sample.sonar(static_cast<std::uint8_t>(reading.sonar));
-      sample.range(static_cast<float>(reading.range));
-      sample.echo(reading.echo);
-      state.sonars().push_back(sample);
+      sample.sonar = static_cast<std::uint8_t>(reading.sonar);
+      sample.range = static_cast<float>(reading.range);
+      sample.echo = reading.echo;
+      state.sonars.push_back(sample);
     }
     states.write(state);
     ASSERT_TRUE(eyes_shell.step(stop));
@@ -99,8 +99,8 @@ class RegistrationShell : public testing::Test {
       const auto newest = registrations.take_newest();
       ASSERT_TRUE(newest);
       registration = *newest;
-    } while (registration.stamp().cycle() < seen.cycle);
-    ASSERT_EQ(registration.stamp().cycle(), seen.cycle);
+    } while (registration.stamp.cycle < seen.cycle);
+    ASSERT_EQ(registration.stamp.cycle, seen.cycle);
   }
 
   /// The service ends when the memory has its whole state, and another one begins.
@@ -123,27 +123,27 @@ class RegistrationShell : public testing::Test {
   /// To and fro through the corridor of the office, by the service's pose.
   void tour(test::Tour& tour, int cycles) {
     for (int i = 0; i < cycles; ++i) {
-      if (!tour.act(drive, lps::from_bus(registration.pose_in_map())))
+      if (!tour.act(drive, lps::from_bus(registration.pose_in_map)))
         return;
       ASSERT_NO_FATAL_FAILURE(cycle());
     }
   }
 
   double error() const {
-    return (lps::from_bus(registration.pose_in_map()).position() -
+    return (lps::from_bus(registration.pose_in_map).position() -
             drive.seen().true_pose_in_world.position())
         .norm();
   }
 
   Answer ask(const Request& asked) {
     v1::Request request = to_bus(asked);
-    request.source("test");
-    request.number(++number);
+    request.source = "test";
+    request.number = ++number;
     requests.write(request);
     cycle();
     const auto answer = answers.take_newest();
     EXPECT_TRUE(answer.has_value());
-    EXPECT_EQ(answer->number(), number);
+    EXPECT_EQ(answer->number, number);
     return from_bus(*answer);
   }
   bool done(const Request& asked) { return ask(asked).code == AnswerCode::done; }
@@ -220,32 +220,32 @@ TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
   const auto map = maps.take_newest();
   ASSERT_TRUE(map);
   const maps::Map file = maps::load_map(map_path("office"));
-  ASSERT_EQ(map->artifacts().size(), file.features.size());
+  ASSERT_EQ(map->artifacts.size(), file.features.size());
   for (std::size_t i = 0; i < file.features.size(); ++i) {
     maps::Feature expected = file.features[i];
-    const maps::Feature feature = maps::from_bus(map->artifacts()[i]);
+    const maps::Feature feature = maps::from_bus(map->artifacts[i]);
     EXPECT_NE(feature.id, 0U) << "while it is loaded a wall has one, too";
     if (expected.type == lps::PointType::wall)
       expected.id = feature.id;
     EXPECT_EQ(feature, expected);
   }
   cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  EXPECT_EQ(registration.state, v1::REGISTRATION_TRACKING);
   test::Tour to_and_fro({{9.2, 7.0}, {2.0, 7.0}}, true);
   int accepted = 0;
   int off = 0;
   for (int i = 0; i < 1500; ++i) {
     tour(to_and_fro, 1);
     off += error() > 0.3 ? 1 : 0;
-    for (const v1::Match& match : registration.matches())
-      accepted += match.accepted() ? 1 : 0;
-    ASSERT_EQ(registration.state(), v1::REGISTRATION_TRACKING) << registration.reason();
+    for (const v1::Match& match : registration.matches)
+      accepted += match.accepted ? 1 : 0;
+    ASSERT_EQ(registration.state, v1::REGISTRATION_TRACKING) << registration.reason;
     ASSERT_LT(error(), 0.8) << "in cycle " << i;
   }
   EXPECT_GE(to_and_fro.reached(), 4U);
   EXPECT_GT(accepted, 30);
   EXPECT_LT(off, 75) << "of 1500 cycles farther than 0.3 m from the truth";
-  EXPECT_EQ(registration.environment(), 1U);
+  EXPECT_EQ(registration.environment, 1U);
 }
 
 TEST_F(RegistrationShell, AThingComesOntoTheMapAndGoesWhereFeaturesAreAdded) {
@@ -285,18 +285,18 @@ TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
   const Options options{map_path("office"), "start", folder.path("memory")};
   start(options);
   ASSERT_TRUE(drive.scene().set_door("n2", false));
-  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
-  EXPECT_EQ(registration.closed_doors(), std::vector<std::uint32_t>{112});
+  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors.empty(); }, 1200));
+  EXPECT_EQ(registration.closed_doors, std::vector<std::uint32_t>{112});
   restart(options);
-  EXPECT_EQ(registration.closed_doors(), std::vector<std::uint32_t>{112});
+  EXPECT_EQ(registration.closed_doors, std::vector<std::uint32_t>{112});
   ASSERT_TRUE(drive.scene().set_door("n2", true));
-  EXPECT_TRUE(tour_until([&] { return registration.closed_doors().empty(); }, 1200));
+  EXPECT_TRUE(tour_until([&] { return registration.closed_doors.empty(); }, 1200));
   EXPECT_NE(maps::find(known_map(), 112), nullptr);
   // On another map it is another door.
   ASSERT_TRUE(drive.scene().set_door("n2", false));
-  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
+  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors.empty(); }, 1200));
   EXPECT_TRUE(done(load("another", read_file(map_path("office")))));
-  EXPECT_TRUE(registration.closed_doors().empty());
+  EXPECT_TRUE(registration.closed_doors.empty());
 }
 
 TEST_F(RegistrationShell, ABadMemoryIsNone) {
@@ -309,13 +309,13 @@ TEST_F(RegistrationShell, ABadMemoryIsNone) {
     start({map_path("office"), "start", folder.path("memory")});
     const auto map = maps.take_newest();
     ASSERT_TRUE(map) << text;
-    EXPECT_EQ(map->source(), map_path("office"));
+    EXPECT_EQ(map->source, map_path("office"));
     shell.reset();
     service.reset();
   }
   start({map_path("office"), "start", folder.path("memory")});
   cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  EXPECT_EQ(registration.state, v1::REGISTRATION_TRACKING);
 }
 
 TEST(StartPose, IsAPlaceOrAPose) {

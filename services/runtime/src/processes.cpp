@@ -54,7 +54,7 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
 
 ProcessesOnBus::~ProcessesOnBus() {
   v1::ProcessSet sample;
-  sample.instance(node_.instance());
+  sample.instance = node_.instance();
   states_.dispose(sample);
 }
 
@@ -86,18 +86,18 @@ void ProcessesOnBus::publish() {
   if (!table_.take_changed())
     return;
   v1::ProcessSet sample;
-  sample.instance(node_.instance());
-  sample.service(node_.options().name);
-  sample.stamp().epoch(stamp_.epoch);
-  sample.stamp().cycle(stamp_.cycle);
+  sample.instance = node_.instance();
+  sample.service = node_.options().name;
+  sample.stamp.epoch = stamp_.epoch;
+  sample.stamp.cycle = stamp_.cycle;
   for (const Process* process : table_.processes()) {
     v1::Process one;
-    one.name(process->name());
-    one.state(state_of(*process));
-    one.number(process->state() >= kFirstOwnState ? process->state() : 0);
-    one.since(process->since());
-    one.effect(process->effect());
-    sample.processes().push_back(std::move(one));
+    one.name = process->name();
+    one.state = state_of(*process);
+    one.number = process->state() >= kFirstOwnState ? process->state() : 0;
+    one.since = process->since();
+    one.effect = process->effect();
+    sample.processes.push_back(std::move(one));
   }
   states_.write(sample);
 }

@@ -42,12 +42,12 @@ void Shell::idle() {
 
 void Shell::step_now(const bus::Step& step) {
   stepped_ = Clock::now();
-  processes_.step({cycle_.stamp().epoch(), cycle_.stamp().cycle()});
+  processes_.step({cycle_.stamp().epoch, cycle_.stamp().cycle});
   ports_.take_requests();
   if (step.new_epoch)
     odom_.reset();
-  const std::uint64_t odom = step.robot.odom();
-  service_->step({{cycle_.stamp().epoch(), cycle_.stamp().cycle()},
+  const std::uint64_t odom = step.robot.odom;
+  service_->step({{cycle_.stamp().epoch, cycle_.stamp().cycle},
                   step.robot,
                   *step.description,
                   step.new_epoch,

@@ -14,13 +14,13 @@ class ProcessesOnBusTest : public ::testing::Test {
   std::optional<v1::Answer> ask(const std::string& whom, const std::string& process,
                                 const char* functor, std::optional<double> cycles = {}) {
     v1::Request request;
-    request.source("a person");
-    request.number(++number);
-    request.service(whom);
-    request.functor(functor);
-    request.arguments({bus::text("process", process)});
+    request.source = "a person";
+    request.number = ++number;
+    request.service = whom;
+    request.functor = functor;
+    request.arguments = {bus::text("process", process)};
     if (cycles)
-      request.arguments().push_back(bus::number("cycles", *cycles));
+      request.arguments.push_back(bus::number("cycles", *cycles));
     requests.write(request);
     on_bus.idle();
     return answers.take_newest();
@@ -52,16 +52,16 @@ class ProcessesOnBusTest : public ::testing::Test {
 TEST_F(ProcessesOnBusTest, TellsTheStatesWhenTheyChange) {
   auto newest = states.take_newest();
   ASSERT_TRUE(newest);
-  EXPECT_EQ(newest->service(), "eyes");
-  EXPECT_EQ(newest->instance(), service.instance());
-  ASSERT_EQ(newest->processes().size(), 1U);
-  EXPECT_EQ(newest->processes()[0].state(), v1::PROCESS_INIT);
-  EXPECT_EQ(newest->processes()[0].effect(), "finds doors");
+  EXPECT_EQ(newest->service, "eyes");
+  EXPECT_EQ(newest->instance, service.instance());
+  ASSERT_EQ(newest->processes.size(), 1U);
+  EXPECT_EQ(newest->processes[0].state, v1::PROCESS_INIT);
+  EXPECT_EQ(newest->processes[0].effect, "finds doors");
   cycle();
   newest = states.take_newest();
   ASSERT_TRUE(newest);
-  EXPECT_EQ(newest->processes()[0].state(), v1::PROCESS_RUNNING);
-  EXPECT_EQ(newest->processes()[0].number(), 10);
+  EXPECT_EQ(newest->processes[0].state, v1::PROCESS_RUNNING);
+  EXPECT_EQ(newest->processes[0].number, 10);
   cycle();
   EXPECT_FALSE(states.take_newest());
 }
@@ -70,33 +70,33 @@ TEST_F(ProcessesOnBusTest, ObeysAndAnswers) {
   cycle();
   auto answer = ask("eyes", "doors", "interrupt");
   ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->code(), v1::ANSWER_DONE);
-  EXPECT_EQ(answer->number(), number);
+  EXPECT_EQ(answer->code, v1::ANSWER_DONE);
+  EXPECT_EQ(answer->number, number);
   // Published at once, also while the cycles stand still.
-  EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_INTERRUPTED);
+  EXPECT_EQ(states.take_newest().value().processes[0].state, v1::PROCESS_INTERRUPTED);
   cycle();
   EXPECT_TRUE(doors.interrupted());
-  EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_SUSPENDED);
-  EXPECT_EQ(ask("eyes", "doors", "resume").value().code(), v1::ANSWER_DONE);
+  EXPECT_EQ(states.take_newest().value().processes[0].state, v1::PROCESS_SUSPENDED);
+  EXPECT_EQ(ask("eyes", "doors", "resume").value().code, v1::ANSWER_DONE);
   cycle();
   EXPECT_TRUE(doors.works());
-  EXPECT_EQ(ask("eyes", "doors", "suspend", 2).value().code(), v1::ANSWER_DONE);
-  EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_SLEEPING);
+  EXPECT_EQ(ask("eyes", "doors", "suspend", 2).value().code, v1::ANSWER_DONE);
+  EXPECT_EQ(states.take_newest().value().processes[0].state, v1::PROCESS_SLEEPING);
 }
 
 TEST_F(ProcessesOnBusTest, SaysWhyNot) {
   auto answer = ask("eyes", "windows", "suspend");
   ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->code(), v1::ANSWER_REFUSED);
-  EXPECT_EQ(answer->text(), "no process \"windows\"; there are doors");
+  EXPECT_EQ(answer->code, v1::ANSWER_REFUSED);
+  EXPECT_EQ(answer->text, "no process \"windows\"; there are doors");
   EXPECT_FALSE(ask("ears", "doors", "suspend"));
-  EXPECT_EQ(ask("eyes", "doors", "end").value().code(), v1::ANSWER_UNKNOWN_FUNCTOR);
-  EXPECT_EQ(ask("eyes", "doors", "suspend", -1.0).value().code(), v1::ANSWER_BAD_ARGUMENT);
+  EXPECT_EQ(ask("eyes", "doors", "end").value().code, v1::ANSWER_UNKNOWN_FUNCTOR);
+  EXPECT_EQ(ask("eyes", "doors", "suspend", -1.0).value().code, v1::ANSWER_BAD_ARGUMENT);
 }
 
 TEST_F(ProcessesOnBusTest, LetsTheServiceAnswerForWhatIsNotInTheTable) {
-  EXPECT_EQ(ask("eyes", "follow-it", "interrupt").value().code(), v1::ANSWER_DONE);
-  EXPECT_EQ(ask("eyes", "follow-it", "suspend", 3).value().text(), "not for so long");
+  EXPECT_EQ(ask("eyes", "follow-it", "interrupt").value().code, v1::ANSWER_DONE);
+  EXPECT_EQ(ask("eyes", "follow-it", "suspend", 3).value().text, "not for so long");
 }
 
 }  // namespace

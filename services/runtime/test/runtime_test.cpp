@@ -34,13 +34,13 @@ class Repeater final : public Service {
     seen_.steps.push_back(turn.stamp);
     seen_.new_robot.push_back(turn.new_robot);
     seen_.new_frame.push_back(turn.new_frame);
-    EXPECT_EQ(turn.description.stamp().epoch(), turn.stamp.epoch);
+    EXPECT_EQ(turn.description.stamp.epoch, turn.stamp.epoch);
     v1::BehaviorSet sample;
-    sample.control(intentions_.value() != nullptr);
+    sample.control = intentions_.value() != nullptr;
     behaviors_.write(sample);
     Notes notes;
     for (const auto& message : messages_.take())
-      notes.warn(message.data.text());
+      notes.warn(message.data.text);
     ports_.say(notes.lines());
     if (!notes.empty())
       ports_.degrade("somebody spoke");
@@ -63,19 +63,19 @@ class RuntimeTest : public testing::TestWithParam<bool> {
   void state(std::uint64_t odom = 1) {
     if (cycle_ == 0) {
       v1::RobotDescription description;
-      description.stamp().epoch(epoch_);
+      description.stamp.epoch = epoch_;
       descriptions_.write(description);
     }
     v1::RobotState sample;
-    sample.stamp().epoch(epoch_);
-    sample.stamp().cycle(++cycle_);
-    sample.odom(odom);
+    sample.stamp.epoch = epoch_;
+    sample.stamp.cycle = ++cycle_;
+    sample.odom = odom;
     states_.write(sample);
   }
   void intend() {
     v1::Intentions sample;
-    sample.stamp().epoch(epoch_);
-    sample.stamp().cycle(cycle_);
+    sample.stamp.epoch = epoch_;
+    sample.stamp.cycle = cycle_;
     intentions_.write(sample);
   }
 
@@ -100,13 +100,13 @@ TEST_P(RuntimeTest, StepsWhatIsDueAndNeverWaits) {
   EXPECT_FALSE(shell_.advance());
   const auto told = behaviors_.take_newest();
   ASSERT_TRUE(told);
-  EXPECT_EQ(told->stamp().epoch(), 7U) << "the shell stamps what is written";
-  EXPECT_EQ(told->stamp().cycle(), 1U);
-  EXPECT_FALSE(told->control());
+  EXPECT_EQ(told->stamp.epoch, 7U) << "the shell stamps what is written";
+  EXPECT_EQ(told->stamp.cycle, 1U);
+  EXPECT_FALSE(told->control);
   intend();
   state();
   EXPECT_TRUE(shell_.advance());
-  EXPECT_TRUE(behaviors_.take_newest()->control());
+  EXPECT_TRUE(behaviors_.take_newest()->control);
 }
 
 TEST_P(RuntimeTest, TellsNewRobotsAndNewFrames) {
@@ -143,12 +143,12 @@ TEST_P(RuntimeTest, SaysThatItIsDegradedForOneStep) {
   messages.write({});
   state();
   ASSERT_TRUE(shell_.advance());
-  EXPECT_EQ(node_.status().state(), v1::SERVICE_DEGRADED);
-  EXPECT_EQ(node_.status().reason(), "somebody spoke");
+  EXPECT_EQ(node_.status().state, v1::SERVICE_DEGRADED);
+  EXPECT_EQ(node_.status().reason, "somebody spoke");
   intend();
   state();
   ASSERT_TRUE(shell_.advance());
-  EXPECT_EQ(node_.status().state(), v1::SERVICE_RUNNING);
+  EXPECT_EQ(node_.status().state, v1::SERVICE_RUNNING);
 }
 
 TEST_P(RuntimeTest, LooksAtFilesBehindTheSteps) {

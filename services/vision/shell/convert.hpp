@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "saphira/idl/vision.hpp"
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/vision/blobs.hpp"
-#include "vision.h"
 
 namespace saphira::vision {
 

@@ -25,19 +25,19 @@ void Service::step(const runtime::Turn& turn) {
   inputs.cycle = turn.stamp.cycle;
   inputs.new_robot = turn.new_robot;
   inputs.new_frame = turn.new_frame;
-  inputs.odom = turn.robot.odom();
-  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom());
-  inputs.channels_per_s = turn.robot.vision_packets_per_s();
+  inputs.odom = turn.robot.odom;
+  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom);
+  inputs.channels_per_s = turn.robot.vision_packets_per_s;
   inputs.picture = pictures_.take(turn.stamp.cycle);
   inputs.seen = std::exchange(seen_, {});
   inputs.no_pictures = pictures_.trouble();
 
   const Core::Outputs outputs = core_.step(inputs);
   v1::Vision sample = to_bus(outputs.things);
-  sample.odom(turn.robot.odom());
-  sample.picture(outputs.picture);
-  sample.sees_people(outputs.sees_people);
-  sample.sees_colors(outputs.sees_colors);
+  sample.odom = turn.robot.odom;
+  sample.picture = outputs.picture;
+  sample.sees_people = outputs.sees_people;
+  sample.sees_colors = outputs.sees_colors;
   output_.write(std::move(sample));
   ports_.say(outputs.notes.lines());
 }
@@ -47,20 +47,20 @@ void Service::take_channels(std::uint64_t epoch) {
     seen_.clear();
   for (const auto& sample : channels_.take()) {
     const v1::VisionChannels& channels = sample.data;
-    if (!sample.info.disposed && channels.stamp().epoch() == epoch)
-      seen_.push_back({channels.stamp().cycle(), channels.odom(),
-                       lps::from_bus(channels.pose_in_odom()), from_bus(channels)});
+    if (!sample.info.disposed && channels.stamp.epoch == epoch)
+      seen_.push_back({channels.stamp.cycle, channels.odom, lps::from_bus(channels.pose_in_odom),
+                       from_bus(channels)});
   }
 }
 
 std::string Service::missing(const v1::RobotState& state) {
-  const std::uint64_t cycle = state.stamp().cycle();
+  const std::uint64_t cycle = state.stamp.cycle;
   if (stereo_ && !pictures_.has(cycle))
     return "the stereo picture of cycle " + std::to_string(cycle);
-  if (state.stamp().epoch() != epoch_)
+  if (state.stamp.epoch != epoch_)
     return {};  // the first step of an epoch: their number is unknown
   take_channels(epoch_);
-  if (!core_.has_channels(cycle, state.vision_packets_per_s(), seen_))
+  if (!core_.has_channels(cycle, state.vision_packets_per_s, seen_))
     return std::string(bus::topics::kVisionChannels.name) + " of cycle " +
            std::to_string(cycle - 1);
   return {};

@@ -9,19 +9,19 @@ namespace {
 
 TEST(Convert, ChannelsByTheirMode) {
   v1::VisionChannels sample;
-  sample.channels().resize(3);
+  sample.channels.resize(3);
   for (std::size_t i = 0; i < 3; ++i) {
-    v1::VisionChannel& channel = sample.channels()[i];
-    channel.x(static_cast<std::int16_t>(-10 - static_cast<int>(i)));
-    channel.y(5);
-    channel.area(100);
-    channel.width(8);
-    channel.height(12);
+    v1::VisionChannel& channel = sample.channels[i];
+    channel.x = static_cast<std::int16_t>(-10 - static_cast<int>(i));
+    channel.y = 5;
+    channel.area = 100;
+    channel.width = 8;
+    channel.height = 12;
   }
-  sample.channels()[0].mode(v1::VISION_BLOB_BOX);
-  sample.channels()[1].mode(v1::VISION_BLOB);
-  sample.channels()[2].mode(v1::VISION_LINE);
-  sample.channels()[2].count(9);
+  sample.channels[0].mode = v1::VISION_BLOB_BOX;
+  sample.channels[1].mode = v1::VISION_BLOB;
+  sample.channels[2].mode = v1::VISION_LINE;
+  sample.channels[2].count = 9;
   const Channels channels = from_bus(sample);
   EXPECT_EQ(channels[0].x, -10);
   EXPECT_EQ(channels[0].y, 5);
@@ -42,7 +42,7 @@ TEST(Convert, ChannelsByTheirMode) {
 }
 
 TEST(Convert, NoMoreThanTheContractTakes) {
-  EXPECT_EQ(to_bus(std::vector<lps::SeenThing>(100)).things().size(), 64U);
+  EXPECT_EQ(to_bus(std::vector<lps::SeenThing>(100)).things.size(), 64U);
 }
 
 }  // namespace

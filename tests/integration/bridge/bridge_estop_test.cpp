@@ -12,11 +12,11 @@ namespace {
 /// A stop button in its own program.
 class Button {
  public:
-  explicit Button(Scene& scene) : node_(scene.node.options()) { command_.source("button"); }
+  explicit Button(Scene& scene) : node_(scene.node.options()) { command_.source = "button"; }
 
   void say(bool pressed) {
-    command_.active(pressed);
-    command_.number(command_.number() + 1);
+    command_.active = pressed;
+    command_.number = command_.number + 1;
     writer_.write(command_);
   }
 
@@ -34,9 +34,9 @@ struct Driving : Scene {
     drives = true;
   }
   bool moves() {
-    return until([&] { return state.velocity() > 0.25; });
+    return until([&] { return state.velocity > 0.25; });
   }
-  bool stopped() const { return grant.estopped() && grant.role() == v1::ROLE_ESTOP && rests(); }
+  bool stopped() const { return grant.estopped && grant.role == v1::ROLE_ESTOP && rests(); }
   /// Presses until it is confirmed, and until the robot rests.
   bool press(Button& button) {
     return until([&] {
@@ -46,11 +46,11 @@ struct Driving : Scene {
   }
   /// For that number of robot cycles; false where it moved, or the stop was released.
   bool stays_stopped(std::uint64_t cycles) {
-    const std::uint64_t begin = state.stamp().cycle();
+    const std::uint64_t begin = state.stamp.cycle;
     bool still = true;
     const bool passed = until([&] {
       still = still && stopped();
-      return state.stamp().cycle() >= begin + cycles;
+      return state.stamp.cycle >= begin + cycles;
     });
     return passed && still;
   }
@@ -63,24 +63,23 @@ TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
     Button button(scene);
     ASSERT_TRUE(scene.press(button)) << scene.bridge_log();
   }
-  EXPECT_EQ(scene.grant.estop_source(), "button");
+  EXPECT_EQ(scene.grant.estop_source, "button");
   // The driver still asks; the button's program is gone, its lease and any quiet time are over.
   EXPECT_TRUE(scene.stays_stopped(40));
 
-  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::uint64_t epoch = scene.state.stamp.epoch;
   scene.start_simulator();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > epoch; }));
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.epoch > epoch; }));
   EXPECT_TRUE(scene.stays_stopped(10));
 
-  const std::uint64_t second = scene.state.stamp().epoch();
+  const std::uint64_t second = scene.state.stamp.epoch;
   scene.bridge->signal(SIGKILL);
   scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > second; }))
-      << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.epoch > second; })) << scene.bridge_log();
   EXPECT_TRUE(scene.stays_stopped(10));
-  EXPECT_EQ(scene.grant.estop_source(), "button");
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_DEGRADED);
-  EXPECT_NE(scene.status.reason().find("emergency stop, pressed by button"), std::string::npos);
+  EXPECT_EQ(scene.grant.estop_source, "button");
+  EXPECT_EQ(scene.status.state, v1::SERVICE_DEGRADED);
+  EXPECT_NE(scene.status.reason.find("emergency stop, pressed by button"), std::string::npos);
 }
 
 /// The way from the press to the standstill [m], of a robot at 0.4 m/s. In lockstep.
@@ -91,14 +90,14 @@ double way_to_standstill(const std::string& robot_file) {
   forward(scene.command, 0.4);
   Button button(scene);
   scene.permit(50);
-  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 50; })) << scene.bridge_log();
-  EXPECT_GT(scene.state.velocity(), 0.38);
+  EXPECT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 50; })) << scene.bridge_log();
+  EXPECT_GT(scene.state.velocity, 0.38);
   EXPECT_TRUE(scene.until([&] {
     button.say(true);
-    return scene.grant.estopped();
+    return scene.grant.estopped;
   }));
   scene.permit(100);
-  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 100; }));
+  EXPECT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 100; }));
   EXPECT_TRUE(scene.rests());
   const std::vector<sim::TraceRow> rows = scene.end();
   return rows.at(99).pose_in_world.x - rows.at(49).pose_in_world.x;
@@ -141,7 +140,7 @@ TEST(BridgeEstop, ByTheCommandLine) {
   EXPECT_EQ(reset.wait(), 0) << reset.output();
   EXPECT_NE(reset.output().find("the emergency stop is reset"), std::string::npos)
       << reset.output();
-  EXPECT_TRUE(scene.until([&] { return scene.grant.waits_for_hand_back(); }));
+  EXPECT_TRUE(scene.until([&] { return scene.grant.waits_for_hand_back; }));
   EXPECT_TRUE(scene.rests());
 
   Process back = command_line(scene, {"drive", "hand-back"});

@@ -17,7 +17,7 @@ void start(Scene& scene) {
   scene.start();
   forward(scene.command, 0.3);
   scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; })) << scene.bridge_log();
 }
 
 TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
@@ -45,7 +45,7 @@ TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
   scene.watch(milliseconds(200));
   const std::uint64_t resumed = scene.trace().back().cycle;
   scene.bridge->signal(SIGCONT);
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > resumed + 10; }));
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle > resumed + 10; }));
   for (const sim::TraceRow& row : scene.trace()) {
     if (row.cycle > still) {
       ASSERT_LT(std::abs(row.velocity), 1e-3) << row.cycle;
@@ -54,16 +54,16 @@ TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
   EXPECT_NE(scene.bridge_log().find("a new grant is needed"), std::string::npos);
 
   scene.drives = true;
-  EXPECT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
+  EXPECT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; })) << scene.bridge_log();
 }
 
 TEST(BridgeLoss, AKilledBridgeStopsTheRobotAndGoesOnWhereItWas) {
   Scene scene;
   scene.bridge_options = {"--state", scene.folder.path("state")};
   start(scene);
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 1.8; }));
-  const std::uint64_t odom = scene.state.odom();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 1.8; }));
+  const std::uint64_t odom = scene.state.odom;
+  const std::uint64_t epoch = scene.state.stamp.epoch;
   scene.bridge->signal(SIGKILL);
   const std::uint64_t killed = scene.trace().back().cycle;
   ASSERT_TRUE(scene.until([&] { return stood_still(scene.trace(), killed) != 0; }));
@@ -73,14 +73,14 @@ TEST(BridgeLoss, AKilledBridgeStopsTheRobotAndGoesOnWhereItWas) {
 
   scene.start_bridge();
   ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
+    return scene.state.stamp.epoch > epoch && scene.state.velocity > 0.28;
   })) << scene.bridge_log();
-  EXPECT_EQ(scene.state.odom(), odom);
-  scene.command.velocity(0.0);
+  EXPECT_EQ(scene.state.odom, odom);
+  scene.command.velocity = 0.0;
   ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
   scene.watch(milliseconds(300));
   // The world is 20 m wide, the start in the middle; the simulated odometry is accurate enough.
-  EXPECT_NEAR(scene.state.pose_in_odom().x(), scene.trace().back().pose_in_world.x - 10.0, 0.1);
+  EXPECT_NEAR(scene.state.pose_in_odom.x, scene.trace().back().pose_in_world.x - 10.0, 0.1);
 }
 
 }  // namespace

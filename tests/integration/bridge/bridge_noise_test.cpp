@@ -26,12 +26,12 @@ TEST(BridgeNoise, NoWrongCommandIsActedOn) {
   Random random(7);
   std::set<int> speeds{0};
   std::set<int> turns{0};
-  scene.command.translation(v1::TRANSLATION_VELOCITY);
-  scene.command.rotation(v1::ROTATION_VELOCITY);
-  scene.command.velocity(0.2);
+  scene.command.translation = v1::TRANSLATION_VELOCITY;
+  scene.command.rotation = v1::ROTATION_VELOCITY;
+  scene.command.velocity = 0.2;
   speeds.insert(200);
   scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; })) << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.18; })) << scene.bridge_log();
   EXPECT_EQ(scene.simulator->violations(), "");
   scene.simulator->expect_violations();
   line.set_probability(0.1, 0.0);
@@ -41,8 +41,8 @@ TEST(BridgeNoise, NoWrongCommandIsActedOn) {
     const int turn = static_cast<int>(random.next() % 9) * 10 - 40;
     speeds.insert(speed);
     turns.insert(turn);
-    scene.command.velocity(speed * 0.001);
-    scene.command.rotation_velocity(radians(turn));
+    scene.command.velocity = speed * 0.001;
+    scene.command.rotation_velocity = radians(turn);
     scene.watch(std::chrono::milliseconds(500));
     if (!scene.rests())
       ++moved;
@@ -69,16 +69,15 @@ TEST(BridgeNoise, NoWrongCommandIsActedOn) {
       "%zu bytes hurt, %zu of %zu cycles seen, %d cycles driven, %u bad "
       "packets\n",
       static_cast<std::size_t>(line.hurt()), scene.states.size(), rows.size(), executed,
-      scene.state.bad_packets());
+      scene.state.bad_packets);
 
   // The states on the bus are plausible: no jump of the pose, no impossible speed.
   const v1::RobotState* last = nullptr;
   for (const v1::RobotState& state : scene.states) {
-    ASSERT_LT(std::abs(state.velocity()), 0.45);
-    if (last != nullptr && last->stamp().epoch() == state.stamp().epoch() &&
-        last->odom() == state.odom()) {
-      ASSERT_LT(std::hypot(state.pose_in_odom().x() - last->pose_in_odom().x(),
-                           state.pose_in_odom().y() - last->pose_in_odom().y()),
+    ASSERT_LT(std::abs(state.velocity), 0.45);
+    if (last != nullptr && last->stamp.epoch == state.stamp.epoch && last->odom == state.odom) {
+      ASSERT_LT(std::hypot(state.pose_in_odom.x - last->pose_in_odom.x,
+                           state.pose_in_odom.y - last->pose_in_odom.y),
                 0.8);
     }
     last = &state;

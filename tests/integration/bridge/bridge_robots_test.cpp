@@ -22,36 +22,36 @@ TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
       "8000 11500 12000 11500\n";
   scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.description.has_value(); })) << scene.bridge_log();
-  EXPECT_TRUE(scene.description->parameter_file().ends_with("/" + scene.robot_file))
-      << scene.description->parameter_file();
+  EXPECT_TRUE(scene.description->parameter_file.ends_with("/" + scene.robot_file))
+      << scene.description->parameter_file;
 
   // A third of a metre and a quarter turn, by the robot's own count and by the true pose. Slowly:
   // the smallest robot reaches 0.1 m/s.
-  const double speed = std::min(0.25, 0.8 * scene.description->max_velocity());
-  scene.command.translation(v1::TRANSLATION_POSITION);
-  scene.command.distance(0.33);
-  scene.command.velocity(speed);
-  scene.command.move(1);
+  const double speed = std::min(0.25, 0.8 * scene.description->max_velocity);
+  scene.command.translation = v1::TRANSLATION_POSITION;
+  scene.command.distance = 0.33;
+  scene.command.velocity = speed;
+  scene.command.move = 1;
   scene.permit(1000);
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.3 && scene.rests(); }))
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 0.3 && scene.rests(); }))
       << scene.bridge_log();
-  EXPECT_NEAR(scene.state.pose_in_odom().x(), 0.33, 0.03);
-  const std::uint64_t driven = scene.state.stamp().cycle();
-  scene.command.translation(v1::TRANSLATION_NONE);
-  scene.command.rotation(v1::ROTATION_HEADING);
-  scene.command.heading(kPi / 2);
+  EXPECT_NEAR(scene.state.pose_in_odom.x, 0.33, 0.03);
+  const std::uint64_t driven = scene.state.stamp.cycle;
+  scene.command.translation = v1::TRANSLATION_NONE;
+  scene.command.rotation = v1::ROTATION_HEADING;
+  scene.command.heading = kPi / 2;
   ASSERT_TRUE(scene.until([&] {
-    return std::abs(scene.state.pose_in_odom().th() - kPi / 2) < radians(3.0) && scene.rests();
-  })) << scene.state.pose_in_odom().th();
-  const std::uint64_t turned = scene.state.stamp().cycle();
+    return std::abs(scene.state.pose_in_odom.th - kPi / 2) < radians(3.0) && scene.rests();
+  })) << scene.state.pose_in_odom.th;
+  const std::uint64_t turned = scene.state.stamp.cycle;
   std::set<int> heard;
   for (const v1::RobotState& state : scene.states)
-    for (const v1::SonarReading& reading : state.sonars())
-      heard.insert(reading.sonar());
-  EXPECT_EQ(heard.size(), scene.description->sonars().size()) << "every sonar fires";
-  EXPECT_EQ(scene.state.bad_packets(), 0U);
-  EXPECT_GT(scene.state.battery(), 4.0);
-  EXPECT_TRUE(scene.devices.unread_packets().empty());
+    for (const v1::SonarReading& reading : state.sonars)
+      heard.insert(reading.sonar);
+  EXPECT_EQ(heard.size(), scene.description->sonars.size()) << "every sonar fires";
+  EXPECT_EQ(scene.state.bad_packets, 0U);
+  EXPECT_GT(scene.state.battery, 4.0);
+  EXPECT_TRUE(scene.devices.unread_packets.empty());
   const std::vector<sim::TraceRow> rows = scene.end();
   ASSERT_GE(rows.size(), turned);
   EXPECT_NEAR(rows[driven - 1].pose_in_world.x - 10.0, 0.33, 0.05) << rows[driven - 1].cycle;
@@ -77,54 +77,54 @@ TEST(BridgeDevices, OfALaterRobot) {
     return scene
         .ask(bus::topics::kServer, "report",
              {bus::text("packet", packet), bus::text("often", often)})
-        .code();
+        .code;
   };
   const auto motors = [&](bool on) {
-    return scene.ask(bus::topics::kServer, "motors", {bus::truth("on", on)}).code();
+    return scene.ask(bus::topics::kServer, "motors", {bus::truth("on", on)}).code;
   };
   ASSERT_TRUE(scene.until([&] {
-    return scene.connected() && scene.devices.has_configuration() && scene.devices.motors_on();
+    return scene.connected() && scene.devices.has_configuration && scene.devices.motors_on;
   })) << scene.bridge_log();
-  EXPECT_EQ(scene.devices.information_period(), 100);
-  EXPECT_FALSE(scene.devices.serial_number().empty());
+  EXPECT_EQ(scene.devices.information_period, 100);
+  EXPECT_FALSE(scene.devices.serial_number.empty());
 
   // The values come on another topic than the answer: there is no order between the two.
   EXPECT_EQ(report("encoders", "always"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_encoders(); }));
+  EXPECT_TRUE(scene.until([&] { return scene.devices.has_encoders; }));
   EXPECT_EQ(report("encoders", "off"), v1::ANSWER_SENT);
   EXPECT_EQ(report("io", "once"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_io(); }));
+  EXPECT_TRUE(scene.until([&] { return scene.devices.has_io; }));
   EXPECT_EQ(report("gripper", "once"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_gripper(); }));
+  EXPECT_TRUE(scene.until([&] { return scene.devices.has_gripper; }));
 
   EXPECT_EQ(scene
                 .ask(bus::topics::kDigitalOutput, "output",
                      {bus::number("bits", 0x05), bus::number("mask", 0x0F)})
-                .code(),
+                .code,
             v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return (scene.state.digital_output() & 0x0F) == 0x05; }));
+  EXPECT_TRUE(scene.until([&] { return (scene.state.digital_output & 0x0F) == 0x05; }));
 
-  EXPECT_EQ(scene.ask(bus::topics::kSonar, "sonar", {bus::truth("on", false)}).code(),
+  EXPECT_EQ(scene.ask(bus::topics::kSonar, "sonar", {bus::truth("on", false)}).code,
             v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s() == 0; }));
+  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s == 0; }));
   scene.ask(bus::topics::kSonar, "sonar", {bus::truth("on", true)});
-  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s() > 0; }));
+  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s > 0; }));
 
   EXPECT_EQ(scene
                 .ask(bus::topics::kSound, "tones",
                      {bus::number("duration", 0.1), bus::number("pitch", 0),
                       bus::number("duration", 0.1), bus::number("pitch", 60)})
-                .code(),
+                .code,
             v1::ANSWER_SENT);
 
   // Motors off: the user gets a message, and the robot does not drive until they are on again.
   EXPECT_EQ(motors(false), v1::ANSWER_DONE);
   ASSERT_TRUE(scene.until([&] {
-    return scene.status.state() == v1::SERVICE_DEGRADED &&
-           scene.status.reason().find("motors are off") != std::string::npos;
-  })) << scene.status.reason();
+    return scene.status.state == v1::SERVICE_DEGRADED &&
+           scene.status.reason.find("motors are off") != std::string::npos;
+  })) << scene.status.reason;
   EXPECT_EQ(motors(true), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+  EXPECT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }));
 }
 
 TEST(BridgeDevices, FromTheCommandLine) {

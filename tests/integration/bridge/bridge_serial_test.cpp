@@ -21,12 +21,12 @@ struct LineScene : Scene {
     start_bridge();
     forward(command, 0.3);
     drives = true;
-    ASSERT_TRUE(until([&] { return state.velocity() > 0.28; })) << bridge_log();
+    ASSERT_TRUE(until([&] { return state.velocity > 0.28; })) << bridge_log();
   }
   /// The line will be broken, perhaps within a packet.
   void expect_halves() { simulator->expect_violations(); }
   bool says(const std::string& text) {
-    return until([&] { return status.reason().find(text) != std::string::npos; });
+    return until([&] { return status.reason.find(text) != std::string::npos; });
   }
   /// Cycles of the trace from `cycle` to the standstill; -1 without one.
   int cycles_to_stand(std::uint64_t cycle) {
@@ -54,16 +54,16 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
   EXPECT_LT(rate, 960.0 * 1.01) << "faster than the line";
   EXPECT_LT(static_cast<double>(scene.line.to_robot() - commanded) / time, 480.0)
       << "commands that wait are old";
-  EXPECT_EQ(scene.state.bad_packets(), 0U);
-  EXPECT_EQ(scene.status.reason(), "");
+  EXPECT_EQ(scene.state.bad_packets, 0U);
+  EXPECT_EQ(scene.status.reason, "");
   // Release stops the robot: 0.3 m/s at 2 m/s2, plus the line's own time. From the grant's end on,
   // so that a busy machine's way from here to the bridge does not count.
   scene.drives = false;
-  scene.command.active(false);
+  scene.command.active = false;
   scene.publish();
-  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
-  EXPECT_EQ(scene.grant.reason(), "nothing asks the robot to move") << "by release, not by lease";
-  const int cycles = scene.cycles_to_stand(scene.grant.stamp().cycle());
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role == v1::ROLE_NONE; }));
+  EXPECT_EQ(scene.grant.reason, "nothing asks the robot to move") << "by release, not by lease";
+  const int cycles = scene.cycles_to_stand(scene.grant.stamp.cycle);
   std::printf("%.0f bytes/s from the robot; stood still %d cycles after the release\n", rate,
               cycles);
   EXPECT_GE(cycles, 0);
@@ -74,24 +74,24 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   LineScene scene;
   scene.drive_off();
   scene.expect_halves();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  const std::uint64_t odom = scene.state.odom();
+  const std::uint64_t epoch = scene.state.stamp.epoch;
+  const std::uint64_t odom = scene.state.odom;
   scene.line.cut(true);
   const std::uint64_t cut = scene.trace().back().cycle;
-  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
+  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason;
+  EXPECT_EQ(scene.status.state, v1::SERVICE_WAITING);
   // Only the robot's own watchdog can stop it.
   const int cycles = scene.cycles_to_stand(cut);
   std::printf("stood still %d cycles after the cable was pulled\n", cycles);
   EXPECT_GE(cycles, 0);
   EXPECT_LE(cycles, 20 + 6);
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason;
   scene.line.cut(false);
   ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
+    return scene.state.stamp.epoch > epoch && scene.state.velocity > 0.28;
   })) << scene.bridge_log();
-  EXPECT_EQ(scene.state.odom(), odom) << "the robot counted on";
-  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+  EXPECT_EQ(scene.state.odom, odom) << "the robot counted on";
+  ASSERT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }));
 }
 
 // The bridge hears nothing but is heard: a driver that ignores the robot's state keeps sending
@@ -107,7 +107,7 @@ TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
   std::printf("stood still %d cycles after the line fell silent\n", cycles);
   EXPECT_GE(cycles, 0);
   EXPECT_LE(cycles, 5 + 5);
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason;
   scene.watch(milliseconds(2000));
   for (const sim::TraceRow& row : scene.trace())
     if (row.cycle > cut + static_cast<std::uint64_t>(cycles)) {
@@ -119,37 +119,37 @@ TEST(BridgeSerial, ACableThatIsOutForAMoment) {
   LineScene scene;
   scene.drive_off();
   scene.expect_halves();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::uint64_t epoch = scene.state.stamp.epoch;
   scene.line.cut(true);
   scene.watch(milliseconds(250));
   scene.line.cut(false);
-  const std::uint64_t cycle = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the session goes on";
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; }));
+  const std::uint64_t cycle = scene.state.stamp.cycle;
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp.epoch, epoch) << "the session goes on";
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; }));
 }
 
 TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   LineScene scene;
   scene.drive_off();
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.5; }));
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  const std::uint64_t odom = scene.state.odom();
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 0.5; }));
+  const std::uint64_t epoch = scene.state.stamp.epoch;
+  const std::uint64_t odom = scene.state.odom;
   scene.simulator->signal(SIGKILL);
-  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason;
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason;
   // A request in the meantime is refused, and is not executed later.
   const v1::Answer answer = scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1800)});
-  EXPECT_EQ(answer.code(), v1::ANSWER_NOBODY);
-  EXPECT_EQ(answer.text(), "no robot is connected");
+  EXPECT_EQ(answer.code, v1::ANSWER_NOBODY);
+  EXPECT_EQ(answer.text, "no robot is connected");
   scene.drives = false;
   scene.start_simulator();
   scene.expect_halves();
   ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.stamp().cycle() > 10;
+    return scene.state.stamp.epoch > epoch && scene.state.stamp.cycle > 10;
   })) << scene.bridge_log();
-  EXPECT_NE(scene.state.odom(), odom) << "its position began anew";
-  EXPECT_EQ(scene.state.ptu(), 0);
+  EXPECT_NE(scene.state.odom, odom) << "its position began anew";
+  EXPECT_EQ(scene.state.ptu, 0);
   for (const sim::TraceRow& row : scene.trace())
     ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
 }
@@ -163,7 +163,7 @@ struct SecondBridge {
     std::string reason;
     EXPECT_TRUE(scene.until([&] {
       for (const auto& sample : statuses.take())
-        reason = sample.data.reason();
+        reason = sample.data.reason;
       return reason.find(words) != std::string::npos;
     })) << reason;
     return reason;
@@ -185,20 +185,20 @@ struct SecondBridge {
 TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   LineScene scene;
   scene.drive_off();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::uint64_t epoch = scene.state.stamp.epoch;
   SecondBridge second(scene);
   const std::string reason = second.wait_reason("in use by ");
   EXPECT_NE(reason.find("process " + std::to_string(scene.bridge->pid()) + " (saphira-bridge)"),
             std::string::npos)
       << reason;
-  const std::uint64_t cycle = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the first one is not disturbed";
+  const std::uint64_t cycle = scene.state.stamp.cycle;
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp.epoch, epoch) << "the first one is not disturbed";
   // It drives as before. Nothing was commanded while the second node was made: let go first.
-  scene.command.active(false);
+  scene.command.active = false;
   ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
   forward(scene.command, 0.3);
-  EXPECT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
+  EXPECT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; })) << scene.bridge_log();
   // After the end of the first one, the second has the robot.
   scene.bridge->signal(SIGTERM);
   auto states = second.node.reader(bus::topics::kRobotState);

@@ -14,35 +14,35 @@ TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
       << scene.bridge_log();
-  EXPECT_EQ(scene.description->robot_class(), "Pioneer");
-  EXPECT_EQ(scene.description->sonars().size(), 7U);
-  EXPECT_NEAR(scene.description->radius(), 0.22, 1e-9);
-  EXPECT_NEAR(scene.description->max_velocity(), 0.4, 1e-9);
-  EXPECT_EQ(scene.description->stamp().epoch(), scene.state.stamp().epoch());
-  EXPECT_EQ(scene.state.pose_in_odom().x(), 0.0);
+  EXPECT_EQ(scene.description->robot_class, "Pioneer");
+  EXPECT_EQ(scene.description->sonars.size(), 7U);
+  EXPECT_NEAR(scene.description->radius, 0.22, 1e-9);
+  EXPECT_NEAR(scene.description->max_velocity, 0.4, 1e-9);
+  EXPECT_EQ(scene.description->stamp.epoch, scene.state.stamp.epoch);
+  EXPECT_EQ(scene.state.pose_in_odom.x, 0.0);
 
   forward(scene.command, 0.2, 0.3);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] {
-    return scene.state.velocity() > 0.18 && scene.state.rotation_velocity() > 0.2;
+    return scene.state.velocity > 0.18 && scene.state.rotation_velocity > 0.2;
   })) << scene.bridge_log();
-  EXPECT_EQ(scene.grant.role(), v1::ROLE_DIRECT);
-  EXPECT_EQ(scene.grant.source(), "test");
-  EXPECT_NEAR(scene.grant.velocity(), 0.2, 1e-9);
-  EXPECT_GT(scene.grant.expires_in(), 0.0);
-  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+  EXPECT_EQ(scene.grant.role, v1::ROLE_DIRECT);
+  EXPECT_EQ(scene.grant.source, "test");
+  EXPECT_NEAR(scene.grant.velocity, 0.2, 1e-9);
+  EXPECT_GT(scene.grant.expires_in, 0.0);
+  ASSERT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }));
 
   // Release is a stop at once: only the robot's own braking remains (0.2 m/s at 2 m/s2).
   scene.drives = false;
-  scene.command.active(false);
-  const std::uint64_t released = scene.state.stamp().cycle();
+  scene.command.active = false;
+  const std::uint64_t released = scene.state.stamp.cycle;
   scene.publish();
   // The trace, not the robot's own state: its packets round a last tremble away.
   ASSERT_TRUE(scene.until([&] { return stood_still(scene.trace(), released) != 0; }));
   const std::uint64_t still = stood_still(scene.trace(), released);
   EXPECT_GT(still, 0U);
   EXPECT_LE(still, released + 4);
-  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+  EXPECT_EQ(scene.grant.role, v1::ROLE_NONE);
 }
 
 TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
@@ -50,13 +50,13 @@ TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
   scene.start();
   forward(scene.command, 0.4);
   scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.38; })) << scene.bridge_log();
   scene.publish();
-  const std::uint64_t last = scene.state.stamp().cycle();
+  const std::uint64_t last = scene.state.stamp.cycle;
   scene.drives = false;
-  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
-  EXPECT_NE(scene.grant.reason().find("lease of test (direct) ran out"), std::string::npos)
-      << scene.grant.reason();
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role == v1::ROLE_NONE; }));
+  EXPECT_NE(scene.grant.reason.find("lease of test (direct) ran out"), std::string::npos)
+      << scene.grant.reason;
   ASSERT_TRUE(scene.until([&] { return stood_still(scene.trace(), last) != 0; }));
   const std::uint64_t still = stood_still(scene.trace(), last);
   RecordProperty("cycles_to_standstill", static_cast<int>(still - last));
@@ -71,15 +71,14 @@ TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   scene.start();
   forward(scene.command, 0.4);
   scene.permit(150);
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 150; }))
-      << scene.bridge_log();
-  EXPECT_EQ(scene.grant.guard(), v1::GUARD_STOP);
-  EXPECT_NE(scene.grant.guard_reason().find("ahead"), std::string::npos);
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 150; })) << scene.bridge_log();
+  EXPECT_EQ(scene.grant.guard, v1::GUARD_STOP);
+  EXPECT_NE(scene.grant.guard_reason.find("ahead"), std::string::npos);
   EXPECT_TRUE(scene.rests());
   // Turning away is free.
   forward(scene.command, 0.4, 0.8);
   scene.permit(200);
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.3; }));
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.3; }));
   std::vector<sim::TraceRow> rows = scene.end();
   ASSERT_GE(rows.size(), 150U);
   rows.resize(150);
@@ -95,9 +94,9 @@ TEST(Bridge, SaysWhichParameterFilesItLookedFor) {
   scene.robots_folder = scene.folder.path();
   scene.start_bridge();
   ASSERT_TRUE(scene.until([&] {
-    return scene.status.state() == v1::SERVICE_WAITING &&
-           scene.status.reason().find("psos43m.p, pioneer.p") != std::string::npos;
-  })) << scene.status.reason();
+    return scene.status.state == v1::SERVICE_WAITING &&
+           scene.status.reason.find("psos43m.p, pioneer.p") != std::string::npos;
+  })) << scene.status.reason;
 }
 
 TEST(BridgeOptions, AWrongOneEndsItWithAMessage) {

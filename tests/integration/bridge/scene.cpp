@@ -34,8 +34,8 @@ Scene::Scene(bool lockstep)
       permits_(node.writer(bus::topics::kStepPermit)) {
   robot_port = folder.path("robot");
   use(lockstep ? bus::topics::kDriveBehaviors : bus::topics::kDriveDirect);
-  command.source("test");
-  command.active(true);
+  command.source = "test";
+  command.active = true;
 }
 
 void Scene::use(const bus::Topic<v1::MotorCommand>& role) {
@@ -71,11 +71,11 @@ void Scene::start_bridge() {
 }
 
 void Scene::publish() {
-  command.number(command.number() + 1);
+  command.number = command.number + 1;
   if (follows_cycles)
-    command.stamp(state.stamp());
+    command.stamp = state.stamp;
   else
-    command.stamp(v1::Stamp());
+    command.stamp = v1::Stamp();
   driver_->write(command);
   published_ = std::chrono::steady_clock::now();
 }
@@ -84,8 +84,8 @@ void Scene::permit(std::uint64_t last) {
   // A command before the bridge is discovered reaches nobody, and each is sent once.
   EXPECT_TRUE(until([this] { return driver_->matched() > 0; }));
   v1::StepPermit sample;
-  sample.source("test");
-  sample.until_cycle(last);
+  sample.source = "test";
+  sample.until_cycle = last;
   permits_.write(sample);
 }
 
@@ -105,7 +105,7 @@ void Scene::take() {
   if (const auto newest = devices_.take_newest())
     devices = *newest;
   for (const auto& sample : statuses_.take()) {
-    if (!sample.info.disposed && sample.data.name() == "bridge")
+    if (!sample.info.disposed && sample.data.name == "bridge")
       status = sample.data;
   }
 }
@@ -119,7 +119,7 @@ bool Scene::until(const std::function<bool()>& condition, milliseconds limit) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= end)
       return false;
-    if (lockstep_ ? state.stamp().cycle() != command.stamp().cycle()
+    if (lockstep_ ? state.stamp.cycle != command.stamp.cycle
                   : drives && now - published_ >= milliseconds(50))
       publish();
     node.wait(milliseconds(10));
@@ -141,7 +141,7 @@ v1::Answer Scene::ask(const bus::RequestTopic& topic, const std::string& functor
 }
 
 bool Scene::rests() const {
-  return std::abs(state.velocity()) < 0.01 && std::abs(state.rotation_velocity()) < 0.05;
+  return std::abs(state.velocity) < 0.01 && std::abs(state.rotation_velocity) < 0.05;
 }
 
 std::vector<sim::TraceRow> Scene::whole_trace() const {
@@ -166,11 +166,11 @@ std::vector<sim::TraceRow> Scene::end() {
 }
 
 void forward(v1::MotorCommand& command, double velocity, double rotation) {
-  command.active(true);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-  command.rotation_velocity(rotation);
+  command.active = true;
+  command.translation = v1::TRANSLATION_VELOCITY;
+  command.velocity = velocity;
+  command.rotation = v1::ROTATION_VELOCITY;
+  command.rotation_velocity = rotation;
 }
 
 std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle) {

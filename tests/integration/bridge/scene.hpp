@@ -61,7 +61,7 @@ class Scene {
   std::vector<v1::Grant> grants;
   std::vector<v1::RobotState> states;
 
-  bool connected() const { return state.stamp().cycle() > 0; }
+  bool connected() const { return state.stamp.cycle > 0; }
   bool rests() const;
 
   /// The true states, from the simulator's trace; those of the newest connection alone.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "intention.h"
+#include "saphira/idl/intention.hpp"
 
 /// Words for values of the contract. In its namespace, so that a call needs none.
 namespace saphira::v1 {

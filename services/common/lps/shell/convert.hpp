@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "geometry/shell/convert.hpp"
-#include "perception.h"
-#include "robot.h"
+#include "saphira/idl/perception.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
 #include "saphira/lps/seen_thing.hpp"
-#include "vision.h"
 
 /// Conversions between the types of the bus and those of the LPS, which every service has: pure
 /// functions.

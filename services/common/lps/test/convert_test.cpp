@@ -54,20 +54,20 @@ TEST(Convert, OfManyReadingsTheNewest) {
   for (std::uint64_t cycle = 1; cycle <= 1000; ++cycle)
     percept.readings.push_back({cycle, 0});
   const v1::Percept sample = to_bus(percept);
-  EXPECT_EQ(sample.reading_cycles().size(), 64U);
-  EXPECT_EQ(sample.reading_cycles().front(), 937U);
-  EXPECT_EQ(sample.reading_cycles().back(), 1000U);
+  EXPECT_EQ(sample.reading_cycles.size(), 64U);
+  EXPECT_EQ(sample.reading_cycles.front(), 937U);
+  EXPECT_EQ(sample.reading_cycles.back(), 1000U);
 }
 
 TEST(Convert, Readings) {
   v1::RobotState state;
   v1::SonarReading reading;
-  reading.sonar(6);
-  reading.range(1.5F);
-  reading.echo(true);
-  state.sonars().push_back(reading);
-  reading.echo(false);
-  state.sonars().push_back(reading);
+  reading.sonar = 6;
+  reading.range = 1.5F;
+  reading.echo = true;
+  state.sonars.push_back(reading);
+  reading.echo = false;
+  state.sonars.push_back(reading);
   const std::vector<SonarReading> readings = sonars_from_bus(state);
   ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[0].sonar, 6);

@@ -17,41 +17,41 @@ constexpr EnumPairs<ZoneRule, v1::ZoneRule, 4> kRules{{{
 
 Feature from_bus(const v1::MapArtifact& artifact) {
   Feature feature;
-  feature.type = lps::from_bus(artifact.type());
-  feature.id = artifact.id();
-  feature.pose_in_map = lps::from_bus(artifact.pose_in_map());
-  feature.length = artifact.length();
-  feature.width = artifact.width();
-  feature.name = artifact.name();
-  feature.learned = artifact.learned();
-  feature.rule = kRules.ours(artifact.rule(), ZoneRule::keep_out);
-  feature.speed = artifact.speed();
+  feature.type = lps::from_bus(artifact.type);
+  feature.id = artifact.id;
+  feature.pose_in_map = lps::from_bus(artifact.pose_in_map);
+  feature.length = artifact.length;
+  feature.width = artifact.width;
+  feature.name = artifact.name;
+  feature.learned = artifact.learned;
+  feature.rule = kRules.ours(artifact.rule, ZoneRule::keep_out);
+  feature.speed = artifact.speed;
   return feature;
 }
 
 v1::MapArtifact to_bus(const Feature& feature) {
   v1::MapArtifact artifact;
-  artifact.type(lps::to_bus(feature.type));
-  artifact.id(feature.id);
-  artifact.pose_in_map(lps::to_bus(feature.pose_in_map));
-  artifact.length(feature.length);
-  artifact.width(feature.width);
-  artifact.name(feature.name);
-  artifact.learned(feature.learned);
-  artifact.rule(kRules.theirs(feature.rule));
-  artifact.speed(feature.speed);
+  artifact.type = lps::to_bus(feature.type);
+  artifact.id = feature.id;
+  artifact.pose_in_map = lps::to_bus(feature.pose_in_map);
+  artifact.length = feature.length;
+  artifact.width = feature.width;
+  artifact.name = feature.name;
+  artifact.learned = feature.learned;
+  artifact.rule = kRules.theirs(feature.rule);
+  artifact.speed = feature.speed;
   return artifact;
 }
 
 Map from_bus(const v1::FloorMap& map) {
   Map result;
-  result.features = converted(map.artifacts(), [](const auto& each) { return from_bus(each); });
+  result.features = converted(map.artifacts, [](const auto& each) { return from_bus(each); });
   return result;
 }
 
 v1::FloorMap to_bus(const Map& map) {
   v1::FloorMap result;
-  result.artifacts(converted(map.features, [](const auto& each) { return to_bus(each); }));
+  result.artifacts = converted(map.features, [](const auto& each) { return to_bus(each); });
   return result;
 }
 

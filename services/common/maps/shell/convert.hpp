@@ -1,6 +1,6 @@
 #pragma once
 
-#include "map.h"
+#include "saphira/idl/map.hpp"
 #include "saphira/maps/map.hpp"
 
 /// Conversions between maps on the bus and those of the library: pure functions.

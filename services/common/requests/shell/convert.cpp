@@ -46,36 +46,36 @@ Frame from_bus(v1::Frame frame) {
 }
 
 Argument from_bus(const v1::Argument& argument) {
-  switch (argument.kind()) {
+  switch (argument.kind) {
     case v1::ARGUMENT_NUMBER:
-      return {argument.name(), argument.number()};
+      return {argument.name, argument.number};
     case v1::ARGUMENT_TEXT:
-      return {argument.name(), argument.text()};
+      return {argument.name, argument.text};
     case v1::ARGUMENT_TRUTH:
-      return {argument.name(), argument.number() != 0.0};
+      return {argument.name, argument.number != 0.0};
     case v1::ARGUMENT_POINT:
-      if (argument.frame() > v1::FRAME_MAP)
+      if (argument.frame > v1::FRAME_MAP)
         break;  // a point in an unknown frame has no place
-      return {argument.name(), PlacedPoint{from_bus(argument.point()), from_bus(argument.frame())}};
+      return {argument.name, PlacedPoint{from_bus(argument.point), from_bus(argument.frame)}};
     case v1::ARGUMENT_UNBOUND:
       break;
   }
   Argument unbound;
-  unbound.name = argument.name();
+  unbound.name = argument.name;
   unbound.kind = ArgumentKind::unbound;
-  if (argument.kind() == v1::ARGUMENT_UNBOUND)
-    unbound.text = argument.text();
+  if (argument.kind == v1::ARGUMENT_UNBOUND)
+    unbound.text = argument.text;
   return unbound;
 }
 
 v1::Argument to_bus(const Argument& argument) {
   v1::Argument result;
-  result.name(argument.name);
-  result.kind(kKinds.theirs(argument.kind));
-  result.number(argument.number);
-  result.text(argument.text);
-  result.point(to_bus(argument.point));
-  result.frame(kFrames.theirs(argument.frame));
+  result.name = argument.name;
+  result.kind = kKinds.theirs(argument.kind);
+  result.number = argument.number;
+  result.text = argument.text;
+  result.point = to_bus(argument.point);
+  result.frame = kFrames.theirs(argument.frame);
   return result;
 }
 
@@ -88,39 +88,39 @@ std::vector<v1::Argument> to_bus(const Arguments& arguments) {
 }
 
 Request from_bus(const v1::Request& request) {
-  return {request.functor(),
-          from_bus(request.arguments()),
-          request.source().substr(0, 255),
-          request.service(),
-          {request.stamp().epoch(), request.stamp().cycle()},
-          request.asker(),
-          request.number(),
-          request.deadline()};
+  return {request.functor,
+          from_bus(request.arguments),
+          request.source.substr(0, 255),
+          request.service,
+          {request.stamp.epoch, request.stamp.cycle},
+          request.asker,
+          request.number,
+          request.deadline};
 }
 
 v1::Request to_bus(const Request& request) {
   v1::Request result;
-  result.stamp().epoch(request.stamp.epoch);
-  result.stamp().cycle(request.stamp.cycle);
-  result.asker(request.asker);
-  result.number(request.number);
-  result.source(request.source);
-  result.service(request.service);
-  result.functor(request.functor);
-  result.arguments(to_bus(request.arguments));
-  result.deadline(request.deadline);
+  result.stamp.epoch = request.stamp.epoch;
+  result.stamp.cycle = request.stamp.cycle;
+  result.asker = request.asker;
+  result.number = request.number;
+  result.source = request.source;
+  result.service = request.service;
+  result.functor = request.functor;
+  result.arguments = to_bus(request.arguments);
+  result.deadline = request.deadline;
   return result;
 }
 
 Answer from_bus(const v1::Answer& answer) {
-  return {kCodes.ours(answer.code(), AnswerCode::lost), answer.text(), from_bus(answer.results())};
+  return {kCodes.ours(answer.code, AnswerCode::lost), answer.text, from_bus(answer.results)};
 }
 
 v1::Answer to_bus(const Answer& answer) {
   v1::Answer result;
-  result.code(kCodes.theirs(answer.code));
-  result.text(answer.text);
-  result.results(to_bus(answer.results));
+  result.code = kCodes.theirs(answer.code);
+  result.text = answer.text;
+  result.results = to_bus(answer.results);
   return result;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "request.h"
+#include "saphira/idl/request.hpp"
 #include "saphira/requests/request.hpp"
 
 /// Conversions between requests on the bus and plain ones: pure functions.

@@ -11,7 +11,7 @@ namespace {
 
 /// With the asker's identity, as checked by the bus.
 Request from(bus::Sample<v1::Request>& sample) {
-  sample.data.source() = bus::named(sample.data.source(), sample.info);
+  sample.data.source = bus::named(sample.data.source, sample.info);
   return from_bus(sample.data);
 }
 
@@ -41,7 +41,7 @@ void Desk::take(Counter& counter) {
     return;
   for (auto& sample : counter.reader.take())
     if (!sample.info.disposed &&
-        (sample.data.service().empty() || sample.data.service() == node_.options().name))
+        (sample.data.service.empty() || sample.data.service == node_.options().name))
       counter.waiting.push_back(from(sample));
   const auto later = std::stable_partition(
       counter.waiting.begin(), counter.waiting.end(),
@@ -84,11 +84,11 @@ void Desk::handle(const Counter& counter, Request request) {
 
 void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
   v1::Answer sample = to_bus(answer);
-  sample.stamp().epoch(now_.epoch);
-  sample.stamp().cycle(now_.cycle);
-  sample.asker(asker);
-  sample.number(number);
-  sample.service(node_.options().name);
+  sample.stamp.epoch = now_.epoch;
+  sample.stamp.cycle = now_.cycle;
+  sample.asker = asker;
+  sample.number = number;
+  sample.service = node_.options().name;
   writer_.write(sample);
   for (auto& [id, newest] : known_)
     if (id == Id{asker, number})

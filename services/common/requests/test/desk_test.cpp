@@ -34,8 +34,8 @@ class DeskTest : public testing::Test {
   }
   static v1::Request count(double by) {
     v1::Request request;
-    request.functor("count");
-    request.arguments({bus::number("by", by)});
+    request.functor = "count";
+    request.arguments = {bus::number("by", by)};
     return request;
   }
 
@@ -55,10 +55,10 @@ class DeskTest : public testing::Test {
 TEST_F(DeskTest, AnswersWithResults) {
   open();
   const v1::Answer answer = ask(count(3.0));
-  EXPECT_EQ(answer.code(), v1::ANSWER_DONE);
-  EXPECT_EQ(answer.service(), "registration");
-  EXPECT_EQ(answer.asker(), person.instance());
-  EXPECT_EQ(answer.stamp().cycle(), 20U);
+  EXPECT_EQ(answer.code, v1::ANSWER_DONE);
+  EXPECT_EQ(answer.service, "registration");
+  EXPECT_EQ(answer.asker, person.instance());
+  EXPECT_EQ(answer.stamp.cycle, 20U);
   EXPECT_EQ(number_of(from_bus(answer).results, "total"), 3.0);
   EXPECT_EQ(newest.source, "a person");
   EXPECT_EQ(desk->refused(), 0U);
@@ -66,12 +66,12 @@ TEST_F(DeskTest, AnswersWithResults) {
 
 TEST_F(DeskTest, RefusesWhatIsNotDeclared) {
   open();
-  EXPECT_EQ(ask(count(11.0)).code(), v1::ANSWER_BAD_ARGUMENT);
+  EXPECT_EQ(ask(count(11.0)).code, v1::ANSWER_BAD_ARGUMENT);
   v1::Request request;
-  request.functor("sing");
+  request.functor = "sing";
   const v1::Answer answer = ask(request);
-  EXPECT_EQ(answer.code(), v1::ANSWER_UNKNOWN_FUNCTOR);
-  EXPECT_EQ(answer.text(), "functor \"sing\" is not known here: expected count, later");
+  EXPECT_EQ(answer.code, v1::ANSWER_UNKNOWN_FUNCTOR);
+  EXPECT_EQ(answer.text, "functor \"sing\" is not known here: expected count, later");
   EXPECT_EQ(desk->refused(), 2U);
   EXPECT_EQ(total, 0.0);
 }
@@ -79,8 +79,8 @@ TEST_F(DeskTest, RefusesWhatIsNotDeclared) {
 TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   open();
   v1::Request request = count(2.0);
-  request.asker(9);
-  request.number(1);
+  request.asker = 9;
+  request.number = 1;
   for (int i = 0; i < 3; ++i) {
     writer.write(request);
     desk->take(now);
@@ -89,11 +89,11 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   const auto told = answers.take();
   ASSERT_EQ(told.size(), 3U);
   EXPECT_EQ(told[2].data, told[0].data);
-  request.number(2);
+  request.number = 2;
   writer.write(request);
   desk->take(now);
   EXPECT_EQ(total, 4.0);
-  request.number(0);  // from an asker that does not count
+  request.number = 0;  // from an asker that does not count
   for (int i = 0; i < 2; ++i) {
     writer.write(request);
     desk->take(now);
@@ -104,27 +104,27 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
 TEST_F(DeskTest, SaysLaterWhatBecameOfIt) {
   open();
   v1::Request request;
-  request.functor("later");
+  request.functor = "later";
   const v1::Answer answer = client.ask(request, kPatience, nullptr, [this] {
     desk->take(now);
     if (newest.functor == "later")
       desk->answer(newest.asker, newest.number, {AnswerCode::given_up, "too heavy", {}});
   });
-  EXPECT_EQ(answer.code(), v1::ANSWER_GIVEN_UP);
-  EXPECT_EQ(answer.text(), "too heavy");
+  EXPECT_EQ(answer.code, v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(answer.text, "too heavy");
 }
 
 TEST_F(DeskTest, TheClientSaysWhyThereIsNoAnswer) {
   const v1::Answer nobody = client.ask(count(1.0), 0.1);
-  EXPECT_EQ(nobody.code(), v1::ANSWER_NOBODY);
-  EXPECT_EQ(nobody.text(), "no program takes what is asked on registration/request");
+  EXPECT_EQ(nobody.code, v1::ANSWER_NOBODY);
+  EXPECT_EQ(nobody.text, "no program takes what is asked on registration/request");
   open();
   v1::Request another = count(1.0);
-  another.service("vision");
-  EXPECT_EQ(ask(another, 0.2).code(), v1::ANSWER_TOO_LATE) << "this one is not meant";
+  another.service = "vision";
+  EXPECT_EQ(ask(another, 0.2).code, v1::ANSWER_TOO_LATE) << "this one is not meant";
   v1::Request later;
-  later.functor("later");
-  EXPECT_EQ(ask(later, 0.2).text(), "the request is still under way");
+  later.functor = "later";
+  EXPECT_EQ(ask(later, 0.2).text, "the request is still under way");
   EXPECT_EQ(total, 0.0);
 }
 
@@ -132,11 +132,11 @@ TEST_F(DeskTest, InLockstepServicesAreHeardInTheSameStepAndOrderInEveryRun) {
   open(true);
   const auto write = [&](const char* source, std::uint64_t cycle, std::uint64_t number) {
     v1::Request request = count(1.0);
-    request.source(source);
-    request.asker(9);
-    request.number(number);
-    request.stamp().epoch(now.epoch);
-    request.stamp().cycle(cycle);
+    request.source = source;
+    request.asker = 9;
+    request.number = number;
+    request.stamp.epoch = now.epoch;
+    request.stamp.cycle = cycle;
     writer.write(request);
   };
   write("b", 20, 1);
@@ -158,8 +158,8 @@ TEST_F(DeskTest, InLockstepServicesAreHeardInTheSameStepAndOrderInEveryRun) {
 TEST_F(DeskTest, LiveServicesAreHeardAtOnce) {
   open(false);
   v1::Request request = count(1.0);
-  request.stamp().epoch(now.epoch);
-  request.stamp().cycle(now.cycle);
+  request.stamp.epoch = now.epoch;
+  request.stamp.cycle = now.cycle;
   writer.write(request);
   desk->take(now);
   EXPECT_EQ(total, 1.0);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "behavior.h"
-#include "intention.h"
-#include "system.h"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::cli {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "motion.h"
-#include "robot.h"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/robot.hpp"
 
 namespace saphira::cli {
 

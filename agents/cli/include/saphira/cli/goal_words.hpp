@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "intention.h"
+#include "saphira/idl/intention.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::cli {

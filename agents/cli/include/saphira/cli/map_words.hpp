@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "map.h"
+#include "saphira/idl/map.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/requests/request.hpp"
 

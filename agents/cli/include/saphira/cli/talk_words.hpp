@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "agents.h"
-#include "request.h"
+#include "saphira/idl/agents.hpp"
+#include "saphira/idl/request.hpp"
 
 /// Agents and utterances in words.
 namespace saphira::cli {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "agents.h"
-#include "intention.h"
-#include "request.h"
+#include "saphira/idl/agents.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/request.hpp"
 #include "saphira/mcp/session.hpp"
 
 /// The results of tools as JSON, and their forms: JSON Schema, which clients check them against.

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "agents.h"
-#include "map.h"
-#include "perception.h"
-#include "robot.h"
+#include "saphira/idl/agents.hpp"
+#include "saphira/idl/map.hpp"
+#include "saphira/idl/perception.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/mcp/session.hpp"
-#include "vision.h"
 
 namespace saphira::mcp {
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "behavior.h"
-#include "intention.h"
-#include "map.h"
-#include "motion.h"
-#include "robot.h"
-#include "system.h"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/map.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/robot.hpp"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::situation {
 

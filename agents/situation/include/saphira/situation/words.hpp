@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "agents.h"
-#include "intention.h"
-#include "motion.h"
-#include "system.h"
+#include "saphira/idl/agents.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/motion.hpp"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::situation {
 

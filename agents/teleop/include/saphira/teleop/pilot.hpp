@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "saphira_types.h"
+#include "saphira/idl/types.hpp"
 
 namespace saphira::teleop {
 

@@ -58,7 +58,7 @@ class TypedInput final : public Input<T>, public InputSlot {
   void drain(const std::function<bool(const v1::Stamp&)>& accept) override {
     value_ = nullptr;
     reader_.visit([&](const T& sample, const SampleInfo& info) {
-      if (info.disposed || !accept(sample.stamp()))
+      if (info.disposed || !accept(sample.stamp))
         return;
       samples_.push_back(sample);
       if (samples_.size() > kKept)
@@ -67,19 +67,19 @@ class TypedInput final : public Input<T>, public InputSlot {
   }
   void forget(std::uint64_t epoch) override {
     value_ = nullptr;
-    std::erase_if(samples_, [&](const T& sample) { return sample.stamp().epoch() == epoch; });
+    std::erase_if(samples_, [&](const T& sample) { return sample.stamp.epoch == epoch; });
   }
   std::uint64_t newest(std::uint64_t epoch, std::uint64_t limit) const override {
     std::uint64_t best = 0;
     for (const T& sample : samples_)
-      if (sample.stamp().epoch() == epoch && sample.stamp().cycle() <= limit)
-        best = std::max<std::uint64_t>(best, sample.stamp().cycle());
+      if (sample.stamp.epoch == epoch && sample.stamp.cycle <= limit)
+        best = std::max<std::uint64_t>(best, sample.stamp.cycle);
     return best;
   }
   void select(std::uint64_t epoch, std::uint64_t cycle) override {
     value_ = nullptr;
     for (const T& sample : samples_)
-      if (sample.stamp().epoch() == epoch && sample.stamp().cycle() == cycle)
+      if (sample.stamp.epoch == epoch && sample.stamp.cycle == cycle)
         value_ = &sample;
   }
   std::size_t matched() const override { return reader_.matched(); }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "system.h"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::bus {
 

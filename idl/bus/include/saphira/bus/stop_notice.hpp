@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "saphira_types.h"
+#include "saphira/idl/types.hpp"
 
 namespace saphira::bus {
 
@@ -15,10 +15,10 @@ class StopNotice {
   /// The person or program that has stopped the robot since the grant before; empty: nobody. A stop
   /// from before the first grant is none.
   std::string hear(const v1::Grant& grant) {
-    const std::optional<v1::StopId> before = std::exchange(newest_, grant.stop());
-    if (!before || *before == grant.stop())
+    const std::optional<v1::StopId> before = std::exchange(newest_, grant.stop);
+    if (!before || *before == grant.stop)
       return {};
-    return grant.stop_source().empty() ? "somebody" : grant.stop_source();
+    return grant.stop_source.empty() ? "somebody" : grant.stop_source;
   }
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "saphira/bus/qos.hpp"
-#include "saphira_types.h"
+#include "saphira/idl/types.hpp"
 
 namespace saphira::bus {
 

@@ -40,8 +40,8 @@ class Stamper {
   explicit Stamper(const bus::Cycle& cycle) : cycle_(&cycle) {}
   template <class T>
   void stamp(T& sample) const {
-    if constexpr (requires { sample.stamp(cycle_->stamp()); })
-      sample.stamp(cycle_->stamp());
+    if constexpr (requires { sample.stamp = cycle_->stamp(); })
+      sample.stamp = cycle_->stamp();
   }
 
  private:
