@@ -42,21 +42,17 @@ saphira_component(base base)
 saphira_component(behaviors geometry requests lps behaviors)
 
 if(SAPHIRA_WITH_DDS)
-  # The generated headers include each other by their bare names, such as "robot.h": a folder of
-  # their own keeps them out of everybody's way.
-  set(saphira_generated_dir ${CMAKE_INSTALL_INCLUDEDIR}/saphira/generated)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/idl/generated/ DESTINATION ${saphira_generated_dir}
-          ${saphira_dev} FILES_MATCHING PATTERN "*.h" PATTERN "tmp" EXCLUDE)
-  # The contract itself, for agents in other languages and of other vendors: the types, the topics
-  # with the name of each one's QoS, and the README with the table of QoS and the rule of partitions.
+                    ${CMAKE_BINARY_DIR}/idl/generated/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE)
+  # The contract itself, for agents in other languages and of other vendors: the types, also as JSON
+  # Schema, the topics with the name of each one's QoS, and the README with the table of QoS and the
+  # rule of partitions.
   file(GLOB saphira_contract CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/idl/*.idl)
   install(FILES ${saphira_contract} ${CMAKE_SOURCE_DIR}/idl/README.md
                 ${CMAKE_SOURCE_DIR}/idl/bus/include/saphira/bus/topics.def
+                ${CMAKE_BINARY_DIR}/idl/generated/saphira/idl/schema.json
           DESTINATION ${CMAKE_INSTALL_DATADIR}/saphira/idl ${saphira_dev})
-  target_include_directories(saphira_idl SYSTEM INTERFACE
-    $<INSTALL_INTERFACE:${saphira_generated_dir}>)
   saphira_component(bus idl security command_line bus)
 endif()
 

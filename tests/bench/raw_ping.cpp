@@ -33,8 +33,9 @@
 #include <vector>
 
 #include "bench.hpp"
-#include "motionPubSubTypes.h"
-#include "robotPubSubTypes.h"
+#include "dds_types.hpp"
+#include "saphira/bus/endpoint.hpp"
+#include "saphira/bus/topics.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
@@ -45,7 +46,7 @@ namespace v1 = saphira::v1;
 using Clock = std::chrono::steady_clock;
 
 // One side: writes Out, passes each In to a function, in the receiving thread.
-template <class Out, class OutType, class In, class InType>
+template <class Out, class In>
 class Side : public fdds::DataReaderListener, public fdds::DataWriterListener {
  public:
   Side(std::uint32_t domain, const char* out, const char* in, std::function<void(const In&)> each)
@@ -58,16 +59,12 @@ class Side : public fdds::DataReaderListener, public fdds::DataWriterListener {
     participant_ = fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
     if (participant_ == nullptr)
       throw std::runtime_error("no participant");
-    fdds::TypeSupport out_type(new OutType);
-    fdds::TypeSupport in_type(new InType);
-    out_type->auto_fill_type_object(false);
-    in_type->auto_fill_type_object(false);
-    out_type.register_type(participant_);
-    in_type.register_type(participant_);
+    for (const fdds::TypeSupport& type : saphira::bus::internal::all_types())
+      type.register_type(participant_);
     auto* out_topic =
-        participant_->create_topic(out, out_type.get_type_name(), fdds::TOPIC_QOS_DEFAULT);
+        participant_->create_topic(out, saphira::bus::type_of<Out>().name, fdds::TOPIC_QOS_DEFAULT);
     auto* in_topic =
-        participant_->create_topic(in, in_type.get_type_name(), fdds::TOPIC_QOS_DEFAULT);
+        participant_->create_topic(in, saphira::bus::type_of<In>().name, fdds::TOPIC_QOS_DEFAULT);
     fdds::DataWriterQos writer_qos = fdds::DATAWRITER_QOS_DEFAULT;
     writer_qos.reliability().kind = fdds::BEST_EFFORT_RELIABILITY_QOS;
     writer_qos.durability().kind = fdds::VOLATILE_DURABILITY_QOS;
@@ -116,10 +113,8 @@ class Side : public fdds::DataReaderListener, public fdds::DataWriterListener {
   fdds::DataReader* reader_ = nullptr;
 };
 
-using Robot =
-    Side<v1::RobotState, v1::RobotStatePubSubType, v1::MotorCommand, v1::MotorCommandPubSubType>;
-using Service =
-    Side<v1::MotorCommand, v1::MotorCommandPubSubType, v1::RobotState, v1::RobotStatePubSubType>;
+using Robot = Side<v1::RobotState, v1::MotorCommand>;
+using Service = Side<v1::MotorCommand, v1::RobotState>;
 
 // As sent by the bridge and the behaviors on the way to a goal.
 v1::RobotState robot_state() {

@@ -17,14 +17,18 @@
 #include <vector>
 
 #include "cdr.hpp"
+#include "json.hpp"
+#include "json_reader.hpp"
 #include "saphira_cyclone.h"
 
 namespace saphira {
 namespace {
 
 using bus::internal::CdrKey;
+using bus::internal::from_json;
 using bus::internal::kEncapsulationBytes;
 using bus::internal::read_cdr;
+using bus::internal::to_json;
 using bus::internal::write_cdr;
 
 using Bytes = std::vector<char>;
@@ -78,6 +82,8 @@ struct Type {
   Bytes (*random)(Random& random);
   std::optional<Bytes> (*again)(Bytes bytes);  // read, and written again [none: not read]
   CdrKey (*key)(Bytes bytes);
+  std::string (*json)(Bytes bytes);
+  Bytes (*of_json)(const std::string& json);
   std::vector<std::string> (*members)();
 };
 
@@ -116,6 +122,13 @@ Type type(const char* name, const dds_topic_descriptor_t& cyclone, std::uint64_t
             }
           },
           .key = [](Bytes bytes) { return CdrKey(read<T>(std::move(bytes))); },
+          .json = [](Bytes bytes) { return to_json(read<T>(std::move(bytes)), ""); },
+          .of_json =
+              [](const std::string& json) {
+                T sample;
+                from_json(json, sample);
+                return written(sample);
+              },
           .members =
               [] {
                 std::vector<std::string> names;
@@ -359,6 +372,7 @@ TEST(HostileBytes, OfAnUnknownEnumeratorKeepItsNumber) {
   const auto again = read<v1::Goal>(written(goal));
   EXPECT_EQ(again.writer_lost, 77U);
   EXPECT_EQ(name_of(again.writer_lost), nullptr);
+  EXPECT_EQ(nlohmann::json::parse(to_json(again, ""))["writer_lost"], 77);
 }
 
 TEST(HostileBytes, OfATruthThatIsNoneAreNoSample) {
@@ -370,6 +384,16 @@ TEST(HostileBytes, OfATruthThatIsNoneAreNoSample) {
     if (bytes[i] != other[i])
       bytes[i] = 2;
   EXPECT_ANY_THROW(read<v1::MotorCommand>(bytes));
+}
+
+TEST(ContractJson, IsReadToTheSameSample) {
+  for (const Type& type : types()) {
+    Random random;
+    for (int i = 0; i < 50; ++i) {
+      const Bytes bytes = type.random(random);
+      EXPECT_EQ(type.of_json(type.json(bytes)), bytes) << type.name;
+    }
+  }
 }
 
 TEST(ContractSchema, HasTheMembersOfEachType) {

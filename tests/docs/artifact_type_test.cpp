@@ -58,11 +58,9 @@ class Copy {
   }
 
   void generate() {
-    fs::create_directories(folder_.path("generated/tmp"));
-    EXPECT_EQ(said("cd " + folder_.path() + " && " +
-                   test::Installed::cached("FASTDDSGEN_EXECUTABLE") + " -replace -cs -I " +
-                   test::source("idl") + " -d generated -t generated/tmp idl/perception.idl" +
-                   " >generated/log 2>&1 || cat generated/log"),
+    EXPECT_EQ(said(test::Installed::build_folder() + "/idl/saphira-idl-generate " +
+                   folder_.path("generated") + " " + test::source("idl/common.idl") + " " +
+                   folder_.path("idl/perception.idl")),
               "");
   }
 

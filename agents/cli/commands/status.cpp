@@ -133,7 +133,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
     std::fputs(view.text().c_str(), stdout);
   const auto all = view.processes().all();
   const bool starting = std::any_of(all.begin(), all.end(), [](const SeenProcess& each) {
-    return each.status.uptime() < kStarting;
+    return each.status.uptime < kStarting;
   });
   if (!watch && took > kSlow && !starting)
     std::printf(

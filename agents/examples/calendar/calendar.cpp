@@ -48,11 +48,11 @@ int main(int argc, char** argv) {
             "place_of", "where a person is",
             {bus::text_slot("person", "a name", true), bus::text_slot("place", "of the map")}),
         [&](const v1::Request& request) {
-          const std::string person = saphira::lowered(bus::text_of(request.arguments(), "person"));
+          const std::string person = saphira::lowered(bus::text_of(request.arguments, "person"));
           if (person.empty()) {
             v1::Answer wrong;
-            wrong.code(v1::ANSWER_BAD_ARGUMENT);
-            wrong.text("person: expected a name as text, such as person=karen");
+            wrong.code = v1::ANSWER_BAD_ARGUMENT;
+            wrong.text = "person: expected a name as text, such as person=karen";
             return wrong;
           }
           const auto found = places.find(person);

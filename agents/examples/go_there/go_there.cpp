@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
     bus::GoalClient goals(node, "go_there");
 
     v1::Goal goal;
-    goal.functor("go_to");
-    goal.arguments({bus::point("position", x, y, 0.0, v1::FRAME_ROBOT)});
+    goal.functor = "go_to";
+    goal.arguments = {bus::point("position", x, y, 0.0, v1::FRAME_ROBOT)};
     const v1::GoalId id = goals.ask(goal);
 
     std::string told;
@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
         continue;
       if (const std::string line = bus::describe(*status); line != told)
         std::cout << (told = line) << std::endl;
-      if (bus::ended(status->state()))
-        return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
+      if (bus::ended(status->state))
+        return status->state == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     }
     goals.cancel(id);  // Ctrl-C
     goals.delivered(1000);

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -12,7 +13,7 @@
 
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira_visit.hpp"
+#include "saphira/idl/members.hpp"
 
 namespace saphira::bus::internal {
 
@@ -21,7 +22,7 @@ namespace saphira::bus::internal {
 class JsonWriter {
  public:
   template <class T>
-  void value(const T& item) {
+  void value([[maybe_unused]] const Member& member, const T& item) {
     if constexpr (std::is_same_v<T, bool>)
       text_ += item ? "true" : "false";
     else if constexpr (std::is_same_v<T, std::string>)
@@ -30,6 +31,8 @@ class JsonWriter {
       number(item, std::isfinite(item));
     else if constexpr (std::is_same_v<T, std::uint8_t>)
       number(static_cast<unsigned>(item), true);
+    else if constexpr (std::is_same_v<T, std::int32_t>)
+      named(member.name_of == nullptr ? nullptr : member.name_of(item), item);
     else if constexpr (std::is_integral_v<T>)
       number(item, true);
     else if constexpr (std::is_enum_v<T>)
@@ -38,16 +41,12 @@ class JsonWriter {
       structure(item, "");
   }
   template <class T>
-  void value(const Named<T>& item) {
-    named(item.name, item.value);
-  }
-  template <class T>
-  void value(const std::vector<T>& items) {
+  void value(const Member& member, const std::vector<T>& items) {
     text_ += '[';
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (i > 0)
         text_ += ',';
-      value(items[i]);
+      value(member, items[i]);
     }
     text_ += ']';
   }
@@ -56,12 +55,12 @@ class JsonWriter {
     text_ += '{';
     text_ += prefix;
     bool first = true;
-    visit_members(item, [&](const char* name, const auto& member) {
+    visit_members(item, [&](const Member& member, const auto& part) {
       text_ += first ? "\"" : ",\"";
       first = false;
-      text_ += name;
+      text_ += member.name;
       text_ += "\":";
-      value(member);
+      value(member, part);
     });
     text_ += '}';
   }

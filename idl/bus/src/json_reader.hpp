@@ -12,7 +12,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira_visit.hpp"
+#include "saphira/idl/members.hpp"
 
 namespace saphira::bus::internal {
 
@@ -21,7 +21,8 @@ namespace saphira::bus::internal {
 class JsonReader {
  public:
   template <class T>
-  void read(const nlohmann::json& json, T& item, const std::string& place) {
+  void read([[maybe_unused]] const Member& member, const nlohmann::json& json, T& item,
+            const std::string& place) {
     if constexpr (std::is_same_v<T, bool>) {
       expect(json.is_boolean(), json, place, "true or false");
       item = json.get<bool>();
@@ -37,43 +38,34 @@ class JsonReader {
              "a number from -3.4e38 to 3.4e38");
       item = json.is_null() ? std::numeric_limits<T>::quiet_NaN() : json.get<T>();
     } else if constexpr (std::is_integral_v<T>) {
-      integer(json, item, place);
+      if (member.name_of != nullptr && json.is_string())
+        item = static_cast<T>(named(member, json, place));
+      else
+        integer(json, item, place);
     } else {
       structure(json, item, place);
     }
   }
   template <class T>
-  void read(const nlohmann::json& json, std::vector<T>& items, const std::string& place) {
+  void read(const Member& member, const nlohmann::json& json, std::vector<T>& items,
+            const std::string& place) {
     expect(json.is_array(), json, place, "a list [...]");
     items.clear();
     for (std::size_t i = 0; i < json.size(); ++i)
-      read(json[i], items.emplace_back(), place + "[" + std::to_string(i) + "]");
-  }
-  /// As a name, or as the number.
-  template <class T>
-  void read(const nlohmann::json& json, Nameable<T>& item, const std::string& place) {
-    if (!json.is_string())
-      return integer(json, item.value, place);
-    const std::string wanted = json.get<std::string>();
-    for (T value = 0; value < kMostNamed; ++value)
-      if (const char* const name = item.name(value); name != nullptr && wanted == name) {
-        item.value = value;
-        return;
-      }
-    fail(place, "expected a number or one of its names, found " + json.dump().substr(0, 60));
+      read(member, json[i], items.emplace_back(), place + "[" + std::to_string(i) + "]");
   }
   template <class T>
   void structure(const nlohmann::json& json, T& item, const std::string& place) {
     expect(json.is_object(), json, place, "an object {...}");
     std::vector<std::string> names;
     std::size_t known = 0;
-    visit_members(item, [&](const char* name, auto&& member) {
-      names.emplace_back(name);
-      const auto found = json.find(name);
+    visit_members(item, [&](const Member& member, auto& part) {
+      names.emplace_back(member.name);
+      const auto found = json.find(member.name);
       if (found == json.end())
         return;
       ++known;
-      read(*found, member, place.empty() ? name : place + "." + name);
+      read(member, *found, part, place.empty() ? member.name : place + "." + member.name);
     });
     if (known < json.size())
       unknown(json, names, place);
@@ -114,6 +106,13 @@ class JsonReader {
              range);
       item = static_cast<T>(value);
     }
+  }
+  static std::int32_t named(const Member& member, const nlohmann::json& json,
+                            const std::string& place) {
+    for (std::int32_t value = 0; value < kMostNamed; ++value)
+      if (const char* const name = member.name_of(value); name != nullptr && json == name)
+        return value;
+    fail(place, "expected a number or one of its names, found " + json.dump().substr(0, 60));
   }
   template <class T>
   static T enumerator(const nlohmann::json& json, const std::string& place) {

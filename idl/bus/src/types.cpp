@@ -1,41 +1,40 @@
-#include <type_traits>
+#include <cstddef>
+#include <cstdint>
 
+#include "cdr.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/topics.hpp"
-#include "saphira_visit.hpp"
 
 namespace saphira::bus {
 namespace {
 
 using internal::to_json;
 
-// Integers, in their order; a struct within the key counts whole, as fastddsgen has it.
-struct KeyWords {
-  template <class T>
-  void operator()(const char* /*name*/, const T& value) {
-    if constexpr (std::is_integral_v<T>)
-      words.at(count++) = static_cast<std::uint64_t>(value);
-    else
-      visit_members(value, *this);
-  }
-  InstanceKey words{};
-  std::size_t count = 0;
-};
-
+// The bytes of the key as two numbers.
 template <class T>
 InstanceKey key_of(const T& sample) {
-  KeyWords words;
-  visit_keys(sample, words);
-  return words.words;
+  const internal::CdrKey key(sample);
+  InstanceKey words{};
+  for (std::size_t i = 0; i < key.bytes.size(); ++i)
+    words[i / 8] = words[i / 8] << 8 | static_cast<std::uint8_t>(key.bytes[i]);
+  return words;
+}
+
+template <class T>
+bool is_keyed() {
+  bool keyed = false;
+  const T sample;
+  visit_members(sample, [&](const Member& member, const auto&) { keyed |= member.key; });
+  return keyed;
 }
 
 template <class T>
 TypeInfo make_type(const char* name) {
   return {
       .name = name,
-      .keyed = T::isKeyDefined(),
+      .keyed = is_keyed<T>(),
       .key = [](const void* sample) { return key_of(*static_cast<const T*>(sample)); },
       .create = []() -> void* { return new T; },
       .copy = [](const void* from,

@@ -13,10 +13,9 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <stdexcept>
 
+#include "cdr.hpp"
 #include "dds_network.hpp"
-#include "motionPubSubTypes.h"
 #include "node_options.hpp"
-#include "requestPubSubTypes.h"
 
 namespace saphira::bus::test {
 
@@ -119,27 +118,21 @@ bool RawWriter::write(Bytes bytes, double ahead) {
 
 namespace {
 
-template <class Type, class Sample>
-Bytes bytes_of(Sample& sample) {
-  Type type;
-  rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&sample)());
-  type.serialize(&sample, &payload);
-  return {payload.data, payload.data + payload.length};
+template <class Sample>
+Bytes bytes_of(const Sample& sample) {
+  Bytes bytes(internal::cdr_size(sample));
+  internal::write_cdr(sample, reinterpret_cast<char*>(bytes.data()), bytes.size());
+  return bytes;
 }
 
 }  // namespace
 
 Bytes bytes_of_request(const std::string& functor) {
-  v1::Request request;
-  request.functor(functor);
-  return bytes_of<v1::RequestPubSubType>(request);
+  return bytes_of(v1::Request{.functor = functor});
 }
 
 Bytes bytes_of_motor_command(double velocity, bool active) {
-  v1::MotorCommand command;
-  command.velocity = velocity;
-  command.active = active;
-  return bytes_of<v1::MotorCommandPubSubType>(command);
+  return bytes_of(v1::MotorCommand{.active = active, .velocity = velocity});
 }
 
 }  // namespace saphira::bus::test
