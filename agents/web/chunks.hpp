@@ -10,7 +10,7 @@ namespace saphira::web {
 /// as they are.
 class Chunks {
  public:
-  /// Appends to `body` what the next bytes have of it. False: they are no chunks.
+  /// Appends the content of the next bytes to `body`. False: they are no chunks.
   bool take(std::string_view bytes, std::string& body);
   /// The whole body has come.
   bool ended() const { return ended_; }

@@ -28,7 +28,7 @@ bool is_here(lws* wsi);
 /// for its body, and hangs.
 constexpr int kAnswered = -1;
 
-/// Where a server listens.
+/// The address, port and certificate of a server.
 struct Place {
   /// IPv4, IPv6, or an interface of this machine. 0.0.0.0: every IPv4 address; ::, of IPv6 too.
   std::string address;

@@ -36,7 +36,7 @@ void make_own(const std::string& path) {
     throw std::runtime_error(path + ": expected a folder of this user" + kElsewhere);
 }
 
-/// Where a home is missing. What cleans /tmp does not know what runs.
+/// For a user without a home. A cleaner of /tmp may remove it while its programs run.
 std::string temporary_folder() {
   return "/tmp/saphira-" + std::to_string(getuid());
 }

@@ -9,8 +9,8 @@
 namespace saphira::relay {
 
 struct RelayOptions {
-  /// Where gateways dial in, and the address of all ports. Without a certificate gateways of this
-  /// machine alone.
+  /// The port for gateways, and the address of all ports. Without a certificate only gateways of
+  /// this machine are served.
   web::Place place{"0.0.0.0", 0, {}, {}};
 };
 

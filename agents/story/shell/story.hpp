@@ -41,9 +41,9 @@ class Story {
 
   /// True where the robot has its place on the map, and the services run.
   bool ready() const { return waiting_for_.empty() && !place_.empty(); }
-  /// True where the end is the cast's: in words, and by who has what.
+  /// The robot's words and the holders of the objects are those that the cast expects.
   bool well() const { return ended_ && cast_.ends_well(outcome_) && cast_.all_got(); }
-  /// What the people got, as they know it: "alice has the report"; empty: nothing.
+  /// The objects that people received, by their own word: "alice has the report"; empty: none.
   std::string handed_over() const { return cast_.handed_over(); }
   /// The robot's last answer to the newest line; empty: none.
   const std::string& outcome() const { return outcome_; }

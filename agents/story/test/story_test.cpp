@@ -84,7 +84,7 @@ TEST_F(WhoeverHasIt, EndsWell) {
   EXPECT_TRUE(story.well());
 }
 
-// What the robot says of it does not count.
+// The robot's own report does not count.
 TEST_F(WhoeverHasItNot, DoesNotEndWell) {
   story.step();
   answers("done: the report was brought");

@@ -32,9 +32,9 @@ bool stand(const reflector::Setpoints& told, double heading_in_odom) {
 
 /// [m] No robot's odometry goes farther.
 bool is_usable(const Edge& edge) {
-  return (Eigen::Vector4d(edge.from.x(), edge.from.y(), edge.to.x(), edge.to.y()).array().abs() <
-          1e6)
-      .all();
+  constexpr double most = 1e6;
+  return std::abs(edge.from.x()) < most && std::abs(edge.from.y()) < most &&
+         std::abs(edge.to.x()) < most && std::abs(edge.to.y()) < most;
 }
 
 bool drives(Role role) {

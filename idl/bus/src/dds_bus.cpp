@@ -69,6 +69,7 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
                  Peers& peers, const std::shared_ptr<Machines>& machines,
                  const std::shared_ptr<Guard>& guard)
     : side(the_side),
+      // Strangers must not know the seed: it decides which of them displace each other.
       entrance(guard ? std::make_shared<Entrance>(std::random_device{}()) : nullptr),
       // Each side hears of its own programs; those of this machine are heard on loopback.
       discovery(wake, peers, side == Side::network ? machines : nullptr, guard, entrance,

@@ -31,7 +31,7 @@ class Entrance {
   /// `seed`: a stranger does not know it.
   explicit Entrance(std::uint64_t seed) : seed_(seed) {}
 
-  /// What becomes of a packet.
+  /// The treatment of a packet.
   enum class Fate {
     passes,
     waits,  ///< passes; an announcement is good for kLease alone

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import {readFileSync} from 'node:fs';
+import net from 'node:net';
 import {join} from 'node:path';
 
 const limit = 30_000;        // [ms] generous: for broken runs
@@ -64,4 +65,13 @@ export async function rig(self, folder, robot) {
   self.gateway.stdout.on('data', data => { told += data; });
   const [address, port, key] = await until('the address', () => told.match(/http:\/\/localhost:(\d+)\/#(\w+)/));
   return Object.assign(self, {address, port: Number(port), key});
+}
+
+// Ports of this machine that nobody listens at.
+export async function freePorts(count) {
+  const servers = [...Array(count)].map(() => net.createServer());
+  await Promise.all(servers.map(server => new Promise(resolve => server.listen(0, '127.0.0.1', resolve))));
+  const found = servers.map(server => server.address().port);
+  await Promise.all(servers.map(server => new Promise(resolve => server.close(resolve))));
+  return found;
 }

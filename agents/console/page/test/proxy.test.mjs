@@ -4,11 +4,10 @@ import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import https from 'node:https';
-import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {end, output, start, until} from './processes.mjs';
+import {end, freePorts, output, start, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
 const name = 'robot.example';
@@ -18,13 +17,6 @@ const file = each => join(folder, each);
 const children = [];
 let consolePort, key, mcpPort, mcpToken, ports, trust;
 
-async function freePorts(count) {
-  const servers = [...Array(count)].map(() => net.createServer());
-  await Promise.all(servers.map(server => new Promise(resolve => server.listen(0, '127.0.0.1', resolve))));
-  const found = servers.map(server => server.address().port);
-  await Promise.all(servers.map(server => new Promise(resolve => server.close(resolve))));
-  return found;
-}
 function run(program, ...words) {
   const child = start(program, ...words);
   children.push(child);

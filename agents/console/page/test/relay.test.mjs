@@ -10,7 +10,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import tls from 'node:tls';
-import {end, ended, output, sleep, start, trace, until} from './processes.mjs';
+import {end, ended, freePorts, output, sleep, start, trace, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
 const token = '0123456789abcdef0123456789abcdef';
@@ -18,13 +18,6 @@ const folder = mkdtempSync(join(tmpdir(), 'saphira-relay-'));
 const file = name => join(folder, name);
 let simulator, bridge, gateway, relay, ports, key, ann;
 
-async function freePorts(count) {
-  const servers = [...Array(count)].map(() => net.createServer());
-  await Promise.all(servers.map(server => new Promise(resolve => server.listen(0, '127.0.0.1', resolve))));
-  const found = servers.map(server => server.address().port);
-  await Promise.all(servers.map(server => new Promise(resolve => server.close(resolve))));
-  return found;
-}
 function startRelay() {
   return start('saphira-relay', '--robots', file('robots'), '--dial-port', `${ports[0]}`, '--listen', '127.0.0.1',
     '--certificate', file('relay.pem'), '--certificate-key', file('relay.key'));

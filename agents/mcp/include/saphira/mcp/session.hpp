@@ -252,7 +252,7 @@ class Session {
   double counted_ = 0.0;          ///< [s] time of `allowed_`
 };
 
-/// Takes out of the arguments what is null and may be left out.
+/// Removes optional arguments that are null.
 void drop_nulls(Json& arguments, const Json& schema);
 /// The reason why arguments do not fit a schema, in words, with the argument's name; empty where
 /// they do. Of JSON Schema: type, properties, required, additionalProperties, items, anyOf, enum,
