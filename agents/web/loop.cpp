@@ -123,6 +123,19 @@ std::string peer(lws* wsi) {
   return std::string(address.starts_with("::ffff:") ? address.substr(7) : address);
 }
 
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+std::string name_of(const Place& place) {
+  const std::string& address = place.address;
+  if (address == "127.0.0.1" || address == "::1")
+    return "localhost";
+  const bool in_digits = address.find_first_not_of("0123456789.") == std::string::npos;
+  return in_digits && address != "0.0.0.0" && place.certificate.empty() ? address : host_name();
+}
+
 lws_protocols Loop::descriptors() {
   return {kDescriptor, readable, 0, 0, 0, nullptr, 0};
 }

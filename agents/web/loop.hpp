@@ -37,6 +37,12 @@ struct Place {
   std::string certificate_key;
 };
 
+/// The name of this machine on its network.
+std::string host_name();
+/// The name by which people reach a place, without the port. A certificate has the name of this
+/// machine.
+std::string name_of(const Place& place);
+
 /// An event loop of libwebsockets, in one thread, with the further needs of our programs:
 /// descriptors to wait for, a clock, an end.
 class Loop {

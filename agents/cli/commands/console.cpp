@@ -52,4 +52,8 @@ void add_replay(CLI::App& app, Chosen& chosen) {
   add_program(app, chosen, "replay", "Play a recording on the bus, as another robot");
 }
 
+void add_foxglove(CLI::App& app, Chosen& chosen) {
+  add_program(app, chosen, "foxglove", "See the robot in Foxglove or Lichtblick");
+}
+
 }  // namespace saphira::cli

@@ -23,11 +23,6 @@ constexpr double kExplain = 0.5;     // [s]
 constexpr std::size_t kLines = 200;  // of a log
 constexpr std::size_t kMany = 2000;  // instances of a topic
 
-std::string host_name() {
-  char name[256] = {};
-  return gethostname(name, sizeof name - 1) == 0 ? name : "";
-}
-
 ServerOptions server_of(const GatewayOptions& options, const Kept& kept) {
   ServerOptions server = options.server;
   server.before = kept.port;
@@ -37,21 +32,11 @@ ServerOptions server_of(const GatewayOptions& options, const Kept& kept) {
 
 AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
   AccessSettings access{kept.key, options.names, 0, options.always_key};
-  access.names.push_back(host_name());
-  access.names.push_back(host_name() + ".local");
+  access.names.push_back(web::host_name());
+  access.names.push_back(web::host_name() + ".local");
   if (options.dial)
     access.names.push_back(options.dial->host);
   return access;
-}
-
-/// The address for people, without the port. A certificate has the name of this machine.
-std::string origin_of(const web::Place& place) {
-  const std::string& address = place.address;
-  const bool in_digits = address.find_first_not_of("0123456789.") == std::string::npos;
-  return (place.certificate.empty() ? "http://" : "https://") +
-         (address == "127.0.0.1" || address == "::1"                       ? "localhost"
-          : in_digits && address != "0.0.0.0" && place.certificate.empty() ? address
-                                                                           : host_name());
 }
 
 }  // namespace
@@ -74,14 +59,15 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options)
 
 Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept)
     : access_(access_of(options, kept)),
-      origin_(origin_of(options.server.place)),
+      origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
+              web::name_of(options.server.place)),
       node_(node),
       server_(server_of(options, kept), access_, page_files(), events()) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);
   feed_all();
   board_.put(board_.topic("console"), "",
-             "{\"robot\":" + quoted(node.robot) + ",\"host\":" + quoted(host_name()) +
+             "{\"robot\":" + quoted(node.robot) + ",\"host\":" + quoted(web::host_name()) +
                  ",\"simulator\":" + (options.simulator.empty() ? "false" : "true") + "}",
              now());
   if (!options.simulator.empty())

@@ -1,4 +1,8 @@
 // Records the bus as an MCAP file. README.md.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -25,6 +29,7 @@ struct Options {
   std::string file;
   std::vector<std::string> topics;
   double seconds = 0.0;
+  bool overwrite = false;
 };
 
 std::int64_t now_ns() {
@@ -35,30 +40,44 @@ std::string usual_name(const std::string& robot) {
   return robot + local_text(std::time(nullptr), "-%Y-%m-%d-%H%M%S.mcap");
 }
 
-/// std::invalid_argument where a recording of that name would lose something else.
-void expect_name_of_recording(const std::string& file) {
-  if (!file.ends_with(".mcap"))
-    throw std::invalid_argument(file +
-                                ": expected a name that ends with .mcap, the kind of file that "
-                                "this writes");
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none))
-    return;
-  std::ifstream in(file, std::ios::binary);
-  if (in && in.peek() == std::ifstream::traits_type::eof())
-    return;
-  try {
-    recorder::Reader begins(in);
-  } catch (const std::invalid_argument&) {
-    throw std::invalid_argument(
-        file + ": a file with other content is there; give a new name, such as NAME.mcap");
+/// Holds the name of a recording, so that no second recorder writes there. std::invalid_argument
+/// where another one does, or where something is there that would be lost.
+class Held {
+ public:
+  Held(const std::string& file, bool overwrite) {
+    if (!file.ends_with(".mcap"))
+      throw std::invalid_argument(
+          file + ": expected a name that ends with .mcap, the kind of file that this writes");
+    fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (fd_ < 0)
+      throw std::invalid_argument(cannot_be(file, "written"));
+    if (flock(fd_, LOCK_EX | LOCK_NB) != 0)
+      throw std::invalid_argument(file + ": another recorder writes it; give a new name");
+    std::error_code none;
+    if (std::filesystem::file_size(file, none) == 0)
+      return;
+    try {
+      std::ifstream in(file, std::ios::binary);
+      recorder::Reader begins(in);
+    } catch (const std::invalid_argument&) {
+      throw std::invalid_argument(
+          file + ": a file with other content is there; give a new name, such as NAME.mcap");
+    }
+    if (!overwrite)
+      throw std::invalid_argument(file + ": a recording is there; give a new name, or --overwrite");
   }
-}
+  ~Held() { close(fd_); }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+ private:
+  int fd_ = -1;
+};
 
 int record(const bus::NodeOptions& node_options, const Options& options, const bus::Stop& stop) {
   const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
-  expect_name_of_recording(file);
   const auto topics = recorder::recorded_topics(options.topics);
+  const Held held(file, options.overwrite);
   std::ofstream out(file, std::ios::binary);
   const auto failed = [&](int code) {
     std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
@@ -107,6 +126,7 @@ int main(int argc, char** argv) {
       [&](CommandLine& app) {
         app.add_option("file", own.file, "FILE.mcap; else ROBOT-DATE-TIME.mcap in this folder");
         app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();
+        app.add_flag("--overwrite", own.overwrite, "replace a recording of that name");
         app.add_option("--for", own.seconds, "[s] end then").positive();
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

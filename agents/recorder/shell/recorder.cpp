@@ -2,13 +2,23 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string_view>
+
+#include "draw.hpp"
+#include "saphira/viewer/schema.hpp"
 
 namespace saphira::recorder {
 
 namespace {
 
-constexpr std::string_view kDisposed = R"({"_disposed":true,)";  // as bus::Echo
+constexpr double kGridPeriod = 10.0;  // [s] a grid is large
+constexpr std::int64_t kLongestGap =
+    10'000'000'000;  // [ns] without any sample; presence has 10 a second
+constexpr std::int64_t kShortGap = 100'000'000;  // [ns] that is played in its place
+
+/// The part [ns] of the time between two samples that is played.
+std::int64_t played(std::int64_t step_ns) {
+  return step_ns < 0 || step_ns > kLongestGap ? kShortGap : step_ns;
+}
 
 bool is_command(const bus::TopicEntry& topic) {
   return topic.qos == "motion" || topic.qos == "command";
@@ -31,75 +41,100 @@ std::vector<bus::TopicEntry> recorded_topics(const std::vector<std::string>& onl
 }
 
 Recorder::Recorder(bus::Node& node, Writer& writer, const std::vector<bus::TopicEntry>& topics)
-    : writer_(writer) {
+    : writer_(writer), scene_(kGridPeriod) {
   for (const bus::TopicEntry& topic : topics) {
     try {
       auto echo = std::make_unique<bus::Echo>(node, topic.name);
-      const std::uint16_t channel =
-          writer_.add_channel({topic.name, topic.type, node.options().robot});
-      sources_.push_back({std::move(echo), channel, topic.name == bus::topics::kPresence.name});
+      const std::uint16_t channel = writer_.add_channel(
+          {topic.name, topic.type, node.options().robot}, viewer::schema_of(topic.type));
+      sources_.push_back({std::move(echo), topic.name, channel});
     } catch (const std::runtime_error& error) {
       refused_.push_back(topic.name + ": " + error.what());
     }
   }
+  for (const viewer::DrawnChannel& drawn : viewer::drawn_channels())
+    drawn_.push_back(writer_.add_channel({drawn.topic, drawn.type, node.options().robot},
+                                         viewer::drawn_schema(drawn.type)));
 }
 
 void Recorder::poll(std::int64_t now_ns) {
   for (const Source& source : sources_)
     for (std::string& json : source.echo->take_json()) {
+      for (viewer::DrawnMessage& drawn : viewer::draw(scene_, source.topic, json, now_ns))
+        writer_.add({drawn_[drawn.channel], now_ns, std::move(drawn.json)});
       writer_.add({source.channel, now_ns, std::move(json)});
-      has_heard_ = has_heard_ || !source.is_presence;
+      has_heard_ = has_heard_ || source.topic != bus::topics::kPresence.name;
     }
 }
 
 Contents contents_of(std::istream& in) {
   Contents contents;
+  std::int64_t last_ns = 0;
   Reader reader(in);
   while (const auto sample = reader.next()) {
     const Channel& channel = reader.channel(sample->channel);
-    const bool is_first = contents.samples.empty();
+    if (contents.samples.empty())
+      contents.first_ns = last_ns = sample->time_ns;
     contents.robot = channel.robot;
-    contents.first_ns = is_first ? sample->time_ns : std::min(contents.first_ns, sample->time_ns);
-    contents.last_ns = std::max(contents.last_ns, sample->time_ns);
+    contents.seconds += static_cast<double>(played(sample->time_ns - last_ns)) / 1e9;
+    last_ns = sample->time_ns;
     ++contents.samples[channel.topic];
   }
   contents.cut_off = reader.is_cut_off();
   return contents;
 }
 
-Player::Player(bus::Node& node, Reader& reader, const Contents& contents)
-    : reader_(reader), first_ns_(contents.first_ns) {
+Player::Player(bus::Node& node, Reader& reader, const Contents& contents, const Options& options)
+    : reader_(reader),
+      played_ns_(static_cast<std::int64_t>(options.from * 1e9)),
+      from_ns_(played_ns_) {
   const std::vector<bus::TopicEntry> known = bus::known_topics();
   for (const auto& [topic, count] : contents.samples) {
     const auto entry = std::find_if(known.begin(), known.end(),
                                     [&](const auto& each) { return each.name == topic; });
-    if (entry == known.end() || is_command(*entry))
+    if (entry == known.end() || is_command(*entry) ||
+        (!options.only.empty() && !options.only.contains(topic)))
       left_out_.insert(topic);
     else
       scribes_.try_emplace(topic, node, topic);
+    if (entry != known.end() && (entry->qos == "latched" || entry->qos == "status"))
+      kept_.insert(topic);
   }
 }
 
 bool Player::poll(double seconds) {
-  const auto until = first_ns_ + static_cast<std::int64_t>(seconds * 1e9);
-  while (waiting_ || (waiting_ = reader_.next())) {
-    if (waiting_->time_ns > until)
-      return true;
-    const std::string& topic = reader_.channel(waiting_->channel).topic;
-    if (const auto scribe = scribes_.find(topic); scribe != scribes_.end()) {
-      try {
-        if (waiting_->json.starts_with(kDisposed))
-          scribe->second.dispose("{" + waiting_->json.substr(kDisposed.size()));
-        else
-          scribe->second.write(waiting_->json);
-      } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(topic + ": " + error.what());
-      }
-      ++written_;
+  played_ns_ += static_cast<std::int64_t>(seconds * 1e9);
+  while (true) {
+    if (!waiting_) {
+      waiting_ = reader_.next();
+      if (!waiting_)
+        return false;
+      const std::int64_t step = waiting_->time_ns - last_ns_.value_or(waiting_->time_ns);
+      if (played(step) != step)
+        gaps_.push_back({static_cast<double>(due_ns_) / 1e9, static_cast<double>(step) / 1e9});
+      last_ns_ = waiting_->time_ns;
+      due_ns_ += played(step);
     }
+    if (due_ns_ > played_ns_)
+      return true;
+    write(reader_.channel(waiting_->channel).topic, waiting_->json);
     waiting_.reset();
   }
-  return false;
+}
+
+void Player::write(const std::string& topic, const std::string& json) {
+  const auto scribe = scribes_.find(topic);
+  if (scribe == scribes_.end() || (due_ns_ < from_ns_ && !kept_.contains(topic)))
+    return;
+  try {
+    if (json.starts_with(bus::kDisposed))
+      scribe->second.dispose("{" + json.substr(bus::kDisposed.size()));
+    else
+      scribe->second.write(json);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(topic + ": " + error.what());
+  }
+  ++written_;
 }
 
 }  // namespace saphira::recorder

@@ -1,4 +1,5 @@
 // Plays a recording on the bus, as another robot. README.md.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -16,12 +17,16 @@ using namespace saphira;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kTurn = std::chrono::milliseconds(20);
+// Longer turns are pauses: the program was stopped (Ctrl-Z).
+constexpr double kLongestTurn = 0.5;
 constexpr auto kLook = std::chrono::seconds(1);  // for a robot of that name, and for readers
 
 struct Options {
   std::string file;
   std::string as;
   double rate = 1.0;
+  std::vector<std::string> topics;
+  double from = 0.0;
   bool list = false;
 };
 
@@ -29,8 +34,7 @@ int list(const recorder::Contents& contents) {
   std::time_t began = contents.first_ns / 1'000'000'000;
   std::string date = std::ctime(&began);
   date.pop_back();
-  std::printf("robot %s, %s, %.1f s\n", contents.robot.c_str(), date.c_str(),
-              static_cast<double>(contents.last_ns - contents.first_ns) / 1e9);
+  std::printf("robot %s, %s, %.1f s\n", contents.robot.c_str(), date.c_str(), contents.seconds);
   for (const auto& [topic, count] : contents.samples)
     std::printf("%8llu  %s\n", static_cast<unsigned long long>(count), topic.c_str());
   return bus::kExitOk;
@@ -59,6 +63,9 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
     throw std::invalid_argument("it has no sample");
   if (options.list)
     return list(contents);
+  for (const std::string& topic : options.topics)
+    if (!contents.samples.contains(topic))
+      throw std::invalid_argument("it has no sample of \"" + topic + "\"; --list shows its topics");
   node_options.robot = options.as.empty() ? contents.robot + "-replay" : options.as;
   bus::Node node(node_options);
   if (has_robot(node, stop)) {
@@ -69,16 +76,29 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
   file.clear();
   file.seekg(0);
   recorder::Reader reader(file);
-  recorder::Player player(node, reader, contents);
-  std::fprintf(stderr, "plays %.0f s as robot %s: saphira --robot %s status; Ctrl-C ends it\n",
-               static_cast<double>(contents.last_ns - contents.first_ns) / 1e9,
-               node_options.robot.c_str(), node_options.robot.c_str());
+  recorder::Player player(node, reader, contents,
+                          {{options.topics.begin(), options.topics.end()}, options.from});
+  std::fprintf(stderr,
+               "plays %.0f s as robot %s: saphira --robot %s status; Ctrl-Z pauses it, Ctrl-C ends "
+               "it\n",
+               std::max(0.0, contents.seconds - options.from), node_options.robot.c_str(),
+               node_options.robot.c_str());
   for (const auto look = Clock::now(); !stop.requested() && Clock::now() - look < kLook;)
     node.wait(kTurn, &stop);
-  const auto began = Clock::now();
-  while (!stop.requested() &&
-         player.poll(std::chrono::duration<double>(Clock::now() - began).count() * options.rate))
+  auto before = Clock::now();
+  bool goes_on = true;
+  while (!stop.requested() && goes_on) {
+    const auto now = Clock::now();
+    const double turn = std::chrono::duration<double>(now - before).count();
+    before = now;
+    goes_on = player.poll((turn > kLongestTurn ? 0.0 : turn) * options.rate);
+    for (const recorder::Player::Gap& gap : player.take_gaps())
+      std::fprintf(stderr,
+                   "saphira: after %.1f s the clock of the recorder steps by %.0f s; the step is "
+                   "left out\n",
+                   gap.at, gap.step);
     node.wait(kTurn, &stop);
+  }
   std::fprintf(stderr, "%llu samples\n", static_cast<unsigned long long>(player.written()));
   return bus::kExitOk;
 }
@@ -96,6 +116,9 @@ int main(int argc, char** argv) {
         app.add_option("--rate", own.rate, "seconds of the recording in a second")
             .positive()
             .in_range(0.0, 1000.0);
+        app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();
+        app.add_option("--from", own.from, "[s] into the recording; begin there")
+            .in_range(0.0, 1e9);
         app.add_flag("--list", own.list, "say what it holds, and end");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

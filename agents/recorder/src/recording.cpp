@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "saphira/base/text.hpp"
@@ -110,29 +109,7 @@ std::string decompressed(std::string_view packed, std::uint64_t size, const Fiel
   return out;
 }
 
-nlohmann::json schema_of(const nlohmann::json& value) {
-  if (value.is_object()) {
-    nlohmann::json members = nlohmann::json::object();
-    for (const auto& [name, member] : value.items())
-      members[name] = schema_of(member);
-    return {{"type", "object"}, {"properties", std::move(members)}};
-  }
-  if (value.is_array())
-    return {{"type", "array"},
-            {"items", value.empty() ? nlohmann::json::object() : schema_of(value.front())}};
-  if (value.is_null())
-    return nlohmann::json::object();
-  return {{"type", value.is_string() ? "string" : value.is_boolean() ? "boolean" : "number"}};
-}
-
 }  // namespace
-
-std::string schema_of(const std::string& json, const std::string& title) {
-  const nlohmann::json sample = nlohmann::json::parse(json, nullptr, false);
-  nlohmann::json schema = schema_of(sample.is_object() ? sample : nlohmann::json::object());
-  schema["title"] = title;
-  return schema.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 Writer::Writer(std::ostream& out) : out_(out) {
   std::string body;
@@ -141,36 +118,31 @@ Writer::Writer(std::ostream& out) : out_(out) {
   write(std::string(kMagic) + record(kHeader, body));
 }
 
-std::uint16_t Writer::add_channel(const Channel& channel) {
-  channels_.push_back({channel, 0, {}, {}});
-  return static_cast<std::uint16_t>(channels_.size() - 1);
-}
-
-void Writer::describe(std::uint16_t channel, const std::string& json) {
-  const Channel& of = channels_[channel].channel;
-  const auto id = static_cast<std::uint16_t>(channel + 1);  // 0 is no schema
-  std::string schema;
-  put(schema, id);
-  put(schema, std::string_view(of.type));
-  put(schema, std::string_view("jsonschema"));
-  put(schema, std::string_view(schema_of(json, of.type)));
+std::uint16_t Writer::add_channel(const Channel& channel, const std::string& schema) {
+  const auto number = static_cast<std::uint16_t>(channels_.size());
+  const auto id = static_cast<std::uint16_t>(number + 1);  // 0 is no schema
+  std::string of_schema;
+  put(of_schema, id);
+  put(of_schema, std::string_view(channel.type));
+  put(of_schema, std::string_view("jsonschema"));
+  put(of_schema, std::string_view(schema));
   std::string metadata;
   put(metadata, std::string_view(kRobot));
-  put(metadata, std::string_view(of.robot));
+  put(metadata, std::string_view(channel.robot));
   std::string body;
-  put(body, channel);
+  put(body, number);
   put(body, id);
-  put(body, std::string_view(of.topic));
+  put(body, std::string_view(channel.topic));
   put(body, std::string_view("json"));
   put(body, std::string_view(metadata));
-  channels_[channel].description = record(kSchema, schema) + record(kChannel, body);
-  chunk_ += channels_[channel].description;
+  channels_.push_back({0, record(kSchema, of_schema), record(kChannel, body), {}});
+  return number;
 }
 
 void Writer::add(const Sample& sample) {
   Kept& kept = channels_.at(sample.channel);
-  if (kept.description.empty())
-    describe(sample.channel, sample.json);
+  if (kept.samples == 0)
+    chunk_ += kept.schema + kept.channel;
   chunk_first_ = chunk_samples_ == 0 ? sample.time_ns : std::min(chunk_first_, sample.time_ns);
   chunk_last_ = chunk_samples_ == 0 ? sample.time_ns : std::max(chunk_last_, sample.time_ns);
   ++chunk_samples_;
@@ -262,15 +234,11 @@ bool Writer::close() {
   std::uint32_t described = 0;
   for (std::size_t id = 0; id < channels_.size(); ++id) {
     const Kept& kept = channels_[id];
-    if (kept.description.empty())
+    if (kept.samples == 0)
       continue;
     ++described;
-    Fields fields(kept.description, 0);
-    fields.number<std::uint8_t>();
-    const auto length = fields.number<std::uint64_t>();
-    const std::size_t schema = 1 + sizeof(std::uint64_t) + length;
-    schemas += kept.description.substr(0, schema);
-    channels += kept.description.substr(schema);
+    schemas += kept.schema;
+    channels += kept.channel;
     put(counts, static_cast<std::uint16_t>(id));
     put(counts, kept.samples);
   }

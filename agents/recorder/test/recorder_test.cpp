@@ -75,15 +75,16 @@ TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
   auto drawings = node.reader(bus::topics::kDrawings);
   auto commands = node.reader(bus::topics::kDriveDirect);
   auto goals = node.reader(bus::topics::kGoalStatus);
-  Player player(node, reader, contents());
-  EXPECT_EQ(player.left_out(), std::set<std::string>{"drive/direct"});
+  Player player(node, reader, contents(), {});
+  EXPECT_EQ(player.left_out(),
+            (std::set<std::string>{"drive/direct", "viewer/pose", "viewer/transforms"}));
   EXPECT_TRUE(player.poll(0.05));
   auto came = states.take();
   ASSERT_EQ(came.size(), 1U);
   EXPECT_EQ(came[0].data.stamp.cycle, 1U);
   EXPECT_TRUE(std::isnan(came[0].data.battery));
   EXPECT_EQ(drawings.take().size(), 2U);
-  EXPECT_TRUE(player.poll(0.1));
+  EXPECT_TRUE(player.poll(0.05));
   const auto changed = drawings.take();
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_TRUE(changed[0].info.disposed);
@@ -108,8 +109,51 @@ TEST_F(Recorded, SaysWhatItHolds) {
   EXPECT_EQ(all.samples.at("drive/direct"), 1U);
   EXPECT_EQ(all.robot, test::memory_options("robot").robot);
   EXPECT_EQ(all.first_ns, 100'000'000);
-  EXPECT_EQ(all.last_ns, 300'000'000);
+  EXPECT_DOUBLE_EQ(all.seconds, 0.2);
+  EXPECT_EQ(all.samples.at("viewer/pose"), 3U);
   EXPECT_FALSE(all.cut_off);
+}
+
+/// The cycles of the states in a recording whose samples have these times [s].
+std::vector<std::uint64_t> played(const std::vector<double>& times, const Player::Options& options,
+                                  double seconds, std::vector<double>* steps = nullptr) {
+  std::ostringstream file;
+  Writer writer(file);
+  const auto channel = writer.add_channel({"robot/state", "saphira::v1::RobotState", "r"}, "{}");
+  for (std::size_t i = 0; i < times.size(); ++i)
+    writer.add({channel, static_cast<std::int64_t>(times[i] * 1e9),
+                R"({"stamp":{"epoch":1,"cycle":)" + std::to_string(i + 1) + "}}"});
+  EXPECT_TRUE(writer.close());
+  std::istringstream in(file.str());
+  const Contents contents = contents_of(in);
+  std::istringstream again(file.str());
+  Reader reader(again);
+  bus::Node node(test::memory_options("replay"), bus::make_memory_bus());
+  auto states = node.reader(bus::topics::kRobotState);
+  Player player(node, reader, contents, options);
+  player.poll(seconds);
+  if (steps != nullptr)
+    for (const Player::Gap& gap : player.take_gaps())
+      steps->push_back(gap.step);
+  std::vector<std::uint64_t> cycles;
+  states.visit([&](const v1::RobotState& each, const bus::SampleInfo&) {
+    cycles.push_back(each.stamp.cycle);
+  });
+  return cycles;
+}
+
+TEST(Player, ClockThatStepsDelaysNothing) {
+  std::vector<double> steps;
+  EXPECT_EQ(played({1.0, 300'000.0, 2.0, 2.1}, {}, 0.35, &steps),
+            (std::vector<std::uint64_t>{1, 2, 3, 4}));
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_NEAR(steps[0], 299'999.0, 1e-6);
+  EXPECT_NEAR(steps[1], -299'998.0, 1e-6);
+}
+
+TEST(Player, BeginsWhereItIsTold) {
+  EXPECT_EQ(played({0.0, 1.0, 2.0, 3.0}, {{}, 1.5}, 0.6), std::vector<std::uint64_t>{3});
+  EXPECT_EQ(played({0.0, 1.0}, {{"map"}, 0.0}, 5.0), std::vector<std::uint64_t>{});
 }
 
 TEST_F(Recorded, HasTheTopicsThatOneNames) {

@@ -23,6 +23,7 @@
 #include <thread>
 #include <vector>
 
+#include "foxglove_server.hpp"
 #include "http.hpp"
 #include "process.hpp"
 #include "relay.hpp"
@@ -99,6 +100,10 @@ TEST(Servers, EachListensAtTheAddressThatWasSaidAndNowhereElse) {
       const relay::Relay server({{address, 0, {}, {}}},
                                 {{"a", 0, "0123456789abcdef"}, {"b", 0, "fedcba9876543210"}});
       EXPECT_EQ(listening(), (Addresses{address, address, "127.0.0.1"})) << "relay";
+    }
+    {
+      const viewer::Server server({{address, 0, {}, {}}, {}, "k"}, {}, {});
+      EXPECT_EQ(listening(), Addresses{address}) << "viewer";
     }
   }
   const mcp::HttpServer server(0, {});

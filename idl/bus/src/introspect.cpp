@@ -40,7 +40,7 @@ Echo::~Echo() = default;
 std::vector<std::string> Echo::take_json() {
   std::vector<std::string> result;
   reader_->take([&](const void* sample, const SampleInfo& info) {
-    result.push_back(type_->json(sample, info.disposed ? "\"_disposed\":true," : ""));
+    result.push_back(type_->json(sample, info.disposed ? kDisposed.data() + 1 : ""));
   });
   return result;
 }

@@ -34,8 +34,8 @@ class Writer {
   /// `out`: binary, and empty. It outlives the writer.
   explicit Writer(std::ostream& out);
 
-  /// The schema of the channel comes from its first sample.
-  std::uint16_t add_channel(const Channel& channel);
+  /// `schema`: JSON Schema of its samples.
+  std::uint16_t add_channel(const Channel& channel, const std::string& schema);
   /// Samples of one channel come in the order of their times.
   void add(const Sample& sample);
   /// Writes the samples since the last flush. False: the stream did not take them.
@@ -48,14 +48,13 @@ class Writer {
 
  private:
   struct Kept {
-    Channel channel;
     std::uint64_t samples = 0;
-    std::string description;  ///< its schema and channel records; empty before its first sample
+    std::string schema;  ///< the records that describe it, written with its first sample
+    std::string channel;
     std::vector<std::pair<std::int64_t, std::uint64_t>> index;  ///< of the chunk: time and place
   };
 
   void write(std::string_view bytes);
-  void describe(std::uint16_t channel, const std::string& json);
 
   std::ostream& out_;
   std::uint64_t at_ = 0;
@@ -98,9 +97,5 @@ class Reader {
   std::vector<Sample> ready_;
   std::size_t next_ = 0;
 };
-
-/// A JSON schema of messages like this one: the types of its members. Members that are null have
-/// any type.
-std::string schema_of(const std::string& json, const std::string& title);
 
 }  // namespace saphira::recorder

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saphira/bus/node.hpp"
@@ -19,9 +20,11 @@ struct TopicEntry {
 /// Every topic of topics.hpp, in that order.
 std::vector<TopicEntry> known_topics();
 
+/// The beginning of the JSON of a withdrawn instance.
+inline constexpr std::string_view kDisposed = R"({"_disposed":true,)";
+
 /// Reads one topic by its name and tells each sample as JSON: members as in the IDL, enumerators by
-/// name, NaN and infinities as null. A withdrawn instance has "_disposed": true as its first
-/// member.
+/// name, NaN and infinities as null. A withdrawn instance begins with kDisposed.
 class Echo {
  public:
   /// Throws std::runtime_error that names the known topics where `topic` is none of them.

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "loop.hpp"
+#include "saphira/viewer/protocol.hpp"
+
+namespace saphira::viewer {
+
+/// The Foxglove WebSocket protocol at a network address (libwebsockets), in one thread. Clients
+/// have to have the key: ws://HOST:PORT/?key=KEY.
+class Server {
+ public:
+  struct Options {
+    web::Place place{"127.0.0.1", 8765, {}, {}};
+    std::string name;  ///< of the robot, for people
+    std::string key;
+  };
+  struct Events {
+    std::function<void(std::size_t channel)> subscribed;
+    std::function<void()> readable;  ///< the file descriptor of watch()
+    std::function<void()> tick;      ///< ten times a second
+  };
+
+  /// std::runtime_error that names the cause (the port, the certificate).
+  Server(const Options& options, std::vector<Channel> channels, Events events);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const;
+  bool wants(std::size_t channel) const;
+  /// A sample of a channel, for each client that has subscribed.
+  void offer(std::size_t channel, std::int64_t time_ns, const std::string& json);
+  void watch(int fd);
+  /// Runs until `stop` is readable.
+  void run(int stop);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace saphira::viewer

@@ -1,0 +1,83 @@
+// Shows a running robot in Foxglove, Lichtblick and others of their protocol. README.md.
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "foxglove_server.hpp"
+#include "key.hpp"
+#include "live.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/program.hpp"
+
+namespace {
+
+using namespace saphira;
+
+int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
+          const std::string& key_file, const bus::Stop& stop) {
+  options.key = console::keep(key_file).key;
+  options.name = "saphira: robot " + node_options.robot;
+  bus::Node node(node_options);
+  viewer::Live live(node);
+  std::optional<viewer::Server> server;
+  const auto poll = [&] {
+    live.poll(
+        static_cast<std::int64_t>(unix_time() * 1e9),
+        [&](std::size_t channel) { return server->wants(channel); },
+        [&](std::size_t channel, const std::string& json) {
+          server->offer(channel, static_cast<std::int64_t>(unix_time() * 1e9), json);
+        });
+  };
+  server.emplace(options, live.channels(),
+                 viewer::Server::Events{[&](std::size_t channel) {
+                                          if (const std::string why = live.subscribe(channel);
+                                              !why.empty())
+                                            node.warn("not shown: " + why);
+                                        },
+                                        [&] {
+                                          node.clear_wake();
+                                          poll();
+                                        },
+                                        [&] {
+                                          poll();
+                                          node.publish_status();
+                                        }});
+  server->watch(node.wake_fd());
+  std::printf(
+      "open %s://%s:%d/?key=%s in Foxglove or Lichtblick, as a Foxglove WebSocket; Ctrl-C "
+      "ends it\n",
+      options.place.certificate.empty() ? "ws" : "wss", web::name_of(options.place).c_str(),
+      server->port(), options.key.c_str());
+  std::fflush(stdout);
+  node.status().state = v1::SERVICE_RUNNING;
+  server->run(stop.fd());
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  viewer::Server::Options options;
+  std::string key_file;
+  return bus::run_program(
+      argc, argv, "foxglove",
+      "Shows the robot in Foxglove, Lichtblick and others that speak their protocol.",
+      [&](CommandLine& app) {
+        app.add_option("--listen", options.place.address,
+                       "address to listen on; 0.0.0.0: every one of IPv4, :: of IPv6, too");
+        app.add_option("--port", options.place.port, "0: any that is free").in_range(0, 65500);
+        const Option key = app.add_option("--certificate-key", options.place.certificate_key,
+                                          "PEM file, of the certificate")
+                               .existing_file();
+        const Option certificate = app.add_option("--certificate", options.place.certificate,
+                                                  "PEM file: it is encrypted (wss)")
+                                       .existing_file()
+                                       .needs(key);
+        key.needs(certificate);
+        app.add_option("--key-file", key_file, "keeps the key over a restart");
+      },
+      [&](const bus::NodeOptions& node, const bus::Stop& stop) {
+        return node.dry_run ? static_cast<int>(bus::kExitOk) : serve(node, options, key_file, stop);
+      });
+}

@@ -1,0 +1,353 @@
+#include "saphira/viewer/scene.hpp"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "maps/shell/convert.hpp"
+#include "saphira/geometry/pose.hpp"
+#include "saphira/maps/line_map.hpp"
+
+namespace saphira::viewer {
+
+namespace {
+
+using nlohmann::json;
+
+enum Which : std::size_t { kTransforms, kPose, kSonars, kGrid, kScene, kLog };
+
+constexpr std::array<DrawnChannel, 6> kChannels{{{"viewer/transforms", "foxglove.FrameTransforms"},
+                                                 {"viewer/pose", "foxglove.PoseInFrame"},
+                                                 {"viewer/sonars", "foxglove.PointCloud"},
+                                                 {"viewer/grid", "foxglove.Grid"},
+                                                 {"viewer/scene", "foxglove.SceneUpdate"},
+                                                 {"viewer/log", "foxglove.Log"}}};
+
+// Numbers of the format.
+constexpr int kUint8 = 1;
+constexpr int kFloat32 = 7;
+constexpr int kLineList = 2;
+
+constexpr double kSonarHeight = 0.2;           // [m] of drawn echoes
+constexpr double kLetters = 0.4;               // [m] of drawn names
+constexpr std::size_t kMostCells = 4'000'000;  // of a drawn grid
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                  reinterpret_cast<const unsigned char*>(bytes.data()),
+                  static_cast<int>(bytes.size()));
+  text.pop_back();  // its zero
+  return text;
+}
+
+json time_of(std::int64_t time_ns) {
+  return {{"sec", time_ns / 1'000'000'000}, {"nsec", time_ns % 1'000'000'000}};
+}
+
+json vector_of(double x, double y, double z = 0.0) {
+  return {{"x", x}, {"y", y}, {"z", z}};
+}
+
+json turn_of(double th) {
+  return {{"x", 0.0}, {"y", 0.0}, {"z", std::sin(th / 2)}, {"w", std::cos(th / 2)}};
+}
+
+json pose_of(const v1::Pose2& pose, double z = 0.0) {
+  return {{"position", vector_of(pose.x, pose.y, z)}, {"orientation", turn_of(pose.th)}};
+}
+
+json color_of(double red, double green, double blue, double alpha = 1.0) {
+  return {{"r", red}, {"g", green}, {"b", blue}, {"a", alpha}};
+}
+
+json field_of(const char* name, std::size_t offset, int type) {
+  return {{"name", name}, {"offset", offset}, {"type", type}};
+}
+
+json transform_of(const char* parent, const char* child, const v1::Pose2& pose, std::int64_t ns) {
+  return {{"timestamp", time_of(ns)},
+          {"parent_frame_id", parent},
+          {"child_frame_id", child},
+          {"translation", vector_of(pose.x, pose.y)},
+          {"rotation", turn_of(pose.th)}};
+}
+
+json entity_of(const char* name, const char* frame, bool moves_with_frame, std::int64_t ns) {
+  json made{{"timestamp", time_of(ns)},
+            {"frame_id", frame},
+            {"id", name},
+            {"lifetime", time_of(0)},
+            {"frame_locked", moves_with_frame}};
+  for (const char* const list : {"metadata", "arrows", "cubes", "spheres", "cylinders", "lines",
+                                 "triangles", "texts", "models"})
+    made[list] = json::array();
+  return made;
+}
+
+json lines_of(json points, double thickness, json color) {
+  return {{"type", kLineList},        {"pose", pose_of({})},         {"thickness", thickness},
+          {"scale_invariant", false}, {"points", std::move(points)}, {"color", std::move(color)},
+          {"colors", json::array()},  {"indices", json::array()}};
+}
+
+json text_of(const std::string& text, const v1::Pose2& at) {
+  return {{"pose", pose_of({at.x, at.y, 0.0}, 0.1)},
+          {"billboard", true},
+          {"font_size", kLetters},
+          {"scale_invariant", false},
+          {"color", color_of(0.2, 0.2, 0.2)},
+          {"text", text}};
+}
+
+json cylinder_of(double radius, double height) {
+  return {{"pose", pose_of({}, height / 2)},
+          {"size", vector_of(2 * radius, 2 * radius, height)},
+          {"bottom_scale", 1.0},
+          {"top_scale", 1.0},
+          {"color", color_of(0.75, 0.1, 0.1, 0.8)}};
+}
+
+json arrow_of(double length) {
+  return {{"pose", pose_of({}, 0.3)}, {"shaft_length", length * 0.6},
+          {"shaft_diameter", 0.04},   {"head_length", length * 0.4},
+          {"head_diameter", 0.12},    {"color", color_of(0.1, 0.1, 0.1)}};
+}
+
+void add_line(json& points, const Vec2& from, const Vec2& to) {
+  points.push_back(vector_of(from.x(), from.y()));
+  points.push_back(vector_of(to.x(), to.y()));
+}
+
+/// A line of that length along a pose; `across`: at right angles to it.
+void add_line(json& points, const v1::Pose2& pose, double length, bool across) {
+  const double th = pose.th + (across ? kPi / 2 : 0.0);
+  const Vec2 half = Vec2(std::cos(th), std::sin(th)) * (length / 2);
+  const Vec2 middle(pose.x, pose.y);
+  add_line(points, middle - half, middle + half);
+}
+
+DrawnMessage message(Which channel, const json& content) {
+  return {channel,
+          content.dump(-1, ' ', false, json::error_handler_t::replace)};  // texts of programs
+}
+
+DrawnMessage scene(const json& entity) {
+  return message(kScene, {{"deletions", json::array()}, {"entities", json::array({entity})}});
+}
+
+/// A message with one of everything, for its schema.
+json example(const std::string& type) {
+  const json stamp = time_of(0);
+  if (type == "foxglove.FrameTransforms")
+    return {{"transforms", json::array({transform_of("", "", {}, 0)})}};
+  if (type == "foxglove.PoseInFrame")
+    return {{"timestamp", stamp}, {"frame_id", ""}, {"pose", pose_of({})}};
+  if (type == "foxglove.PointCloud")
+    return json::parse(Scene::take(v1::SonarBuckets(), 0).front().json);
+  if (type == "foxglove.Grid")
+    return json::parse(Scene(0.0).take(v1::GridTile(), false, 1).front().json);
+  if (type == "foxglove.Log")
+    return json::parse(Scene::take(v1::LogRecord()).front().json);
+  json entity = entity_of("", "", false, 0);
+  entity["metadata"].push_back({{"key", ""}, {"value", ""}});
+  entity["arrows"].push_back(arrow_of(1.0));
+  entity["cylinders"].push_back(cylinder_of(1.0, 1.0));
+  json line = lines_of(json::array({vector_of(0.0, 0.0)}), 0.1, color_of(0.0, 0.0, 0.0));
+  line["colors"].push_back(color_of(0.0, 0.0, 0.0));
+  line["indices"].push_back(0);
+  entity["lines"].push_back(line);
+  entity["texts"].push_back(text_of("", {}));
+  for (const char* const unused : {"cubes", "spheres", "triangles", "models"})
+    entity[unused].push_back({{"color", color_of(0.0, 0.0, 0.0)}});
+  return {{"deletions", json::array({{{"timestamp", stamp}, {"type", 0}, {"id", ""}}})},
+          {"entities", json::array({entity})}};
+}
+
+json schema_of_example(const std::string& name, const json& value) {
+  if (value.is_object()) {
+    json made{{"type", "object"}, {"properties", json::object()}};
+    if (value.size() == 2 && value.contains("sec"))
+      made["title"] = name == "lifetime" ? "duration" : "time";
+    for (const auto& [member, each] : value.items())
+      made["properties"][member] = schema_of_example(member, each);
+    return made;
+  }
+  if (value.is_array())
+    return {{"type", "array"}, {"items", schema_of_example(name, value.front())}};
+  if (name == "data")
+    return {{"type", "string"}, {"contentEncoding", "base64"}};
+  return {{"type", value.is_string()         ? "string"
+                   : value.is_boolean()      ? "boolean"
+                   : value.is_number_float() ? "number"
+                                             : "integer"}};
+}
+
+}  // namespace
+
+std::span<const DrawnChannel> drawn_channels() {
+  return kChannels;
+}
+
+std::string drawn_schema(const std::string& type) {
+  json schema = schema_of_example("", example(type));
+  schema["title"] = type;
+  return schema.dump();
+}
+
+Scene::Scene(double grid_period) : grid_period_ns_(static_cast<std::int64_t>(grid_period * 1e9)) {}
+
+Scene::Messages Scene::take(const v1::RobotState& state, std::int64_t time_ns) {
+  json transforms = json::array();
+  const bool on_map = registration_ && registration_->odom == state.odom;
+  if (on_map)
+    transforms.push_back(transform_of("map", "odom", registration_->odom_in_map, time_ns));
+  transforms.push_back(transform_of("odom", "base_link", state.pose_in_odom, time_ns));
+  v1::Pose2 pose = state.pose_in_odom;
+  if (on_map) {
+    const v1::Pose2& odom = registration_->odom_in_map;
+    const double c = std::cos(odom.th);
+    const double s = std::sin(odom.th);
+    pose = {odom.x + c * state.pose_in_odom.x - s * state.pose_in_odom.y,
+            odom.y + s * state.pose_in_odom.x + c * state.pose_in_odom.y,
+            norm2_angle(odom.th + state.pose_in_odom.th)};
+  }
+  return {message(kTransforms, {{"transforms", std::move(transforms)}}),
+          message(kPose, {{"timestamp", time_of(time_ns)},
+                          {"frame_id", on_map ? "map" : "odom"},
+                          {"pose", pose_of(pose)}})};
+}
+
+Scene::Messages Scene::take(const v1::RobotDescription& description, std::int64_t time_ns) {
+  json body = entity_of("robot", "base_link", true, time_ns);
+  body["cylinders"].push_back(cylinder_of(description.radius, 0.25));
+  body["arrows"].push_back(arrow_of(2 * description.radius));
+  return {scene(body)};
+}
+
+Scene::Messages Scene::take(const v1::SonarBuckets& sonars, std::int64_t time_ns) {
+  std::string points;
+  for (const v1::SonarBucket& bucket : sonars.buckets) {
+    if (!bucket.reading.echo)
+      continue;
+    const v1::Pose2& robot = bucket.pose_in_odom;
+    const double c = std::cos(robot.th);
+    const double s = std::sin(robot.th);
+    for (const double value : {robot.x + c * bucket.x - s * bucket.y,
+                               robot.y + s * bucket.x + c * bucket.y, kSonarHeight}) {
+      const auto small = static_cast<float>(value);
+      std::array<char, sizeof small> bytes{};
+      std::memcpy(bytes.data(), &small, sizeof small);  // little-endian, as this machine
+      points.append(bytes.data(), bytes.size());
+    }
+  }
+  return {message(kSonars, {{"timestamp", time_of(time_ns)},
+                            {"frame_id", "odom"},
+                            {"pose", pose_of({})},
+                            {"point_stride", 3 * sizeof(float)},
+                            {"fields", json::array({field_of("x", 0, kFloat32),
+                                                    field_of("y", sizeof(float), kFloat32),
+                                                    field_of("z", 2 * sizeof(float), kFloat32)})},
+                            {"data", base64(points)}})};
+}
+
+Scene::Messages Scene::take(const v1::Perception& perception, std::int64_t time_ns) {
+  json walls = json::array();
+  json openings = json::array();
+  for (const v1::Percept& percept : perception.percepts) {
+    if (percept.type == v1::ARTIFACT_WALL)
+      add_line(walls, percept.pose_in_odom, percept.length, false);
+    else if (percept.type == v1::ARTIFACT_DOOR || percept.type == v1::ARTIFACT_JUNCTION)
+      add_line(openings, percept.pose_in_odom, percept.width, true);
+  }
+  json entity = entity_of("percepts", "odom", false, time_ns);
+  entity["lines"] = {lines_of(std::move(walls), 0.05, color_of(0.1, 0.3, 0.9)),
+                     lines_of(std::move(openings), 0.05, color_of(0.9, 0.5, 0.0))};
+  return {scene(entity)};
+}
+
+Scene::Messages Scene::take(const v1::GridTile& tile, bool disposed, std::int64_t time_ns) {
+  const auto differs = [&tile](const auto& entry) {
+    const v1::GridTile& other = entry.second;
+    return other.odom != tile.odom || other.side != tile.side ||
+           other.resolution != tile.resolution;
+  };
+  if (disposed) {
+    tiles_.erase({tile.row, tile.column});
+  } else {
+    std::erase_if(tiles_, differs);
+    tiles_[{tile.row, tile.column}] = tile;
+  }
+  if (tiles_.empty() || time_ns - grid_sent_ns_ < grid_period_ns_)
+    return {};
+  const v1::GridTile& first = tiles_.begin()->second;
+  const auto [west, east] = std::minmax_element(
+      tiles_.begin(), tiles_.end(),
+      [](const auto& a, const auto& b) { return a.first.second < b.first.second; });
+  const std::int64_t left = west->first.second;
+  const std::int64_t bottom = tiles_.begin()->first.first;
+  const std::size_t side = first.side;
+  const std::size_t columns = side * static_cast<std::size_t>(east->first.second - left + 1);
+  const std::size_t rows =
+      side * static_cast<std::size_t>(tiles_.rbegin()->first.first - bottom + 1);
+  if (rows > kMostCells || columns > kMostCells || rows * columns > kMostCells)
+    return {};
+  grid_sent_ns_ = time_ns;
+  std::string cells(rows * columns, '\xFF');
+  for (const auto& [place, each] : tiles_)
+    for (std::size_t row = 0; row < side && (row + 1) * side <= each.cells.size(); ++row)
+      std::memcpy(&cells[(static_cast<std::size_t>(place.first - bottom) * side + row) * columns +
+                         static_cast<std::size_t>(place.second - left) * side],
+                  &each.cells[row * side], side);
+  const double edge = static_cast<double>(side) * first.resolution;
+  return {message(kGrid, {{"timestamp", time_of(time_ns)},
+                          {"frame_id", "odom"},
+                          {"pose", pose_of({static_cast<double>(left) * edge,
+                                            static_cast<double>(bottom) * edge, 0.0})},
+                          {"column_count", columns},
+                          {"cell_size", {{"x", first.resolution}, {"y", first.resolution}}},
+                          {"row_stride", columns},
+                          {"cell_stride", 1},
+                          {"fields", json::array({field_of("occupied", 0, kUint8)})},
+                          {"data", base64(cells)}})};
+}
+
+Scene::Messages Scene::take(const v1::FloorMap& map, std::int64_t time_ns) {
+  const maps::Map known = maps::from_bus(map);
+  const maps::LineMap lines(known);
+  json walls = json::array();
+  for (const maps::Surface& surface : lines.surfaces())
+    add_line(walls, surface.from, surface.to);
+  json doors = json::array();
+  json entity = entity_of("map", "map", false, time_ns);
+  for (const v1::MapArtifact& artifact : map.artifacts) {
+    if (artifact.type == v1::ARTIFACT_DOOR || artifact.type == v1::ARTIFACT_BREAK)
+      add_line(doors, artifact.pose_in_map, artifact.width, true);
+    else if (!artifact.name.empty())
+      entity["texts"].push_back(text_of(artifact.name, artifact.pose_in_map));
+  }
+  entity["lines"] = {lines_of(std::move(walls), 0.05, color_of(0.3, 0.3, 0.3)),
+                     lines_of(std::move(doors), 0.04, color_of(0.1, 0.6, 0.2))};
+  return {scene(entity)};
+}
+
+void Scene::take(const v1::Registration& registration) {
+  registration_.reset();
+  if (registration.state == v1::REGISTRATION_TRACKING)
+    registration_ = registration;
+}
+
+Scene::Messages Scene::take(const v1::LogRecord& record) {
+  return {message(kLog, {{"timestamp", time_of(record.time_ns)},
+                         {"level", static_cast<int>(record.level) + 1},
+                         {"message", record.text},
+                         {"name", record.name},
+                         {"file", ""},
+                         {"line", 0}})};
+}
+
+}  // namespace saphira::viewer
