@@ -28,7 +28,7 @@ Read read(const std::string& file, std::string* written) {
   while (const auto sample = reader.next()) {
     const Channel& channel = reader.channel(sample->channel);
     if (!channels.contains(channel.topic))
-      channels[channel.topic] = writer.add_channel(channel);
+      channels[channel.topic] = writer.add_channel(channel, "{}");
     samples.emplace_back(channel.topic, sample->json);
     writer.add({channels[channel.topic], sample->time_ns, sample->json});
   }
