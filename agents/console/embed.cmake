@@ -1,18 +1,12 @@
 # cmake -DOUT=file.cpp -DFOLDER=built -P embed.cmake: the page's files as bytes of a source file.
 set(bytes)
 set(list)
-foreach(file index.html console.js console.css simulator.html simulator.js)
+foreach(file index.html simulator.html)
   file(READ ${FOLDER}/${file} hex HEX)
   string(REGEX REPLACE "(..)" "0x\\1," hex "${hex}")
   string(MAKE_C_IDENTIFIER ${file} name)
   string(APPEND bytes "constexpr unsigned char ${name}[] = {${hex}};\n")
-  set(type "text/html; charset=utf-8")
-  if(file MATCHES js$)
-    set(type "text/javascript; charset=utf-8")
-  elseif(file MATCHES css$)
-    set(type "text/css; charset=utf-8")
-  endif()
-  string(APPEND list "      {\"/${file}\", \"${type}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
+  string(APPEND list "      {\"/${file}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
 endforeach()
 file(WRITE ${OUT} "// Made by embed.cmake.
 #include \"page_files.hpp\"

@@ -1,6 +1,9 @@
 #include "server.hpp"
 
+#include <openssl/evp.h>
+#include <openssl/sha.h>
 #include <sys/socket.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -26,10 +29,6 @@ constexpr std::string_view kAccess = "/access";  // why a page may not connect; 
 constexpr const char* kTelemetry = "saphira.telemetry";
 constexpr const char* kCommands = "saphira.commands";
 constexpr const char* kSimulator = "saphira.simulator";
-constexpr const char* kSecurityPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-    "img-src 'self' data:; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
 
 Channel channel_of(const char* protocol) {
   return std::strcmp(protocol, kCommands) == 0    ? Channel::commands
@@ -37,12 +36,70 @@ Channel channel_of(const char* protocol) {
                                                   : Channel::telemetry;
 }
 
+/// SHA-256 in base64.
+std::string digest(std::string_view text) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> bytes{};
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), bytes.data());
+  std::array<unsigned char, 4 * (SHA256_DIGEST_LENGTH / 3 + 1) + 1> words{};
+  EVP_EncodeBlock(words.data(), bytes.data(), static_cast<int>(bytes.size()));
+  return reinterpret_cast<const char*>(words.data());
+}
+
+/// For gzip; empty where it fails.
+std::string packed(std::string_view text) {
+  constexpr int kWithGzipHeader = 16 + MAX_WBITS;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kWithGzipHeader, MAX_MEM_LEVEL,
+                   Z_DEFAULT_STRATEGY) != Z_OK)
+    return {};
+  std::string out(deflateBound(&stream, text.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const bool whole = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+  out.resize(whole ? stream.total_out : 0);
+  deflateEnd(&stream);
+  return out;
+}
+
 }  // namespace
 
 struct Server::Impl {
+  /// A page, as it is sent.
+  struct Page {
+    explicit Page(const PageFile& file)
+        : path(file.path),
+          content(file.content),
+          zipped(packed(content)),
+          tag('"' + digest(content) + '"'),
+          policy(
+              "default-src 'none'; script-src" + source("<script type=\"module\">", "</script>") +
+              "; style-src" + source("<style>", "</style>") +
+              "; connect-src 'self'; img-src 'self' data:; manifest-src 'self'; base-uri 'none'; "
+              "form-action 'none'; frame-ancestors 'none'") {}
+
+    std::string path;
+    std::string_view content;
+    std::string zipped;
+    std::string tag;     ///< another one for another content
+    std::string policy;  ///< its own script and style, and no other
+
+   private:
+    /// The part between two marks as a source of the policy.
+    std::string source(std::string_view begin, std::string_view end) const {
+      const std::size_t at = content.find(begin);
+      if (at == std::string_view::npos)
+        return " 'none'";
+      const std::string_view from = content.substr(at + begin.size());
+      return " 'sha256-" + digest(from.substr(0, from.find(end))) + "'";
+    }
+  };
+
   /// The record of libwebsockets for each connection; it begins as zeros.
   struct Http {
-    const PageFile* file;
+    const Page* page;
+    bool zipped;
   };
   struct Socket {
     Connection id;
@@ -53,7 +110,7 @@ struct Server::Impl {
   };
 
   AccessSettings access;
-  std::vector<PageFile> files;
+  std::vector<Page> pages;
   Events events;
   std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
@@ -70,7 +127,9 @@ struct Server::Impl {
   Timer together;
 
   Caller caller_of(lws* wsi) const;
-  static bool begin_answer(lws* wsi, unsigned status, const std::string& type, std::size_t size);
+  using Headers = std::vector<std::pair<const char*, std::string>>;
+  static bool begin_answer(lws* wsi, unsigned status, const std::string& type, std::size_t size,
+                           const Headers& more);
   static int say(lws* wsi, unsigned status, const std::string& text);
   int answer_http(lws* wsi, Http& http, std::string_view path);
   int send_http(lws* wsi, Http& http) const;
@@ -94,7 +153,7 @@ Caller Server::Impl::caller_of(lws* wsi) const {
 }
 
 bool Server::Impl::begin_answer(lws* wsi, unsigned status, const std::string& type,
-                                std::size_t size) {
+                                std::size_t size, const Headers& more) {
   std::array<unsigned char, LWS_PRE + 2048> buffer{};
   unsigned char* const begin = buffer.data() + LWS_PRE;
   unsigned char* at = begin;
@@ -105,14 +164,16 @@ bool Server::Impl::begin_answer(lws* wsi, unsigned status, const std::string& ty
                                        static_cast<int>(value.size()), &at, end) == 0;
   };
   return lws_add_http_common_headers(wsi, status, type.c_str(), size, &at, end) == 0 &&
-         add("content-security-policy:", kSecurityPolicy) &&
+         std::all_of(more.begin(), more.end(),
+                     [&](const auto& each) { return add(each.first, each.second); }) &&
          add("x-content-type-options:", "nosniff") && add("referrer-policy:", "no-referrer") &&
          add("cache-control:", "no-cache") && add("connection:", "close") &&
          lws_finalize_write_http_header(wsi, begin, &at, end) == 0;
 }
 
 int Server::Impl::say(lws* wsi, unsigned status, const std::string& text) {
-  if (!begin_answer(wsi, status, "text/plain; charset=utf-8", text.size()))
+  if (!begin_answer(wsi, status, "text/plain; charset=utf-8", text.size(),
+                    {{"content-security-policy:", "default-src 'none'"}}))
     return -1;
   std::vector<unsigned char> buffer(LWS_PRE + text.size());
   std::memcpy(buffer.data() + LWS_PRE, text.data(), text.size());
@@ -122,7 +183,7 @@ int Server::Impl::say(lws* wsi, unsigned status, const std::string& text) {
 
 int Server::Impl::answer_http(lws* wsi, Http& http, std::string_view path) {
   // A request behind another one, which is being answered, or one with a body: see web::kAnswered.
-  if (http.file != nullptr || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 ||
+  if (http.page != nullptr || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 ||
       lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0)
     return -1;
   Caller caller = caller_of(wsi);
@@ -136,34 +197,42 @@ int Server::Impl::answer_http(lws* wsi, Http& http, std::string_view path) {
     caller.origin = origin == nullptr ? "" : origin;
     return say(wsi, HTTP_STATUS_OK, refusal(access, caller));
   }
-  // A browser names the origin of a script too, and it is the script that asks for the reason.
-  if (name != "/")
-    caller.origin.clear();
   if (const std::string why = refusal(access, caller); !why.empty())
     return say(wsi, HTTP_STATUS_FORBIDDEN, why + "\n");
-  const auto file = std::find_if(files.begin(), files.end(), [&](const PageFile& f) {
-    return f.path == (name == "/" ? "/index.html" : name);
+  const auto page = std::find_if(pages.begin(), pages.end(), [&](const Page& each) {
+    return each.path == (name == "/" ? "/index.html" : name);
   });
-  if (file == files.end())
+  if (page == pages.end())
     return say(wsi, HTTP_STATUS_NOT_FOUND,
                "There is only the page; its address ends with a slash: /\n");
-  http.file = &*file;
-  if (!begin_answer(wsi, HTTP_STATUS_OK, file->type, file->content.size()))
+  Headers headers{{"content-security-policy:", page->policy},
+                  {"etag:", page->tag},
+                  {"vary:", "accept-encoding"}};
+  constexpr const char* kHtml = "text/html; charset=utf-8";
+  if (header(wsi, WSI_TOKEN_HTTP_IF_NONE_MATCH).find(page->tag) != std::string::npos)
+    return begin_answer(wsi, HTTP_STATUS_NOT_MODIFIED, kHtml, 0, headers) ? web::kAnswered : -1;
+  http.zipped = !page->zipped.empty() &&
+                header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING).find("gzip") != std::string::npos;
+  if (http.zipped)
+    headers.emplace_back("content-encoding:", "gzip");
+  if (!begin_answer(wsi, HTTP_STATUS_OK, kHtml,
+                    http.zipped ? page->zipped.size() : page->content.size(), headers))
     return -1;
+  http.page = &*page;
   lws_callback_on_writable(wsi);
   return 0;
 }
 
 int Server::Impl::send_http(lws* wsi, Http& http) const {
-  if (http.file == nullptr)
+  if (http.page == nullptr)
     return 0;
-  std::vector<unsigned char> buffer(LWS_PRE + http.file->content.size());
-  std::memcpy(buffer.data() + LWS_PRE, http.file->content.data(), http.file->content.size());
-  const int size = static_cast<int>(http.file->content.size());
-  if (lws_write(wsi, buffer.data() + LWS_PRE, http.file->content.size(), LWS_WRITE_HTTP_FINAL) !=
-      size)
+  const std::string_view content = http.zipped ? http.page->zipped : http.page->content;
+  std::vector<unsigned char> buffer(LWS_PRE + content.size());
+  std::memcpy(buffer.data() + LWS_PRE, content.data(), content.size());
+  if (lws_write(wsi, buffer.data() + LWS_PRE, content.size(), LWS_WRITE_HTTP_FINAL) !=
+      static_cast<int>(content.size()))
     return -1;
-  http.file = nullptr;
+  http.page = nullptr;
   return web::kAnswered;
 }
 
@@ -254,10 +323,11 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
 }
 
 Server::Server(const ServerOptions& options, const AccessSettings& access,
-               std::vector<PageFile> files, Events events)
+               const std::vector<PageFile>& files, Events events)
     : impl_(std::make_unique<Impl>()) {
   impl_->access = access;
-  impl_->files = std::move(files);
+  for (const PageFile& file : files)
+    impl_->pages.emplace_back(file);
   impl_->events = std::move(events);
   static const std::array<lws_protocols, 6> protocols{
       {{"http", Impl::http, sizeof(Impl::Http), 0, 0, nullptr, 0},

@@ -13,10 +13,9 @@
 
 namespace saphira::console {
 
-/// A file of the page.
+/// A page: a document with its script and its style sheet inside.
 struct PageFile {
-  std::string path;  ///< such as /console.js
-  std::string type;  ///< such as text/javascript
+  std::string path;  ///< such as /index.html
   std::string_view content;
 };
 
@@ -54,8 +53,8 @@ class Server {
   };
 
   /// std::runtime_error that names the cause (no port, no certificate).
-  Server(const ServerOptions& options, const AccessSettings& access, std::vector<PageFile> files,
-         Events events);
+  Server(const ServerOptions& options, const AccessSettings& access,
+         const std::vector<PageFile>& files, Events events);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -86,6 +86,7 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
   if (!out)
     return failed(bus::kExitUsage);
   bus::Node node(node_options);
+  node.status().state = v1::SERVICE_RUNNING;
   recorder::Writer writer(out);
   recorder::Recorder recorder(node, writer, topics);
   for (const std::string& topic : recorder.refused())
@@ -98,6 +99,7 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
          (options.seconds <= 0.0 ||
           Clock::now() - began < std::chrono::duration<double>(options.seconds))) {
     node.wait(kTurn, &stop);
+    node.publish_status();
     recorder.poll(now_ns());
     if (Clock::now() - flushed >= kFlush) {
       flushed = Clock::now();

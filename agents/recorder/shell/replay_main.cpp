@@ -68,6 +68,7 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
       throw std::invalid_argument("it has no sample of \"" + topic + "\"; --list shows its topics");
   node_options.robot = options.as.empty() ? contents.robot + "-replay" : options.as;
   bus::Node node(node_options);
+  node.status().state = v1::SERVICE_RUNNING;
   if (has_robot(node, stop)) {
     std::fprintf(stderr, "saphira: a robot %s is on the bus; --as NAME gives another name\n",
                  node_options.robot.c_str());
@@ -88,6 +89,7 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
   auto before = Clock::now();
   bool goes_on = true;
   while (!stop.requested() && goes_on) {
+    node.publish_status();
     const auto now = Clock::now();
     const double turn = std::chrono::duration<double>(now - before).count();
     before = now;

@@ -269,7 +269,7 @@ class Console {
   static console::ServerOptions options(const web::Place& place) { return {place, 1, 0, false}; }
   static console::AccessSettings access() { return {"key", {"robot.example"}, 0, false}; }
   static std::vector<console::PageFile> page() {
-    return {{"/index.html", "text/html", "the page"}, {"/console.js", "text/javascript", "script"}};
+    return {{"/index.html", "<style>s</style><script type=\"module\">t</script><p>the page</p>"}};
   }
   console::Server::Events events() {
     console::Server::Events events = no_events();
@@ -291,13 +291,29 @@ TEST(Servers, ThePageIsThereUnderThePathOfAProxy) {
   const std::string host = "Host: localhost\r\n";
   EXPECT_TRUE(has(console.get("/", host), "the page"));
   EXPECT_TRUE(has(console.get("/under/a/path/", host), "the page"));
-  EXPECT_TRUE(has(console.get("/under/a/path/console.js", host), "script"));
   EXPECT_TRUE(has(console.get("/under/a/path", host), "404"));
   EXPECT_TRUE(has(answer(console.port(), {"GET / HTTP/1.0\r\n" + host + "\r\n"}), "the page"))
       << "as nginx speaks";
   EXPECT_TRUE(
       has(console.get("/", host + "Cookie: " + std::string(6000, 'x') + "\r\n"), "the page"))
       << "of other programs behind the same proxy";
+}
+
+TEST(Servers, ThePageIsSentOnceAndRunsItsOwnScriptAlone) {
+  Console console;
+  const std::string host = "Host: localhost\r\n";
+  const std::string plain = console.get("/", host);
+  EXPECT_TRUE(has(plain,
+                  "script-src 'sha256-47mKTaMaEn1L3m5DAz9muidMqw636xxw7EFAK/YnPdg='; "
+                  "style-src 'sha256-BDpxh3TFcr2KJa2+sb/NXAJWrhHOz5+cP5JdDlK+r4k='; "))
+      << plain;
+  const std::size_t at = plain.find("etag: ") + 6;
+  const std::string tag = plain.substr(at, plain.find('\r', at) - at);
+  const std::string again = console.get("/", host + "If-None-Match: " + tag + "\r\n");
+  EXPECT_TRUE(has(again, " 304 ") && again.ends_with("\r\n\r\n")) << again;
+  EXPECT_TRUE(has(console.get("/", host + "If-None-Match: \"another\"\r\n"), "the page"));
+  const std::string zipped = console.get("/", host + "Accept-Encoding: br, gzip\r\n");
+  EXPECT_TRUE(has(zipped, "content-encoding: gzip") && has(zipped, "\r\n\r\n\x1F\x8B")) << zipped;
 }
 
 TEST(Servers, APageHearsWhyItsWebSocketIsRefused) {
@@ -307,7 +323,6 @@ TEST(Servers, APageHearsWhyItsWebSocketIsRefused) {
   EXPECT_TRUE(has(other, "200")) << other;
   EXPECT_TRUE(has(other, "--host-name other.example")) << other;
   const std::string origin = "Host: 127.0.0.1\r\nOrigin: https://other.example\r\n";
-  EXPECT_TRUE(has(console.get("/console.js", origin), "script")) << "which asks";
   EXPECT_TRUE(has(console.get("/", origin), "403"));
   const std::string known =
       console.get("/access?origin=https://robot.example", "Host: 127.0.0.1\r\n");

@@ -7,7 +7,7 @@ import {ahead, askInstead, nameOf, quoted} from './goals';
 import {Legend} from './legend';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
-import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why} from './types';
+import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
 import {doubt, type Layers, type Target, View} from './view';
 import {forPage, keyless, old, percent, seconds} from './words';
 
@@ -107,8 +107,12 @@ const linkWords = {live: 'live', old: 'old', silent: 'no robot', gone: 'link gon
 
 function Header({link, seen: s}: {link: Link; seen: Seen}) {
   const info = link.data<ConsoleInfo>('console');
+  // A replay also plays the recorder's own status.
+  const runs = (name: string) => link.all<ServiceStatus>('system/status').some(([, {data, at}]) => data.name === name && performance.now() - at < 3000);
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
+    {runs('replay') ? <span class="chip warn" title="saphira replay plays it: nothing here moves">a recording</span>
+      : runs('record') && <span class="chip" title="saphira record keeps what is said on the bus">is recorded</span>}
     <span class={`chip link ${s.state}`} title="age of the picture; round trip of a command">
       {linkWords[s.state]}{Number.isFinite(s.age) && s.state !== 'gone' && ` ${s.age < 1000 ? `${Math.max(0, Math.round(s.age / 10) * 10)} ms` : `${(s.age / 1000).toFixed(1)} s`}`}
       {link.roundTrip > 0 && s.state !== 'gone' && <span class="wide">, there and back {Math.round(link.roundTrip)} ms</span>}
