@@ -17,7 +17,6 @@
 #include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/logs/metrics.hpp"
 
 namespace saphira::logs {
 
@@ -320,6 +319,13 @@ constexpr Message kLasers[] = {
 bool has_no_pose(Laser laser) {
   return laser == Laser::raw1 || laser == Laser::raw2 || laser == Laser::raw3 ||
          laser == Laser::raw4;
+}
+
+/// The middle one in size; there is one.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 // One place for all scans. In some corrected logs only one of the two poses is corrected: then they

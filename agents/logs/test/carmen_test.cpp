@@ -296,7 +296,7 @@ TEST(CarmenFiles, AClockThatWasSetBackIsNotTakenIfTheOtherIsSound) {
   };
   const DataSet sound = load(" 51 h 3");
   EXPECT_EQ(sound.times, (std::vector<double>{1.0, 2.0, 3.0}));
-  EXPECT_NEAR(sound.odometry.length(), 0.2, 1e-9);
+  EXPECT_NEAR(sound.way(), 0.2, 1e-9);
   EXPECT_GT(sound.scans.front().points.size(), 170U);
   EXPECT_TRUE(sound.notes.empty());
   const DataSet neither = load(" 51 h -3");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "saphira/logs/virtual_sonar.hpp"
 #include "scan_room.hpp"
 
 namespace saphira::logs {
@@ -16,8 +15,18 @@ const std::vector<test::Piece> kRoom{
 
 struct Round {
   DataSet log;
-  Trajectory truth{{}};
+  std::vector<Pose> truth;
 };
+
+/// [m] the largest distance from the truth, as seen from the first pose.
+double worst(const std::vector<Pose>& poses, const std::vector<Pose>& truth) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    most = std::max(most, (relative(poses.front(), poses[i]).position() -
+                           relative(truth.front(), truth[i]).position())
+                              .norm());
+  return most;
+}
 
 /// Twice round the room, with dead reckoning that turns too much.
 Round drive_round() {
@@ -26,38 +35,31 @@ Round drive_round() {
   Random random(1);
   Pose truth{2.0, 3.5, 0.0};
   Pose odom;
-  std::vector<StampedPose> odometry;
-  std::vector<StampedPose> reference;
+  std::vector<Pose> reference;
   Beams beams;
   for (int i = 0; i < 500; ++i) {
     const Pose step{0.05, 0.0, 0.05 / 1.6};
     truth = compose(truth, step);
     odom = compose(odom, {step.x * random.normal(1.0, 0.02), 0.0, step.th + radians(0.1)});
-    const double time = 0.2 * i;
-    odometry.push_back({time, odom});
-    reference.push_back({time, truth});
+    reference.push_back(truth);
     std::vector<double> ranges;
     for (int beam = 0; beam <= 180; ++beam)
       ranges.push_back(test::range_to(truth.position(),
                                       truth.th + beams.first_angle + beam * beams.step, kRoom) +
                        random.normal(0.0, 0.005));
-    log.times.push_back(time);
+    log.times.push_back(0.2 * i);
     log.poses_in_odom.push_back(odom);
     log.scans.push_back(make_scan(ranges, beams));
   }
-  log.odometry = Trajectory(odometry);
-  return {log, Trajectory(reference)};
+  return {log, reference};
 }
 
 TEST(LogMap, WallsAndPosesComeFromTheScans) {
   const auto [log, truth] = drive_round();
   const LogMap mapped = map_log(log);
   ASSERT_EQ(mapped.poses.size(), log.scans.size());
-  const Accuracy reckoned = accuracy(log.odometry.poses(), truth);
-  const Accuracy by_laser = accuracy(mapped.poses, truth);
-  EXPECT_GT(reckoned.ate, 0.2);
-  EXPECT_LT(by_laser.ate, 0.03);
-  EXPECT_EQ(by_laser.compared, log.scans.size());
+  EXPECT_GT(worst(log.poses_in_odom, truth), 0.4);
+  EXPECT_LT(worst(mapped.poses, truth), 0.06);
   double longest = 0.0;
   for (const maps::Feature& wall : mapped.walls.features) {
     EXPECT_EQ(wall.type, lps::PointType::wall);
@@ -65,17 +67,6 @@ TEST(LogMap, WallsAndPosesComeFromTheScans) {
   }
   EXPECT_GE(mapped.walls.features.size(), 5U);
   EXPECT_NEAR(longest, 8.0, 0.5);
-}
-
-TEST(LogMap, SonarsHoldThePoseOnTheMapOfTheLog) {
-  const DataSet log = drive_round().log;
-  const LogMap mapped = map_log(log);
-  const LogEvaluation result =
-      evaluate_log(log, mapped, front_of_b21(), mapped.walls, mapped.poses.front().pose);
-  EXPECT_EQ(result.run.unplaced, 0U);
-  EXPECT_GT(result.run.tracked.size(), result.run.steps * 9 / 10);
-  EXPECT_EQ(result.tracked.compared, result.run.tracked.size());
-  EXPECT_LT(result.localized.ate, 0.5 * result.dead_reckoning.ate);
 }
 
 TEST(LogMap, WhatHasNoScanOrIsInterruptedIsSaid) {

@@ -5,8 +5,6 @@
 #include "saphira/base/text.hpp"
 #include "saphira/logs/carmen.hpp"
 #include "saphira/logs/laser_map.hpp"
-#include "saphira/logs/metrics.hpp"
-#include "saphira/logs/virtual_sonar.hpp"
 
 namespace saphira::logs {
 namespace {
@@ -51,69 +49,6 @@ TEST(Carmen, ADamagedLineIsNamedAndPassedOver) {
   EXPECT_TRUE(log.damaged[1].starts_with("a.log:3:13:")) << log.damaged[1];
   EXPECT_THROW(parse_carmen("ODOM 0 0 0 0 0 0 1 h 1\n", "a.log"), FileError);
   EXPECT_THROW(read_log("/nowhere/a.log"), std::runtime_error);
-}
-
-// A way of 30 m in arcs.
-std::vector<StampedPose> a_way() {
-  std::vector<StampedPose> way;
-  Pose pose;
-  for (int i = 0; i < 300; ++i) {
-    way.push_back({0.1 * i, pose});
-    pose = compose(pose, {0.1, 0.0, 0.03 * std::sin(0.05 * i)});
-  }
-  return way;
-}
-
-TEST(Metrics, AlignmentTakesAwayTheFrameAndNothingElse) {
-  const auto way = a_way();
-  std::vector<StampedPose> moved;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    // To the left and to the right in turn, by 0.1 m.
-    const Pose aside = compose(way[i].pose, {0.0, i % 2 == 0 ? 0.1 : -0.1, 0.0});
-    moved.push_back({way[i].time, compose({5.0, -3.0, 2.0}, aside)});
-  }
-  const Pairs pairs = pair_up(Trajectory(moved), Trajectory(way));
-  ASSERT_EQ(pairs.estimate.size(), way.size());
-  EXPECT_NEAR(ate_rmse(pairs), 0.1, 1e-3);
-  EXPECT_NEAR(norm2_angle(alignment(pairs).th + 2.0), 0.0, 1e-3);
-}
-
-TEST(Metrics, DriftIsPerDistance) {
-  const auto way = a_way();
-  std::vector<StampedPose> drifting;
-  Pose pose;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    drifting.push_back({way[i].time, pose});
-    if (i + 1 < way.size()) {
-      Pose step = relative(way[i].pose, way[i + 1].pose);
-      step.th += radians(0.1);  // 1 degree per metre
-      pose = compose(pose, step);
-    }
-  }
-  const auto errors = drift(pair_up(Trajectory(drifting), Trajectory(way)), 10.0);
-  EXPECT_NEAR(degrees(errors.rotation), 10.0, 0.2);
-}
-
-Scan before_a_wall(double angle) {
-  // A wall 2 m away, its normal turned by `angle` from the axis.
-  Scan scan;
-  for (double t = -1.0; t <= 1.0; t += 0.01) {
-    scan.points.emplace_back(2.0 - t * std::sin(angle), t * std::cos(angle));
-    scan.normals.emplace_back(-std::cos(angle), -std::sin(angle));
-  }
-  return scan;
-}
-
-TEST(VirtualSonar, HearsWhatDoesNotMirrorItsSoundAway) {
-  SonarRing ring;
-  ring.mounts = {{3, {0.1, 0.0, 0.0}}, {4, {0.1, 0.0, kPi / 2}}};
-  const auto head_on = hear(before_a_wall(0.0), ring);
-  ASSERT_EQ(head_on.size(), 2U);
-  EXPECT_EQ(head_on[0].sonar, 3);
-  EXPECT_TRUE(head_on[0].echo);
-  EXPECT_NEAR(head_on[0].range, 1.9, 1e-3);
-  EXPECT_FALSE(head_on[1].echo);
-  EXPECT_FALSE(hear(before_a_wall(radians(50.0)), ring)[0].echo);
 }
 
 TEST(LaserMap, DrawsTheWallsThatWereScanned) {
