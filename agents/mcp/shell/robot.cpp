@@ -17,7 +17,9 @@ constexpr double kLongestStart = 3.0;  // [s] for the activities and the first f
 constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;        // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
-constexpr double kRest = 0.5;  // [s] without a new announcement: all have come
+constexpr std::size_t kMostPlaces = 60;  // that a tool names
+constexpr const char* kPlace = "place";  // a parameter
+constexpr double kRest = 0.5;            // [s] without a new announcement: all have come
 
 Json object(Json properties, const std::vector<std::string>& required = {}) {
   return {{"type", "object"},
@@ -118,6 +120,30 @@ bool is_part(const v1::ActivitySchema& schema) {
                      });
 }
 
+/// The names on a map, for the model to choose from.
+std::string places_of(const v1::FloorMap& map) {
+  std::set<std::string> names;
+  for (const v1::MapArtifact& artifact : map.artifacts)
+    if (!artifact.name.empty() && names.size() < kMostPlaces)
+      names.insert(artifact.name);
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? ": " : ", ") + name;
+  return text;
+}
+
+/// Shipped activities that are parts of others, or the manual's examples. A person rarely asks for
+/// them by name, and each tool costs the model room.
+bool is_apart(const std::string& tool) {
+  static const std::set<std::string> names{
+      "about_turn",    "attend",          "attend_person", "avoid",   "back_off",
+      "back_up",       "bump_and_go",     "come_back",     "drive",   "explore_unknown",
+      "find_position", "find_and_follow", "halt",          "inquire", "look_there",
+      "make_sure",     "monitor_planex",  "pause",         "recover", "report_at",
+      "roam",          "to_point"};
+  return names.contains(tool);
+}
+
 /// The input schema of a tool with these parameters.
 template <class Parameters>
 Json input_of(const Parameters& parameters) {
@@ -176,6 +202,10 @@ std::vector<Tool> fixed_tools() {
                  {"description", "of the belief; any other value where it is not given"}}},
                {"wait_s", wait_of(kLongestWait)}}),
        true},
+      {.name = Session::kOthers,
+       .description = "Asks for another activity of the robot, such as roam or back_off. Without a "
+                      "name it lists them, with their arguments",
+       .input = object({{"name", {{"type", "string"}}}, {"arguments", {{"type", "object"}}}})},
       {.name = "stop",
        .description = "Ends whatever moves the robot: goals, programs and people. Answers who was "
                       "stopped, once the robot is at rest",
@@ -205,10 +235,13 @@ void Robot::poll(double now) {
   take(sonar_reader_, sonars_);
   take(perception_reader_, perception_);
   take(vision_reader_, vision_);
-  take(map_reader_, map_);
   take(registration_reader_, registration_);
   take(knowledge_reader_, knowledge_);
   bool changed = false;
+  if (auto newest = map_reader_.take_newest()) {
+    map_ = std::move(newest);
+    changed = true;
+  }
   if (const auto newest = schema_reader_.take_newest()) {
     schemas_ = newest->schemas;
     heard_schemas_ = true;
@@ -249,13 +282,16 @@ void Robot::make_tools() {
     if (is_part(schema) || !is_new(name))
       continue;
     Json input = input_of(schema.parameters);
+    if (map_ && input["properties"].contains(kPlace))
+      input["properties"][kPlace]["description"] = "a place of the map" + places_of(*map_);
     input["properties"]["wait_s"] = wait_of(kWait);
     tools_.push_back(
         {.name = name,
          .description = schema.summary.empty() ? "The activity " + schema.name : schema.summary,
          .input = std::move(input),
          .output = goal_form(),
-         .lasts = true});
+         .lasts = true,
+         .apart = is_apart(name)});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_) {

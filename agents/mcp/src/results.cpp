@@ -241,6 +241,12 @@ Json form_of(const std::string& tool) {
     return object({{"goals", list_of(goal_form())}}, {"goals"});
   if (tool == "goal")
     return goal_form();
+  if (tool == Session::kOthers) {  // the list, or a goal
+    Json either = goal_form();
+    either["properties"]["activities"] = list_of(text());
+    either["required"] = Json::array();
+    return either;
+  }
   if (tool == "cancel")
     return object({{"ended", truth()}, {"moves", truth()}}, {"ended", "moves"});
   if (tool == "say")

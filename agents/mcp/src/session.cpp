@@ -348,7 +348,8 @@ Json Session::capabilities(bool modern) const {
 void Session::list_tools(const Request& request) {
   Json all = Json::array();
   for (const Tool& tool : tools_)
-    all.push_back(describe(tool, structures(request)));
+    if (!tool.apart)
+      all.push_back(describe(tool, structures(request)));
   list(request, {{"tools", std::move(all)}});
 }
 
@@ -428,6 +429,21 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   drop_nulls(arguments, tool->input);
   if (arguments.dump(-1, ' ', false, Json::error_handler_t::replace).size() > kLongestArguments)
     return refuse("the arguments have at most " + std::to_string(kLongestArguments) + " bytes");
+  if (tool->name == kOthers && misfit(arguments, tool->input).empty()) {
+    const Json meant = member(arguments, "name");
+    if (meant.is_null())
+      return answer(number, others());
+    if (std::any_of(tools_.begin(), tools_.end(),
+                    [&](const Tool& each) { return each.apart && meant == each.name; })) {
+      open_.erase(number);
+      Json inner = parameters;
+      inner["name"] = meant;
+      inner["arguments"] = member(arguments, "arguments");
+      return call(request, inner, uri);
+    }
+    return refuse("there is no other activity " + meant.dump().substr(0, 70) +
+                  "; without a name this tool lists them");
+  }
   if (const std::string why = misfit(arguments, tool->input); !why.empty())
     return refuse(why);
   if (left_ && tool->lasts)
@@ -441,6 +457,18 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   }
   const bool as_task = tool->lasts && request.modern && has_tasks(parameters);
   calls_.push_back({number, tool->name, std::move(arguments), as_task});
+}
+
+Result Session::others() const {
+  Result result{{}, {{"activities", Json::array()}}, false};
+  for (const Tool& tool : tools_) {
+    if (!tool.apart)
+      continue;
+    result.value["activities"].push_back(tool.name);
+    result.text += tool.name + ": " + tool.description + "; arguments " +
+                   member(tool.input, "properties").dump() + "\n";
+  }
+  return result;
 }
 
 void Session::note(const std::string& tool, const std::string& text, bool is_error) {

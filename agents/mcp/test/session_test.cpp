@@ -37,6 +37,40 @@ TEST(McpSession, ListsItsToolsAndTellsWhenTheyChange) {
   EXPECT_EQ(client.heard().at(0)["method"], "notifications/tools/list_changed");
 }
 
+TEST(McpSession, ToolsThatAreApartAreListedAndCalledByOne) {
+  Client client;
+  Tool apart = go_to();
+  apart.name = "back_off";
+  apart.apart = true;
+  client.session.set_tools(
+      {go_to(),
+       {.name = Session::kOthers,
+        .description = "others",
+        .input = Json::parse(R"({"type":"object","properties":{"name":{"type":"string"},
+                                 "arguments":{"type":"object"}},"additionalProperties":false})")},
+       apart});
+  const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
+  EXPECT_EQ(list["result"]["tools"].size(), 2U);
+  const auto call = [&](const std::string& arguments) {
+    return client.say(
+        R"({"jsonrpc":"2.0","id":3,"method":"tools/call","params":{"name":"activity","arguments":)" +
+        arguments + "}}");
+  };
+  const auto text = [](const std::vector<Json>& answers) {
+    return answers.at(0)["result"]["content"][0]["text"].get<std::string>();
+  };
+  EXPECT_TRUE(text(call("{}")).starts_with("back_off: "));
+  EXPECT_TRUE(client.session.take_calls().empty());
+  EXPECT_TRUE(call(R"({"name":"back_off","arguments":{"x":1.5}})").empty());
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_EQ(calls[0].tool, "back_off");
+  EXPECT_EQ(calls[0].arguments["x"], 1.5);
+  for (const char* wrong : {R"({"name":"back_off","arguments":{"y":1}})", R"({"name":"go_to"})",
+                            R"({"name":"activity"})", R"({"name":1})"})
+    EXPECT_EQ(call(wrong).at(0)["result"]["isError"], true) << wrong;
+}
+
 TEST(McpSession, ACallIsAnsweredLaterAndTellsOfItsProgress) {
   Client client;
   EXPECT_TRUE(

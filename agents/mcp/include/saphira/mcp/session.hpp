@@ -23,6 +23,7 @@ struct Tool {
   bool always = false;      ///< exempt from the limit: it stops the robot
   Json output = nullptr;    ///< JSON Schema of Result.value, an object; null: not declared
   bool lasts = false;       ///< asks for a goal: a task for a client that knows tasks
+  bool apart = false;       ///< listed and called by the tool kOthers alone
   bool operator==(const Tool&) const = default;
 };
 
@@ -130,6 +131,8 @@ class Session {
   static constexpr std::size_t kMostOpen = 64;             ///< calls without an answer
   static constexpr double kMostASecond = 5.0;              ///< calls, over some seconds
   static constexpr double kMostAtOnce = 20.0;              ///< calls, after a silence
+  /// The tool that lists the tools that are apart, and calls them; there where any is.
+  static constexpr const char* kOthers = "activity";
   static constexpr const char* kLegacy = "2025-11-25";  ///< the newest revision with `initialize`
   static constexpr const char* kModern = "2026-07-28";
 
@@ -219,6 +222,7 @@ class Session {
   bool structures(const Request& request) const;
   void list(const Request& request, Json result);
   void call(const Request& request, const Json& parameters, const Json& uri = nullptr);
+  Result others() const;
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
   void erase(std::uint64_t call);
