@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <utility>
 
 #include "saphira/authority/robot.hpp"
@@ -39,10 +41,27 @@ system::Cores::Settings services_of(const DriveOptions& options,
   return settings;
 }
 
+/// Of this process alone: tests run side by side.
+struct Folder {
+  Folder() {
+    if (mkdtemp(path.data()) == nullptr)
+      throw std::runtime_error(path + " cannot be made");
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string path = std::filesystem::temp_directory_path() / "saphira-worlds-XXXXXX";
+};
+
 }  // namespace
 
 std::string world_with(const std::string& world, const std::string& name, const std::string& more) {
-  const std::string path = std::filesystem::temp_directory_path() / ("saphira-" + name + ".wld");
+  static const Folder folder;
+  const std::string path = folder.path + "/" + name + ".wld";
   std::ofstream(path) << read_file(config_folder() + "/worlds/" + world + ".wld") << "\n"
                       << more << "\n";
   return path;

@@ -22,44 +22,41 @@ struct WiringOptions {
   std::string drawing;
 };
 
-/// Sets the trouble of each unit, from the status that its program publishes.
-void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProcess>& seen) {
-  for (runtime::Unit& unit : units) {
-    const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
-      return process.status.name == unit.name;
-    });
-    unit.trouble = found == seen.end() ? "not on the bus" : found->status.reason;
-  }
+/// The reason why a unit does not run well, in words; empty: it does.
+std::string trouble_of(const runtime::Unit& unit, const std::vector<SeenProcess>& seen) {
+  const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
+    return process.status.name == unit.name;
+  });
+  return found == seen.end() ? "not on the bus" : found->status.reason;
 }
 
 int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
            const bus::Stop& stop) {
-  std::vector<runtime::Unit> units = system::units();
-  if (!options.drawing.empty())
-    expect_ending(options.drawing, ".svg");
+  const std::vector<runtime::Unit> units = system::units();
   if (options.table) {
     std::fputs(runtime::wiring_table(units).c_str(), stdout);
+    return bus::kExitOk;
+  }
+  // A drawing is of the table, as in the documents, whatever runs now.
+  if (!options.drawing.empty()) {
+    expect_ending(options.drawing, ".svg");
+    if (!replace_file(options.drawing, runtime::wiring_drawing(units)))
+      throw UnusableFile(cannot_be(options.drawing, "written"));
+    std::printf("drew %s\n", options.drawing.c_str());
     return bus::kExitOk;
   }
   bus::Node node(node_options);
   Processes processes(node);
   poll_for(node, kListen, stop, [&] { processes.poll(); });
   const std::vector<SeenProcess> seen = processes.all();
-  // Without a running system the table alone is printed.
-  if (!seen.empty())
-    find_trouble(units, seen);
-  if (!options.drawing.empty()) {
-    if (!replace_file(options.drawing, runtime::wiring_drawing(units)))
-      throw UnusableFile(cannot_be(options.drawing, "written"));
-    std::printf("drew %s\n", options.drawing.c_str());
+  std::fputs(runtime::wiring_text(units).c_str(), stdout);
+  if (seen.empty()) {
+    std::printf("\nOn the bus of robot %s is no program now.\n", node_options.robot.c_str());
     return bus::kExitOk;
   }
-  std::fputs(runtime::wiring_text(units).c_str(), stdout);
-  if (seen.empty())
-    std::printf("\nOn the bus of robot %s is no program now.\n", node_options.robot.c_str());
   for (const runtime::Unit& unit : units)
-    if (!unit.trouble.empty())
-      std::printf("%s: %s\n", unit.name.c_str(), unit.trouble.c_str());
+    if (const std::string trouble = trouble_of(unit, seen); !trouble.empty())
+      std::printf("%s: %s\n", unit.name.c_str(), trouble.c_str());
   return bus::kExitOk;
 }
 

@@ -44,14 +44,6 @@ std::string stroke(int x1, int y1, int x2, int y2, const char* color) {
   return "<line x1=\"" + std::to_string(x1) + "\" y1=\"" + std::to_string(y1) + "\" x2=\"" +
          std::to_string(x2) + "\" y2=\"" + std::to_string(y2) + "\" stroke=\"" + color + "\"/>\n";
 }
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return result;
-}
-
 std::string dot(int x, int y, const char* fill) {
   return "<circle cx=\"" + std::to_string(x) + "\" cy=\"" + std::to_string(y) +
          "\" r=\"6\" stroke=\"#333\" stroke-width=\"1.5\" fill=\"" + fill + "\"/>\n";
@@ -143,11 +135,7 @@ std::string wiring_drawing(const std::vector<Unit>& units) {
   std::string text = head;
   text += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   for (std::size_t i = 0; i < units.size(); ++i) {
-    const Unit& unit = units[i];
-    text += text_at(x_of(i), kTop - 20, "middle",
-                    unit.trouble.empty() ? unit.name
-                                         : "<tspan fill=\"#c00\">" + unit.name + "<title>" +
-                                               escaped(unit.trouble) + "</title></tspan>");
+    text += text_at(x_of(i), kTop - 20, "middle", units[i].name);
     text += stroke(x_of(i), kTop - 10, x_of(i), bottom, "#ccc");
   }
   for (std::size_t i = 0; i < lines.size(); ++i)

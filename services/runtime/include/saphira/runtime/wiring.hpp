@@ -12,8 +12,6 @@ struct Unit {
   std::string name;
   std::string effect;
   std::vector<Port> ports;
-  /// Of a running system: its present error, such as "not on the bus"; empty: none.
-  std::string trouble{};
 };
 
 /// A topic in the table: its writers and readers, by their index among the units.
@@ -35,8 +33,7 @@ std::vector<Line> lines_of(const std::vector<Unit>& units);
 std::string wiring_table(const std::vector<Unit>& units);
 /// The same for a terminal.
 std::string wiring_text(const std::vector<Unit>& units);
-/// The same as a drawing (SVG): a column for each unit, a row for each topic. Units with trouble
-/// are red.
+/// The same as a drawing (SVG): a column for each unit, a row for each topic.
 std::string wiring_drawing(const std::vector<Unit>& units);
 
 }  // namespace saphira::runtime
