@@ -148,15 +148,15 @@ void main(void)
   double x = 0.0, y = 0.0, heading = 0.0;
   int found = 0;
   const std::string said = program.output();
-  const std::size_t at = said.find("at ");
+  const std::size_t at = said.find("\nat ");
   ASSERT_NE(at, std::string::npos) << said;
-  ASSERT_EQ(
-      std::sscanf(said.c_str() + at, "at %lf %lf, heading %lf, found %d", &x, &y, &heading, &found),
-      4)
+  ASSERT_EQ(std::sscanf(said.c_str() + at, "\nat %lf %lf, heading %lf, found %d", &x, &y, &heading,
+                        &found),
+            4)
       << said;
   EXPECT_NEAR(x, 1000.0, 100.0);
   EXPECT_NEAR(y, -500.0, 100.0);
-  EXPECT_NEAR(heading, 270.0, 8.0);
+  EXPECT_NEAR(heading, -90.0, 8.0);
   EXPECT_EQ(found, 1);
   // The limit of the simulated Pioneer, and the guard's distance, are told.
   EXPECT_NE(said.find("sfSetMaxVelocity: the robot's limit is 400 mm/s, not 9000"),
