@@ -516,6 +516,9 @@ class BusRobot final : public ServedRobot {
         news = "the robot's bridge refuses to drive: " + refusal.reason;
     if (grant->source == source_ && grant->guard == v1::GUARD_STOP)
       news = "the guard stops the robot: " + grant->guard_reason;
+    if (grant->source == source_ && grant->guard == v1::GUARD_LIMIT &&
+        !std::exchange(told_limit_, true))
+      say_("the guard limits the robot: " + grant->guard_reason, false);
     // Distances in a reason change all the time: only a new kind of trouble is news.
     const std::string kind = news.substr(0, news.find_first_of("0123456789"));
     if (kind != news_ && !news.empty())
@@ -691,6 +694,7 @@ class BusRobot final : public ServedRobot {
   double heard_ = 0.0;
   std::uint64_t number_ = 0;
   std::string news_;
+  bool told_limit_ = false;
   bus::StopNotice notice_;
   std::map<std::string, bus::RequestClient> devices_;
 

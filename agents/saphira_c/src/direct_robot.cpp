@@ -231,6 +231,9 @@ class DirectRobot final : public ServedRobot {
     if (guards && !guarded_)
       say_("the guard stops the robot: " + decided.guarded.reason, false);
     guarded_ = guards;
+    if (decided.guarded.action == authority::GuardAction::limit &&
+        !std::exchange(told_limit_, true))
+      say_("the guard limits the robot: " + decided.guarded.reason, false);
   }
   void perform(const bridge::WatchLink& watch) {
     if (keeper_)
@@ -262,6 +265,7 @@ class DirectRobot final : public ServedRobot {
   double last_beat_ = 0.0;
   std::uint64_t number_ = 0;
   bool guarded_ = false;
+  bool told_limit_ = false;
 
   // Shared with the program's thread, as those of ServedRobot.
   int wake_ = -1;
