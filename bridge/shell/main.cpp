@@ -65,6 +65,9 @@ int main(int argc, char** argv) {
                        "handed back)")
             .in_range(0.0, 600000.0);
         app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
+        app.add_option("--guard-margin", options.guard_margin,
+                       "m that the guard keeps before an obstacle ahead")
+            .in_range(0.1, 1.0);
         app.add_option("--contact-speed", options.contact_speed,
                        "m/s at the most, up to 0.15, where a driver means contact; 0: never")
             .in_range(0.0, 0.15);

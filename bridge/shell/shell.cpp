@@ -61,13 +61,8 @@ BridgeOptions checked(BridgeOptions options) {
 namespace {
 
 CoreSettings settings_of(const BridgeOptions& options, bool lockstep) {
-  return {lockstep,
-          options.free_step,
-          options.lease,
-          options.quiet,
-          options.guard,
-          options.contact_speed,
-          !options.state_file.empty()};
+  return {lockstep,      options.free_step,     options.lease,        options.quiet,
+          options.guard, options.contact_speed, options.guard_margin, !options.state_file.empty()};
 }
 
 }  // namespace

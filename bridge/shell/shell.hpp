@@ -32,6 +32,7 @@ struct BridgeOptions {
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
   double contact_speed = 0.15;  ///< [m/s] at most, for a driver who wants contact; 0: never
+  double guard_margin = 0.25;   ///< [m] CoreSettings
   /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop;
   /// empty: none.
   std::string state_file;

@@ -90,7 +90,7 @@ int sfStalledMotor(int which); /* 6.3.1 */
 typedef struct {
   float fx, fy, fth;    /* robot position when the sonar was read */
   float afx, afy, afth; /* its global position */
-  float x, y;           /* the reading, in robot coordinates of now */
+  float x, y;           /* on the sonar's axis at its range, in robot coordinates of now */
   int range;            /* [mm] 5000: no echo */
   int snew;             /* 0xFFFF: a new reading */
 } sdata;                /* 6.3.2 */
@@ -199,6 +199,11 @@ void sfInitInterpretationProcs(void);
 void sfInitRegistrationProcs(void);
 void sfInitSpecialProcs(void); /* 4.3.4 */
 void sfInitAwareProcs(void);   /* 4.3.4 */
+/* Their processes, for sfInitProcess one by one. */
+void pulse_proc(void), motor_proc(void), clamp_proc(void), sonar_proc(void), wake_proc(void),
+    draw_proc(void), process_waiting_packets(void), execute_current_behaviors(void),
+    occgrid_proc(void), side_segment_proc(void), test_wall_proc(void), test_wall_break_proc(void),
+    test_match_proc(void), test_environment_proc(void);
 
 process* sfInitIntention(void (*fn)(void), const char* name, int timeout, ...); /* 8.3 */
 int finished(process* p);                                                       /* 8.4 */
@@ -314,6 +319,12 @@ void sfSetPatchColor(int color);
 void sfDrawCenteredRect(float x, float y, float w, float h);
 void sfDrawRect(float x, float y, float dx, float dy);
 
+/* For programs of Saphira 6, whose header is saphira6/saphira.h: a line [mm], in the LPS... */
+void sfDrawVector(float x1, float y1, float x2, float y2);
+/* ...and from now on the angles of points and of the robot are degrees, and sfInitBasicProcs is
+ * called with each connection. */
+void sf_as_saphira6(void);
+
 /* ---- 6.9: maps. */
 
 int sfLoadMapFile(const char* name);
@@ -346,6 +357,7 @@ extern behavior *sfConstantVelocity, *sfStop, *sfAvoidCollision, *sfStopCollisio
     *sfGoToPos, *sfAttendAtPos, *sfFollow, *sfFollowCorridor, *sfFollowDoor, *sfTurnTo; /* 7.8 */
 #define TurnTo sfTurnTo
 extern behavior follow_corridor; /* 8.1.2: *sfFollowCorridor */
+extern float flakey_radius; /* [mm] of the robot's hull; before the connection 0 */
 enum { sfNOTURN, sfLEFTTURN, sfRIGHTTURN };
 extern int sfPreferredTurnDir;
 enum { sfIN, sfOUT };

@@ -2,6 +2,8 @@
 // interpretation of its sensors is the services', and the program is one of those that may drive it
 // (role direct).
 
+#include "bus_robot.hpp"
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -146,7 +148,7 @@ std::array<std::uint8_t, 3> color_of(int number) {
 v1::Drawing drawing_of(const Drawn& drawn) {
   v1::Drawing drawing;
   drawing.frame = v1::FRAME_ROBOT;
-  drawing.shape = v1::DRAWING_RECTANGLE;
+  drawing.shape = drawn.line ? v1::DRAWING_LINE : v1::DRAWING_RECTANGLE;
   v1::DrawnPoint corner;
   corner.x = drawn.x / 1000.0;
   corner.y = drawn.y / 1000.0;
@@ -251,8 +253,9 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
 
 class BusRobot final : public ServedRobot {
  public:
-  BusRobot(const std::string& name, Say say) : name_(name), say_(std::move(say)) {
-    trouble_ = "no bridge of robot \"" + name + "\" is heard";
+  BusRobot(bus::NodeOptions options, Say say, std::shared_ptr<bus::MemoryBus> memory)
+      : options_(std::move(options)), memory_(std::move(memory)), say_(std::move(say)) {
+    trouble_ = "no bridge of robot \"" + options_.robot + "\" is heard";
     thread_ = std::thread([this] { run(); });
   }
   ~BusRobot() override { end(); }
@@ -308,6 +311,12 @@ class BusRobot final : public ServedRobot {
     ask(bus::request("load", {bus::text("text", text), bus::text("name", name)}));
   }
   void place(const Pose& robot) override {
+    {
+      const std::lock_guard lock(mutex_);
+      placing_ = true;
+      if (found_)
+        found_->odom_in_map.reset();
+    }
     ask(bus::request("place", {bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)}));
   }
 
@@ -358,7 +367,7 @@ class BusRobot final : public ServedRobot {
   }
 
   void serve() {
-    bus::Node node(options_of(name_));
+    bus::Node node = memory_ ? bus::Node(options_, memory_) : bus::Node(options_);
     source_ = node.options().name;
     Ends ends(node, source_);
     ProcessTable table;
@@ -469,7 +478,7 @@ class BusRobot final : public ServedRobot {
     }
     if (registration && registration->odom == odom_) {
       found_->environment = registration->environment;
-      if (registration->state == v1::REGISTRATION_TRACKING)
+      if (registration->state == v1::REGISTRATION_TRACKING && !placing_)
         found_->odom_in_map = from_bus(registration->odom_in_map);
     }
     found_->map = map_;
@@ -507,6 +516,9 @@ class BusRobot final : public ServedRobot {
         news = "the robot's bridge refuses to drive: " + refusal.reason;
     if (grant->source == source_ && grant->guard == v1::GUARD_STOP)
       news = "the guard stops the robot: " + grant->guard_reason;
+    if (grant->source == source_ && grant->guard == v1::GUARD_LIMIT &&
+        !std::exchange(told_limit_, true))
+      say_("the guard limits the robot: " + grant->guard_reason, false);
     // Distances in a reason change all the time: only a new kind of trouble is news.
     const std::string kind = news.substr(0, news.find_first_of("0123456789"));
     if (kind != news_ && !news.empty())
@@ -568,7 +580,13 @@ class BusRobot final : public ServedRobot {
       ends.registration.send(std::move(request));
     if (asks_to_stop)
       ends.stops.send(bus::request("stop"));
-    hear(ends.registration.poll());
+    const std::vector<v1::Answer> answers = ends.registration.poll();
+    hear(answers);
+    if (std::any_of(answers.begin(), answers.end(),
+                    [](const v1::Answer& answer) { return bus::ended(answer.code); })) {
+      const std::lock_guard lock(mutex_);
+      placing_ = false;
+    }
     hear(ends.stops.poll());
     for (auto& [name, client] : devices_)
       hear(client.poll());
@@ -665,7 +683,8 @@ class BusRobot final : public ServedRobot {
     }
   }
 
-  const std::string name_;
+  const bus::NodeOptions options_;
+  const std::shared_ptr<bus::MemoryBus> memory_;
   Say say_;
 
   // The thread's members.
@@ -675,6 +694,7 @@ class BusRobot final : public ServedRobot {
   double heard_ = 0.0;
   std::uint64_t number_ = 0;
   std::string news_;
+  bool told_limit_ = false;
   bus::StopNotice notice_;
   std::map<std::string, bus::RequestClient> devices_;
 
@@ -697,13 +717,20 @@ class BusRobot final : public ServedRobot {
   std::vector<TaskRequest> asked_;    // for the program
   std::set<std::string> unanswered_;  // micro-tasks with an open request
   std::optional<Found> found_;
+  bool placing_ = false;  // registration has not answered yet: its pose is the one before
   std::shared_ptr<const maps::Map> map_;
 };
 
 }  // namespace
+
+std::unique_ptr<Robot> robot_on_bus(bus::NodeOptions options, Say say,
+                                    std::shared_ptr<bus::MemoryBus> memory) {
+  return std::make_unique<BusRobot>(std::move(options), std::move(say), std::move(memory));
+}
+
 }  // namespace saphira::c
 
 extern "C" __attribute__((visibility("default"))) saphira::c::Robot* saphira_c_bus_robot(
     const std::string& name, saphira::c::Say say) {
-  return new saphira::c::BusRobot(name, std::move(say));
+  return saphira::c::robot_on_bus(saphira::c::options_of(name), std::move(say)).release();
 }

@@ -14,23 +14,23 @@ namespace {
 
 // The local pose of a point, or of a type that begins like one.
 Pose local_of(const point& p) {
-  return {p.x / 1000.0, p.y / 1000.0, p.th};
+  return {p.x / 1000.0, p.y / 1000.0, p.th * Os::get().angle_unit};
 }
 template <class Artifact>
 Pose global_of(const Artifact& p) {
-  return {p.ax / 1000.0, p.ay / 1000.0, p.ath};
+  return {p.ax / 1000.0, p.ay / 1000.0, p.ath * Os::get().angle_unit};
 }
 template <class Artifact>
 void set_local(Artifact& p, const Pose& pose) {
   p.x = static_cast<float>(pose.x * 1000.0);
   p.y = static_cast<float>(pose.y * 1000.0);
-  p.th = static_cast<float>(pose.th);
+  p.th = static_cast<float>(pose.th / Os::get().angle_unit);
 }
 template <class Artifact>
 void set_global(Artifact& p, const Pose& pose) {
   p.ax = static_cast<float>(pose.x * 1000.0);
   p.ay = static_cast<float>(pose.y * 1000.0);
-  p.ath = static_cast<float>(pose.th);
+  p.ath = static_cast<float>(pose.th / Os::get().angle_unit);
 }
 
 point system_point(int id) {
@@ -85,12 +85,15 @@ void Os::update_points() {
 
 void Os::move_robot(const Pose& by) {
   const Pose moved = compose(robot_in_global(), by);
-  odom_in_global = compose(moved, relative(robot_in_odom, Pose{}));
-  target_heading = norm2_angle(target_heading);
-  if (robot_ && robot_->found())
+  if (robot_ && robot_->found()) {
     robot_->place(moved);
-  else if (registration_)
-    registration_->act({"place", {saphira::point("position", moved, Frame::map)}, "this program"});
+  } else if (registration_) {
+    const Answer said = registration_->act(
+        {"place", {saphira::point("position", moved, Frame::map)}, "this program"});
+    if (said.code != AnswerCode::done)
+      return say("sfMoveRobot: " + said.text, true);
+  }
+  odom_in_global = compose(moved, relative(robot_in_odom, Pose{}));
   update_points();
 }
 
@@ -174,7 +177,7 @@ void Os::interpret() {
   const std::lock_guard lock(mutex);
   if (const auto found = robot_ ? robot_->found() : std::nullopt) {
     percepts_.emplace();
-    if (!suspended("test_wall_proc")) {
+    if (!suspended(test_wall_proc)) {
       percepts_->left_wall = found->left_wall;
       percepts_->right_wall = found->right_wall;
     }
@@ -188,11 +191,11 @@ void Os::interpret() {
   inputs.pose_in_odom = robot_in_odom;
   inputs.readings = readings_;
   interpretation_began_ = true;
-  constexpr std::pair<const char*, const char*> kParts[] = {
-      {"side_segment_proc", "side-segment"},
-      {"test_wall_proc", "test-wall"},
-      {"test_wall_break_proc", "test-wall-break"}};
-  for (const auto& [ours, theirs] : kParts) {
+  constexpr std::pair<void (*)(), const char*> parts[] = {
+      {side_segment_proc, "side-segment"},
+      {test_wall_proc, "test-wall"},
+      {test_wall_break_proc, "test-wall-break"}};
+  for (const auto& [ours, theirs] : parts) {
     Process* const part = interpretation_->processes().find(theirs);
     const bool off = find(ours) == nullptr || suspended(ours);
     if (part != nullptr && part->suspended() != off)
@@ -352,12 +355,12 @@ int sfOccPlaneRet(int xy, int source, int d, int s1, int s2, int* x, int* y) {
 
 point* sfCreateLocalPoint(float x, float y, float th) {
   const std::lock_guard lock(Os::get().mutex);
-  const Pose local{x / 1000.0, y / 1000.0, th};
+  const Pose local{x / 1000.0, y / 1000.0, th * Os::get().angle_unit};
   return created(local, compose(Os::get().robot_in_global(), local));
 }
 point* sfCreateGlobalPoint(float x, float y, float th) {
   const std::lock_guard lock(Os::get().mutex);
-  const Pose global{x / 1000.0, y / 1000.0, th};
+  const Pose global{x / 1000.0, y / 1000.0, th * Os::get().angle_unit};
   return created(relative(Os::get().robot_in_global(), global), global);
 }
 void sfSetLocalCoords(point* p) {
@@ -393,31 +396,31 @@ point* sfFindArtifact(int id) {
   return Os::get().find_on_map(id);
 }
 
-float sfNormAngle(float ang) {
-  return real(saphira::norm_angle(ang));
-}
-float sfNorm2Angle(float ang) {
-  return real(saphira::norm2_angle(ang));
-}
-float sfNorm3Angle(float ang) {
-  return real(saphira::norm3_angle(ang));
-}
+#define ANGLE(name, function)                          \
+  float name(float ang) {                              \
+    const double unit = Os::get().angle_unit;          \
+    return real(saphira::function(ang * unit) / unit); \
+  }
+ANGLE(sfNormAngle, norm_angle)
+ANGLE(sfNorm2Angle, norm2_angle)
+ANGLE(sfNorm3Angle, norm3_angle)
+#undef ANGLE
 float sfAddAngle(float a1, float a2) {
-  return real(saphira::add_angle(a1, a2));
+  return sfNormAngle(a1 + a2);
 }
 float sfSubAngle(float a1, float a2) {
-  return real(saphira::sub_angle(a1, a2));
+  return sfNormAngle(a1 - a2);
 }
 float sfAdd2Angle(float a1, float a2) {
-  return real(saphira::add2_angle(a1, a2));
+  return sfNorm2Angle(a1 + a2);
 }
 float sfSub2Angle(float a1, float a2) {
-  return real(saphira::sub2_angle(a1, a2));
+  return sfNorm2Angle(a1 - a2);
 }
 
 #define LOCAL(p) saphira::c::local_of(*(p))
 float sfPointPhi(point* p) {
-  return given("sfPointPhi", p) ? real(lps::phi(LOCAL(p))) : 0.0F;
+  return given("sfPointPhi", p) ? real(lps::phi(LOCAL(p)) / Os::get().angle_unit) : 0.0F;
 }
 float sfPointDist(point* p) {
   return given("sfPointDist", p) ? real(lps::distance(LOCAL(p)) * 1000.0) : 0.0F;
@@ -465,7 +468,7 @@ void sfPointMove(point* p1, float dx, float dy, point* p2) {
 #undef LOCAL
 void sfMoveRobot(float dx, float dy, float dth) {
   const std::lock_guard lock(Os::get().mutex);
-  Os::get().move_robot({dx / 1000.0, dy / 1000.0, dth});
+  Os::get().move_robot({dx / 1000.0, dy / 1000.0, dth * Os::get().angle_unit});
 }
 
 float aligned_in_lane(point* lane_point, point* target, double near_angle, double far_angle) {
@@ -473,7 +476,8 @@ float aligned_in_lane(point* lane_point, point* target, double near_angle, doubl
     return 0.0F;
   // A lane has no direction of its own: the target gives it.
   const bool back = sfPointXoPoint(lane_point, target) < sfPointXo(lane_point);
-  const double off = std::abs(saphira::norm2_angle(lane_point->th + (back ? saphira::kPi : 0.0)));
+  const double th = saphira::c::local_of(*lane_point).th;
+  const double off = std::abs(saphira::norm2_angle(th + (back ? saphira::kPi : 0.0)));
   return down_straight(real(saphira::degrees(off)), real(near_angle), real(far_angle));
 }
 

@@ -55,7 +55,7 @@ const std::map<const behavior*, Predefined>& predefined() {
 
 Pose local_pose(const void* p) {
   const point& at = *static_cast<const point*>(p);
-  return {at.x / 1000.0, at.y / 1000.0, at.th};
+  return {at.x / 1000.0, at.y / 1000.0, at.th * Os::get().angle_unit};
 }
 
 /// A C program's behavior, for the executive.

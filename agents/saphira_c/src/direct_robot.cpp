@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/transport/keeper.hpp"
 #include "saphira/transport/link.hpp"
@@ -20,12 +23,29 @@ namespace {
 
 constexpr double kBeat = 0.05;  // [s] of the keeper
 
+constexpr const char* kMargin = "SAPHIRA_GUARD_MARGIN";
+
+/// std::invalid_argument for a wrong value.
+bridge::CoreSettings settings_of_environment() {
+  bridge::CoreSettings settings;
+  constexpr double kLeast = 0.1;
+  const char* const given = std::getenv(kMargin);
+  if (given == nullptr || *given == '\0')
+    return settings;
+  char* end = nullptr;
+  settings.guard_margin = std::strtod(given, &end);
+  if (*end != '\0' || !(settings.guard_margin >= kLeast && settings.guard_margin <= 1.0))
+    throw std::invalid_argument(std::string(kMargin) + ": expected 0.1 to 1 [m], not \"" + given +
+                                "\"");
+  return settings;
+}
+
 class DirectRobot final : public ServedRobot {
  public:
   DirectRobot(const std::string& address, Say say)
       : say_(std::move(say)),
         link_(transport::parse_address(address)),
-        core_(bridge::CoreSettings{}),
+        core_(settings_of_environment()),
         wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     const std::string keeper = beside_library("bin/saphira-keeper");
     try {
@@ -182,6 +202,9 @@ class DirectRobot final : public ServedRobot {
     }
   }
   void perform(const bridge::SessionBegan& began) {
+    say_("the guard stops the robot " + format("%.2f m", settings_of_environment().guard_margin) +
+             " before what its sonars hear (" + kMargin + ")",
+         false);
     const std::lock_guard lock(mutex_);
     parameters_ = core_.parameters();
     identity_ = began.robot;
@@ -208,6 +231,9 @@ class DirectRobot final : public ServedRobot {
     if (guards && !guarded_)
       say_("the guard stops the robot: " + decided.guarded.reason, false);
     guarded_ = guards;
+    if (decided.guarded.action == authority::GuardAction::limit &&
+        !std::exchange(told_limit_, true))
+      say_("the guard limits the robot: " + decided.guarded.reason, false);
   }
   void perform(const bridge::WatchLink& watch) {
     if (keeper_)
@@ -239,6 +265,7 @@ class DirectRobot final : public ServedRobot {
   double last_beat_ = 0.0;
   std::uint64_t number_ = 0;
   bool guarded_ = false;
+  bool told_limit_ = false;
 
   // Shared with the program's thread, as those of ServedRobot.
   int wake_ = -1;

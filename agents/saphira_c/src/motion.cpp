@@ -1,6 +1,7 @@
 // State reflection (manual 6.3) and direct motion control (6.4) for C programs.
 
 #include <cmath>
+#include <set>
 
 #include "os.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 /// True where there is a robot, and the state reflector that moves it.
 bool ready(const char* function) {
   static bool told = false;
-  if (Os::get().connected() && Os::get().find("motor_proc") != nullptr)
+  if (Os::get().connected() && Os::get().find(motor_proc) != nullptr)
     return true;
   if (!std::exchange(told, true))
     Os::get().say(std::string(function) + (Os::get().connected()
@@ -31,9 +32,22 @@ void turn_to(double heading_in_odom) {
   os.motion.heading = os.target_heading;
 }
 
+/// Reports a speed beyond the robot's own limit, each function's once for each robot.
+void tell_limit(const char* function, int wanted, const char* unit, double most) {
+  static std::set<std::pair<std::string, std::string>> told;
+  if (std::abs(wanted) > std::lround(most) &&
+      told.insert({function, Os::get().parameters.file}).second)
+    Os::get().say(std::string(function) + ": the robot's limit is " +
+                      std::to_string(std::lround(most)) + " " + unit + ", not " +
+                      std::to_string(wanted),
+                  true);
+}
+
 }  // namespace
 
 extern "C" {
+
+float flakey_radius = 0.0F;
 
 void sfSetVelocity(int vel) {
   const std::lock_guard lock(Os::get().mutex);
@@ -42,6 +56,7 @@ void sfSetVelocity(int vel) {
   Os& os = Os::get();
   os.motion.translation = reflector::Translation::velocity;
   os.motion.velocity = vel / 1000.0;
+  tell_limit("sfSetVelocity", vel, "mm/s", os.parameters.max_velocity * 1000.0);
   os.position_target.reset();
 }
 
@@ -51,6 +66,7 @@ void sfSetRVelocity(int rvel) {
     return;
   Os::get().motion.rotation = reflector::Rotation::velocity;
   Os::get().motion.rotation_velocity = radians(rvel);
+  tell_limit("sfSetRVelocity", rvel, "deg/s", degrees(Os::get().parameters.max_rotation_velocity));
 }
 
 void sfSetHeading(int head) {
@@ -84,6 +100,8 @@ void sfSetMaxVelocity(int vel) {
   const std::lock_guard lock(Os::get().mutex);
   Os& os = Os::get();
   os.max_velocity = std::abs(vel) / 1000.0;
+  if (os.connected())
+    tell_limit("sfSetMaxVelocity", vel, "mm/s", os.parameters.max_velocity * 1000.0);
   if (os.motion.translation == reflector::Translation::position)
     os.motion.velocity = os.max_velocity;
 }

@@ -150,6 +150,7 @@ void Os::session_began(const std::shared_ptr<Robot>& robot) {
     session_ = robot->session();
     parameters = robot->parameters();
     show_names(robot->identity());
+    flakey_radius = static_cast<float>(parameters.radius * 1000.0);
     sfFrontMaxRange = static_cast<float>(parameters.front_max_range * 1000.0);
     lps = lps::LocalPerceptualSpace(model_of(parameters).lps);
   }
@@ -162,6 +163,8 @@ void Os::session_began(const std::shared_ptr<Robot>& robot) {
   }
   register_behaviors(behaviors_->registry());
   connected_ = true;
+  if (starts_basic_procs)
+    sfInitBasicProcs();
   if (on_connect)
     on_connect();
 }
@@ -234,13 +237,13 @@ void Os::step(const Reflected& now) {
   new_frame_ = false;
   const bool drives = motion.translation != reflector::Translation::none ||
                       motion.rotation != reflector::Rotation::none;
-  if (robot && find("motor_proc") != nullptr && !suspended("motor_proc") && drives) {
+  if (robot && find(motor_proc) != nullptr && !suspended(motor_proc) && drives) {
     go_on_to_position();
     robot->drive(motion, now.state.cycle);
   }
   if (robot) {
     std::vector<Drawn> drawn = take_drawn();
-    if (!suspended("draw_proc"))
+    if (!suspended(draw_proc))
       robot->draw(std::move(drawn));
     share(*robot, now.state.cycle);
   }

@@ -27,7 +27,7 @@ namespace saphira::c {
 struct Task {
   process shown{};
   std::string name;
-  std::function<void()> built_in;  ///< else shown.fn
+  bool of_library = false;  ///< a process of the manual's 6.2, or a behavior's place in 8.5
   bool intention = false;
   bool removed = false;
   std::uint64_t age = 0;  ///< [cycles] of an intention
@@ -80,21 +80,24 @@ class Os {
   void (*on_startup)() = nullptr;
   void (*on_connect)() = nullptr;
   void (*on_disconnect)() = nullptr;
+  double angle_unit = 1.0;          ///< [rad] of the program's angles of points and of the robot
+  bool starts_basic_procs = false;  ///< by itself, with each connection
   std::array<int, 5> display{2, FALSE, FALSE, FALSE, FALSE};  ///< Table 6-1
 
   // ---- 6.2, 6.5, 8: tasks.cpp
-  Task* add(const char* name, void (*fn)(), std::function<void()> built_in, bool intention);
+  Task* add(const char* name, void (*fn)(), bool intention);
   Task* find(const std::string& name);
+  /// The micro-task of the library with this function; one at the most.
+  Task* find(void (*of_library)());
   Task* of(const process* shown);
   void run_tasks();
   /// True for a micro-task of the library that was stopped.
-  bool suspended(const char* built_in);
-  void add_built_in(const char* name, std::function<void()> step);
-  void init_basic();
-  void init_control();
-  void init_interpretation();
-  void init_registration();
-  void init_environment();
+  bool suspended(void (*of_library)());
+  // The work of the library's micro-tasks.
+  void evaluate_behaviors();
+  void interpret();
+  void match();
+  void find_environment();
   Task* current = nullptr;  ///< of the thread of the micro-tasks
 
   // ---- 7: closures.cpp
@@ -152,10 +155,6 @@ class Os {
   void show_map(const maps::Map& map);
   void match_on_bus(const Found& found);
 
-  // The micro-tasks of the library.
-  void evaluate_behaviors();
-  void interpret();
-  void match();
   std::vector<behaviors::Intended> intended();
   behaviors::Intended intended(const Closure& closure);
   void hear_behaviors(const behaviors::Output& output);

@@ -15,11 +15,11 @@ float real(double value) {
   return static_cast<float>(value);
 }
 
-/// Puts a pose into a C program's members [mm, rad].
+/// Puts a pose into a C program's members [mm, angle_unit].
 void put(const Pose& pose, float& x, float& y, float& th) {
   x = mm(pose.x);
   y = mm(pose.y);
-  th = real(pose.th);
+  th = real(pose.th / Os::get().angle_unit);
 }
 
 cbuf to_c(const lps::SonarBuffer& buffer) {
@@ -85,7 +85,7 @@ void Os::clamp(const reflector::State& now) {
     target_heading = robot_in_odom.th;
   state = now;
   readings_.clear();
-  if (!suspended("sonar_proc"))
+  if (!suspended(sonar_proc))
     for (const protocol::Sonar& sonar : now.information.sonars)
       readings_.push_back({sonar.number, sonar.range, sonar.echo});
   if (std::abs(sfFrontMaxRange - mm(lps.settings().front_max_range)) > 0.5F)
@@ -142,8 +142,8 @@ void Os::show_sonars(View& next) {
     put(then, shown.fx, shown.fy, shown.fth);
     put(compose(odom_in_global, bucket.pose_in_odom), shown.afx, shown.afy, shown.afth);
     const Vec2 at = transform(then, bucket.point);
-    shown.x = bucket.reading.echo ? mm(at.x()) : 0.0F;
-    shown.y = bucket.reading.echo ? mm(at.y()) : 0.0F;
+    shown.x = mm(at.x());
+    shown.y = mm(at.y());
     shown.range =
         bucket.reading.echo ? static_cast<int>(std::lround(bucket.reading.range * 1000.0)) : 5000;
     next.read[number] = bucket.cycle;

@@ -17,6 +17,40 @@ bool ended(int state) {
   return state == sfSUCCESS || state == sfFAILURE || state == sfTIMEOUT;
 }
 
+/// The place of a behavior among the intentions.
+void nothing() {}
+
+/// The processes of the manual's 6.2, in its order. The work of the first seven is done before all
+/// others of a cycle (the packet, the state reflector, the registration of all geometry) and after
+/// them (the motor command, the drawing); one core does that of the four of interpretation.
+constexpr struct {
+  const char* name;
+  void (*fn)();
+} kOfLibrary[] = {{"pulse_proc", pulse_proc},
+                  {"motor_proc", motor_proc},
+                  {"clamp_proc", clamp_proc},
+                  {"sonar_proc", sonar_proc},
+                  {"wake_proc", wake_proc},
+                  {"draw_proc", draw_proc},
+                  {"process_waiting_packets", process_waiting_packets},
+                  {"execute_current_behaviors", execute_current_behaviors},
+                  {"occgrid_proc", occgrid_proc},
+                  {"side_segment_proc", side_segment_proc},
+                  {"test_wall_proc", test_wall_proc},
+                  {"test_wall_break_proc", test_wall_break_proc},
+                  {"test_match_proc", test_match_proc},
+                  {"test_environment_proc", test_environment_proc}};
+
+bool is_of_library(void (*fn)()) {
+  return std::any_of(std::begin(kOfLibrary), std::end(kOfLibrary),
+                     [fn](const auto& each) { return each.fn == fn; });
+}
+
+void start(int first, int last) {
+  for (int i = first; i <= last; ++i)
+    Os::get().add(kOfLibrary[i].name, kOfLibrary[i].fn, false);
+}
+
 /// "test matching" is test_match_proc: the manual has several spellings.
 std::string plain(const std::string& name) {
   std::string text;
@@ -32,13 +66,15 @@ std::string plain(const std::string& name) {
 
 }  // namespace
 
-Task* Os::add(const char* name, void (*fn)(), std::function<void()> built_in, bool intention) {
+Task* Os::add(const char* name, void (*fn)(), bool intention) {
   const std::lock_guard lock(mutex);
+  if (Task* const there = find(fn))
+    return there;
   if (tasks_.size() >= kMostTasks)
     std::erase_if(tasks_, [](const auto& task) { return task->removed; });
   auto task = std::make_unique<Task>();
   task->name = name;
-  task->built_in = std::move(built_in);
+  task->of_library = fn == nothing || is_of_library(fn);
   task->intention = intention;
   task->shown.name = task->name.c_str();
   task->shown.fn = fn;
@@ -55,6 +91,14 @@ Task* Os::find(const std::string& name) {
     for (const auto& task : tasks_)
       if (!task->removed && (exactly ? task->name == name : plain(task->name) == plain(name)))
         return task.get();
+  return nullptr;
+}
+
+Task* Os::find(void (*of_library)()) {
+  const std::lock_guard lock(mutex);
+  for (const auto& task : tasks_)
+    if (!task->removed && task->shown.fn == of_library && is_of_library(of_library))
+      return task.get();
   return nullptr;
 }
 
@@ -99,28 +143,24 @@ void Os::run_task(Task& task) {
         its_state = sfRESUME;
       return;
     }
-    if (!task.built_in)
+    if (!task.of_library)
       watched_ = {task.name, BootClock::seconds(), false};
   }
   const double begun = BootClock::seconds();
   current = &task;
   process_state = its_state;
-  if (task.built_in) {
-    task.built_in();
-    // A task of the library works in any its_state, and cleans up on request.
-    if (process_state == sfINTERRUPT)
-      process_state = sfSUSPEND;
-    else if (process_state == sfINIT || process_state == sfRESUME)
-      process_state = 10;
-  } else {
-    task.shown.fn();
-  }
+  task.shown.fn();
+  // A task of the library works in any its_state, and cleans up on request.
+  if (task.of_library && process_state == sfINTERRUPT)
+    process_state = sfSUSPEND;
+  else if (task.of_library && (process_state == sfINIT || process_state == sfRESUME))
+    process_state = 10;
   const std::lock_guard lock(mutex);
   current = nullptr;
   // sfREMOVE, which a program writes into the structure, stays.
   if (its_state != sfREMOVE)
     its_state = process_state;
-  if (!task.built_in)
+  if (!task.of_library)
     mind_time(task, BootClock::seconds() - begun);
   watched_ = {};
 }
@@ -174,9 +214,9 @@ void Os::share(Robot& robot, std::uint64_t robot_cycle) {
   for (const auto& task : tasks_)
     if (!task->removed)
       shown.push_back({task->name,
-                       task->intention  ? "an intention of this program"
-                       : task->built_in ? "a micro-task of the library"
-                                        : "a micro-task of this program",
+                       task->intention    ? "an intention of this program"
+                       : task->of_library ? "a micro-task of the library"
+                                          : "a micro-task of this program",
                        task->shown.state});
   for (const auto& closure : closures)
     if (!closure->removed)
@@ -213,54 +253,18 @@ std::optional<SharedMind> Os::mind(std::uint64_t robot_cycle) const {
   return mind;
 }
 
-bool Os::suspended(const char* built_in) {
-  const Task* const task = find(built_in);
+bool Os::suspended(void (*of_library)()) {
+  const Task* const task = find(of_library);
   return task != nullptr && (task->shown.state == sfSUSPEND || task->shown.state == sfINTERRUPT ||
                              task->shown.state < 0);
 }
 
-void Os::add_built_in(const char* name, std::function<void()> step) {
-  if (find(name) == nullptr)
-    add(name, nullptr, std::move(step), false);
-}
-
-namespace {
-void nothing() {}
-}  // namespace
-
-// Named micro-tasks with a state for the library's work before all others of a cycle (the packet,
-// the state reflector, the registration of all geometry) and after them (the motor command, the
-// drawing). Tasks that every cycle needs continue in any state.
-void Os::init_basic() {
-  for (const char* const name : {"pulse_proc", "motor_proc", "clamp_proc", "sonar_proc",
-                                 "wake_proc", "draw_proc", "process_waiting_packets"})
-    add_built_in(name, nothing);
-}
-
-void Os::init_control() {
-  add_built_in("execute_current_behaviors", [this] { evaluate_behaviors(); });
-}
-
-void Os::init_interpretation() {
-  // One core does the work of the four; each is one of its micro-tasks.
-  add_built_in("occgrid_proc", [this] { interpret(); });
-  for (const char* const name : {"side_segment_proc", "test_wall_proc", "test_wall_break_proc"})
-    add_built_in(name, nothing);
-}
-
-void Os::init_registration() {
-  add_built_in("test_match_proc", [this] { match(); });
-  init_environment();
-}
-
-void Os::init_environment() {
-  add_built_in("test_environment_proc", [this] {
-    const std::lock_guard lock(mutex);
-    current_environment = nullptr;
-    for (const auto& artifact : map_points_)
-      if (environment_ != 0 && artifact->id == static_cast<int>(environment_))
-        current_environment = reinterpret_cast<point*>(artifact.get());
-  });
+void Os::find_environment() {
+  const std::lock_guard lock(mutex);
+  current_environment = nullptr;
+  for (const auto& artifact : map_points_)
+    if (environment_ != 0 && artifact->id == static_cast<int>(environment_))
+      current_environment = reinterpret_cast<point*>(artifact.get());
 }
 
 }  // namespace saphira::c
@@ -306,7 +310,7 @@ process* add_process(const char* function, void (*fn)(), const char* name, bool 
         true);
     return nullptr;
   }
-  return &Os::get().add(name, fn, {}, intention)->shown;
+  return &Os::get().add(name, fn, intention)->shown;
 }
 
 }  // namespace
@@ -345,23 +349,46 @@ process* sf_self(void) {
   return self == nullptr ? nullptr : &self->shown;
 }
 
+void pulse_proc(void) {}
+void motor_proc(void) {}
+void clamp_proc(void) {}
+void sonar_proc(void) {}
+void wake_proc(void) {}
+void draw_proc(void) {}
+void process_waiting_packets(void) {}
+void execute_current_behaviors(void) {
+  Os::get().evaluate_behaviors();
+}
+void occgrid_proc(void) {
+  Os::get().interpret();
+}
+void side_segment_proc(void) {}
+void test_wall_proc(void) {}
+void test_wall_break_proc(void) {}
+void test_match_proc(void) {
+  Os::get().match();
+}
+void test_environment_proc(void) {
+  Os::get().find_environment();
+}
+
 void sfInitBasicProcs(void) {
-  Os::get().init_basic();
+  saphira::c::start(0, 6);
 }
 void sfInitControlProcs(void) {
-  Os::get().init_control();
+  saphira::c::start(7, 7);
 }
 void sfInitInterpretationProcs(void) {
-  Os::get().init_interpretation();
+  saphira::c::start(8, 11);
 }
 void sfInitRegistrationProcs(void) {
-  Os::get().init_registration();
+  saphira::c::start(12, 13);
 }
 void sfInitSpecialProcs(void) {
-  Os::get().init_basic();
+  sfInitBasicProcs();
 }
 void sfInitAwareProcs(void) {
-  Os::get().init_environment();
+  saphira::c::start(13, 13);
 }
 
 process* sfInitIntention(void (*fn)(void), const char* name, int timeout, ...) {
@@ -405,8 +432,7 @@ process* intend_beh(behavior* b, const char* name, int timeout, beh_params param
   std::free(params);
   saphira::c::Closure* const closure =
       Os::get().add_closure(b, priority, true, std::move(copy), true);
-  Task* const task = Os::get().add(
-      name, nullptr, [] {}, true);
+  Task* const task = Os::get().add(name, saphira::c::nothing, true);
   task->shown.timeout = timeout;
   task->shown.beh = &closure->shown;
   task->shown.params = closure->shown.params;

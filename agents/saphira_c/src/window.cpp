@@ -83,10 +83,10 @@ void tell(const char* format, va_list list, bool error) {
   tell(format == nullptr ? nullptr : text.data(), error);
 }
 
-void draw(float x, float y, float dx, float dy) {
+void draw(bool line, float x, float y, float dx, float dy) {
   const std::lock_guard lock(Os::get().mutex);
   if (drawn.size() < kMostDrawn)
-    drawn.push_back({pen, x, y, dx, dy});
+    drawn.push_back({pen, line, x, y, dx, dy});
 }
 
 void set(int Pen::*what, int value) {
@@ -166,10 +166,17 @@ void sfSetPatchColor(int color) {
   set(&Pen::patch, color);
 }
 void sfDrawCenteredRect(float x, float y, float w, float h) {
-  draw(x - h / 2.0F, y - w / 2.0F, w, h);
+  draw(false, x - h / 2.0F, y - w / 2.0F, w, h);
 }
 void sfDrawRect(float x, float y, float dx, float dy) {
-  draw(x, y, dx, dy);
+  draw(false, x, y, dx, dy);
+}
+void sfDrawVector(float x1, float y1, float x2, float y2) {
+  draw(true, x1, y1, x2 - x1, y2 - y1);
+}
+void sf_as_saphira6(void) {
+  Os::get().angle_unit = saphira::radians(1.0);
+  Os::get().starts_basic_procs = true;
 }
 
 // ---- 6.1: the OS.

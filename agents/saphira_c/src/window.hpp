@@ -13,15 +13,17 @@ struct Pen {
   int line = 14;  ///< a colour of Table 6-4
   int patch = 14;
 };
-/// A rectangle from the program: its lower left corner in the LPS, its extent [mm].
+/// A rectangle from the program, or the line across it: its lower left corner in the LPS, its
+/// extent [mm].
 struct Drawn {
   Pen pen;
+  bool line = false;
   float x = 0.0F;
   float y = 0.0F;
   float dx = 0.0F;
   float dy = 0.0F;
 };
-/// The rectangles that were drawn since the last call.
+/// The rectangles and lines that were drawn since the last call.
 std::vector<Drawn> take_drawn();
 
 /// Passes typed keys to the program. In the thread of the micro-tasks, once a cycle.

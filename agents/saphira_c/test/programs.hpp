@@ -37,12 +37,13 @@ inline std::string sanitized() {
 }
 
 /// A program, compiled by the system's compiler against the installed library.
-inline std::string compiled(const std::string& file, const TempDir& dir, bool cpp) {
+inline std::string compiled(const std::string& file, const TempDir& dir, bool cpp,
+                            const std::string& options = "") {
   std::string out = dir.path("program");
   Process compile({"/bin/sh", "-c",
                    std::string(cpp ? "c++ -x c++" : "cc -x c -std=c11") + sanitized() +
-                       " -Wall -Wextra -Wno-main '" + file + "' -x none -o '" + out +
-                       "' $(PKG_CONFIG_PATH=$(dirname $(find " + prefix() +
+                       " -Wall -Wextra -Wno-main " + options + " '" + file + "' -x none -o '" +
+                       out + "' $(PKG_CONFIG_PATH=$(dirname $(find " + prefix() +
                        " -name saphira.pc)) pkg-config --cflags --libs saphira)"},
                   dir.path("compiler"));
   EXPECT_EQ(compile.wait(), std::optional<int>(0)) << compile.output();

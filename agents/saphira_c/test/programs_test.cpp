@@ -90,6 +90,107 @@ TEST_F(Programs, ABlobIsSearchedForAndApproached) {
   EXPECT_EQ(truth().back().contacts, 0);
 }
 
+// In the manner of course work for Saphira 6: no sfInitBasicProcs, degrees, float results.
+TEST_F(Programs, AProgramOfSaphira6GoesFromCornerToCorner) {
+  simulate();
+  const std::string path = dir_.path("six.c");
+  std::ofstream(path) << R"(
+#include "saphira.h"
+typedef struct { double x, y; } Corner;
+static const Corner corners[] = {{1000, 0}, {1000, -500}};
+static int current;
+sfprocess* follower;
+
+static int heading_to(Corner to) {
+  return (int)sfRadToDeg(atan2(to.y - sfRobot.ay, to.x - sfRobot.ax));
+}
+static void follow(void) {
+  float x, y;
+  switch (process_state) {
+    case sfINIT:
+    case 20:
+      sfSetHeading(heading_to(corners[current]));
+      process_state = 24;
+      break;
+    case 24:
+      if (!sfDoneHeading(3)) break;
+      sfSetPosition((int)hypot(corners[current].y - sfRobot.ay, corners[current].x - sfRobot.ax));
+      process_state = 28;
+      break;
+    case 28:
+      if (!sfDonePosition(30)) break;
+      process_state = ++current == 2 ? 32 : 20;
+      break;
+    case 32:
+      sfOccPlaneRet(sfFRONT, sfFRONT, 400, 200, -200, &x, &y);
+      sfSMessage("at %.0f %.0f, heading %.0f, found %d", sfRobot.ax, sfRobot.ay, sfRobot.ath,
+                 sfFindProcess("follow") == follower);
+      exit(0);
+  }
+}
+static void begins(void) { sfInitProcess(sfRunEvaluator, "evaluator"); }
+static void connects(void) {
+  sfSetMaxVelocity(9000);
+  follower = sfInitProcess(follow, "follow");
+}
+#ifdef IS_UNIX
+void main(void)
+#endif
+{
+  sfOnConnectFn(connects);
+  sfOnStartupFn(begins);
+  sfStartup(0);
+}
+)";
+  Process program =
+      start(test::compiled(path, dir_, false, "-I" + test::prefix() + "/include/saphira6"));
+  EXPECT_EQ(program.wait(std::chrono::minutes(2)), std::optional<int>(0)) << program.output();
+  double x = 0.0, y = 0.0, heading = 0.0;
+  int found = 0;
+  const std::string said = program.output();
+  const std::size_t at = said.find("\nat ");
+  ASSERT_NE(at, std::string::npos) << said;
+  ASSERT_EQ(std::sscanf(said.c_str() + at, "\nat %lf %lf, heading %lf, found %d", &x, &y, &heading,
+                        &found),
+            4)
+      << said;
+  EXPECT_NEAR(x, 1000.0, 100.0);
+  EXPECT_NEAR(y, -500.0, 100.0);
+  EXPECT_NEAR(heading, -90.0, 8.0);
+  EXPECT_EQ(found, 1);
+  // The limit of the simulated Pioneer, and the guard's distance, are told.
+  EXPECT_NE(said.find("sfSetMaxVelocity: the robot's limit is 400 mm/s, not 9000"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("the guard stops the robot 0.25 m before"), std::string::npos) << said;
+}
+
+// Without a map registration builds one: the robot stays where the program has put it.
+TEST_F(Programs, TheRobotStaysWhereItWasMovedTo) {
+  simulate();
+  Process program = start(written(R"(
+static int n;
+static void look(void) {
+  if (++n == 20) sfMoveRobot(2000.0F, 500.0F, 0.0F);
+  if (n < 40) return;
+  sfSMessage("at %.0f %.0f, radius %.0f", sfRobot.ax, sfRobot.ay, flakey_radius);
+  exit(0);
+}
+static void connected(void) {
+  sfInitProcess(motor_proc, "mine");
+  sfInitBasicProcs();
+  sfInitInterpretationProcs();
+  sfInitRegistrationProcs();
+  sfInitProcess(look, "look");
+  if (sfFindProcess("mine") == NULL || sfFindProcess("motor_proc") != NULL) exit(1);
+}
+int main(void) { sfOnConnectFn(connected); sfStartup(0); return 0; }
+)"));
+  EXPECT_EQ(program.wait(), std::optional<int>(0)) << program.output();
+  EXPECT_NE(program.output().find("at 2000 500, radius 220"), std::string::npos)
+      << program.output();
+}
+
 // As in other projects: by CMake's find_package, by pkg-config's folder and the manual's -lsf.
 TEST(Installed, IsFoundByCMakeAndUnderBothNamesOfTheManual) {
   const test::TempDir dir;

@@ -19,6 +19,7 @@ constexpr std::uint64_t kLateCycles = 3;   // behind: worth mentioning
 constexpr std::uint64_t kHungCycles = 10;  // behind: no more samples come
 constexpr double kListened = 1.0;          // [s] of listening after which silence counts
 constexpr double kFresh = 5.0;             // [s] after its start
+constexpr std::uint64_t kNoStep = 30;      // [cycles] the status is published once a second
 constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: a fresh program is late
 
 /// The newest instance that is heard, rather not the copy of a second deployment, which only waits;
@@ -72,6 +73,12 @@ Condition past_condition(const Situation& s, const std::string& program) {
   if (wanted->there)
     return {};
   const auto& [oldest, newest] = wanted->known;
+  if (const Program* const now = find(s.programs, program))
+    if (now->age <= kLostAge &&
+        now->status.uptime < seconds_of(s.now - std::min(s.now, wanted->cycle)))
+      return {Health::unknown, "was started again " + seconds_text(now->status.uptime) +
+                                   " ago: its record of cycle " + std::to_string(wanted->cycle) +
+                                   " is gone with that"};
   if (newest == 0)
     return {Health::unknown,
             "has left nothing of the last minute: it was not there, or ended since"};
@@ -103,6 +110,12 @@ Condition present_condition(const Situation& s, const Program& program, bool cou
                                 " (it hangs, or is cut off)"};
     if (behind >= kLateCycles)
       return {Health::late, "is " + seconds_text(seconds_of(behind)) + " behind"};
+  } else if (const v1::Stamp& newest = status.stamp; newest.cycle > 0 &&
+                                                     s.robot_epoch() == newest.epoch &&
+                                                     s.now >= newest.cycle + kNoStep) {
+    return {Health::hung, "has taken no step for " +
+                              seconds_text(seconds_of(s.now - newest.cycle)) +
+                              " (it hangs, or waits for its inputs)"};
   }
   if (status.uptime < kFresh && status.stamp.cycle > kLongRun)
     return {Health::fresh, "was started " + seconds_text(status.uptime) + " ago"};
@@ -114,9 +127,17 @@ Condition present_condition(const Situation& s, const std::string& name) {
   if (program != nullptr)
     return present_condition(s, *program, true);
   // A present program may not have published yet.
-  return s.listened < kListened
-             ? Condition{}
-             : Condition{Health::absent, "is not heard (not running, hung, or cut off)"};
+  if (s.listened < kListened)
+    return {};
+  const auto wanted = expected(s, name);
+  const std::uint64_t newest = wanted ? wanted->known.newest : 0;
+  return {
+      Health::absent,
+      "is not heard (not running, hung, or cut off; " +
+          (newest == 0 ? "listened for " + seconds_text(s.listened)
+                       : "its last was " +
+                             seconds_text(seconds_of(s.now - std::min(s.now, newest))) + " ago") +
+          ")"};
 }
 
 nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
@@ -174,9 +195,15 @@ Condition condition(const Situation& situation, const std::string& program) {
 std::string trouble(const Situation& situation) {
   // The same trouble of several programs is stated once.
   std::vector<std::pair<std::string, std::vector<std::string>>> all;
-  for (const char* const name : kMakeItGo) {
+  for (const char* const name :
+       {"bridge", "behaviors", "intentions", "interpretation", "registration"}) {
     const Condition how = condition(situation, name);
     if (how.health == Health::running || how.health == Health::fresh)
+      continue;
+    // A robot can do without the last two, and a deployment leaves them out.
+    const bool needed =
+        std::find(kMakeItGo.begin(), kMakeItGo.end(), std::string_view(name)) != kMakeItGo.end();
+    if (!needed && how.health != Health::hung && how.health != Health::lost)
       continue;
     if (all.empty() || all.back().first != how.words)
       all.push_back({how.words, {}});

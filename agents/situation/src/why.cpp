@@ -49,6 +49,10 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
+  for (const char* const name : {"interpretation", "registration"})
+    if (const Condition how = condition(scene_, name);
+        how.health == Health::hung || how.health == Health::lost)
+      cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
   if (scene_.past)
     return;
   if (lost()) {
@@ -68,7 +72,20 @@ void Reason::add_conditions(Cause& cause) const {
       cause.because.push_back({"program", "bridge is degraded: " + program.status.reason, {}});
 }
 
-void Reason::add_lost(Sentence& sentence) const {
+/// The rest that matters for the motion: a place that is lost, motors that are off, a bad line, a
+/// program that has just begun.
+void Reason::add_troubles(Sentence& sentence) const {
+  if (!scene_.past && scene_.robot && scene_.robot->status == v1::MOTORS_NO_POWER && !hindrance() &&
+      std::abs(scene_.robot->velocity) < kNoSpeed)
+    sentence.add(1, "; its motors are off (saphira device motors on)");
+  for (const Program& program : scene_.programs)
+    if (!scene_.past && program.status.name == "bridge" &&
+        program.status.state == v1::SERVICE_DEGRADED &&
+        program.status.reason.find("motors are off") == std::string::npos)
+      sentence.add(1, "; " + program.status.reason);
+  for (const char* const name : {"bridge", "behaviors", "intentions"})
+    if (const Condition how = condition(scene_, name); how.health == Health::fresh)
+      sentence.add(2, "; " + std::string(name) + " " + how.words);
   if (lost())
     sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
   else if (const std::string words = doubt(); !words.empty())
@@ -109,12 +126,20 @@ Explanation Reason::stopped() const {
     reasons.push_back({"nobody drives it: " + refused(grant.refused.front()), {}});
   if (reasons.empty())
     reasons.push_back({"nobody drives it: " + grant.reason, {}});
+  if (!grant.stop_source.empty() && !grant.estopped &&
+      std::none_of(reasons.begin(), reasons.end(), [&](const Part& part) {
+        return part.text.find(grant.stop_source) != std::string::npos;
+      })) {
+    const std::string last = "the last to stop it was " + grant.stop_source;
+    reasons.push_back({last, {}});
+    cause.because.front().because.push_back({"grant", last, {}});
+  }
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     const std::string separator = i == 0 ? "" : "; ";
     const auto& [text, brief] = reasons[i];
     sentence.add(static_cast<int>(i), separator + text, brief.empty() ? "" : separator + brief);
   }
-  add_lost(sentence);
+  add_troubles(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -128,6 +153,11 @@ Explanation Reason::by_hand() const {
     sentence.add(0, told());
     sentence.add(2, meanwhile());
     sentence.add(0, ": " + grant.source + " drives it (" + situation::name_of(grant.role) + ")");
+    if (grant.command_age >= kOldInput)
+      sentence.add(1,
+                   format("; its newest command is %.1f s old: the network, or a computer, is slow",
+                          grant.command_age),
+                   format("; its newest command is %.1f s old", grant.command_age));
   }
   Cause cause{"wheels",
               grant.role == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
@@ -140,7 +170,7 @@ Explanation Reason::by_hand() const {
     sentence.add(1, "; " + guard->text, "; " + guard_words(true));
     cause.because.push_back(std::move(*guard));
   }
-  add_lost(sentence);
+  add_troubles(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -151,9 +181,12 @@ Explanation Reason::silent() {
   sentence.add(0, "The robot's motion is not known: nothing has been heard of it for " +
                       seconds_text(scene_.silence));
   if (!bridge.words.empty())
-    sentence.add(1, "; bridge " + bridge.words);
+    sentence.add(1, "; bridge " + bridge.words,
+                 "; bridge " + bridge.words.substr(0, bridge.words.find(" (")));
   if (nothing_known())
     return finish(sentence, {"wheels", "not known", {}});
+  if (const std::string goal = last_known(false); !goal.empty())
+    sentence.add(1, "; " + goal, "; " + last_known(true));
   const Explanation before = known_so_far();
   sentence.add(2, "; before that: " + before.sentence.substr(0, before.sentence.size() - 1));
   return finish(sentence, {"wheels", "before that: " + before.cause.text, before.cause.because});
@@ -164,7 +197,8 @@ Explanation Reason::by_behaviors_unknown() const {
   Cause cause{"wheels", "not known", {}};
   const Condition how = condition(scene_, "behaviors");
   if (scene_.grant) {
-    sentence.add(0, told() + ": " + scene_.grant->source + " drives it");
+    sentence.add(0, told());
+    sentence.add(2, ": " + scene_.grant->source + " drives it");
     cause = {"wheels", told(), {grant_cause()}};
     if (auto hindered = hindrance()) {
       sentence.add(0, "; " + hindered->text);
@@ -175,8 +209,10 @@ Explanation Reason::by_behaviors_unknown() const {
   }
   sentence.add(
       1, "; its reasons are not known" + (how.words.empty() ? "" : ": behaviors " + how.words),
-      "; its reasons are not known");
-  add_lost(sentence);
+      how.words.empty() ? "" : "; behaviors " + how.words);
+  if (const std::string goal = goal_so_far(false); !goal.empty())
+    sentence.add(2, "; " + goal, "; " + goal_so_far(true));
+  add_troubles(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -184,9 +220,9 @@ Explanation Reason::by_behaviors_known() {
   const std::string what = told();
   Sentence sentence;
   sentence.add(0, what);
-  sentence.add(3, meanwhile());
+  sentence.add(1, meanwhile());
   const bool guarded = scene_.grant && scene_.grant->guard != v1::GUARD_NONE;
-  const bool aged = !scene_.behaviors->limit_reason.empty();
+  const bool aged = age_cause().has_value();
   std::vector<Say> speeds = says(Channel::speed);
   std::vector<Say> turns = says(Channel::turn);
   const auto few = [](std::vector<Say>& all) {
@@ -217,13 +253,13 @@ Explanation Reason::by_behaviors_known() {
   if (guarded)
     add(1, guard_cause()->text, guard_words(true));
   if (aged)
-    add(1, age_cause()->text);
+    add(1, age_cause()->text, age_cause()->text.substr(0, age_cause()->text.find(", and")));
   int rank = 2;
   for (const v1::BehaviorState* behavior : mentioned) {
     add(rank, wants(speeds, turns, *behavior, true), wants(speeds, turns, *behavior, false));
     rank = 4;
   }
-  if (speeds.empty() && !guarded && !aged) {
+  if (speeds.empty() && !guarded && scene_.behaviors->limit_reason.empty()) {
     // The rest of an earlier speed decreases by itself.
     add(rank, std::abs(told_speed()) >= kNoSpeed
                   ? "it slows down, no behavior wants a speed any more"
@@ -235,7 +271,7 @@ Explanation Reason::by_behaviors_known() {
     sentence.add(1, "; " + way);
     cause.because.push_back({"zone", way, {}});
   }
-  add_lost(sentence);
+  add_troubles(sentence);
   return finish(sentence, std::move(cause));
 }
 

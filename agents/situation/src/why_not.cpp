@@ -59,6 +59,14 @@ Explanation Reason::why_not(Wish wish) {
     return finish(sentence, std::move(cause));
   }
 
+  if (const auto limit = age_cause(); wish == Wish::faster && limit && !all.limit_reason.empty()) {
+    cause.because.push_back(*limit);
+    cause.because.push_back(channel_cause(channel));
+    Sentence sentence;
+    sentence.add(0, no + ": " + limit->text);
+    return finish(sentence, std::move(cause));
+  }
+
   const auto would = [&](const v1::RuleState& rule) {
     switch (wish) {
       case Wish::turn_left:

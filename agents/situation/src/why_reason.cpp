@@ -18,9 +18,6 @@ std::string without_escapes(const std::string& value) {
   return text;
 }
 
-/// [s] Older inputs are worth mentioning.
-constexpr double kOldInput = 0.3;
-
 bool later(const v1::Stamp& a, const v1::Stamp& b) {
   return a.epoch != b.epoch ? a.epoch > b.epoch : a.cycle >= b.cycle;
 }
@@ -118,7 +115,8 @@ std::string Reason::meanwhile() const {
                     : velocity > 0.0              ? "drives at " + speed_text(velocity)
                                                   : "backs up at " + speed_text(-velocity));
   // A robot without speed may well turn towards its heading setpoint.
-  if (stands && std::abs(rotation) >= kTurning)
+  const bool by_rate = scene_.grant && scene_.grant->rotation == v1::ROTATION_VELOCITY;
+  if ((stands || (!by_rate && std::abs(told_turn()) >= kNoTurn)) && std::abs(rotation) >= kTurning)
     parts.push_back("turns " + turn_text(rotation, true));
   if (parts.empty())
     return {};
@@ -316,7 +314,7 @@ std::optional<Cause> Reason::age_cause() const {
     return std::nullopt;
   const v1::BehaviorSet& all = *scene_.behaviors;
   if (!all.limit_reason.empty())
-    return Cause{"age",
+    return Cause{"limit",
                  all.limit_reason + (all.speed_limit > 0.0 ? ", so it drives no faster than " +
                                                                  speed_text(all.speed_limit)
                                                            : ""),
@@ -490,11 +488,19 @@ const v1::GoalStatus* Reason::foremost() const {
   return newest;
 }
 
-/// The state and age of the goal that was there when intentions fell silent; else empty.
+/// The goal for which the robot would drive while a program is silent; else empty.
 std::string Reason::goal_so_far(bool brief) const {
+  if (!condition(scene_, "intentions").heard())
+    return last_known(brief);
+  const v1::GoalStatus* const status = foremost();
+  const bool waits = status != nullptr && status->state == v1::GOAL_UNDERWAY && !scene_.past &&
+                     !condition(scene_, "behaviors").heard();
+  return waits ? goal_of(status->id, brief) + " is underway" : "";
+}
+
+std::string Reason::last_known(bool brief) const {
   const v1::GoalStatus* const status = foremost();
   if (scene_.past || status == nullptr || !scene_.robot ||
-      !condition(scene_, "behaviors").heard() || condition(scene_, "intentions").heard() ||
       status->stamp.epoch != scene_.robot->stamp.epoch)
     return {};
   const double age = seconds_of(scene_.now - std::min(scene_.now, status->stamp.cycle));

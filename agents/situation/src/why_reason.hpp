@@ -14,6 +14,8 @@ namespace saphira::situation {
 
 /// [s] After this time without a packet, the last state says little about the present.
 inline constexpr double kSilence = 1.0;
+/// [s] Older inputs and commands are worth mentioning.
+inline constexpr double kOldInput = 0.3;
 
 /// How a behavior takes part in a channel of the blend.
 struct Say {
@@ -70,6 +72,8 @@ class Reason {
   /// `brief`: without the goal's arguments.
   std::string goals_reason(bool brief) const;
   const v1::GoalStatus* foremost() const;
+  /// The foremost goal, with the age of its status.
+  std::string last_known(bool brief) const;
   std::string goal_so_far(bool brief) const;
   std::string goal_of(const v1::GoalId& id, bool brief) const;
   std::string doubt() const;
@@ -105,7 +109,7 @@ class Reason {
     return !scene_.past && scene_.registration &&
            scene_.registration->state == v1::REGISTRATION_LOST;
   }
-  void add_lost(Sentence& sentence) const;
+  void add_troubles(Sentence& sentence) const;
 
   const Situation& scene_;
   void add_advice(const v1::IntentionNode& of, Cause& cause);

@@ -11,11 +11,39 @@
 namespace saphira::situation::test {
 namespace {
 
+std::vector<Case> all_cases() {
+  const std::string file = "agents/situation/test/situations.txt";
+  return read_cases(read_file(saphira::test::source(file)), file);
+}
+
 TEST(Situations, EachAnswerSaysWhatItMustAndNothingFalse) {
-  for (const Case& one : all_cases())
-    for (const std::string& fault : faults(one))
-      ADD_FAILURE() << one.words << ", " << one.question << ": " << fault
+  const std::vector<Case> all = all_cases();
+  EXPECT_GE(all.size(), 150U);
+  for (const Case& one : all) {
+    const Faults found = faults(one);
+    for (const std::string& part : found.lacks)
+      ADD_FAILURE() << one.words << ", " << one.question << ": lacks " << part
                     << "\n  it says: " << answer(one);
+    for (const std::string& part : found.says)
+      ADD_FAILURE() << one.words << ", " << one.question << ": says " << part
+                    << "\n  it says: " << answer(one);
+  }
+}
+
+TEST(Situations, AWrongLineIsNamed) {
+  const auto trouble = [](const std::string& text) {
+    try {
+      read_cases(text, "f");
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(trouble("situation a\nis driving\nask why\nmust drive\n"), "");
+  EXPECT_TRUE(trouble("situation a\nis flying\n").starts_with("f:2: "));
+  EXPECT_TRUE(trouble("situation a\nis driving\nwith wings 2\n").starts_with("f:3: "));
+  EXPECT_TRUE(trouble("situation a\nis driving\nwith velocity fast\n").starts_with("f:3: "));
+  EXPECT_TRUE(trouble("situation a\nmust drive\n").starts_with("f:2: "));
 }
 
 TEST(Situations, TheTableInTheDocumentsIsOfNow) {

@@ -37,6 +37,9 @@ Core::Core(const CoreSettings& settings)
   for (authority::GuardSettings& each : guards_) {
     each.enabled = settings_.guard;
     each.max_contact_velocity = settings_.contact_speed;
+    each.margin = std::max(settings_.guard_margin, each.anything.least);
+    for (authority::Clearance* const from : {&each.person, &each.anything, &each.edge})
+      from->reach = std::min(from->reach, each.margin);
   }
 }
 

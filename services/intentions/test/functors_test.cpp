@@ -234,6 +234,20 @@ TEST(GoTo, GivesUpWhenItComesNoNearer) {
       << bench.status(1).reason;
 }
 
+TEST(GoTo, SleepOfTheServiceDoesNotCountAgainstItsPatience) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
+  bench.step(20);
+  bench.world.held = true;
+  bench.cycle += 300;
+  bench.step();
+  const std::uint64_t awake = bench.cycle;
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  bench.run(1, 600);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_NEAR(static_cast<double>(bench.cycle - awake), 40.0, 3.0);
+}
+
 // The way around an obstacle leads away from the point. A small robot is slow, and gets on.
 TEST(GoTo, HasMorePatienceWhileItGetsOn) {
   for (const double radius : {0.03, 0.3}) {

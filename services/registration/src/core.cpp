@@ -25,8 +25,7 @@ void check(const maps::Map& map) {
 
 /// True for functors that need a map, which does not exist while it is being built.
 bool needs_a_map(const std::string& functor) {
-  return functor == "put" || functor == "remove" || functor == "place" || functor == "find" ||
-         functor == "switch";
+  return functor == "put" || functor == "remove" || functor == "find" || functor == "switch";
 }
 
 /// The artifacts that may be put on a map, by their word there.
@@ -384,7 +383,12 @@ Arguments Core::obey(const Request& request) {
       throw std::invalid_argument(*why);
     if (const auto why = maps::outside(map(), pose.position(), kOutside))
       throw std::invalid_argument(*why);
-    placed().set_pose(pose);
+    placed();
+    if (now_.building) {  // what was built so far is kept, and building goes on from there
+      now_.pose_in_map = pose;
+      set_builder();
+    }
+    registration_->set_pose(pose);
   } else if (what == "find") {
     placed().forget_pose();
   } else if (what == "switch") {

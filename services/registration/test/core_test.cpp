@@ -345,7 +345,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   const Core::Outputs first = robot.step(core);
   EXPECT_EQ(first.reason, "builds the map");
   EXPECT_TRUE(core.adds_features());
-  for (const char* const action : {"put", "remove", "place", "find", "switch"})
+  for (const char* const action : {"put", "remove", "find", "switch"})
     EXPECT_EQ(core.act(request(action)).text,
               "the map is being built: switch that off first (features off)");
   for (int i = 0; i < 300; ++i)
@@ -365,6 +365,27 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   ASSERT_TRUE(start);
   EXPECT_NEAR(start->x, first.pose_in_map.x, 0.1);
   EXPECT_NEAR(start->y, first.pose_in_map.y, 0.1);
+}
+
+TEST(RegistrationCore, WhileAMapIsBuiltTheRobotCanBePlaced) {
+  Core core(settings(""));
+  Robot robot;
+  robot.step(core);
+  EXPECT_EQ(core.act(place({7.0, -2.0, 0.0})).code, AnswerCode::done);
+  const Core::Outputs placed = robot.stand(core);
+  EXPECT_EQ(placed.reason, "builds the map");
+  EXPECT_NEAR(placed.pose_in_map.x, 7.0, 0.1);
+  EXPECT_NEAR(placed.pose_in_map.y, -2.0, 0.1);
+  for (int i = 0; i < 300; ++i)
+    robot.step(core);
+  const std::size_t built = core.map().features.size();
+  ASSERT_GT(built, 0U);
+  // The map is kept, and additions go on from the new place.
+  const Pose before = robot.stand(core).pose_in_map;
+  EXPECT_EQ(core.act(place({before.x + 1.0, before.y, before.th})).code, AnswerCode::done);
+  EXPECT_NEAR(robot.stand(core).pose_in_map.x, before.x + 1.0, 0.1);
+  EXPECT_GE(core.map().features.size(), built);
+  EXPECT_TRUE(core.adds_features());
 }
 
 TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {

@@ -19,6 +19,8 @@ constexpr int kBeginsPerCycle = 8;
 
 /// The bridge is asked again for a stop that it does not confirm.
 constexpr Ticks kAskAgain = 5;
+/// A step after more cycles than this has slept meanwhile.
+constexpr Ticks kLongestStep = 10;
 /// Own stops that may be on the way.
 constexpr std::size_t kMostOwnStops = 16;
 
@@ -163,14 +165,15 @@ Outputs Executor::step(const Inputs& inputs) {
     end_driving("emergency stop, pressed by " + quoted(inputs.estop) +
                 ": ask anew once it is released");
   for (const ClaimEvent& claim : inputs.claims)
-    beliefs_->take(claim, now_);
+    beliefs_->take(claim, awake_);
   Surroundings around = inputs.around;
   around.stop_confirmed = !stop_by_ || !inputs.confirms_stops;
-  const World world{inputs.robot, around, *beliefs_, now_};
+  const World world{inputs.robot, around, *beliefs_, awake_};
   beliefs_->look(world);
   if (inputs.behaviors_cycle > 0)
-    forest_.hear(inputs.behaviors, now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle +
-                                                             inputs.intent_age));
+    forest_.hear(
+        inputs.behaviors,
+        awake_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle + inputs.intent_age));
   forest_.hear(inputs.troubles);
   if (robot_here_) {
     arbitrate(world);
@@ -197,12 +200,15 @@ Outputs Executor::step(const Inputs& inputs) {
 }
 
 void Executor::pass_time(const Inputs& inputs) {
+  Ticks passed = 0;
   if (epoch_ == 0)
     recall(inputs);
   else if (inputs.epoch != epoch_)
-    ++now_;
+    passed = 1;
   else if (inputs.cycle > cycle_)
-    now_ += static_cast<Ticks>(inputs.cycle - cycle_);
+    passed = static_cast<Ticks>(inputs.cycle - cycle_);
+  now_ += passed;
+  awake_ += std::min(passed, kLongestStep);
   epoch_ = inputs.epoch;
   cycle_ = inputs.cycle;
 }
@@ -699,7 +705,7 @@ void Executor::recall(const Inputs& inputs) {
   if (work.epoch == 0)
     return;
   const bool same = work.epoch == inputs.epoch && inputs.cycle >= work.cycle;
-  now_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
+  now_ = awake_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
   for (auto& [id, entry] : entries_) {  // heard before the first step
     entry.accepted += now_;
     entry.ended += now_;
@@ -717,7 +723,7 @@ std::optional<Work> Executor::take_work() {
   const bool stopped = std::exchange(saved_heeds_, heeds_) != heeds_;
   if (!options_.remembers_work || !odom_ || !(changed || set || stopped))
     return std::nullopt;
-  Work work{epoch_, cycle_, *odom_, now_, {}, {}};
+  Work work{epoch_, cycle_, *odom_, awake_, {}, {}};
   work.heeds = heeds_;
   work.beliefs = beliefs_->set_by_activities();
   // Its setter saves that with its own progress.

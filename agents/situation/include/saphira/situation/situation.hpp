@@ -63,6 +63,11 @@ struct Situation {
   std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
   std::vector<Program> programs;            ///< at present
   std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
+
+  /// That of the robot's samples; 0: none is known.
+  std::uint64_t robot_epoch() const {
+    return robot ? robot->stamp.epoch : grant ? grant->stamp.epoch : 0;
+  }
 };
 
 /// The machines whose clocks differ from this one's by seconds, in words, a line each; empty: none.

@@ -12,7 +12,7 @@ namespace saphira::situation {
 /// A fact, and its causes.
 struct Cause {
   std::string kind;  ///< wheels, motors, grant, guard, speed, turn, behavior, rule, intention,
-                     ///< belief, goal, registration, program, trouble, zone
+                     ///< belief, goal, registration, program, trouble, zone, limit, age
   std::string text;
   std::vector<Cause> because;
 };

@@ -27,7 +27,10 @@ struct CoreSettings {
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
   double contact_speed = 0.15;  ///< [m/s] at most, for a driver who wants contact; 0: never
-  bool keeps_latches = false;   ///< the latches outlive a restart
+  /// [m] at which the guard stops the hull before an obstacle; authority::Clearance::least at
+  /// least.
+  double guard_margin = 0.25;
+  bool keeps_latches = false;  ///< the latches outlive a restart
 };
 
 /// The bridge without bus, clock, files and sockets. It decides on: the session with the robot, old

@@ -206,7 +206,8 @@ class Executor {
   std::deque<GoalId> remembered_order_;
   std::deque<GoalId> ended_order_;  ///< ended entries, in the order of their ends
   std::uint64_t next_order_ = 1;
-  Ticks now_ = 0;
+  Ticks now_ = 0;    ///< of deadlines, and of what others are told
+  Ticks awake_ = 0;  ///< of the activities: what the service slept counts for nothing
   std::uint64_t epoch_ = 0;
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
