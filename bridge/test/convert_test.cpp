@@ -8,10 +8,7 @@ namespace saphira::bridge {
 namespace {
 
 v1::Stamp stamp(std::uint64_t epoch, std::uint64_t cycle) {
-  v1::Stamp out;
-  out.epoch = epoch;
-  out.cycle = cycle;
-  return out;
+  return {.epoch = epoch, .cycle = cycle};
 }
 
 TEST(Convert, EveryFieldOfTheState) {
@@ -74,18 +71,17 @@ TEST(Convert, EveryFieldOfTheState) {
 }
 
 TEST(Convert, MotorCommands) {
-  v1::MotorCommand in;
-  in.stamp = stamp(3, 4);
-  in.source = "me";
-  in.number = 5;
-  in.active = true;
-  in.translation = v1::TRANSLATION_POSITION;
-  in.velocity = 0.2;
-  in.distance = -1.0;
-  in.move = 6;
-  in.rotation = v1::ROTATION_HEADING;
-  in.rotation_velocity = 0.3;
-  in.heading = 1.5;
+  v1::MotorCommand in{.stamp = stamp(3, 4),
+                      .source = "me",
+                      .number = 5,
+                      .active = true,
+                      .translation = v1::TRANSLATION_POSITION,
+                      .velocity = 0.2,
+                      .distance = -1.0,
+                      .move = 6,
+                      .rotation = v1::ROTATION_HEADING,
+                      .rotation_velocity = 0.3,
+                      .heading = 1.5};
   EXPECT_EQ(trouble(in), "");
   const reflector::Motion motion = to_motion(in);
   EXPECT_EQ(motion.translation, reflector::Translation::position);

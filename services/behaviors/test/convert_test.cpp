@@ -6,25 +6,18 @@ namespace saphira::behaviors {
 namespace {
 
 v1::Pose2 pose(double x, double y, double th) {
-  v1::Pose2 p;
-  p.x = x;
-  p.y = y;
-  p.th = th;
-  return p;
+  return {.x = x, .y = y, .th = th};
 }
 
 TEST(Convert, Description) {
-  v1::RobotDescription description;
-  description.radius = 0.3;
-  description.max_velocity = 0.5;
-  description.max_rotation_velocity = 2.0;
-  description.deceleration = 1.5;
-  description.front_buffer = 31;
-  description.side_buffer = 41;
-  description.front_max_range = 2.25;
-  v1::SonarPose sonar;
-  sonar.sonar = 4;
-  sonar.pose_in_robot = pose(0.1, -0.2, 0.3);
+  v1::RobotDescription description{.radius = 0.3,
+                                   .max_velocity = 0.5,
+                                   .max_rotation_velocity = 2.0,
+                                   .deceleration = 1.5,
+                                   .front_buffer = 31,
+                                   .side_buffer = 41,
+                                   .front_max_range = 2.25};
+  v1::SonarPose sonar{.sonar = 4, .pose_in_robot = pose(0.1, -0.2, 0.3)};
   description.sonars.push_back(sonar);
   const RobotModel model = from_bus(description);
   EXPECT_EQ(model.radius, 0.3);
@@ -40,10 +33,7 @@ TEST(Convert, Description) {
 }
 
 TEST(Convert, State) {
-  v1::RobotState state;
-  state.pose_in_odom = pose(1, 2, 3);
-  state.velocity = 0.25;
-  state.rotation_velocity = -0.5;
+  v1::RobotState state{.pose_in_odom = pose(1, 2, 3), .velocity = 0.25, .rotation_velocity = -0.5};
   const RobotNow now = from_bus(state);
   EXPECT_EQ(now.pose_in_odom, (Pose{1, 2, 3}));
   EXPECT_EQ(now.velocity, 0.25);
@@ -51,19 +41,9 @@ TEST(Convert, State) {
 }
 
 TEST(Convert, Intentions) {
-  v1::Intentions sample;
-  sample.stamp.epoch = 3;
-  sample.stamp.cycle = 7;
-  sample.behavior_control = true;
-  v1::IntendedBehavior behavior;
-  behavior.name = "go";
-  behavior.schema = "GoToPos";
-  behavior.priority = 2;
-  behavior.running = false;
-  v1::Argument argument;
-  argument.name = "speed";
-  argument.kind = v1::ARGUMENT_NUMBER;
-  argument.number = 0.3;
+  v1::Intentions sample{.stamp = {3, 7}, .behavior_control = true};
+  v1::IntendedBehavior behavior{.name = "go", .schema = "GoToPos", .priority = 2, .running = false};
+  v1::Argument argument{.name = "speed", .kind = v1::ARGUMENT_NUMBER, .number = 0.3};
   behavior.parameters.push_back(argument);
   argument.name = "preferred_turn";
   argument.kind = v1::ARGUMENT_TEXT;

@@ -86,10 +86,7 @@ GoalId from_bus(const v1::GoalId& id) {
 }
 
 v1::GoalId to_bus(const GoalId& id) {
-  v1::GoalId result;
-  result.writer = id.writer;
-  result.number = id.number;
-  return result;
+  return {.writer = id.writer, .number = id.number};
 }
 
 Goal from_bus(const v1::Goal& goal) {
@@ -106,51 +103,45 @@ Goal from_bus(const v1::Goal& goal) {
 }
 
 v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
-  v1::GoalStatus result;
-  result.id = to_bus(status.id);
-  result.stamp = stamp;
-  result.requester = status.requester;
-  result.functor = status.functor;
-  result.state = kStates.theirs(status.state);
-  result.code = kCodes.theirs(status.code);
-  result.reason = status.reason;
-  result.step = status.step;
-  result.progress = status.progress;
-  result.level = status.level;
-  result.trend = kTrends.theirs(status.trend);
-  result.elapsed = status.elapsed;
-  result.note = status.note;
-  result.waits_for = to_bus(status.waits_for);
-  return result;
+  return {.id = to_bus(status.id),
+          .stamp = stamp,
+          .requester = status.requester,
+          .functor = status.functor,
+          .state = kStates.theirs(status.state),
+          .code = kCodes.theirs(status.code),
+          .reason = status.reason,
+          .step = status.step,
+          .progress = status.progress,
+          .level = status.level,
+          .trend = kTrends.theirs(status.trend),
+          .elapsed = status.elapsed,
+          .note = status.note,
+          .waits_for = to_bus(status.waits_for)};
 }
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
-  v1::IntendedBehavior result;
-  result.name = behavior.name;
-  result.schema = behavior.schema;
-  result.priority = behavior.priority;
-  result.running = behavior.running;
-  result.parameters = saphira::to_bus(behavior.parameters);
-  result.intention = behavior.intention;
-  result.blocking = behavior.blocking;
-  return result;
+  return {.name = behavior.name,
+          .schema = behavior.schema,
+          .priority = behavior.priority,
+          .running = behavior.running,
+          .parameters = saphira::to_bus(behavior.parameters),
+          .intention = behavior.intention,
+          .blocking = behavior.blocking};
 }
 
 v1::IntentionNode to_bus(const IntentionNode& node) {
-  v1::IntentionNode result;
-  result.id = node.id;
-  result.parent = node.parent;
-  result.name = node.name;
-  result.schema = node.schema;
-  result.arguments = node.arguments;
-  result.state = kIntentionStates.theirs(node.state);
-  result.blocking = node.blocking;
-  result.label = node.label;
-  result.step = node.step;
-  result.since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0));
-  result.priority = node.priority;
-  result.goal = to_bus(node.goal);
-  return result;
+  return {.id = node.id,
+          .parent = node.parent,
+          .name = node.name,
+          .schema = node.schema,
+          .arguments = node.arguments,
+          .state = kIntentionStates.theirs(node.state),
+          .blocking = node.blocking,
+          .label = node.label,
+          .step = node.step,
+          .since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)),
+          .priority = node.priority,
+          .goal = to_bus(node.goal)};
 }
 
 Robot from_bus(const v1::RobotState& robot) {
@@ -220,18 +211,16 @@ std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
 }
 
 v1::ActivitySchema to_bus(const Schema& schema) {
-  v1::ActivitySchema result;
-  result.name = schema.name;
-  result.summary = schema.summary;
-  result.source = schema.source;
+  v1::ActivitySchema result{
+      .name = schema.name, .summary = schema.summary, .source = schema.source};
   for (const Parameter& parameter : schema.parameters) {
-    v1::ActivityParameter out;
-    out.name = parameter.name;
-    out.kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind);
-    out.unit = parameter.unit;
-    out.required = parameter.required;
-    out.low = parameter.low;
-    out.high = parameter.high;
+    v1::ActivityParameter out{
+        .name = parameter.name,
+        .kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind),
+        .unit = parameter.unit,
+        .required = parameter.required,
+        .low = parameter.low,
+        .high = parameter.high};
     if (parameter.usual)
       out.usual = plain(*parameter.usual);
     else if (parameter.usual_text)
@@ -242,12 +231,10 @@ v1::ActivitySchema to_bus(const Schema& schema) {
 }
 
 v1::Belief to_bus(const Belief& belief) {
-  v1::Belief result;
-  result.name = belief.name;
-  result.value = to_text(belief.value);
-  result.said_by = belief.said_by;
-  result.since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0));
-  return result;
+  return {.name = belief.name,
+          .value = to_text(belief.value),
+          .said_by = belief.said_by,
+          .since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0))};
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {

@@ -14,16 +14,14 @@ Arguments all_kinds() {
 }
 
 TEST(Convert, AGoalIsTakenWhole) {
-  v1::Goal theirs;
-  theirs.id.writer = 0xffffffffffffffffULL;
-  theirs.id.number = 3;
-  theirs.requester = "somebody";
-  theirs.functor = "go_to";
-  theirs.arguments = saphira::to_bus(all_kinds());
-  theirs.priority = -7;
-  theirs.deadline = 12.5;
-  theirs.level = 0.25;
-  theirs.writer_lost = v1::WRITER_LOST_KEEP;
+  v1::Goal theirs{.id = {0xffffffffffffffffULL, 3},
+                  .requester = "somebody",
+                  .functor = "go_to",
+                  .arguments = saphira::to_bus(all_kinds()),
+                  .priority = -7,
+                  .deadline = 12.5,
+                  .writer_lost = v1::WRITER_LOST_KEEP,
+                  .level = 0.25};
   EXPECT_EQ(from_bus(theirs), (Goal{{0xffffffffffffffffULL, 3},
                                     "somebody",
                                     "go_to",
@@ -49,9 +47,7 @@ TEST(Convert, AStatusIsToldWhole) {
   status.elapsed = 4.1;
   status.note = "note";
   status.waits_for = {0xfffffffffffffffeULL, 7};
-  v1::Stamp stamp;
-  stamp.epoch = 5;
-  stamp.cycle = 6;
+  v1::Stamp stamp{.epoch = 5, .cycle = 6};
   const v1::GoalStatus told = to_bus(status, stamp);
   EXPECT_EQ(told.stamp, stamp);
   EXPECT_EQ(told.id, to_bus(status.id));
@@ -101,12 +97,10 @@ TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {
 }
 
 TEST(Convert, WhatDoesNotKeepToTheContractIsRefusedLater) {
-  v1::Argument argument;
-  argument.kind = static_cast<v1::ArgumentKind>(77);
-  argument.frame = static_cast<v1::Frame>(77);
+  v1::Argument argument{.kind = static_cast<v1::ArgumentKind>(77),
+                        .frame = static_cast<v1::Frame>(77)};
   EXPECT_EQ(saphira::from_bus(argument).kind, ArgumentKind::unbound);
-  v1::Goal goal;
-  goal.writer_lost = static_cast<v1::WriterLost>(77);
+  v1::Goal goal{.writer_lost = static_cast<v1::WriterLost>(77)};
   EXPECT_EQ(from_bus(goal).writer_lost, WriterLost::kCancel);
 }
 
@@ -137,16 +131,13 @@ TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
 }
 
 TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
-  v1::RobotState state;
-  state.odom = 4;
-  state.pose_in_odom.x = 1.0;
-  state.pose_in_odom.y = 2.0;
-  state.pose_in_odom.th = 3.0;
-  state.velocity = 0.4;
-  state.rotation_velocity = -0.5;
-  state.target_velocity = 0.3;
-  state.target_heading_in_odom = 1.5;
-  state.status = v1::MOTORS_MOVING;
+  v1::RobotState state{.odom = 4,
+                       .pose_in_odom = {1.0, 2.0, 3.0},
+                       .velocity = 0.4,
+                       .rotation_velocity = -0.5,
+                       .target_velocity = 0.3,
+                       .target_heading_in_odom = 1.5,
+                       .status = v1::MOTORS_MOVING};
   Robot robot = from_bus(state);
   EXPECT_TRUE(robot.connected);
   EXPECT_TRUE(robot.has_power);
@@ -162,15 +153,8 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   EXPECT_FALSE(from_bus(state).connected);
 
   v1::BehaviorSet behaviors;
-  v1::BehaviorState behavior;
-  behavior.name = "GoToPos#3";
-  behavior.goal = 0.7;
-  behavior.progress = 0.2;
-  behaviors.behaviors.push_back(behavior);
-  v1::MissingBehavior missing;
-  missing.name = "Fly#4";
-  missing.reason = "unknown schema";
-  behaviors.missing.push_back(missing);
+  behaviors.behaviors.push_back({.name = "GoToPos#3", .goal = 0.7, .progress = 0.2});
+  behaviors.missing.push_back({.name = "Fly#4", .reason = "unknown schema"});
   const std::vector<BehaviorTrouble> troubles = troubles_from_bus(behaviors);
   ASSERT_EQ(troubles.size(), 1U);
   EXPECT_EQ(troubles[0].name, "Fly#4");
@@ -183,12 +167,10 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
 }
 
 TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.odom = 4;
-  registration.stamp.cycle = 100;
-  registration.odom_in_map.x = 2.0;
-  registration.odom_in_map.th = 0.5;
+  v1::Registration registration{.stamp = {.cycle = 100},
+                                .state = v1::REGISTRATION_TRACKING,
+                                .odom = 4,
+                                .odom_in_map = {.x = 2.0, .th = 0.5}};
   EXPECT_EQ(odom_in_map_from_bus(registration, 101, 4), (Pose{2.0, 0.0, 0.5}));
   EXPECT_TRUE(odom_in_map_from_bus(registration, 100 + kRegistrationLease, 4));
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101 + kRegistrationLease, 4));
@@ -202,9 +184,7 @@ TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
 }
 
 TEST(Convert, WhatInterpretationSawCountsForAWhile) {
-  v1::Perception perception;
-  perception.stamp.cycle = 100;
-  perception.odom = 4;
+  v1::Perception perception{.stamp = {.cycle = 100}, .odom = 4};
   perception.percepts.emplace_back();
   EXPECT_EQ(percepts_from_bus(perception, 100 + kRegistrationLease, 4).value().size(), 1U);
   EXPECT_FALSE(percepts_from_bus(perception, 101 + kRegistrationLease, 4));

@@ -61,10 +61,7 @@ TEST(Convert, OfManyReadingsTheNewest) {
 
 TEST(Convert, Readings) {
   v1::RobotState state;
-  v1::SonarReading reading;
-  reading.sonar = 6;
-  reading.range = 1.5F;
-  reading.echo = true;
+  v1::SonarReading reading{.sonar = 6, .range = 1.5F, .echo = true};
   state.sonars.push_back(reading);
   reading.echo = false;
   state.sonars.push_back(reading);
