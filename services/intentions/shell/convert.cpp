@@ -19,51 +19,6 @@ constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
     }},
     {ArgumentKind::truth, ArgumentKind::unbound},
     {v1::PARAMETER_ANY}};
-constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
-    {GoalState::kWaiting, v1::GOAL_WAITING},
-    {GoalState::kRefused, v1::GOAL_REFUSED},
-    {GoalState::kUnderway, v1::GOAL_UNDERWAY},
-    {GoalState::kSuspended, v1::GOAL_SUSPENDED},
-    {GoalState::kSucceeded, v1::GOAL_SUCCEEDED},
-    {GoalState::kFailed, v1::GOAL_FAILED},
-    {GoalState::kCanceled, v1::GOAL_CANCELED},
-}}};
-constexpr EnumPairs<GoalCode, v1::GoalCode, 17> kCodes{{{
-    {GoalCode::kNone, v1::CODE_NONE},
-    {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
-    {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
-    {GoalCode::kChanged, v1::CODE_CHANGED},
-    {GoalCode::kTooMany, v1::CODE_TOO_MANY},
-    {GoalCode::kForgotten, v1::CODE_FORGOTTEN},
-    {GoalCode::kDeadline, v1::CODE_DEADLINE},
-    {GoalCode::kBlocked, v1::CODE_BLOCKED},
-    {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},
-    {GoalCode::kNoPosition, v1::CODE_NO_POSITION},
-    {GoalCode::kNoRoute, v1::CODE_NO_ROUTE},
-    {GoalCode::kActivity, v1::CODE_ACTIVITY},
-    {GoalCode::kTimeout, v1::CODE_TIMEOUT},
-    {GoalCode::kDisposed, v1::CODE_DISPOSED},
-    {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
-    {GoalCode::kPreempted, v1::CODE_PREEMPTED},
-    {GoalCode::kStopped, v1::CODE_STOPPED},
-}}};
-constexpr EnumPairs<WriterLost, v1::WriterLost, 2> kPolicies{{{
-    {WriterLost::kCancel, v1::WRITER_LOST_CANCEL},
-    {WriterLost::kKeep, v1::WRITER_LOST_KEEP},
-}}};
-constexpr EnumPairs<Trend, v1::GoalTrend, 3> kTrends{{{
-    {Trend::kSteady, v1::TREND_STEADY},
-    {Trend::kRising, v1::TREND_RISING},
-    {Trend::kFalling, v1::TREND_FALLING},
-}}};
-constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{
-    {{
-        {Localization::kOff, v1::REGISTRATION_OFF},
-        {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
-        {Localization::kLost, v1::REGISTRATION_LOST},
-        {Localization::kTracking, v1::REGISTRATION_TRACKING},
-    }},
-    {Localization::kNone}};
 // The bus does not separate the first step after a suspension from the following ones; a removed
 // intention does not appear there.
 constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
@@ -81,42 +36,17 @@ constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
 
 }  // namespace
 
-GoalId from_bus(const v1::GoalId& id) {
-  return {id.writer, id.number};
-}
-
-v1::GoalId to_bus(const GoalId& id) {
-  return {.writer = id.writer, .number = id.number};
-}
-
 Goal from_bus(const v1::Goal& goal) {
   Goal result;
-  result.id = from_bus(goal.id);
+  result.id = goal.id;
   result.requester = goal.requester;
   result.functor = goal.functor;
   result.arguments = saphira::from_bus(goal.arguments);
   result.priority = goal.priority;
   result.deadline = goal.deadline;
   result.level = goal.level;
-  result.writer_lost = kPolicies.ours(goal.writer_lost, WriterLost::kCancel);
+  result.writer_lost = goal.writer_lost;
   return result;
-}
-
-v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
-  return {.id = to_bus(status.id),
-          .stamp = stamp,
-          .requester = status.requester,
-          .functor = status.functor,
-          .state = kStates.theirs(status.state),
-          .code = kCodes.theirs(status.code),
-          .reason = status.reason,
-          .step = status.step,
-          .progress = status.progress,
-          .level = status.level,
-          .trend = kTrends.theirs(status.trend),
-          .elapsed = status.elapsed,
-          .note = status.note,
-          .waits_for = to_bus(status.waits_for)};
 }
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
@@ -141,7 +71,7 @@ v1::IntentionNode to_bus(const IntentionNode& node) {
           .step = node.step,
           .since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)),
           .priority = node.priority,
-          .goal = to_bus(node.goal)};
+          .goal = node.goal};
 }
 
 Robot from_bus(const v1::RobotState& robot) {
@@ -240,7 +170,7 @@ v1::Belief to_bus(const Belief& belief) {
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
   ClaimEvent result;
   result.kind = kind;
-  result.id = from_bus(claim.id);
+  result.id = claim.id;
   result.source = claim.source;
   result.name = claim.name;
   if (kind == ClaimEvent::Kind::kSaid)
@@ -252,7 +182,7 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   Registered result;
   if (registration.stamp.cycle + kRegistrationLease < cycle)
     return result;
-  result.state = kLocalizations.ours(registration.state, Localization::kLost);
+  result.state = registration.state;
   result.pose_in_map = lps::from_bus(registration.pose_in_map);
   result.confidence = registration.confidence;
   result.environment = registration.environment;

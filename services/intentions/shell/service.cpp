@@ -285,15 +285,14 @@ void Service::remember(const News& news) {
 void Service::publish(const News& news) {
   Notes notes;
   for (const GoalStatus& status : news.changed) {
-    const v1::GoalStatus sample = to_bus(status, ports_.stamp());
+    v1::GoalStatus sample = status;
+    sample.stamp = ports_.stamp();
     if (!statuses_.write(sample))
       notes.warn("the status of goal " + describe(status.id) + " did not get onto the bus");
     told_[status.id] = sample;
   }
   for (const GoalId& id : news.withdrawn) {
-    GoalStatus status;
-    status.id = id;
-    statuses_.dispose(to_bus(status, ports_.stamp()));
+    statuses_.dispose({.id = id, .stamp = ports_.stamp()});
     told_.erase(id);
   }
   if (!news.changed.empty() || !news.withdrawn.empty()) {

@@ -1,19 +1,11 @@
 #include "registration/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
-#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::registration {
 namespace {
 
 constexpr std::size_t kMostMatches = 256;  // the bound of Registration.matches
-
-constexpr EnumPairs<State, v1::RegistrationState, 4> kStates{{{
-    {State::tracking, v1::REGISTRATION_TRACKING},
-    {State::off, v1::REGISTRATION_OFF},
-    {State::unplaced, v1::REGISTRATION_UNPLACED},
-    {State::lost, v1::REGISTRATION_LOST},
-}}};
 
 v1::Match to_bus(const Core::Matched& match) {
   return {.percept = match.percept,
@@ -29,7 +21,7 @@ v1::Match to_bus(const Core::Matched& match) {
 
 v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) {
   return {
-      .state = kStates.theirs(outputs.state),
+      .state = outputs.state,
       .reason = outputs.reason,
       .pose_in_map = lps::to_bus(outputs.pose_in_map),
       .odom_in_map = lps::to_bus(compose(outputs.pose_in_map, relative(pose_in_odom, Pose{}))),
