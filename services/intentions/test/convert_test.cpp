@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "requests/shell/convert.hpp"
 
 namespace saphira::intentions {
@@ -32,43 +34,10 @@ TEST(Convert, AGoalIsTakenWhole) {
                                     0.25}));
 }
 
-TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {
-  const IntendedBehavior behavior{"GoToPos#3", "GoToPos", 2, false, all_kinds(), 3, false};
-  const v1::IntendedBehavior intended = to_bus(behavior);
-  EXPECT_EQ(intended.name, "GoToPos#3");
-  EXPECT_EQ(intended.schema, "GoToPos");
-  EXPECT_EQ(intended.priority, 2);
-  EXPECT_FALSE(intended.running);
-  EXPECT_EQ(saphira::from_bus(intended.parameters), all_kinds());
-  EXPECT_EQ(intended.intention, 3U);
-  EXPECT_FALSE(intended.blocking);
-
-  IntentionNode node;
-  node.id = 3;
-  node.parent = 2;
-  node.name = "GoToPos#3";
-  node.schema = "GoToPos";
-  node.blocking = false;
-  node.step = "B";
-  node.state = IntentionState::kResumed;
-  node.goal = {1, 2};
-  const v1::IntentionNode told = to_bus(node);
-  EXPECT_EQ(told.id, 3U);
-  EXPECT_EQ(told.parent, 2U);
-  EXPECT_EQ(told.name, "GoToPos#3");
-  EXPECT_EQ(told.schema, "GoToPos");
-  EXPECT_FALSE(told.blocking);
-  EXPECT_EQ(told.step, "B");
-  EXPECT_EQ(told.state, v1::INTENTION_RUNNING);
-  EXPECT_EQ(told.goal, node.goal);
-}
-
 TEST(Convert, WhatDoesNotKeepToTheContractIsRefusedLater) {
   v1::Argument argument{.kind = static_cast<v1::ArgumentKind>(77),
                         .frame = static_cast<v1::Frame>(77)};
   EXPECT_EQ(saphira::from_bus(argument).kind, ArgumentKind::unbound);
-  v1::Goal goal{.writer_lost = static_cast<v1::WriterLost>(77)};
-  EXPECT_EQ(from_bus(goal).writer_lost, v1::WRITER_LOST_CANCEL);
 }
 
 TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
@@ -97,40 +66,14 @@ TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
   EXPECT_EQ(heard.person, "");
 }
 
-TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
-  v1::RobotState state{.odom = 4,
-                       .pose_in_odom = {1.0, 2.0, 3.0},
-                       .velocity = 0.4,
-                       .rotation_velocity = -0.5,
-                       .target_velocity = 0.3,
-                       .target_heading_in_odom = 1.5,
-                       .status = v1::MOTORS_MOVING};
-  Robot robot = from_bus(state);
-  EXPECT_TRUE(robot.connected);
-  EXPECT_TRUE(robot.has_power);
-  EXPECT_EQ(robot.odom, 4U);
-  EXPECT_EQ(robot.pose_in_odom, (Pose{1.0, 2.0, 3.0}));
-  EXPECT_EQ(robot.velocity, 0.4);
-  EXPECT_EQ(robot.rotation_velocity, -0.5);
-  EXPECT_EQ(robot.target_velocity, 0.3);
-  EXPECT_EQ(robot.target_heading_in_odom, 1.5);
-  state.status = v1::MOTORS_NO_POWER;
-  EXPECT_FALSE(from_bus(state).has_power);
-  state.status = v1::MOTORS_NOT_CONNECTED;
-  EXPECT_FALSE(from_bus(state).connected);
-
-  v1::BehaviorSet behaviors;
-  behaviors.behaviors.push_back({.name = "GoToPos#3", .goal = 0.7, .progress = 0.2});
-  behaviors.missing.push_back({.name = "Fly#4", .reason = "unknown schema"});
-  const std::vector<BehaviorTrouble> troubles = troubles_from_bus(behaviors);
-  ASSERT_EQ(troubles.size(), 1U);
-  EXPECT_EQ(troubles[0].name, "Fly#4");
-  EXPECT_EQ(troubles[0].reason, "unknown schema");
-  const std::vector<BehaviorLevel> levels = from_bus(behaviors);
-  ASSERT_EQ(levels.size(), 1U);
-  EXPECT_EQ(levels[0].name, "GoToPos#3");
-  EXPECT_EQ(levels[0].goal, 0.7);
-  EXPECT_EQ(levels[0].progress, 0.2);
+TEST(Convert, WhichMotorsHavePowerAndWhichRobotIsConnected) {
+  for (const auto& [status, connected, power] :
+       {std::tuple(v1::MOTORS_MOVING, true, true), std::tuple(v1::MOTORS_NO_POWER, true, false),
+        std::tuple(v1::MOTORS_NOT_CONNECTED, false, true)}) {
+    const Robot robot = from_bus(v1::RobotState{.status = status});
+    EXPECT_EQ(robot.connected, connected) << status;
+    EXPECT_EQ(robot.has_power, power) << status;
+  }
 }
 
 TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
