@@ -270,13 +270,11 @@ void bad_line(std::vector<Case>& all) {
       when("the robot is not heard while it moves", "why", driving(),
            {stands("nothing asks the robot to move"),
             [](Situation& s) {
-              v1::Refusal refusal;
-              refusal.role = v1::ROLE_BEHAVIORS;
-              refusal.source = "behaviors";
-              refusal.reason =
-                  "the robot is not heard while it moves (3 times now): it stands for "
-                  "another 20 s";
-              s.grant->refused.push_back(refusal);
+              s.grant->refused.push_back(
+                  {.role = v1::ROLE_BEHAVIORS,
+                   .source = "behaviors",
+                   .reason = "the robot is not heard while it moves (3 times now): it stands for "
+                             "another 20 s"});
             }},
            {"The robot stands", "behaviors (behaviors) was refused", "is not heard while it moves"},
            {"nobody asks"}));
@@ -338,10 +336,9 @@ void wheels(std::vector<Case>& all) {
 void lost_on_the_map(std::vector<Case>& all) {
   const std::string words = "the robot does not know where it is on the map";
   const Change nowhere = [](Situation& s) {
-    v1::Registration place;
-    place.stamp = s.robot->stamp;
-    place.state = v1::REGISTRATION_LOST;
-    place.reason = "nothing that it hears fits the map";
+    v1::Registration place{.stamp = s.robot->stamp,
+                           .state = v1::REGISTRATION_LOST,
+                           .reason = "nothing that it hears fits the map"};
     s.registration = place;
   };
   const Change tracking = [](Situation& s) {
