@@ -52,20 +52,13 @@ std::vector<T> first(std::vector<T> values, std::size_t count) {
 }
 
 v1::SonarReading reading_of(const protocol::Sonar& sonar) {
-  v1::SonarReading out;
-  out.sonar = sonar.number;
-  out.range = static_cast<float>(sonar.range);
-  out.echo = sonar.echo;
-  return out;
+  return {.sonar = sonar.number, .range = static_cast<float>(sonar.range), .echo = sonar.echo};
 }
 
 }  // namespace
 
 v1::Stamp to_bus(const Stamp& stamp) {
-  v1::Stamp out;
-  out.epoch = stamp.epoch;
-  out.cycle = stamp.cycle;
-  return out;
+  return {.epoch = stamp.epoch, .cycle = stamp.cycle};
 }
 
 v1::ServiceState to_bus(Health health) {
@@ -75,31 +68,30 @@ v1::ServiceState to_bus(Health health) {
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
-  v1::RobotState out;
-  out.stamp = stamp;
-  out.odom = state.odom;
-  out.pose_in_odom = saphira::to_bus(state.pose_in_odom);
-  out.velocity = in.velocity;
-  out.rotation_velocity = in.rotation_velocity;
-  out.left_velocity = in.left_velocity;
-  out.right_velocity = in.right_velocity;
-  out.target_velocity = state.target_velocity;
-  out.target_heading_in_odom = state.target_heading_in_odom;
-  out.status = kMotors.theirs(in.motors);
-  out.left_stalled = in.left_stalled;
-  out.right_stalled = in.right_stalled;
-  out.bumpers = in.bumpers;
-  out.battery = in.battery;
-  out.ptu = in.ptu;
-  out.head = in.head;
-  out.say = in.say;
-  out.timer = in.timer;
-  out.analog = in.analog;
-  out.digital_input = in.digital_input;
-  out.digital_output = in.digital_output;
-  out.sonars = converted(in.sonars, reading_of, kMostSonars);
-  out.motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s);
-  out.sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s);
+  v1::RobotState out{.stamp = stamp,
+                     .odom = state.odom,
+                     .pose_in_odom = saphira::to_bus(state.pose_in_odom),
+                     .velocity = in.velocity,
+                     .rotation_velocity = in.rotation_velocity,
+                     .left_velocity = in.left_velocity,
+                     .right_velocity = in.right_velocity,
+                     .target_velocity = state.target_velocity,
+                     .target_heading_in_odom = state.target_heading_in_odom,
+                     .status = kMotors.theirs(in.motors),
+                     .left_stalled = in.left_stalled,
+                     .right_stalled = in.right_stalled,
+                     .bumpers = in.bumpers,
+                     .battery = in.battery,
+                     .ptu = in.ptu,
+                     .head = in.head,
+                     .say = in.say,
+                     .timer = in.timer,
+                     .analog = in.analog,
+                     .digital_input = in.digital_input,
+                     .digital_output = in.digital_output,
+                     .sonars = converted(in.sonars, reading_of, kMostSonars),
+                     .motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s),
+                     .sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s)};
   out.vision_packets_per_s = 0;  // Shell counts them
   out.bad_packets = static_cast<std::uint32_t>(bad_packets);
   return out;
@@ -107,66 +99,55 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
 
 v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint64_t odom,
                         const v1::Stamp& stamp) {
-  v1::SonarBuckets out;
-  out.stamp = stamp;
-  out.odom = odom;
+  v1::SonarBuckets out{.stamp = stamp, .odom = odom};
   const auto each = [](const reflector::Bucket& bucket) {
-    v1::SonarBucket result;
-    result.reading = reading_of(bucket.reading);
-    result.cycle = bucket.cycle;
-    result.pose_in_odom = saphira::to_bus(bucket.pose_in_odom);
-    result.x = bucket.point.x();
-    result.y = bucket.point.y();
-    return result;
+    return v1::SonarBucket{.reading = reading_of(bucket.reading),
+                           .cycle = bucket.cycle,
+                           .pose_in_odom = saphira::to_bus(bucket.pose_in_odom),
+                           .x = bucket.point.x(),
+                           .y = bucket.point.y()};
   };
   out.buckets = converted(buckets, each, kMostSonars);
   return out;
 }
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
-  v1::VisionChannels out;
-  out.channels = converted(packet.channels, [](const protocol::VisionChannel& channel) {
-    v1::VisionChannel result;
-    result.mode = kVisionModes.theirs(channel.mode);
-    result.x = channel.x;
-    result.y = channel.y;
-    result.area = channel.area;
-    result.width = channel.width;
-    result.height = channel.height;
-    result.first = channel.first;
-    result.count = channel.count;
-    return result;
-  });
-  return out;
+  return {.channels = converted(packet.channels, [](const protocol::VisionChannel& channel) {
+            return v1::VisionChannel{.mode = kVisionModes.theirs(channel.mode),
+                                     .x = channel.x,
+                                     .y = channel.y,
+                                     .area = channel.area,
+                                     .width = channel.width,
+                                     .height = channel.height,
+                                     .first = channel.first,
+                                     .count = channel.count};
+          })};
 }
 
 v1::RobotDescription to_bus(const protocol::RobotParameters& p,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep) {
-  v1::RobotDescription out;
-  out.stamp = stamp;
-  out.name = identity.name;
-  out.robot_class = identity.robot_class;
-  out.robot_subclass = identity.subclass;
-  out.parameter_file = p.file;
-  out.link = link;
-  out.radius = p.radius;
-  out.diagonal = p.diagonal;
-  out.max_velocity = p.max_velocity;
-  out.max_rotation_velocity = p.max_rotation_velocity;
-  out.acceleration = p.acceleration;
-  out.deceleration = p.deceleration;
-  out.rotation_acceleration = p.rotation_acceleration;
-  out.front_buffer = static_cast<std::uint16_t>(p.front_buffer);
-  out.side_buffer = static_cast<std::uint16_t>(p.side_buffer);
-  out.front_max_range = p.front_max_range;
-  out.head_reach = p.head_reach;
-  out.lockstep = lockstep;
+  v1::RobotDescription out{.stamp = stamp,
+                           .name = identity.name,
+                           .robot_class = identity.robot_class,
+                           .robot_subclass = identity.subclass,
+                           .parameter_file = p.file,
+                           .link = link,
+                           .radius = p.radius,
+                           .diagonal = p.diagonal,
+                           .max_velocity = p.max_velocity,
+                           .max_rotation_velocity = p.max_rotation_velocity,
+                           .acceleration = p.acceleration,
+                           .deceleration = p.deceleration,
+                           .rotation_acceleration = p.rotation_acceleration,
+                           .front_buffer = static_cast<std::uint16_t>(p.front_buffer),
+                           .side_buffer = static_cast<std::uint16_t>(p.side_buffer),
+                           .front_max_range = p.front_max_range,
+                           .head_reach = p.head_reach,
+                           .lockstep = lockstep};
   const auto sonar = [](const protocol::SonarUnit& unit) {
-    v1::SonarPose result;
-    result.sonar = unit.number;
-    result.pose_in_robot = saphira::to_bus(unit.pose_in_robot);
-    return result;
+    return v1::SonarPose{.sonar = unit.number,
+                         .pose_in_robot = saphira::to_bus(unit.pose_in_robot)};
   };
   out.sonars = converted(p.sonars, sonar, kMostSonars);
   return out;
@@ -174,35 +155,30 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
 
 v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
-  v1::Grant out;
-  out.stamp = stamp;
-  out.role = kRoles.theirs(grant.role);
-  out.source = grant.source;
-  out.reason = grant.reason;
-  out.expires_in = grant.expires_in;
-  out.command_age = grant.command_age;
-  out.guard = kGuardActions.theirs(guarded.action);
-  out.guard_reason = guarded.reason;
-  out.asked_velocity = told.setpoints.velocity;
-  out.velocity = guarded.velocity;
-  out.rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY;
-  out.rotation_velocity = guarded.rotation_velocity;
-  out.heading = told.setpoints.heading_in_odom;
-  out.distance_left = told.distance_left;
-  out.answers = to_bus(grant.answers);
-  out.number = grant.number;
-  out.estopped = grant.estopped;
-  out.estop_source = grant.estop_source;
-  out.waits_for_hand_back = grant.waits_for_hand_back;
-  out.stop.asker = grant.stop.asker;
-  out.stop.number = grant.stop.number;
-  out.stop_source = grant.stop_source;
+  v1::Grant out{
+      .stamp = stamp,
+      .role = kRoles.theirs(grant.role),
+      .source = grant.source,
+      .reason = grant.reason,
+      .expires_in = grant.expires_in,
+      .command_age = grant.command_age,
+      .guard = kGuardActions.theirs(guarded.action),
+      .guard_reason = guarded.reason,
+      .asked_velocity = told.setpoints.velocity,
+      .velocity = guarded.velocity,
+      .rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY,
+      .rotation_velocity = guarded.rotation_velocity,
+      .heading = told.setpoints.heading_in_odom,
+      .distance_left = told.distance_left,
+      .answers = to_bus(grant.answers),
+      .number = grant.number,
+      .estopped = grant.estopped,
+      .estop_source = grant.estop_source,
+      .waits_for_hand_back = grant.waits_for_hand_back,
+      .stop = {grant.stop.asker, grant.stop.number},
+      .stop_source = grant.stop_source};
   const auto refusal = [](const authority::Refusal& one) {
-    v1::Refusal result;
-    result.role = kRoles.theirs(one.role);
-    result.source = one.source;
-    result.reason = one.reason;
-    return result;
+    return v1::Refusal{.role = kRoles.theirs(one.role), .source = one.source, .reason = one.reason};
   };
   out.refused = converted(refused, refusal, kMostRefusals);
   return out;
@@ -250,13 +226,11 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
 v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp) {
-  v1::Devices out;
-  out.stamp = stamp;
+  v1::Devices out{.stamp = stamp};
   const auto asked = [&](const reflector::DeviceRequest& request) {
-    v1::DeviceRequest result;
-    result.source = request.source;
-    result.asked = request.asked;
-    result.answer = saphira::to_bus(request.answer);
+    v1::DeviceRequest result{.source = request.source,
+                             .asked = request.asked,
+                             .answer = saphira::to_bus(request.answer)};
     result.answer.asker = request.asker;
     result.answer.number = request.number;
     result.answer.service = "bridge";
@@ -304,10 +278,7 @@ v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
     out.grasp_time = gripper->grasp_time;
   }
   const auto packets = [](const auto& unread) {
-    v1::PacketCount result;
-    result.type = unread.first;
-    result.count = unread.second;
-    return result;
+    return v1::PacketCount{.type = unread.first, .count = unread.second};
   };
   out.unread_packets = converted(reports.unread, packets, kMostCounts);
   return out;

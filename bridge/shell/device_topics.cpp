@@ -53,11 +53,7 @@ void DeviceTopics::take(const Stamp& stamp, bool session) {
 void DeviceTopics::packet(const protocol::ServerPacket& packet, std::uint8_t type,
                           const v1::Stamp& stamp) {
   if (const auto* aux = std::get_if<protocol::AuxPacket>(&packet)) {
-    v1::SerialData data;
-    data.stamp = stamp;
-    data.port = aux->line;
-    data.data = aux->bytes;
-    serial_data_.write(data);
+    serial_data_.write({.stamp = stamp, .port = aux->line, .data = aux->bytes});
     return;
   }
   const auto* const configuration = std::get_if<protocol::ConfigPacket>(&packet);

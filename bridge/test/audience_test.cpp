@@ -9,15 +9,12 @@ namespace {
 class AudienceTest : public testing::Test {
  protected:
   void waits(std::uint8_t program, const std::string& what = "state of cycle 7") {
-    v1::ServiceStatus status;
-    status.stamp.cycle = 6;
-    status.state = v1::SERVICE_WAITING;
-    status.reason = "waits for robot/" + what;
+    v1::ServiceStatus status{
+        .state = v1::SERVICE_WAITING, .reason = "waits for robot/" + what, .stamp = {.cycle = 6}};
     audience_.hear({program}, status, now_);
   }
   void steps(std::uint8_t program) {
-    v1::ServiceStatus status;
-    status.stamp.cycle = ++cycle_;
+    v1::ServiceStatus status{.stamp = {.cycle = ++cycle_}};
     status.state = v1::SERVICE_RUNNING;
     audience_.hear({program}, status, now_);
   }
@@ -67,8 +64,7 @@ TEST_F(AudienceTest, WhatIsGoneOrStandsStillSaysNothing) {
   steps(2);
   waits(1);
   // No more status of the second one: it hangs, or waits for another cause.
-  v1::ServiceStatus status;
-  status.stamp.cycle = cycle_;
+  v1::ServiceStatus status{.stamp = {.cycle = cycle_}};
   audience_.hear({2}, status, now_);
   EXPECT_TRUE(after(Audience::kMute));
 }

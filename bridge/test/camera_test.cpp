@@ -21,8 +21,7 @@ TEST_F(CameraTest, IsAskedUntilItsPacketsCome) {
   EXPECT_TRUE(camera.begin(2).empty());
   EXPECT_TRUE(camera.begin(20).empty());
   EXPECT_EQ(camera.begin(21).size(), 2U) << "two seconds without a packet";
-  v1::RobotState state;
-  state.stamp.cycle = 22;
+  v1::RobotState state{.stamp = {.cycle = 22}};
   camera.packet({}, state);
   for (std::uint64_t cycle = 23; cycle <= 32; ++cycle) {
     EXPECT_TRUE(camera.begin(cycle).empty());
@@ -40,11 +39,7 @@ TEST_F(CameraTest, IsAskedAgainInTheNextSession) {
 }
 
 TEST_F(CameraTest, ItsPacketsSayWhereTheRobotWas) {
-  v1::RobotState state;
-  state.stamp.epoch = 3;
-  state.stamp.cycle = 5;
-  state.odom = 9;
-  state.pose_in_odom.x = 1.5;
+  v1::RobotState state{.stamp = {3, 5}, .odom = 9, .pose_in_odom = {.x = 1.5}};
   protocol::VisionPacket packet;
   packet.channels[1].area = 300;
   camera.packet(packet, state);

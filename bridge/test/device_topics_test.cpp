@@ -11,12 +11,10 @@ namespace {
 class DeviceTopicsTest : public testing::Test {
  protected:
   void ask(std::uint64_t number, double width) {
-    v1::Request request;
-    request.source = "a person";
-    request.number = number;
-    request.functor = "servo";
-    request.arguments = {bus::number("width", width)};
-    servo.write(request);
+    servo.write({.number = number,
+                 .source = "a person",
+                 .functor = "servo",
+                 .arguments = {bus::number("width", width)}});
   }
   v1::Answer answer() { return answers.take_newest().value(); }
 
@@ -71,11 +69,8 @@ TEST_F(DeviceTopicsTest, WhatIsOutOfRangeIsRefused) {
 
 TEST_F(DeviceTopicsTest, AFunctorOfAnotherTopicIsUnknown) {
   auto server = person.writer<v1::Request>(bus::topics::kServer);
-  v1::Request request;
-  request.source = "a person";
-  request.functor = "servo";
-  request.arguments = {bus::number("width", 1500)};
-  server.write(request);
+  server.write(
+      {.source = "a person", .functor = "servo", .arguments = {bus::number("width", 1500)}});
   topics.take({}, true);
   EXPECT_EQ(answer().code, v1::ANSWER_UNKNOWN_FUNCTOR);
 }

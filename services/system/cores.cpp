@@ -5,22 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "saphira/base/enum_pairs.hpp"
-
 namespace saphira::system {
 namespace {
 
 constexpr std::uint64_t kEpoch = 1;
-
-constexpr EnumPairs<registration::State, intentions::Localization, 4> kLocalizations{
-    {{
-        {registration::State::off, intentions::Localization::kOff},
-        {registration::State::unplaced, intentions::Localization::kUnplaced},
-        {registration::State::lost, intentions::Localization::kLost},
-        {registration::State::tracking, intentions::Localization::kTracking},
-    }},
-    {},
-    {intentions::Localization::kNone}};
 
 behaviors::Intent intent_of(const intentions::Core::Outputs& said) {
   const intentions::Outputs& wanted = said.intended;
@@ -178,9 +166,9 @@ intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
   }
   if (!first() && registration_) {
     const registration::Core::Outputs& told = said_.registration;
-    if (told.state == registration::State::tracking || told.state == registration::State::off)
+    if (told.state == v1::REGISTRATION_TRACKING || told.state == v1::REGISTRATION_OFF)
       inputs.robot.odom_in_map = compose(told.pose_in_map, relative(said_.pose_in_odom, Pose{}));
-    inputs.registered.state = kLocalizations.theirs(told.state);
+    inputs.registered.state = told.state;
     inputs.registered.pose_in_map = told.pose_in_map;
     inputs.registered.confidence = told.confidence;
     inputs.registered.environment = told.environment;

@@ -69,9 +69,7 @@ v1::GoalId LockstepSystem::ask(const v1::Goal& goal) {
 }
 
 void LockstepSystem::permit(std::uint64_t until) {
-  v1::StepPermit sample;
-  sample.until_cycle = until;
-  permits_.write(sample);
+  permits_.write({.until_cycle = until});
 }
 
 std::optional<v1::GoalStatus> LockstepSystem::wait_end(const v1::GoalId& goal,

@@ -28,29 +28,6 @@ class LookingTest : public testing::Test {
   v1::GoalId goal;
 };
 
-TEST_F(LookingTest, ShowsWhatItThinksWhileItDrives) {
-  ASSERT_NO_FATAL_FAILURE(drive());
-  Outcome seen = run({"intentions"});
-  EXPECT_EQ(seen.code, 0) << seen.text;
-  EXPECT_TRUE(has(seen.text, "* go_to (")) << seen.text;
-  EXPECT_TRUE(has(seen.text, "  * GoToPos (instance ")) << seen.text;
-  seen = run({"behaviors"});
-  EXPECT_EQ(seen.code, 0) << seen.text;
-  EXPECT_TRUE(has(seen.text, "* GoToPos")) << seen.text;
-  EXPECT_TRUE(has(seen.text, "= Summation")) << seen.text;
-  seen = run({"behaviors", "GoToPos"});
-  EXPECT_EQ(seen.code, 0) << seen.text;
-  EXPECT_TRUE(has(seen.text, "Running   1")) << seen.text;
-  EXPECT_TRUE(has(seen.text, "\nRules\n")) << seen.text;
-  seen = run({"behaviors", "Fly"});
-  EXPECT_EQ(seen.code, 1) << seen.text;
-  EXPECT_TRUE(has(seen.text, "no behavior \"Fly\". There are ")) << seen.text;
-  seen = run({"behaviors", "gotopos"});
-  EXPECT_EQ(seen.code, 1) << seen.text;
-  EXPECT_TRUE(has(seen.text, "no behavior \"gotopos\": did you mean GoToPos? There are "))
-      << seen.text;
-}
-
 TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
   ASSERT_NO_FATAL_FAILURE(drive());
   const Outcome said = run({"why", "--json"});

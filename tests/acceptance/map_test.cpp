@@ -84,11 +84,10 @@ TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
     return !registered.empty() && registered.back().state == v1::REGISTRATION_TRACKING;
   })) << system.output();
   // Beside the way, half a metre before the wall: its absence shows by echoes from behind it.
-  v1::Request request;
-  request.functor = "put";
-  request.arguments = {bus::number("id", 900), bus::text("type", "OBJECT"),
-                       bus::point("position", 5.0, 7.4, 0.0, v1::FRAME_MAP),
-                       bus::number("length", 0.5), bus::number("width", 0.2)};
+  v1::Request request{.functor = "put",
+                      .arguments = {bus::number("id", 900), bus::text("type", "OBJECT"),
+                                    bus::point("position", 5.0, 7.4, 0.0, v1::FRAME_MAP),
+                                    bus::number("length", 0.5), bus::number("width", 0.2)}};
   ASSERT_EQ(requests.ask(request, 60.0).code, v1::ANSWER_DONE) << system.output();
   ASSERT_TRUE(step_until([&] { return on_map(900); })) << system.output();
   // A goal continues while the map changes; on the way back at the latest the object is missed.

@@ -63,11 +63,10 @@ TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
   system.start("saphira-bridge");
   bus::Writer<v1::MotorCommand> direct = system.node().writer(bus::topics::kDriveDirect);
   auto robots = system.node().reader(bus::topics::kRobotState);
-  v1::MotorCommand command;
-  command.source = "a program that hears nothing";
-  command.active = true;
-  command.translation = v1::TRANSLATION_VELOCITY;
-  command.velocity = 0.3;
+  v1::MotorCommand command{.source = "a program that hears nothing",
+                           .active = true,
+                           .translation = v1::TRANSLATION_VELOCITY,
+                           .velocity = 0.3};
   const auto drive = [&] {
     if (const auto robot = robots.take_newest())
       command.stamp = robot->stamp;

@@ -58,8 +58,7 @@ std::string functor(unsigned agent, unsigned capability) {
   std::set<std::string> addresses;
   std::vector<v1::Agent> agents;
   for (unsigned i = 0; i < count; ++i) {
-    v1::Agent agent;
-    agent.id = all.first + i + 1;
+    v1::Agent agent{.id = all.first + i + 1};
     agent.name = "agent" + std::to_string(all.first + i);
     for (unsigned k = 0; k < each; ++k)
       agent.capabilities.push_back(bus::capability(functor(all.first + i, k),
@@ -71,16 +70,13 @@ std::string functor(unsigned agent, unsigned capability) {
     agents.push_back(std::move(agent));
   }
   for (unsigned i = 0; i < all.triggers / kProcesses; ++i) {
-    v1::Trigger trigger;
-    trigger.id.writer = all.first + 1;
-    trigger.id.number = i + 1;
-    trigger.source = "a benchmark";
-    trigger.kind = i % 100 < kTold ? v1::TRIGGER_TIME : v1::TRIGGER_EVENT;
-    trigger.period = 60.0;
-    trigger.condition = i % 100 < kTold ? "" : "it_happened";
-    trigger.action = functor(all.first, 0);
-    trigger.action_arguments = {bus::number("given", i)};
-    triggers.write(trigger);
+    triggers.write({.id = {all.first + 1, i + 1},
+                    .source = "a benchmark",
+                    .kind = i % 100 < kTold ? v1::TRIGGER_TIME : v1::TRIGGER_EVENT,
+                    .period = 60.0,
+                    .condition = i % 100 < kTold ? "" : "it_happened",
+                    .action = functor(all.first, 0),
+                    .action_arguments = {bus::number("given", i)}});
   }
   for (;;) {
     node.wait(std::chrono::milliseconds(500));
@@ -102,9 +98,8 @@ std::string functor(unsigned agent, unsigned capability) {
 std::vector<double> ask(bus::Node& node, bus::Agent& asker, const Options& all, unsigned agents) {
   std::vector<double> us;
   for (unsigned i = 0; i < all.requests; ++i) {
-    v1::Request request;
-    request.functor = functor(i * 7 % agents, 0);
-    request.arguments = {bus::number("given", i), bus::open("found")};
+    v1::Request request{.functor = functor(i * 7 % agents, 0),
+                        .arguments = {bus::number("given", i), bus::open("found")}};
     const auto begun = Clock::now();
     const v1::Answer answer = asker.ask(request, 10.0);
     const double took = std::chrono::duration<double, std::micro>(Clock::now() - begun).count();
@@ -120,9 +115,8 @@ std::vector<double> ask(bus::Node& node, bus::Agent& asker, const Options& all, 
 void wait_for(bus::Agent& asker, unsigned agents) {
   const auto end = Clock::now() + std::chrono::seconds(60);
   for (unsigned known = 0; known < agents;) {
-    v1::Request request;
-    request.functor = functor(known, 0);
-    request.arguments = {bus::number("given", 1), bus::open("found")};
+    v1::Request request{.functor = functor(known, 0),
+                        .arguments = {bus::number("given", 1), bus::open("found")}};
     if (asker.ask(request, 1.0).code == v1::ANSWER_DONE)
       known += agents / kProcesses;
     else if (Clock::now() > end)

@@ -123,9 +123,7 @@ v1::RobotState robot_state() {
   return state;
 }
 v1::MotorCommand motor_command() {
-  v1::MotorCommand command;
-  command.source = "behaviors";
-  return command;
+  return {.source = "behaviors"};
 }
 
 [[noreturn]] void answer(std::uint32_t domain) {

@@ -126,23 +126,19 @@ protocol::InformationPacket information(long n) {
 /// to the left and to the right in turns, so that the heading changes in every cycle.
 v1::Intentions intentions(const v1::Stamp& stamp) {
   const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
-    v1::IntendedBehavior b;
-    b.name = schema;
-    b.schema = schema;
-    b.priority = priority;
-    b.running = true;
-    b.parameters = std::move(parameters);
-    return b;
+    return v1::IntendedBehavior{.name = schema,
+                                .schema = schema,
+                                .priority = priority,
+                                .running = true,
+                                .parameters = std::move(parameters)};
   };
   const double y = stamp.cycle % 2 == 0 ? 10.0 : -10.0;
-  v1::Intentions sample;
-  sample.stamp = stamp;
-  sample.behavior_control = true;
-  sample.behaviors = {behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
-                      behavior("GoToPos", 2,
-                               {bus::point("goal", 50.0, y, 0.0, v1::FRAME_ODOM),
-                                bus::number("speed", 0.2), bus::number("radius", 0.2)})};
-  return sample;
+  return {.stamp = stamp,
+          .behavior_control = true,
+          .behaviors = {behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
+                        behavior("GoToPos", 2,
+                                 {bus::point("goal", 50.0, y, 0.0, v1::FRAME_ODOM),
+                                  bus::number("speed", 0.2), bus::number("radius", 0.2)})}};
 }
 
 class Reaction {

@@ -88,8 +88,7 @@ class RoundTrip {
  private:
   /// [us]
   std::optional<double> ping(milliseconds limit) {
-    v1::MotorCommand command;
-    command.number = ++number_;
+    v1::MotorCommand command{.number = ++number_};
     const auto began = Clock::now();
     commands_.write(command);
     while (Clock::now() - began < limit) {

@@ -143,9 +143,7 @@ class Ride {
   }
 
   void write(bus::Writer<v1::MotorCommand>& writer, bool active) {
-    v1::MotorCommand command;
-    command.source = "bench";
-    command.stamp = state_.stamp;
+    v1::MotorCommand command{.stamp = state_.stamp, .source = "bench"};
     command.number = ++number_;
     command.active = active;
     command.translation = v1::TRANSLATION_VELOCITY;

@@ -279,10 +279,7 @@ TEST(ContractBytes, AreThoseOfAnotherVendor) {
 }
 
 TEST(ContractBytes, HaveTheMembersOfAnotherVendor) {
-  v1::Goal goal;
-  goal.id = {.writer = 1, .number = 2};
-  goal.requester = "somebody";
-  goal.functor = "go_to";
+  v1::Goal goal{.id = {.writer = 1, .number = 2}, .requester = "somebody", .functor = "go_to"};
   goal.arguments.push_back({.name = "place", .kind = v1::ARGUMENT_TEXT, .text = "room EJ-231"});
   goal.priority = -3;
   goal.deadline = 4.5;
@@ -367,8 +364,7 @@ TEST(HostileBytes, OfAnEndlessSequenceTakeNoMemory) {
 }
 
 TEST(HostileBytes, OfAnUnknownEnumeratorKeepItsNumber) {
-  v1::Goal goal;
-  goal.writer_lost = static_cast<v1::WriterLost>(77);
+  v1::Goal goal{.writer_lost = static_cast<v1::WriterLost>(77)};
   const auto again = read<v1::Goal>(written(goal));
   EXPECT_EQ(again.writer_lost, 77U);
   EXPECT_EQ(name_of(again.writer_lost), nullptr);

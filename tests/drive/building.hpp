@@ -17,7 +17,7 @@ class Building {
 
   /// Runs until the map is built, for that number of cycles at most.
   void run(std::uint64_t limit);
-  bool done() const { return whole.status(goal_).state == intentions::GoalState::kSucceeded; }
+  bool done() const { return whole.status(goal_).state == v1::GOAL_SUCCEEDED; }
   std::string reason() const { return whole.status(goal_).reason; }
   /// The built map, moved and turned as a whole for the best fit of its way to the true one: its
   /// origin and direction are the builder's choice.

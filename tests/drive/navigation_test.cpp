@@ -88,7 +88,7 @@ TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
     Whole whole(office(seed));
     const auto status =
         whole.achieve("go_to", {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map)}, 600);
-    EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
     EXPECT_LT((whole.truth().position() - Vec2(17.5, 8.0)).norm(), 0.4);
     EXPECT_EQ(whole.drive().contacts(), 0);
     EXPECT_TRUE(whole.at_rest());
@@ -132,7 +132,7 @@ TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
         return whole.ended(goal);
       },
       3000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-231"));
   EXPECT_TRUE(passed);
   EXPECT_TRUE(both);
@@ -152,7 +152,7 @@ TEST(Navigation, ItSaysHowFarItHasCome) {
         return whole.ended(goal);
       },
       2000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-249")) << "by its number, as a person types it";
   EXPECT_LT(levels[20], 0.2);
   EXPECT_NEAR(levels[levels.size() / 2], 0.5, 0.25);
@@ -164,7 +164,7 @@ TEST(Navigation, ItSaysHowFarItHasCome) {
 TEST(Navigation, APlaceThatTheMapDoesNotHaveIsRefusedInWords) {
   Whole whole(office());
   const GoalStatus status = whole.achieve("go-to-place", {text("place", "EJ-999")}, 100);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_NE(status.reason.find("EJ-999"), std::string::npos) << status.reason;
 }
 
@@ -178,7 +178,7 @@ TEST(Navigation, WhenTheDoorIsOpenedItGoesOn) {
   ASSERT_TRUE(whole.advance_until([&] { return said(whole, "Please open the way"); }, 3000));
   ASSERT_TRUE(whole.drive().scene().set_door("d247", true));
   whole.advance_until([&] { return whole.ended(goal); }, 3000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-247"));
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
@@ -187,7 +187,7 @@ TEST(Navigation, WhenTheDoorIsOpenedItGoesOn) {
 TEST(Navigation, AroundAClosedDoorItReplans) {
   Whole whole(office(1, office_with("two-doors", "door d271 28600 6000 29500 6000 -90\n")));
   const GoalStatus status = whole.achieve("go-to-place", {text("place", "EJ-271")}, 4000);
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_TRUE(is_in(whole, "EJ-271"));
   EXPECT_FALSE(said(whole, "Please open the way"));
   EXPECT_EQ(whole.drive().contacts(), 0);
@@ -200,7 +200,7 @@ TEST(Ways, AreDrivenToATenthOfThemselves) {
     const Pose before = whole.drive().seen().pose_in_odom;
     const GoalStatus status =
         whole.achieve("go_to", {saphira::point("position", {way, 0.0, 0.0}, Frame::robot)}, 600);
-    EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
     const Pose after = whole.drive().seen().pose_in_odom;
     EXPECT_NEAR((after.position() - before.position()).norm(), way, std::max(0.02, 0.1 * way))
         << way;
@@ -214,7 +214,7 @@ TEST(Mapping, AFloorThatTheRobotDoesNotUnderstandIsNotBuilt) {
     options.map = "none";
     Whole whole(options);
     const GoalStatus status = whole.achieve("build-map", {}, 6000);
-    EXPECT_EQ(status.state, GoalState::kFailed) << world << ": " << status.reason;
+    EXPECT_EQ(status.state, v1::GOAL_FAILED) << world << ": " << status.reason;
     EXPECT_NE(status.reason.find("no corridor was found in "), std::string::npos) << status.reason;
   }
 }
@@ -229,9 +229,9 @@ TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
   Whole whole(options);
   const std::vector<std::uint32_t>& closed = whole.registered().closed_doors;
   EXPECT_TRUE(closed.empty());
-  ASSERT_EQ(go_to(whole, 31.5, 7.0).state, GoalState::kSucceeded);
+  ASSERT_EQ(go_to(whole, 31.5, 7.0).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(closed, std::vector<std::uint32_t>{1271});
-  ASSERT_EQ(go_to(whole, 27.0, 7.0).state, GoalState::kSucceeded);
+  ASSERT_EQ(go_to(whole, 27.0, 7.0).state, v1::GOAL_SUCCEEDED);
   // Past it to the farther door, without a second look.
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-271")});
   double nearest = 10.0;  // to it, from the corridor's middle
@@ -241,13 +241,13 @@ TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
         return whole.ended(goal);
       },
       3000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-271"));
   EXPECT_GT(nearest, 0.7);
 
   ASSERT_TRUE(whole.drive().scene().set_door("d271", true));
   ASSERT_EQ(whole.achieve("go-to-place", {text("place", "EJ-259")}, 4000).state,
-            GoalState::kSucceeded);
+            v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(closed.empty()) << "it was passed on the way";
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
@@ -286,7 +286,7 @@ TEST(Zones, AKeepOutThatIsToldOnTheLastLegIsObeyed) {
           return whole.ended(goal);
         },
         100));
-    EXPECT_EQ(whole.status(goal).state, GoalState::kFailed);
+    EXPECT_EQ(whole.status(goal).state, v1::GOAL_FAILED);
     EXPECT_EQ(whole.status(goal).reason,
               "room 231 (EJ-231) is in a place that people told me to keep out of");
     EXPECT_FALSE(inside) << leg;
@@ -315,7 +315,7 @@ TEST(Zones, ASlowZoneCapsTheSpeed) {
         return whole.ended(goal);
       },
       3000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_GT(fastest, 0.05);
   EXPECT_LT(fastest, 0.12);
   EXPECT_GT(outside, 0.25);
@@ -334,7 +334,7 @@ TEST(Zones, OneWayForcesTheWayAround) {
         return whole.ended(goal);
       },
       6000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_FALSE(entered);
   EXPECT_TRUE(east);
 }
@@ -357,15 +357,15 @@ TEST(Zones, NoGoalEntersAKeepOut) {
           return whole.ended(goal);
         },
         600);
-    EXPECT_EQ(whole.status(goal).state, GoalState::kFailed) << functor;
+    EXPECT_EQ(whole.status(goal).state, v1::GOAL_FAILED) << functor;
     EXPECT_EQ(whole.status(goal).reason, "it must not go on: keep-out zone \"lab\"") << functor;
     EXPECT_FALSE(entered) << functor;
   }
   Whole whole(office_with_zones(zone));
   const GoalStatus inside =
       whole.achieve("go_to", {saphira::point("position", {17.5, 10.0, 0.0}, Frame::map)}, 100);
-  EXPECT_EQ(inside.state, GoalState::kFailed);
-  EXPECT_EQ(inside.code, GoalCode::kNoRoute);
+  EXPECT_EQ(inside.state, v1::GOAL_FAILED);
+  EXPECT_EQ(inside.code, v1::CODE_NO_ROUTE);
   EXPECT_EQ(inside.reason, "(17.50, 10.00) on the map is in keep-out zone \"lab\"");
 }
 
@@ -373,7 +373,7 @@ TEST(Navigation, ToAPointOfTheMapByARoute) {
   Whole whole(office());
   const GoalStatus there =
       whole.achieve("go-to-place", {saphira::point("place", {14.7, 25.0, 0.0}, Frame::map)}, 3000);
-  EXPECT_EQ(there.state, GoalState::kSucceeded) << there.reason;
+  EXPECT_EQ(there.state, v1::GOAL_SUCCEEDED) << there.reason;
   EXPECT_LT((whole.truth().position() - Vec2(14.7, 25.0)).norm(), 0.7);
 }
 
@@ -393,7 +393,7 @@ TEST(Navigation, AThingIsPutOnTheMapAndTakenFromItWhenItIsCarriedOff) {
   const auto pass = [&](const std::function<bool()>& done) {
     for (int i = 0; i < 3 && !done(); ++i)
       for (const double y : {8.5, 14.0})
-        EXPECT_EQ(go_to(whole, 17.3, y).state, GoalState::kSucceeded);
+        EXPECT_EQ(go_to(whole, 17.3, y).state, v1::GOAL_SUCCEEDED);
     return done();
   };
   ASSERT_TRUE(pass([&] { return crate() != nullptr; }));
@@ -415,7 +415,7 @@ TEST(Navigation, WhoIsCarriedAwayOnTheWayFindsHimselfAndArrives) {
   whole.advance_until([&] { return whole.cycle() >= 100; }, 200);
   ASSERT_TRUE(whole.drive().robot().place({25.6, 12.0, kPi / 2}));
   whole.advance_until([&] { return whole.ended(goal); }, 6000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-231"));
 }
 
@@ -425,13 +425,13 @@ TEST(Navigation, AMoreImportantGoalInterruptsTheJourneyWhichThenGoesOn) {
   whole.advance_until([&] { return whole.cycle() >= 100; }, 200);
   const auto other =
       whole.ask("go_to", {saphira::point("position", {17.5, 12.0, 0.0}, Frame::map)}, 5);
-  whole.advance_until([&] { return whole.status(goal).state == GoalState::kSuspended; }, 20);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSuspended);
+  whole.advance_until([&] { return whole.status(goal).state == v1::GOAL_SUSPENDED; }, 20);
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUSPENDED);
   EXPECT_NE(whole.status(goal).reason.find("go_to"), std::string::npos);
   whole.advance_until([&] { return whole.ended(other); }, 1000);
-  EXPECT_EQ(whole.status(other).state, GoalState::kSucceeded) << whole.status(other).reason;
+  EXPECT_EQ(whole.status(other).state, v1::GOAL_SUCCEEDED) << whole.status(other).reason;
   whole.advance_until([&] { return whole.ended(goal); }, 4000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-231"));
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
@@ -446,7 +446,7 @@ TEST(People, WhatIsHandedOverHereIsBrought) {
   const auto goal = whole.ask(
       "deliver", {text("object", "the report"), text("to", "EJ-247"), text("sender", "alice")});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "the report was brought from alice to EJ-247");
   EXPECT_EQ(whole.said().at(0), "Please give me the report");
   EXPECT_TRUE(is_in(whole, "EJ-247"));
@@ -458,7 +458,7 @@ TEST(People, NobodyIsAskedForWhatCannotBeBrought) {
   People people({{"Please give me the report", "given", kYes}});
   const auto goal = whole.ask("deliver", {text("object", "the report"), text("to", "N3")});
   const GoalStatus status = among(whole, people, goal, 100);
-  EXPECT_EQ(status.state, GoalState::kFailed) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_FAILED) << status.reason;
   EXPECT_TRUE(status.reason.starts_with("the report cannot be brought: no way from "))
       << status.reason;
   EXPECT_TRUE(whole.said().empty());
@@ -471,7 +471,7 @@ TEST(People, AMessageWithoutAnAnswerOrAPlaceToReportAtIsTold) {
   const auto goal = whole.ask("tell", {text("person", "karen"), text("message", "it is late"),
                                        text("sender", "alice"), saphira::number("patience", 3.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "karen was told, and did not answer");
   EXPECT_EQ(whole.said().back(), "karen, alice says: it is late");
   EXPECT_TRUE(is_in(whole, "EJ-247"));
@@ -486,7 +486,7 @@ TEST(People, APersonIsAskedAndTheAnswerComesBack) {
       whole.ask("inquire", {text("person", "john"), text("question", "where karen is"),
                             text("sender", "alice"), text("back", "EJ-245")});
   const GoalStatus status = among(whole, people, goal, 9000);
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "john, asked where karen is, said EJ-244");
   EXPECT_TRUE(is_in(whole, "EJ-245"));
   EXPECT_EQ(whole.trouble(), "");
@@ -500,7 +500,7 @@ TEST(People, WhoIsNotFoundIsReportedToo) {
       whole.ask("inquire", {text("person", "john"), text("question", "where karen is"),
                             text("back", "EJ-245"), saphira::number("patience", 3.0)});
   const GoalStatus status = among(whole, people, goal, 9000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason,
             "john was not asked: find-person: john is not to be found, neither at EJ-247");
   EXPECT_TRUE(is_in(whole, "EJ-245"));
@@ -514,7 +514,7 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   const auto goal = whole.ask("deliver", {text("object", "the key"), text("from", "EJ-247"),
                                           text("to", "EJ-250"), saphira::number("patience", 5.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason, "nobody at EJ-250 took the key: the robot still has it");
   EXPECT_TRUE(people.all_answered());
 }
@@ -537,9 +537,9 @@ GoalStatus delivered_to_alice(const intentions::Value& taker, const std::string&
 TEST(People, ADeliveryIsDoneWhenTheOneWhomItWasForHasIt) {
   EXPECT_EQ(delivered_to_alice("alice", "no").reason,
             "the report was brought from karen to alice at EJ-247");
-  EXPECT_EQ(delivered_to_alice("karen", "yes").state, GoalState::kSucceeded);
+  EXPECT_EQ(delivered_to_alice("karen", "yes").state, v1::GOAL_SUCCEEDED);
   const GoalStatus taken = delivered_to_alice("karen", "no");
-  EXPECT_EQ(taken.state, GoalState::kFailed);
+  EXPECT_EQ(taken.state, v1::GOAL_FAILED);
   EXPECT_EQ(taken.reason, "karen took the report, which was for alice");
   EXPECT_EQ(delivered_to_alice(kYes, "no").reason, "somebody took the report, which was for alice");
 }
@@ -551,7 +551,7 @@ TEST(People, AReplyThatIsNoAnswerIsAskedOnceMoreAndTold) {
   const auto goal = whole.ask("find-person", {text("name", "bob"), text("places", "EJ-247"),
                                               saphira::number("patience", 3.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason,
             "bob is not to be found, neither at EJ-247; not understood: karen: pardon me?");
   EXPECT_EQ(std::count(whole.said().begin(), whole.said().end(), "I do not understand that"), 1);
@@ -584,7 +584,7 @@ TEST(People, WhoDoesNotKnowWhoHasItIsNobodysName) {
   const auto goal = whole.ask("deliver", {text("object", "the key"), text("from", "EJ-247"),
                                           text("to", "EJ-250"), saphira::number("patience", 5.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason, "the key is not at EJ-247, and nobody there knows who has it");
 }
 
@@ -621,7 +621,7 @@ TEST(People, APlaceOrAPersonThatIsNamedAtOnceIsNext) {
                                         {"Is john here?", "answer", "EJ-246"},
                                         {"Is john here?", "answer", "yes"}},
                                        "john");
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "john is at EJ-246");
   EXPECT_FALSE(said(whole, "Who knows"));
 }
@@ -645,7 +645,7 @@ TEST(People, ThePlacesOfAllWhoKnowAreTried) {
                                         {"Who knows where karen is?", "answer", "EJ-246"},
                                         {"Is karen here?", "answer", "yes"}},
                                        "karen");
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "karen is at EJ-246");
 }
 
@@ -664,7 +664,7 @@ TEST(People, WhoKnowsAndHasNoPlaceIsFoundByThoseWhoKnowThat) {
                                         {"Who knows where karen is?", "answer", "EJ-244"},
                                         {"Is karen here?", "answer", "yes"}},
                                        "karen");
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_EQ(status.reason, "karen is at EJ-244");
 }
 
@@ -673,7 +673,7 @@ TEST(People, ThoseWhoKnowOfEachOtherAloneAreNoHelp) {
   whole.claim("knows-where-karen", knowers({"john"}));
   whole.claim("knows-where-john", knowers({"karen"}));
   const GoalStatus status = found_from(whole, {}, "karen");
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason,
             "nobody has said where karen may be, nor where those who know it may be: john");
   EXPECT_TRUE(whole.said().empty());
@@ -711,7 +711,7 @@ TEST(People, WhoIsNowhereIsNotFoundAndTheReasonSaysWhere) {
   const auto goal = whole.ask("find-person", {text("name", "bob"), text("places", "EJ-247, EJ-249"),
                                               saphira::number("patience", 3.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason, "bob is not to be found, neither at EJ-247, EJ-249");
   const GoalStatus unknown = whole.achieve("find-person", {text("name", "eve")}, 100);
   EXPECT_EQ(unknown.reason, "nobody has said where eve may be");
@@ -726,13 +726,13 @@ TEST(People, AQuestionIsAskedAgainAndWhatWasSaidBeforeIsNoAnswer) {
                     {text("question", "Is it late?"), saphira::number("patience", 2.0),
                      saphira::number("times", 3.0)},
                     200);
-  EXPECT_EQ(silent.state, GoalState::kFailed);
+  EXPECT_EQ(silent.state, v1::GOAL_FAILED);
   EXPECT_EQ(silent.reason, "nobody answered the question: Is it late?");
   EXPECT_EQ(whole.said().size(), 3U);
   People people({{"What time is it?", "time", "half past nine"}});
   const auto goal = whole.ask("ask", {text("question", "What time is it?"), text("about", "time")});
   const GoalStatus status = among(whole, people, goal, 200);
-  EXPECT_EQ(status.state, GoalState::kSucceeded);
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(status.reason, "half past nine");
 }
 
@@ -755,7 +755,7 @@ TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
   options.sees = true_eyes();
   Whole alone(options);
   const GoalStatus status = alone.achieve("attend-person", {}, 1000);
-  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason, "no person is to be seen all around");
   EXPECT_TRUE(said(alone, "I can't find you!"));
   EXPECT_TRUE(alone.at_rest());
@@ -899,7 +899,7 @@ TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
   for (const std::string& line : whole.said())
     trace += "says: " + line + "\n";
   const GoalStatus& status = whole.status(goal);
-  trace += std::string(intentions::name_of(status.state)) + ": " + status.reason + "\n";
+  trace += std::string(name_of(status.state)) + ": " + status.reason + "\n";
   EXPECT_TRUE(whole.ended(goal));
   EXPECT_EQ(whole.trouble(), "");
   const char* const source = std::getenv("SAPHIRA_SOURCE_DIR");

@@ -151,8 +151,7 @@ TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
         return whole.ended(goal);
       },
       600);
-  EXPECT_EQ(whole.status(goal).state, intentions::GoalState::kSucceeded)
-      << whole.status(goal).reason;
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_LT(degrees(worst), 15.0) << "of 30 degrees to the edge of the picture";
   EXPECT_NEAR((Vec2(17.5, 10.5) - whole.truth().position()).norm(), 1.0, 0.4);
   for (int i = 0; i < 30; ++i)
@@ -178,7 +177,7 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
     for (int cycle = 0; cycle < wait; ++cycle)
       whole.advance();
     const auto status = whole.achieve("follow-person", {saphira::number("seconds", 10.0)}, 900);
-    EXPECT_EQ(status.state, intentions::GoalState::kSucceeded)
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED)
         << status.reason << ", asked after " << wait << " cycles";
     EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 4.0)
         << wait;
@@ -195,7 +194,7 @@ TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   options.sees = vision_eyes(Stereo::bands);
   Whole whole(options);
   const auto status = whole.achieve("blob-search", {saphira::text("channel", "a")}, 1800);
-  EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_LT((whole.truth().position() - Vec2(17.8, 10.5)).norm(), 0.8);
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
@@ -213,7 +212,7 @@ TEST(VisionEyes, SomethingOnTheWayToAColorIsPassed) {
     const auto status =
         whole.achieve("blob-search",
                       {saphira::text("channel", "a"), saphira::number("distance", distance)}, 1800);
-    EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
     EXPECT_NEAR((whole.truth().position() - Vec2(17.8, 10.5)).norm(), distance, 0.2);
     EXPECT_EQ(whole.drive().contacts(), 0);
   }

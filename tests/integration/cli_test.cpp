@@ -71,19 +71,12 @@ class Scripted {
     auto goals = node.reader(topics::kGoals);
     auto commands = node.reader(topics::kDriveTeleop);
     up_ = true;
-    v1::Stamp stamp;
-    stamp.epoch = 7;
+    v1::Stamp stamp{.epoch = 7};
     while (!stop_.requested()) {
       node.wait(milliseconds(20), &stop_);
       stamp.cycle = stamp.cycle + 1;
-      v1::RobotState robot;
-      robot.stamp = stamp;
-      robot.battery = 12.5;
-      robots.write(robot);
-      v1::Grant grant;
-      grant.stamp = stamp;
-      grant.reason = "nobody asked";
-      grants.write(grant);
+      robots.write({.stamp = stamp, .battery = 12.5});
+      grants.write({.stamp = stamp, .reason = "nobody asked"});
       node.status().state = v1::SERVICE_RUNNING;
       node.status().stamp = stamp;
       node.publish_status();
@@ -98,12 +91,11 @@ class Scripted {
 
   void answer(const bus::Sample<v1::Goal>& goal, const v1::Stamp& stamp,
               bus::Writer<v1::GoalStatus>& statuses) {
-    v1::GoalStatus status;
-    status.id = goal.data.id;
-    status.stamp = stamp;
-    status.functor = goal.data.functor;
-    status.state = v1::GOAL_UNDERWAY;
-    status.step = "on the way";
+    v1::GoalStatus status{.id = goal.data.id,
+                          .stamp = stamp,
+                          .functor = goal.data.functor,
+                          .state = v1::GOAL_UNDERWAY,
+                          .step = "on the way"};
     if (goal.info.disposed) {
       ++withdrawn_;
       status.state = v1::GOAL_CANCELED;
@@ -216,14 +208,11 @@ TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
   EXPECT_TRUE(test::wait_until([&] {
     for (const auto& sample : heard.take()) {
       texts.push_back(sample.data.speaker + ": " + sample.data.text);
-      v1::Utterance answer;
-      answer.id.writer = node.instance();
-      answer.id.number = texts.size();
-      answer.answers = sample.data.id;
-      answer.text = "I heard " + sample.data.text;
-      answer.confidence = 1.0;
-      answer.end = true;
-      said.write(answer);
+      said.write({.id = {node.instance(), texts.size()},
+                  .answers = sample.data.id,
+                  .text = "I heard " + sample.data.text,
+                  .confidence = 1.0,
+                  .end = true});
     }
     return texts.size() == 3;
   })) << talk.output();
@@ -380,8 +369,7 @@ TEST_F(CliTest, ThePythonScriptOfTheDocumentDoesWhatItSays) {
   const Scripted scripted(robot_);
   bus::Node node(test::node_options("teller", robot_));
   auto messages = node.writer(topics::kMessages);
-  v1::Message message;
-  message.text = "here I am";
+  v1::Message message{.text = "here I am"};
   const std::string bin = std::filesystem::path(test::program("saphira")).parent_path().string();
   // timeout: a signal to it ends the script with the commands that it has started.
   test::Process script(
@@ -429,9 +417,7 @@ struct Button {
     node.wait(milliseconds(20));
     for (const auto& sample : presses.take())
       latched = latched || (hears && sample.data.active);
-    v1::Grant grant;
-    grant.estopped = latched;
-    grants.write(grant);
+    grants.write({.estopped = latched});
   }
   bus::Node node;
   bus::Reader<v1::MotorCommand> presses = node.reader(topics::kDriveEstop);

@@ -9,10 +9,7 @@
 namespace saphira::test {
 
 inline v1::Goal goal(const std::string& functor, std::vector<v1::Argument> arguments = {}) {
-  v1::Goal made;
-  made.functor = functor;
-  made.arguments = std::move(arguments);
-  return made;
+  return {.functor = functor, .arguments = std::move(arguments)};
 }
 
 }  // namespace saphira::test

@@ -149,8 +149,7 @@ int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptio
     std::cerr << "saphira: no trigger " << name << " can fire: saphira agents lists them\n";
     return bus::kExitFailed;
   }
-  v1::Trigger withdrawn;
-  withdrawn.id = *id;
+  v1::Trigger withdrawn{.id = *id};
   const auto begin = Clock::now();
   while (is_among(name, bus::text_of(answer.results, "live"))) {
     if (stop.requested() || seconds_since(begin) > 5.0) {

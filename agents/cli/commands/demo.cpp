@@ -362,8 +362,7 @@ class Demo {
     bus::GoalClient goals(node, "saphira demo");
     auto permits = node.writer(bus::topics::kStepPermit);
 
-    v1::Goal goal;
-    goal.functor = "go_to";
+    v1::Goal goal{.functor = "go_to"};
     goal.arguments = {
         bus::point("position", options_.goal[0], options_.goal[1], 0.0, v1::FRAME_ODOM)};
     goal.deadline = options_.time_limit;
@@ -390,10 +389,7 @@ class Demo {
       const std::uint64_t until = kPermitted + (status_ ? status_->stamp.cycle : 0);
       if (!options_.lockstep || until < permitted + kPermitted / 3)
         return;
-      v1::StepPermit step;
-      step.source = "saphira demo";
-      step.until_cycle = permitted = until;
-      permits.write(step);
+      permits.write({.source = "saphira demo", .until_cycle = permitted = until});
     };
     permit();
 

@@ -316,9 +316,7 @@ class Teleop {
       return;
     }
     keys_.release();
-    v1::Goal goal;
-    goal.functor = "drive";
-    goal.arguments = {bus::number("speed", kConstantVelocity)};
+    v1::Goal goal{.functor = "drive", .arguments = {bus::number("speed", kConstantVelocity)}};
     constant_ = goals_.ask(goal);
     pilot_.hand_back();
     note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";

@@ -372,8 +372,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   bus::GoalClient goals(view.node, "saphira map build");
-  v1::Goal wanted;
-  wanted.functor = "build-map";
+  v1::Goal wanted{.functor = "build-map"};
   const v1::GoalId goal = goals.ask(wanted);
   std::string told;
   std::size_t corridors = 0;

@@ -274,12 +274,7 @@ constexpr const char* kClaimant = "saphira beliefs";
 v1::BeliefClaim claim_of(const std::string& name) {
   Fnv1a hash;
   hash.add(kClaimant + (" " + name));
-  v1::BeliefClaim sample;
-  sample.id.writer = hash.value();
-  sample.id.number = 1;
-  sample.source = kClaimant;
-  sample.name = name;
-  return sample;
+  return {.id = {hash.value(), 1}, .source = kClaimant, .name = name};
 }
 
 /// The belief of that name from this command's claim; nullptr: none.

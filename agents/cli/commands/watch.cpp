@@ -183,10 +183,7 @@ v1::Answer ask_program(const std::string& program, bus::Node& node, bus::Request
         throw Absent{std::move(words)};
     });
   } catch (const Absent& absent) {
-    v1::Answer answer;
-    answer.code = v1::ANSWER_NOBODY;
-    answer.text = absent.words;
-    return answer;
+    return v1::Answer{.code = v1::ANSWER_NOBODY, .text = absent.words};
   }
 }
 

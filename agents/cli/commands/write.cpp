@@ -61,8 +61,7 @@ nlohmann::json object_of(const std::string& text) {
 
 /// A motor command; missing members get their natural values.
 v1::MotorCommand motor_command(const std::string& text) {
-  v1::MotorCommand command;
-  command.active = true;
+  v1::MotorCommand command{.active = true};
   bus::from_json(text, command);
   const nlohmann::json json = object_of(text);
   if (json.contains("velocity") && !json.contains("translation"))

@@ -37,9 +37,7 @@ std::string trouble_of(const Move& move) {
 }
 
 v1::MotorCommand command_of(const Move& move) {
-  v1::MotorCommand command;
-  command.active = true;
-  command.move = 1;
+  v1::MotorCommand command{.active = true, .move = 1};
   switch (move.kind) {
     case Move::Kind::move:
       command.translation = v1::TRANSLATION_POSITION;

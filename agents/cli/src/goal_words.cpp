@@ -94,8 +94,7 @@ v1::Argument parse_argument(const std::string& word) {
     throw std::invalid_argument("the name \"" + name + "\" is longer than 31 characters");
   if (value.size() > kLongestText)
     throw std::invalid_argument("the value of " + name + " is longer than 255 characters");
-  v1::Argument argument;
-  argument.name = name;
+  v1::Argument argument{.name = name};
   if (const auto number = parse_number(value)) {
     argument.kind = v1::ARGUMENT_NUMBER;
     argument.number = *number;
@@ -113,8 +112,7 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
     throw std::invalid_argument("expected an activity such as go_to, found \"" + functor + "\"");
   if (words.size() > kMostArguments)
     throw std::invalid_argument("a goal has at most 16 arguments");
-  v1::Goal goal;
-  goal.functor = functor;
+  v1::Goal goal{.functor = functor};
   for (const std::string& word : words) {
     const v1::Argument argument = parse_argument(word);
     for (const v1::Argument& other : goal.arguments)

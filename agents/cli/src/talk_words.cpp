@@ -73,11 +73,7 @@ std::string time_of(double time) {
 }
 
 v1::Argument text_argument(const std::string& name, const std::string& text) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = v1::ARGUMENT_TEXT;
-  argument.text = text;
-  return argument;
+  return {.name = name, .kind = v1::ARGUMENT_TEXT, .text = text};
 }
 
 std::string describe(const v1::Agent& agent) {
@@ -107,10 +103,8 @@ v1::Argument parse_slot(const std::string& word) {
   const std::size_t open = word.find("=?");
   if (open == std::string::npos || open == 0 || open != word.find('='))
     return parse_argument(word);
-  v1::Argument argument;
-  argument.name = word.substr(0, open);
-  argument.kind = v1::ARGUMENT_UNBOUND;
-  argument.text = word.substr(open + 2);
+  v1::Argument argument{
+      .name = word.substr(0, open), .kind = v1::ARGUMENT_UNBOUND, .text = word.substr(open + 2)};
   const std::string& variable = argument.text;
   if (!std::all_of(variable.begin(), variable.end(),
                    [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }))

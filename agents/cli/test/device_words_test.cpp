@@ -83,9 +83,7 @@ TEST(DeviceWords, SayWhatWasExpected) {
 }
 
 TEST(DeviceWords, RowsShowWhatTheRobotHas) {
-  v1::RobotState robot;
-  robot.battery = 12.34;
-  robot.digital_output = 5;
+  v1::RobotState robot{.battery = 12.34, .digital_output = 5};
   const auto find = [](const std::vector<std::vector<std::string>>& rows, const std::string& name) {
     for (const auto& row : rows)
       if (row[0] == name)
@@ -96,16 +94,15 @@ TEST(DeviceWords, RowsShowWhatTheRobotHas) {
   EXPECT_EQ(find(rows, "battery"), "12.3 V");
   EXPECT_EQ(find(rows, "digital output"), "0b00000101");
   EXPECT_EQ(find(rows, "encoders"), "");
-  v1::Devices devices;
-  devices.has_flags = true;
-  devices.emergency_stop = true;
-  devices.has_encoders = true;
-  devices.left_encoder = -3;
-  devices.has_charge = true;
-  devices.charge = 0.5;
-  devices.has_gripper = true;
-  devices.gripper_state = 0x12;
-  devices.requests = std::vector<v1::DeviceRequest>(1);
+  v1::Devices devices{.requests = std::vector<v1::DeviceRequest>(1),
+                      .has_flags = true,
+                      .emergency_stop = true,
+                      .has_charge = true,
+                      .charge = 0.5,
+                      .has_encoders = true,
+                      .left_encoder = -3,
+                      .has_gripper = true,
+                      .gripper_state = 0x12};
   devices.requests[0].source = "me";
   devices.requests[0].answer.text = "servo 1500 us: refused; why not";
   rows = device_rows(robot, devices);

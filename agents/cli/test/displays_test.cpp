@@ -10,43 +10,35 @@ namespace {
 v1::IntentionNode node(std::uint32_t id, std::uint32_t parent, bool blocking,
                        const std::string& schema, const std::string& name, const std::string& label,
                        const std::string& step = "") {
-  v1::IntentionNode result;
-  result.id = id;
-  result.parent = parent;
-  result.blocking = blocking;
-  result.schema = schema;
-  result.name = name;
-  result.label = label;
-  result.step = step;
-  result.state = v1::INTENTION_RUNNING;
-  return result;
+  return {.id = id,
+          .parent = parent,
+          .name = name,
+          .schema = schema,
+          .state = v1::INTENTION_RUNNING,
+          .blocking = blocking,
+          .label = label,
+          .step = step};
 }
 
 v1::IntendedBehavior behavior(std::uint32_t intention, bool blocking, const std::string& schema,
                               const std::string& name) {
-  v1::IntendedBehavior result;
-  result.intention = intention;
-  result.blocking = blocking;
-  result.schema = schema;
-  result.name = name;
-  return result;
+  return {.name = name, .schema = schema, .intention = intention, .blocking = blocking};
 }
 
 // The snapshot in the paper, without the next state: that may be the one for trouble.
 TEST(IntentionsDisplay, IsFigure10) {
-  v1::Intentions all;
-  all.behavior_control = true;
-  all.nodes = {node(1, 0, true, "Avoid", "Avoid1", "END"),
-               node(3674, 0, true, "Deliver-Object", "", "S171"),
-               node(3675, 3674, true, "Plan-And-Execute", "", "S146"),
-               node(3676, 3675, false, "Monitor-Planex", "", "CLEANUP"),
-               node(3679, 3675, true, "Follow-Path", "Follow-It", "S138"),
-               node(3677, 3679, true, "Corridor-To-Junction", "", "END"),
-               node(3678, 3677, true, "Follow-To-Target", "", "END")};
-  all.behaviors = {behavior(1, true, "Avoid-Collision", "Collide"),
-                   behavior(3678, false, "Follow", "Follow-To-Target"),
-                   behavior(3678, false, "Orient", "Orient-To-Target"),
-                   behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")};
+  v1::Intentions all{.behavior_control = true,
+                     .behaviors = {behavior(1, true, "Avoid-Collision", "Collide"),
+                                   behavior(3678, false, "Follow", "Follow-To-Target"),
+                                   behavior(3678, false, "Orient", "Orient-To-Target"),
+                                   behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")},
+                     .nodes = {node(1, 0, true, "Avoid", "Avoid1", "END"),
+                               node(3674, 0, true, "Deliver-Object", "", "S171"),
+                               node(3675, 3674, true, "Plan-And-Execute", "", "S146"),
+                               node(3676, 3675, false, "Monitor-Planex", "", "CLEANUP"),
+                               node(3679, 3675, true, "Follow-Path", "Follow-It", "S138"),
+                               node(3677, 3679, true, "Corridor-To-Junction", "", "END"),
+                               node(3678, 3677, true, "Follow-To-Target", "", "END")}};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1)
   * Avoid-Collision (Collide) B
 * Deliver-Object (I3674)
@@ -68,40 +60,31 @@ TEST(Displays, TheInstanceIsInWords) {
     EXPECT_EQ(instance_words(name), name);
     EXPECT_EQ(without_instance(name), name);
   }
-  v1::Intentions all;
-  all.behavior_control = true;
-  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1")};
-  all.behaviors = {behavior(1, true, "Stop", "rest#32"),
-                   behavior(1, false, "GoToPos", "GoToPos#7")};
+  v1::Intentions all{.behavior_control = true,
+                     .behaviors = {behavior(1, true, "Stop", "rest#32"),
+                                   behavior(1, false, "GoToPos", "GoToPos#7")},
+                     .nodes = {node(1, 0, true, "go_to", "go_to1", "S1")}};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
   * Stop (rest, instance 32) B
   o GoToPos (instance 7) B
 )");
-  v1::BehaviorState state;
-  state.schema = "Stop";
-  state.name = "rest#32";
+  v1::BehaviorState state{.name = "rest#32", .schema = "Stop"};
   EXPECT_TRUE(behavior_display(state, nullptr, nullptr).starts_with("rest, instance 32 (Stop)\n"));
-  v1::ProcessSet set;
-  set.service = "intentions";
-  v1::Process process;
-  process.name = "rest#32";
+  v1::ProcessSet set{.service = "intentions"};
+  v1::Process process{.name = "rest#32"};
   set.processes = {process};
   EXPECT_NE(processes_table({set}).find("rest, instance 32"), std::string::npos);
 }
 
 TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
-  v1::Intentions all;
-  all.behavior_control = false;
-  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1", "driving to (3, 1)"),
-               node(2, 1, false, "watch", "w", "MONITOR", "waits for *failed*")};
+  v1::Intentions all{.behavior_control = false,
+                     .nodes = {node(1, 0, true, "go_to", "go_to1", "S1", "driving to (3, 1)"),
+                               node(2, 1, false, "watch", "w", "MONITOR", "waits for *failed*")}};
   all.nodes[1].state = v1::INTENTION_SUSPENDED;
   all.behaviors = {behavior(1, true, "GoToPos", "GoToPos")};
   v1::BehaviorSet behaviors;
-  v1::BehaviorState state;
-  state.name = "GoToPos";
-  state.turn_activity = 0.5;
-  state.speed_activity = 1.0;
-  state.goal = 0.25;
+  v1::BehaviorState state{
+      .name = "GoToPos", .turn_activity = 0.5, .speed_activity = 1.0, .goal = 0.25};
   behaviors.behaviors = {state};
   EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1)          driving to (3, 1)
   o watch (w)             suspended; waits for *failed*
@@ -113,10 +96,10 @@ behavior control is off
 
 // The intentions service has its behaviors in the tree, as leaves.
 TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
-  v1::Intentions all;
-  all.behavior_control = true;
-  all.nodes = {node(1, 0, true, "go_to", "go_to1", "S1"),
-               node(2, 1, true, "GoToPos", "GoToPos", ""), node(3, 1, false, "Stop", "end", "B")};
+  v1::Intentions all{
+      .behavior_control = true,
+      .nodes = {node(1, 0, true, "go_to", "go_to1", "S1"),
+                node(2, 1, true, "GoToPos", "GoToPos", ""), node(3, 1, false, "Stop", "end", "B")}};
   all.nodes[2].state = v1::INTENTION_SUSPENDED;
   all.behaviors = {behavior(2, true, "GoToPos", "GoToPos")};
   EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1)
@@ -126,54 +109,44 @@ TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
 }
 
 TEST(IntentionsDisplay, ComesToAnEndWithWhatIsNoTree) {
-  v1::Intentions all;
-  all.behavior_control = true;
-  all.nodes = {node(1, 2, true, "a", "a", ""), node(2, 1, true, "b", "b", ""),
-               node(0, 0, true, "c", "c", "")};
+  v1::Intentions all{.behavior_control = true,
+                     .nodes = {node(1, 2, true, "a", "a", ""), node(2, 1, true, "b", "b", ""),
+                               node(0, 0, true, "c", "c", "")}};
   EXPECT_NE(intentions_display(all, nullptr), "");
 }
 
 v1::BehaviorState keep_off() {
-  v1::BehaviorState state;
-  state.name = "Keep Off";
-  state.schema = "Keep Off";
-  state.priority = 1;
-  state.running = true;
-  state.turn_activity = 1.0;
-  state.turn_weight = 0.5;
-  state.speed_activity = 0.5;
-  state.speed_weight = 0.5;
-  state.goal = 0.0;
-  state.progress = 1.0;
-  state.recommends_turn = true;
-  state.turn = radians(-15.0);
-  state.recommends_speed = true;
-  state.speed = 0.2;
-  v1::RuleState rule;
-  rule.name = "Obstacle-Right";
-  rule.strength = 0.0;
-  rule.action = v1::CONTROL_TURN_LEFT;
-  rule.value = radians(5.0);
+  v1::BehaviorState state{.name = "Keep Off",
+                          .schema = "Keep Off",
+                          .priority = 1,
+                          .running = true,
+                          .turn_activity = 1.0,
+                          .speed_activity = 0.5,
+                          .turn_weight = 0.5,
+                          .speed_weight = 0.5,
+                          .goal = 0.0,
+                          .progress = 1.0,
+                          .recommends_turn = true,
+                          .turn = radians(-15.0),
+                          .recommends_speed = true,
+                          .speed = 0.2};
+  v1::RuleState rule{.name = "Obstacle-Right",
+                     .strength = 0.0,
+                     .action = v1::CONTROL_TURN_LEFT,
+                     .value = radians(5.0)};
   state.rules.push_back(rule);
   rule.name = "Caution";
   rule.strength = 0.5;
   rule.action = v1::CONTROL_DECELERATE;
   rule.value = 0.1;
   state.rules.push_back(rule);
-  v1::FuzzyVariable variable;
-  variable.name = "front";
-  variable.value = 0.5;
-  state.variables.push_back(variable);
+  state.variables.push_back({.name = "front", .value = 0.5});
   return state;
 }
 
 TEST(BehaviorsDisplay, HasActivityAsABarAndRecommendationsToTheSides) {
-  v1::BehaviorSet all;
-  all.control = true;
-  v1::BehaviorState stop;
-  stop.name = "end";
-  stop.schema = "Stop";
-  stop.priority = 4;
+  v1::BehaviorSet all{.control = true};
+  v1::BehaviorState stop{.name = "end", .schema = "Stop", .priority = 4};
   all.behaviors = {keep_off(), stop};
   all.turning = true;
   all.turn = radians(-15.0);
@@ -214,17 +187,13 @@ TEST(BehaviorDisplay, IsFigure26) {
   sensitivity.kind = v1::ARGUMENT_NUMBER;
   sensitivity.number = 2.0;
   intended.parameters = {sensitivity};
-  v1::BehaviorSchema schema;
-  schema.summary = "steers off what is ahead";
+  v1::BehaviorSchema schema{.summary = "steers off what is ahead"};
   v1::BehaviorParameter distance;
   distance.name = "distance";
   distance.kind = v1::ARGUMENT_NUMBER;
   distance.usual = 0.75;
   schema.parameters = {distance};
-  v1::RuleText text;
-  text.name = "Caution";
-  text.antecedent = "front";
-  text.action = "Slow Down";
+  v1::RuleText text{.name = "Caution", .antecedent = "front", .action = "Slow Down"};
   schema.rules = {text};
   EXPECT_EQ(behavior_display(keep_off(), &intended, &schema), R"(Keep Off: steers off what is ahead
 
@@ -246,24 +215,16 @@ Fuzzy variables
 }
 
 TEST(SchemaDisplay, SaysWhatABehaviorThatIsNotIntendedTakesAndDoes) {
-  v1::BehaviorSchema schema;
-  schema.name = "KeepOff";
-  schema.summary = "steers off what is ahead";
-  schema.source = "keep-off.beh";
-  v1::BehaviorParameter parameter;
-  parameter.name = "distance";
-  parameter.usual = 0.75;
-  parameter.meaning = "[m] at which it begins";
+  v1::BehaviorSchema schema{
+      .name = "KeepOff", .summary = "steers off what is ahead", .source = "keep-off.beh"};
+  v1::BehaviorParameter parameter{
+      .name = "distance", .meaning = "[m] at which it begins", .usual = 0.75};
   schema.parameters.push_back(parameter);
   parameter.name = "goal";
   parameter.required = true;
   parameter.meaning = "";
   schema.parameters.push_back(parameter);
-  v1::RuleText rule;
-  rule.name = "caution";
-  rule.antecedent = "front";
-  rule.action = "Slow Down";
-  schema.rules.push_back(rule);
+  schema.rules.push_back({.name = "caution", .antecedent = "front", .action = "Slow Down"});
   EXPECT_EQ(schema_display(schema), R"(KeepOff: steers off what is ahead
 It is loaded from keep-off.beh, and no goal or activity intends it now.
 
@@ -277,13 +238,9 @@ Rules
 }
 
 TEST(BeliefsTable, SaysWhoSaidSoAndHowLongAgo) {
-  v1::BeliefSet all;
-  all.stamp.cycle = 100;
-  v1::Belief belief;
-  belief.name = "*failed-execution*";
-  belief.value = "nil";
-  belief.said_by = "plan-and-execute1";
-  belief.since = 75;
+  v1::BeliefSet all{.stamp = {.cycle = 100}};
+  v1::Belief belief{
+      .name = "*failed-execution*", .value = "nil", .said_by = "plan-and-execute1", .since = 75};
   all.beliefs.push_back(belief);
   belief.name = "in-corridor";
   belief.value = "t";
@@ -303,12 +260,11 @@ in-corridor  t      0.0 s  perception
 TEST(ProcessesTable, IsFigure27ForAllServices) {
   v1::ProcessSet interpretation;
   interpretation.service = "interpretation";
-  v1::Process process;
-  process.name = "grid";
-  process.state = v1::PROCESS_RUNNING;
-  process.number = 10;
-  process.since = 1;
-  process.effect = "puts readings into the grid";
+  v1::Process process{.name = "grid",
+                      .state = v1::PROCESS_RUNNING,
+                      .number = 10,
+                      .since = 1,
+                      .effect = "puts readings into the grid"};
   interpretation.processes.push_back(process);
   process.name = "doors";
   process.state = v1::PROCESS_SUSPENDED;

@@ -30,11 +30,8 @@ TEST(Done, AMoveWhenNothingIsLeftOfItAndTheRobotRests) {
 
 TEST(Done, ATurnWhenTheRobotPointsThereAndRests) {
   const Move turn{Move::Kind::turn, "turn", radians(90.0), 0.0};
-  v1::Grant grant;
-  grant.rotation = v1::ROTATION_HEADING;
-  grant.heading = radians(-179.0);
-  v1::RobotState robot;
-  robot.pose_in_odom.th = radians(150.0);
+  v1::Grant grant{.rotation = v1::ROTATION_HEADING, .heading = radians(-179.0)};
+  v1::RobotState robot{.pose_in_odom = {.th = radians(150.0)}};
   EXPECT_FALSE(done(turn, grant, robot));
   EXPECT_EQ(rest_of(turn, grant, robot), ", 31 degrees left");
   robot.pose_in_odom.th = radians(180.0);

@@ -95,13 +95,11 @@ TEST(MapWords, LoadRefusesAFileThatWasCutOff) {
 }
 
 TEST(MapWords, DescribeWhereTheRobotIs) {
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.pose_in_map.x = 1.0;
-  registration.pose_in_map.y = 2.0;
-  registration.covariance.xx = 0.01;
-  registration.confidence = 0.9;
-  registration.environment = 1;
+  v1::Registration registration{.state = v1::REGISTRATION_TRACKING,
+                                .pose_in_map = {.x = 1.0, .y = 2.0},
+                                .covariance = {.xx = 0.01},
+                                .confidence = 0.9,
+                                .environment = 1};
   EXPECT_EQ(describe(registration, a_map()),
             "tracking (1.00, 2.00, 0 deg) +-0.10 m, 0.0 deg, 90 % sure, in corridor 1 (hall)");
   registration.closed_doors = {3, 77};

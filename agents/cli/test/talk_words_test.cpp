@@ -6,16 +6,11 @@ namespace saphira::cli {
 namespace {
 
 v1::Argument named(const std::string& name, v1::ArgumentKind kind) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = kind;
-  return argument;
+  return {.name = name, .kind = kind};
 }
 
 TEST(TalkWords, AnAnswerIsOneObject) {
-  v1::Answer answer;
-  answer.service = "calendar";
-  answer.code = v1::ANSWER_DONE;
+  v1::Answer answer{.service = "calendar", .code = v1::ANSWER_DONE};
   EXPECT_EQ(to_json(answer), R"({"agent":"calendar","code":"done","text":"","values":{}})");
 
   v1::Argument place = named("place", v1::ARGUMENT_TEXT);
@@ -39,10 +34,8 @@ TEST(TalkWords, AnAnswerIsOneObject) {
             R"("open":true,"position":{"x":1.5,"y":-2.0,"th":0.0,"frame":"map"},)"
             R"("hour":[9.5,10.5,11.5],"who":null}})");
 
-  v1::Answer refused;
-  refused.service = "calendar";
-  refused.code = v1::ANSWER_BAD_ARGUMENT;
-  refused.text = "no such person";
+  v1::Answer refused{
+      .service = "calendar", .code = v1::ANSWER_BAD_ARGUMENT, .text = "no such person"};
   EXPECT_EQ(to_json(refused),
             R"({"agent":"calendar","code":"bad_argument","text":"no such person","values":{}})");
 }
@@ -58,10 +51,8 @@ TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
   v1::CapabilityParameter anything;
   anything.name = "anything";
   anything.kind = v1::ARGUMENT_UNBOUND;
-  v1::Capability capability;
-  capability.functor = "meet";
-  capability.summary = "meets somebody";
-  capability.parameters = {place, hour, anything};
+  v1::Capability capability{
+      .functor = "meet", .summary = "meets somebody", .parameters = {place, hour, anything}};
   v1::Agent robot;
   robot.name = "robot";
   robot.capabilities = {capability, capability};
@@ -78,9 +69,7 @@ TEST(TalkWords, TheRobotsActivitiesAreTheLastLine) {
 }
 
 TEST(TalkWords, EqualValuesOfTwoAgentsAreTwoAnswers) {
-  v1::Answer answer;
-  answer.service = "calendar";
-  answer.text = "on its way";
+  v1::Answer answer{.service = "calendar", .text = "on its way"};
   EXPECT_TRUE(repeats(answer, answer)) << "it says again that it is at work";
   EXPECT_FALSE(repeats(answer, v1::Answer()));
   answer.results = {named("place", v1::ARGUMENT_TEXT)};
@@ -112,18 +101,14 @@ TEST(TalkWords, SeveralFunctorsAreOneRequest) {
 }
 
 TEST(TalkWords, SentencesOfBeforeAreNotForAListener) {
-  v1::Utterance said;
-  said.answers.writer = 7;
+  v1::Utterance said{.answers = {.writer = 7}};
   EXPECT_TRUE(is_for(said, 9.0, 7, 2.0)) << "its answer";
   EXPECT_TRUE(is_for(said, 1.9, 8, 2.0));
   EXPECT_FALSE(is_for(said, 2.1, 8, 2.0));
 }
 
 TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
-  v1::Trigger trigger;
-  trigger.kind = v1::TRIGGER_TIME;
-  trigger.period = 5.0;
-  trigger.action = "note";
+  v1::Trigger trigger{.kind = v1::TRIGGER_TIME, .period = 5.0, .action = "note"};
   EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of somebody: every 5 s: note");
   trigger.source = "ann";
   trigger.kind = v1::TRIGGER_EVENT;

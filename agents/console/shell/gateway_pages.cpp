@@ -22,10 +22,7 @@ std::optional<v1::GoalId> goal_id(const std::string& text) {
   if (std::sscanf(text.c_str(), "%llx:%llx%n", &writer, &number, &used) != 2 ||
       static_cast<std::size_t>(used) != text.size())
     return std::nullopt;
-  v1::GoalId id;
-  id.writer = writer;
-  id.number = number;
-  return id;
+  return v1::GoalId{.writer = writer, .number = number};
 }
 
 }  // namespace
@@ -228,13 +225,11 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
                       {bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)}),
          connection, place->reference);
   else if (const auto* out = std::get_if<PointOut>(&message)) {
-    v1::AgentEvent event;
-    event.stamp = stamp_;
-    event.source = operator_of(page.name);
-    event.functor = "pointed_out";
-    event.arguments = {
-        bus::point("position", out->x, out->y, 0.0, out->in_map ? v1::FRAME_MAP : v1::FRAME_ODOM)};
-    pointed_out_.write(event);
+    pointed_out_.write({.stamp = stamp_,
+                        .source = operator_of(page.name),
+                        .functor = "pointed_out",
+                        .arguments = {bus::point("position", out->x, out->y, 0.0,
+                                                 out->in_map ? v1::FRAME_MAP : v1::FRAME_ODOM)}});
   }
   show_control();
 }

@@ -50,10 +50,8 @@ int main(int argc, char** argv) {
         [&](const v1::Request& request) {
           const std::string person = saphira::lowered(bus::text_of(request.arguments, "person"));
           if (person.empty()) {
-            v1::Answer wrong;
-            wrong.code = v1::ANSWER_BAD_ARGUMENT;
-            wrong.text = "person: expected a name as text, such as person=karen";
-            return wrong;
+            return v1::Answer{.code = v1::ANSWER_BAD_ARGUMENT,
+                              .text = "person: expected a name as text, such as person=karen"};
           }
           const auto found = places.find(person);
           if (found == places.end())

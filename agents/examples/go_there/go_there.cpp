@@ -22,9 +22,8 @@ int main(int argc, char** argv) {
     bus::Node node(options);
     bus::GoalClient goals(node, "go_there");
 
-    v1::Goal goal;
-    goal.functor = "go_to";
-    goal.arguments = {bus::point("position", x, y, 0.0, v1::FRAME_ROBOT)};
+    v1::Goal goal{.functor = "go_to",
+                  .arguments = {bus::point("position", x, y, 0.0, v1::FRAME_ROBOT)}};
     const v1::GoalId id = goals.ask(goal);
 
     std::string told;

@@ -263,10 +263,9 @@ void Door::wait_for(const Call& call) {
 void Door::request(const Call& call, const v1::Capability& capability) {
   if (capability.acts && !has_room(call))
     return;
-  v1::Request request;
-  request.functor = capability.functor;
-  request.deadline = capability.acts ? kDeadline : kReply;
-  request.source = who_;
+  v1::Request request{.source = who_,
+                      .functor = capability.functor,
+                      .deadline = capability.acts ? kDeadline : kReply};
   for (const v1::CapabilityParameter& parameter : capability.parameters)
     request.arguments.push_back(call.arguments.contains(parameter.name)
                                     ? argument(parameter.name, call.arguments[parameter.name])
@@ -279,9 +278,7 @@ void Door::request(const Call& call, const v1::Capability& capability) {
                              .declared = capability.parameters};
     return;
   }
-  v1::GoalId id;
-  id.writer = node_.instance();
-  id.number = number;
+  v1::GoalId id{.writer = node_.instance(), .number = number};
   actions_.begin(id, std::move(request), capability.parameters, now_);
   follow(call, id);
 }
@@ -320,8 +317,7 @@ bool Door::has_room(const Call& call) {
 void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
   if (!has_room(call))
     return;
-  v1::Goal goal;
-  goal.functor = schema.name;
+  v1::Goal goal{.functor = schema.name};
   for (const auto& [name, value] : call.arguments.items())
     if (name != "wait_s")
       goal.arguments.push_back(argument(name, value));
@@ -520,8 +516,7 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
 /// Presses until the bridge has latched the stop, and then releases. The topic is best effort.
 void Door::press() {
   const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped;
-  v1::MotorCommand command;
-  command.source = who_;
+  v1::MotorCommand command{.source = who_};
   for (int i = 0; i < 4; ++i) {
     command.number = bus::next_request_number();
     command.active = !latched;

@@ -8,31 +8,23 @@ namespace saphira::mcp {
 namespace {
 
 v1::CapabilityParameter declared(const std::string& name, v1::ArgumentKind kind, bool required) {
-  v1::CapabilityParameter parameter;
-  parameter.name = name;
-  parameter.kind = kind;
-  parameter.required = required;
-  return parameter;
+  return {.name = name, .kind = kind, .required = required};
 }
 
 v1::Argument found(const std::string& name, v1::ArgumentKind kind) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = kind;
-  return argument;
+  return {.name = name, .kind = kind};
 }
 
 TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
-  v1::Capability capability;
-  capability.parameters = {declared("person", v1::ARGUMENT_TEXT, true),
-                           declared("place", v1::ARGUMENT_POINT, false),
-                           declared("age", v1::ARGUMENT_NUMBER, false)};
+  v1::Capability capability{.parameters = {declared("person", v1::ARGUMENT_TEXT, true),
+                                           declared("place", v1::ARGUMENT_POINT, false),
+                                           declared("age", v1::ARGUMENT_NUMBER, false)}};
   const Json form = form_of(capability);
   EXPECT_EQ(form["type"], "object");
   EXPECT_FALSE(form["properties"].contains("person"));
-  v1::Answer answer;
-  answer.results = {found("place", v1::ARGUMENT_POINT), found("place", v1::ARGUMENT_POINT),
-                    found("age", v1::ARGUMENT_NUMBER)};
+  v1::Answer answer{.results = {found("place", v1::ARGUMENT_POINT),
+                                found("place", v1::ARGUMENT_POINT),
+                                found("age", v1::ARGUMENT_NUMBER)}};
   answer.results[2].number = std::numeric_limits<double>::infinity();
   // As it arrives at the client.
   const Json value = Json::parse(values_of(answer.results, capability.parameters).dump());
@@ -51,8 +43,7 @@ TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
 }
 
 TEST(McpResults, AGoalHasItsForm) {
-  v1::GoalStatus status;
-  status.waits_for.writer = 1;
+  v1::GoalStatus status{.waits_for = {.writer = 1}};
   for (const v1::GoalState state :
        {v1::GOAL_WAITING, v1::GOAL_REFUSED, v1::GOAL_UNDERWAY, v1::GOAL_SUSPENDED,
         v1::GOAL_SUCCEEDED, v1::GOAL_FAILED, v1::GOAL_CANCELED}) {

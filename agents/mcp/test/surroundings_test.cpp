@@ -8,21 +8,12 @@ namespace saphira::mcp {
 namespace {
 
 v1::Pose2 pose(double x, double y, double th) {
-  v1::Pose2 made;
-  made.x = x;
-  made.y = y;
-  made.th = th;
-  return made;
+  return {.x = x, .y = y, .th = th};
 }
 
 v1::MapArtifact artifact(std::uint32_t id, v1::ArtifactType type, const std::string& name, double x,
                          double y) {
-  v1::MapArtifact made;
-  made.id = id;
-  made.type = type;
-  made.name = name;
-  made.pose_in_map = pose(x, y, 0.0);
-  return made;
+  return {.id = id, .type = type, .pose_in_map = pose(x, y, 0.0), .name = name};
 }
 
 class SurroundingsTest : public testing::Test {
@@ -85,17 +76,13 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
   wall.type = v1::ARTIFACT_WALL;
   wall.pose_in_odom = pose(4.0, 7.0, 1.5707963);
   wall.length = 6.0;
-  v1::Percept door;
-  door.type = v1::ARTIFACT_DOOR;
-  door.pose_in_odom = pose(6.0, 6.0, 0.0);
-  door.width = 0.9;
+  v1::Percept door{.type = v1::ARTIFACT_DOOR, .pose_in_odom = pose(6.0, 6.0, 0.0), .width = 0.9};
   perception_.percepts = {door, wall};
-  v1::SeenThing person;
-  person.kind = v1::SEEN_PERSON;
-  person.range_known = true;
-  person.pose_in_odom = pose(5.0, 7.5, 0.0);
-  person.points = 3.0;
-  person.pointed = 95;
+  v1::SeenThing person{.kind = v1::SEEN_PERSON,
+                       .pose_in_odom = pose(5.0, 7.5, 0.0),
+                       .range_known = true,
+                       .points = 3.0,
+                       .pointed = 95};
   vision_.stamp.cycle = 100;
   vision_.things = {person};
   v1::SonarBucket behind;  // read half a metre further back
@@ -118,8 +105,7 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
 }
 
 TEST_F(SurroundingsTest, SamplesOfAnotherFrameAreLeftOut) {
-  v1::Percept wall;
-  wall.type = v1::ARTIFACT_WALL;
+  v1::Percept wall{.type = v1::ARTIFACT_WALL};
   perception_.percepts = {wall};
   perception_.odom = 7;
   EXPECT_EQ(view_of({&robot_, nullptr, nullptr, nullptr, &perception_, nullptr}).text,
@@ -132,15 +118,12 @@ TEST(McpFacts, TheKnowledgeHasTheNumbersThatForgetTakes) {
   v1::Knowledge knowledge;
   EXPECT_EQ(facts_of(&knowledge).text, "the robot was told nothing that it knows now");
   EXPECT_FALSE(facts_of(&knowledge).is_error);
-  v1::Advice office;
-  office.number = 3;
+  v1::Advice office{.number = 3};
   office.words = "room EJ-231 is Karen's office";
   office.speaker = "ann";
   office.said = "Flakey, this is Karen's office";
   office.time = 1764160200.0;
-  v1::Advice hazard;
-  hazard.number = 4;
-  hazard.words = "there is a hole in the lobby";
+  v1::Advice hazard{.number = 4, .words = "there is a hole in the lobby"};
   knowledge.known = {office, hazard};
   const Result result = facts_of(&knowledge);
   EXPECT_EQ(result.text,

@@ -14,19 +14,13 @@ namespace saphira::recorder {
 namespace {
 
 v1::RobotState state(std::uint64_t cycle) {
-  v1::RobotState made;
-  made.stamp.epoch = 7;
-  made.stamp.cycle = cycle;
-  made.velocity = 0.1 * static_cast<double>(cycle);
-  made.battery = std::numeric_limits<double>::quiet_NaN();
-  return made;
+  return {.stamp = {7, cycle},
+          .velocity = 0.1 * static_cast<double>(cycle),
+          .battery = std::numeric_limits<double>::quiet_NaN()};
 }
 
 v1::Drawing drawing(std::uint64_t number) {
-  v1::Drawing made;
-  made.instance = 5;
-  made.number = number;
-  return made;
+  return {.instance = 5, .number = number};
 }
 
 class Recorded : public testing::Test {
@@ -38,8 +32,7 @@ class Recorded : public testing::Test {
     auto drawings = node.writer(bus::topics::kDrawings);
     auto commands = node.writer(bus::topics::kDriveDirect);
     auto goals = node.writer(bus::topics::kGoalStatus);
-    v1::GoalStatus refused;
-    refused.code = v1::CODE_NO_ROBOT;
+    v1::GoalStatus refused{.code = v1::CODE_NO_ROBOT};
     goals.write(refused);
     Writer writer(file_);
     Recorder recorder(node, writer, recorded_topics(only));

@@ -95,16 +95,14 @@ reflector::State state_of(const v1::RobotState& robot) {
 }
 
 v1::MotorCommand command_of(const reflector::Motion& motion) {
-  v1::MotorCommand command;
-  command.active = true;
-  command.translation = bridge::kTranslations.theirs(motion.translation);
-  command.rotation = bridge::kRotations.theirs(motion.rotation);
-  command.velocity = motion.velocity;
-  command.distance = motion.distance;
-  command.move = motion.move;
-  command.rotation_velocity = motion.rotation_velocity;
-  command.heading = motion.heading;
-  return command;
+  return {.active = true,
+          .translation = bridge::kTranslations.theirs(motion.translation),
+          .velocity = motion.velocity,
+          .distance = motion.distance,
+          .move = motion.move,
+          .rotation = bridge::kRotations.theirs(motion.rotation),
+          .rotation_velocity = motion.rotation_velocity,
+          .heading = motion.heading};
 }
 
 /// True where the robot is to stay where it is.
@@ -146,12 +144,9 @@ std::array<std::uint8_t, 3> color_of(int number) {
 }
 
 v1::Drawing drawing_of(const Drawn& drawn) {
-  v1::Drawing drawing;
-  drawing.frame = v1::FRAME_ROBOT;
-  drawing.shape = drawn.line ? v1::DRAWING_LINE : v1::DRAWING_RECTANGLE;
-  v1::DrawnPoint corner;
-  corner.x = drawn.x / 1000.0;
-  corner.y = drawn.y / 1000.0;
+  v1::Drawing drawing{.frame = v1::FRAME_ROBOT,
+                      .shape = drawn.line ? v1::DRAWING_LINE : v1::DRAWING_RECTANGLE};
+  v1::DrawnPoint corner{.x = drawn.x / 1000.0, .y = drawn.y / 1000.0};
   drawing.points.push_back(corner);
   corner.x = (drawn.x + drawn.dx) / 1000.0;
   corner.y = (drawn.y + drawn.dy) / 1000.0;
@@ -183,28 +178,25 @@ v1::IntentionState intention_state(int state) {
 }
 
 v1::ProgramMind mind_of(const SharedMind& mind) {
-  v1::ProgramMind sample;
-  sample.behaviors = behaviors::to_bus(mind.behaviors);
+  v1::ProgramMind sample{.behaviors = behaviors::to_bus(mind.behaviors)};
   v1::Intentions& intentions = sample.intended;
   intentions.behavior_control = mind.behaviors.control;
   for (const SharedIntention& one : mind.intentions) {
-    v1::IntentionNode node;
-    node.id = one.id;
-    node.parent = one.parent;
-    node.name = one.name;
-    node.schema = one.behavior.empty() ? one.name : one.behavior;
-    node.state = intention_state(one.state);
-    node.label = !one.behavior.empty()         ? "B"
-                 : one.state >= kFirstOwnState ? "state " + std::to_string(one.state)
-                                               : "";
-    intentions.nodes.push_back(node);
+    intentions.nodes.push_back({.id = one.id,
+                                .parent = one.parent,
+                                .name = one.name,
+                                .schema = one.behavior.empty() ? one.name : one.behavior,
+                                .state = intention_state(one.state),
+                                .label = !one.behavior.empty() ? "B"
+                                         : one.state >= kFirstOwnState
+                                             ? "state " + std::to_string(one.state)
+                                             : ""});
   }
   for (const behaviors::BehaviorState& one : mind.behaviors.behaviors) {
-    v1::IntendedBehavior intended;
-    intended.name = one.name;
-    intended.schema = one.schema;
-    intended.priority = one.blended.priority;
-    intended.running = one.running;
+    v1::IntendedBehavior intended{.name = one.name,
+                                  .schema = one.schema,
+                                  .priority = one.blended.priority,
+                                  .running = one.running};
     for (const SharedIntention& intention : mind.intentions)
       if (intention.behavior == one.name)
         intended.intention = intention.id;
@@ -388,8 +380,7 @@ class BusRobot final : public ServedRobot {
       tell_status(node);
     }
     for (int i = 0; i < kReleases; ++i) {
-      v1::MotorCommand release;
-      release.stamp = stamp_;
+      v1::MotorCommand release{.stamp = stamp_};
       write(node, ends, release);
       node.wait(kTurn);
     }
@@ -538,8 +529,7 @@ class BusRobot final : public ServedRobot {
       stopped_ = was_stopped_ = true;
     }
     say_("stopped by " + who + ": sfSetVelocity(0) comes before driving again", false);
-    v1::MotorCommand release;
-    release.stamp = stamp_;
+    v1::MotorCommand release{.stamp = stamp_};
     write(ends.node, ends, release);
   }
 
@@ -591,11 +581,7 @@ class BusRobot final : public ServedRobot {
     for (auto& [name, client] : devices_)
       hear(client.poll());
     for (const std::string& text : told) {
-      v1::Message message;
-      message.stamp = stamp_;
-      message.source = source_;
-      message.text = text;
-      ends.messages.write(message);
+      ends.messages.write({.stamp = stamp_, .source = source_, .text = text});
     }
     if (mind) {
       v1::ProgramMind sample = mind_of(*mind);

@@ -245,7 +245,7 @@ void Os::match() {
   registration_->processes().step(cycle);
   const registration::Core::Outputs said = registration_->step(inputs);
   environment_ = said.environment;
-  if (said.state == registration::State::tracking) {
+  if (said.state == v1::REGISTRATION_TRACKING) {
     odom_in_global = compose(said.pose_in_map, relative(robot_in_odom, Pose{}));
     update_points();
   }

@@ -137,9 +137,8 @@ static int clicked(int x, int y, int b) {
 int main(void) { sfButtonProcFn(clicked); sfStartup(0); return 0; }
 )");
   bus::Writer<v1::AgentEvent> events = system_.node().writer(bus::topics::kAgentEvents);
-  v1::AgentEvent event;
-  event.functor = "pointed_out";
-  event.arguments = {bus::point("position", 1.5, -0.5, 0.0, v1::FRAME_ODOM)};
+  v1::AgentEvent event{.functor = "pointed_out",
+                       .arguments = {bus::point("position", 1.5, -0.5, 0.0, v1::FRAME_ODOM)}};
   EXPECT_TRUE(wait_until(
       [&] {
         events.write(event);

@@ -91,15 +91,12 @@ std::string describe(const v1::Goal& goal) {
 
 v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::string& speaker,
                     const std::string& text, double time) {
-  v1::Utterance utterance;
-  utterance.id.writer = writer;
-  utterance.id.number = number;
-  utterance.speaker = speaker;
-  utterance.text = text;
-  utterance.means = v1::UTTERANCE_TYPED;
-  utterance.confidence = 1.0;
-  utterance.time = time;
-  return utterance;
+  return {.id = {writer, number},
+          .speaker = speaker,
+          .text = text,
+          .means = v1::UTTERANCE_TYPED,
+          .confidence = 1.0,
+          .time = time};
 }
 
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {

@@ -11,20 +11,18 @@ namespace {
 constexpr std::uint64_t kCycle = 1000;
 
 v1::BehaviorState keep_off() {
-  v1::BehaviorState state;
-  state.name = "KeepOff";
-  state.schema = "KeepOff";
-  state.priority = 1;
-  state.running = true;
-  state.turn_activity = 0.7;
-  state.turn_weight = 0.7;
-  state.recommends_turn = true;
-  state.turn = radians(20.0);
-  state.rules = {rule("Obstacle-Right", 1.0, v1::CONTROL_TURN_LEFT, radians(20.0)),
-                 rule("Obstacle-Left", 0.0, v1::CONTROL_TURN_RIGHT, radians(20.0))};
-  v1::FuzzyVariable variable;
-  variable.name = "front_right";
-  variable.value = 1.0;
+  v1::BehaviorState state{
+      .name = "KeepOff",
+      .schema = "KeepOff",
+      .priority = 1,
+      .running = true,
+      .turn_activity = 0.7,
+      .turn_weight = 0.7,
+      .recommends_turn = true,
+      .turn = radians(20.0),
+      .rules = {rule("Obstacle-Right", 1.0, v1::CONTROL_TURN_LEFT, radians(20.0)),
+                rule("Obstacle-Left", 0.0, v1::CONTROL_TURN_RIGHT, radians(20.0))}};
+  v1::FuzzyVariable variable{.name = "front_right", .value = 1.0};
   state.variables.push_back(variable);
   variable.name = "front_left";
   variable.value = 0.0;
@@ -33,51 +31,39 @@ v1::BehaviorState keep_off() {
 }
 
 v1::BehaviorState go_to_pos() {
-  v1::BehaviorState state;
-  state.name = "GoToPos";
-  state.schema = "GoToPos";
-  state.priority = 3;
-  state.running = true;
-  state.turn_activity = 1.0;
-  state.turn_weight = 0.3;
-  state.speed_activity = 1.0;
-  state.speed_weight = 1.0;
-  state.recommends_turn = true;
-  state.turn = radians(-10.0);
-  state.recommends_speed = true;
-  state.speed = 0.3;
-  state.rules = {rule("Right", 1.0, v1::CONTROL_TURN_RIGHT, radians(10.0)),
-                 rule("Left", 0.0, v1::CONTROL_TURN_LEFT, radians(10.0)),
-                 rule("Fast", 1.0, v1::CONTROL_SPEED, 0.3)};
-  return state;
+  return {.name = "GoToPos",
+          .schema = "GoToPos",
+          .priority = 3,
+          .running = true,
+          .turn_activity = 1.0,
+          .speed_activity = 1.0,
+          .turn_weight = 0.3,
+          .speed_weight = 1.0,
+          .recommends_turn = true,
+          .turn = radians(-10.0),
+          .recommends_speed = true,
+          .speed = 0.3,
+          .rules = {rule("Right", 1.0, v1::CONTROL_TURN_RIGHT, radians(10.0)),
+                    rule("Left", 0.0, v1::CONTROL_TURN_LEFT, radians(10.0)),
+                    rule("Fast", 1.0, v1::CONTROL_SPEED, 0.3)}};
 }
 
 v1::Intentions intentions() {
-  v1::Intentions all;
-  all.stamp.epoch = 7;
-  all.stamp.cycle = kCycle - 1;
-  all.behavior_control = true;
-  v1::IntentionNode node;
-  node.id = 5;
-  node.name = "go_to1";
-  node.schema = "go_to";
-  node.step = "driving to (3.00, 1.00)";
-  node.goal = id(2);
+  v1::Intentions all{.stamp = {7, kCycle - 1}, .behavior_control = true};
+  v1::IntentionNode node{.id = 5,
+                         .name = "go_to1",
+                         .schema = "go_to",
+                         .step = "driving to (3.00, 1.00)",
+                         .goal = id(2)};
   all.nodes = {node};
   for (const char* name : {"KeepOff", "GoToPos"}) {
-    v1::IntendedBehavior intended;
-    intended.name = name;
-    intended.schema = name;
-    intended.running = true;
-    intended.intention = 5;
-    all.behaviors.push_back(intended);
+    all.behaviors.push_back({.name = name, .schema = name, .running = true, .intention = 5});
   }
   return all;
 }
 
 v1::Goal go_to() {
-  v1::Goal goal;
-  goal.id = id(2);
+  v1::Goal goal{.id = id(2)};
   goal.requester = "saphira goal";
   goal.functor = "go_to";
   v1::Argument position;
@@ -91,11 +77,8 @@ v1::Goal go_to() {
 }
 
 v1::BehaviorSchema keep_off_schema() {
-  v1::BehaviorSchema schema;
-  schema.name = "KeepOff";
-  v1::RuleText text;
-  text.name = "Obstacle-Right";
-  text.antecedent = "front_right And Not front_left";
+  v1::BehaviorSchema schema{.name = "KeepOff"};
+  v1::RuleText text{.name = "Obstacle-Right", .antecedent = "front_right And Not front_left"};
   schema.rules.push_back(text);
   text.name = "Obstacle-Left";
   text.antecedent = "front_left";
@@ -106,20 +89,12 @@ v1::BehaviorSchema keep_off_schema() {
 }  // namespace
 
 v1::GoalId id(std::uint64_t number) {
-  v1::GoalId result;
-  result.writer = 0xabc;
-  result.number = number;
-  return result;
+  return {.writer = 0xabc, .number = number};
 }
 
 v1::RuleState rule(const std::string& name, double strength, v1::ControlAction action,
                    double value) {
-  v1::RuleState result;
-  result.name = name;
-  result.strength = strength;
-  result.action = action;
-  result.value = value;
-  return result;
+  return {.name = name, .strength = strength, .action = action, .value = value};
 }
 
 Program program(const std::string& name) {
@@ -134,49 +109,40 @@ Program program(const std::string& name) {
 }
 
 v1::GoalStatus goal_status(v1::GoalState state, const std::string& reason) {
-  v1::GoalStatus status;
-  status.id = id(2);
-  status.stamp.epoch = 7;
-  status.stamp.cycle = kCycle - 10;
-  status.functor = "go_to";
-  status.requester = "saphira goal";
-  status.state = state;
-  status.reason = reason;
-  return status;
+  return {.id = id(2),
+          .stamp = {7, kCycle - 10},
+          .requester = "saphira goal",
+          .functor = "go_to",
+          .state = state,
+          .reason = reason};
 }
 
 Situation driving() {
   Situation now;
   now.cycle = now.now = kCycle;
   now.listened = 3.0;
-  v1::RobotState robot;
-  robot.stamp.epoch = 7;
-  robot.stamp.cycle = kCycle;
-  robot.velocity = 0.3;
+  v1::RobotState robot{.stamp = {7, kCycle}, .velocity = 0.3};
   now.robot = robot;
 
-  v1::Grant grant;
-  grant.stamp.epoch = 7;
-  grant.stamp.cycle = kCycle + 1;
-  grant.role = v1::ROLE_BEHAVIORS;
-  grant.source = "behaviors";
-  grant.reason = "no stronger driver sends commands";
-  grant.guard = v1::GUARD_NONE;
-  grant.asked_velocity = 0.3;
-  grant.velocity = 0.3;
-  grant.rotation = v1::ROTATION_HEADING;
-  grant.heading = radians(11.0);
-  grant.answers = robot.stamp;
+  v1::Grant grant{.stamp = {7, kCycle + 1},
+                  .role = v1::ROLE_BEHAVIORS,
+                  .source = "behaviors",
+                  .reason = "no stronger driver sends commands",
+                  .guard = v1::GUARD_NONE,
+                  .asked_velocity = 0.3,
+                  .velocity = 0.3,
+                  .rotation = v1::ROTATION_HEADING,
+                  .heading = radians(11.0),
+                  .answers = robot.stamp};
   now.grant = grant;
 
-  v1::BehaviorSet behaviors;
-  behaviors.stamp = robot.stamp;
-  behaviors.control = true;
-  behaviors.behaviors = {keep_off(), go_to_pos()};
-  behaviors.turning = true;
-  behaviors.turn = radians(11.0);
-  behaviors.moving = true;
-  behaviors.speed = 0.3;
+  v1::BehaviorSet behaviors{.stamp = robot.stamp,
+                            .control = true,
+                            .behaviors = {keep_off(), go_to_pos()},
+                            .turning = true,
+                            .turn = radians(11.0),
+                            .moving = true,
+                            .speed = 0.3};
   now.behaviors = behaviors;
   now.intentions = intentions();
   now.behaviors_known = {kCycle - 20, kCycle};
@@ -238,13 +204,8 @@ void guard(Situation& situation, v1::GuardAction action, const std::string& reas
 }
 
 void suspend(Situation& situation, std::uint64_t cycle) {
-  v1::Process process;
-  process.name = "execute-intentions";
-  process.state = v1::PROCESS_SUSPENDED;
-  process.since = cycle;
-  v1::ProcessSet service;
-  service.service = "intentions";
-  service.processes = {process};
+  v1::Process process{.name = "execute-intentions", .state = v1::PROCESS_SUSPENDED, .since = cycle};
+  v1::ProcessSet service{.service = "intentions", .processes = {process}};
   situation.processes = {service};
 }
 

@@ -27,10 +27,7 @@ class WhyTest : public ::testing::Test {
 // The intentions service has its behaviors in the tree, as leaves.
 TEST_F(WhyTest, ABehaviorIsNotItsOwnPurpose) {
   const std::string before = sentence();
-  v1::IntentionNode leaf;
-  leaf.id = 6;
-  leaf.parent = 5;
-  leaf.label = "B";
+  v1::IntentionNode leaf{.id = 6, .parent = 5, .label = "B"};
   for (v1::IntendedBehavior& intended : scene.intentions->behaviors) {
     leaf.name = intended.name;
     leaf.schema = intended.schema;
@@ -65,11 +62,9 @@ TEST_F(WhyTest, DrawsTheTreeFromTheWheelsToTheGoal) {
 }
 
 v1::Belief karens_office() {
-  v1::Belief told;
-  told.name = "place-of-karen";
-  told.value = "\"EJ-231\"";
-  told.said_by = "Alice said at 10:02 \"Flakey, EJ-231 is Karen's office\"";
-  return told;
+  return {.name = "place-of-karen",
+          .value = "\"EJ-231\"",
+          .said_by = "Alice said at 10:02 \"Flakey, EJ-231 is Karen's office\""};
 }
 
 TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
@@ -162,12 +157,11 @@ TEST_F(WhyTest, GoesUpTheWholeChainOfIntentions) {
   scene.intentions->nodes[0].schema = "follow-path";
   scene.intentions->nodes[0].name = "follow-it";
   scene.intentions->nodes[0].parent = 3;
-  v1::IntentionNode root;
-  root.id = 3;
-  root.name = "plan-and-execute1";
-  root.schema = "plan-and-execute";
-  root.label = "S12";
-  root.goal = id(2);
+  v1::IntentionNode root{.id = 3,
+                         .name = "plan-and-execute1",
+                         .schema = "plan-and-execute",
+                         .label = "S12",
+                         .goal = id(2)};
   scene.intentions->nodes.insert(scene.intentions->nodes.begin(), root);
   EXPECT_EQ(sentence(),
             "The robot is told to drive ahead at 0.30 m/s, straight on: GoToPos wants 0.30 m/s "
@@ -193,8 +187,7 @@ TEST_F(WhyTest, ZonesAreNamed) {
   detour.value = R"("around keep-out zone \"lab\"")";
   scene.beliefs.push_back(detour);
   EXPECT_EQ(sentence().find("keep-out"), std::string::npos) << "there is no path";
-  v1::IntentionNode path;
-  path.id = 4711;
+  v1::IntentionNode path{.id = 4711};
   path.schema = "follow-path";
   path.state = v1::INTENTION_RUNNING;
   scene.intentions->nodes.push_back(path);
@@ -323,10 +316,7 @@ TEST_F(WhyTest, BehaviorsAreNamedAsShortAsCanBe) {
 }
 
 TEST_F(WhyTest, IntentionsAndTurnsAreToldInWords) {
-  v1::IntentionNode root;
-  root.id = 9;
-  root.schema = "watch";
-  root.goal = id(2);
+  v1::IntentionNode root{.id = 9, .schema = "watch", .goal = id(2)};
   v1::IntentionNode& own = scene.intentions->nodes[0];
   own.parent = 9;
   own.name = "rest#32";

@@ -21,19 +21,14 @@ TEST(DescribeGrant, SaysWhatIsLatchedAndHowItIsReleased) {
 }
 
 TEST(DescribeGrant, SaysWhoWhyAndWhatTheGuardDoes) {
-  v1::Grant grant;
-  grant.role = v1::ROLE_NONE;
-  grant.reason = "no command yet";
+  v1::Grant grant{.role = v1::ROLE_NONE, .reason = "no command yet"};
   EXPECT_EQ(describe(grant), "nobody drives: no command yet");
   grant.role = v1::ROLE_TELEOP;
   grant.source = "keyboard";
   grant.reason = "strongest";
   grant.guard = v1::GUARD_SLOW;
   grant.guard_reason = "0.3 m ahead";
-  v1::Refusal refusal;
-  refusal.role = v1::ROLE_DIRECT;
-  refusal.source = "agent";
-  refusal.reason = "repeated number";
+  v1::Refusal refusal{.role = v1::ROLE_DIRECT, .source = "agent", .reason = "repeated number"};
   grant.refused = {refusal};
   EXPECT_EQ(describe(grant),
             "teleop drives (keyboard): strongest; the guard slows: 0.3 m ahead; refused agent "

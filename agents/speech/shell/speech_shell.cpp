@@ -82,15 +82,12 @@ void SpeechShell::tell(const Conversation::Outputs& out) {
   if (out.um)
     speaker_.play(um_);
   for (const Heard& heard : out.utterances) {
-    v1::Utterance utterance;
-    utterance.id.writer = node_.instance();
-    utterance.id.number = ++number_;
-    utterance.speaker = options_.person;
-    utterance.text = heard.text;
-    utterance.means = v1::UTTERANCE_SPOKEN;
-    utterance.confidence = heard.confidence;
-    utterance.time = unix_time();
-    heard_.write(utterance);
+    heard_.write({.id = {node_.instance(), ++number_},
+                  .speaker = options_.person,
+                  .text = heard.text,
+                  .means = v1::UTTERANCE_SPOKEN,
+                  .confidence = heard.confidence,
+                  .time = unix_time()});
     node_.info("heard: " + heard.text + (heard.confidence < kCertain ? " (not certain)" : ""));
   }
 }

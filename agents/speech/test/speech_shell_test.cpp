@@ -45,10 +45,7 @@ TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
   EXPECT_EQ(utterances[0].text, "flakey turn left");
   EXPECT_EQ(utterances[0].speaker, "Alice");
   EXPECT_EQ(utterances[0].means, v1::UTTERANCE_SPOKEN);
-  v1::Utterance answer;
-  answer.id.writer = 7;
-  answer.id.number = 1;
-  answer.text = "I turn 90 degrees to the left";
+  v1::Utterance answer{.id = {7, 1}, .text = "I turn 90 degrees to the left"};
   person.writer(bus::topics::kSaid).write(answer);
   const auto spoken = [&](const char* file) {
     try {

@@ -109,15 +109,13 @@ bool Story::stands_at(const Cast::Spot& spot) const {
 }
 
 std::uint64_t Story::say(const Cast::Line& line) {
-  v1::Utterance utterance;
-  utterance.stamp = stamp_;
-  utterance.id.writer = node_.instance();
-  utterance.id.number = ++number_;
-  utterance.speaker = line.speaker;
-  utterance.text = line.text;
-  utterance.means = v1::UTTERANCE_ACTED;
-  utterance.confidence = 1.0;
-  utterance.time = now_;
+  v1::Utterance utterance{.stamp = stamp_,
+                          .id = {node_.instance(), ++number_},
+                          .speaker = line.speaker,
+                          .text = line.text,
+                          .means = v1::UTTERANCE_ACTED,
+                          .confidence = 1.0,
+                          .time = now_};
   show(line.speaker + ": " + line.text);
   heard_.write(utterance);
   return number_;

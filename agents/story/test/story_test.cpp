@@ -11,30 +11,19 @@ namespace {
 struct AStory : testing::Test {
   explicit AStory(const std::string& has = "")
       : cast("PERSON alice hall\n" + has + "SAYS alice Flakey, stop\n") {
-    v1::MapArtifact hall;
-    hall.id = 1;
-    hall.type = v1::ARTIFACT_CORRIDOR;
+    v1::MapArtifact hall{.id = 1, .type = v1::ARTIFACT_CORRIDOR};
     hall.name = "hall";
     hall.length = 10.0;
     hall.width = 2.0;
-    v1::FloorMap map;
-    map.artifacts = {hall};
-    maps.write(map);
-    v1::RobotState state;
-    state.stamp.epoch = 7;
-    state.stamp.cycle = 50;
-    robots.write(state);
+    maps.write({.artifacts = {hall}});
+    robots.write({.stamp = {7, 50}});
     registrations.write(v1::Registration());
   }
 
   /// The robot's last answer to the newest sentence.
   void answers(const std::string& text) {
     for (const auto& sample : heard.take()) {
-      v1::Utterance utterance;
-      utterance.answers = sample.data.id;
-      utterance.text = text;
-      utterance.end = true;
-      answers_.write(utterance);
+      answers_.write({.answers = sample.data.id, .text = text, .end = true});
     }
   }
 

@@ -53,11 +53,7 @@ std::optional<v1::MotorCommand> Pilot::stop(bool latched) {
   if (!pressing_ && releases_left_ == 0)
     return std::nullopt;
   releases_left_ = std::max(0, releases_left_ - 1);
-  v1::MotorCommand command;
-  command.source = presser_;
-  command.number = ++number_;
-  command.active = pressing_;
-  return command;
+  return v1::MotorCommand{.source = presser_, .number = ++number_, .active = pressing_};
 }
 
 void Pilot::heard(const v1::Grant& grant, double now) {

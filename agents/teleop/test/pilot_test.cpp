@@ -16,10 +16,7 @@ Order held(double velocity = 0.3) {
   return order;
 }
 v1::Stamp stamp(std::uint64_t cycle) {
-  v1::Stamp stamp;
-  stamp.epoch = 7;
-  stamp.cycle = cycle;
-  return stamp;
+  return {.epoch = 7, .cycle = cycle};
 }
 
 TEST(Pilot, SaysNothingBeforeThePersonDrives) {
@@ -93,10 +90,7 @@ TEST(Pilot, KnowsThatItIsRefused) {
   Pilot pilot("console");
   pilot.drive(held(), stamp(100));
   v1::Grant grant;
-  v1::Refusal refusal;
-  refusal.role = v1::ROLE_TELEOP;
-  refusal.source = "bob";
-  refusal.reason = "another one drives";
+  v1::Refusal refusal{.role = v1::ROLE_TELEOP, .source = "bob", .reason = "another one drives"};
   grant.refused = {refusal};
   pilot.heard(grant, 1.0);
   EXPECT_EQ(pilot.refusal(1.0), "") << "somebody else is";

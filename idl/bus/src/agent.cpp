@@ -13,12 +13,7 @@ constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
 
 v1::CapabilityParameter slot(const std::string& name, const std::string& meaning, bool required,
                              v1::ArgumentKind kind) {
-  v1::CapabilityParameter parameter;
-  parameter.name = name;
-  parameter.kind = kind;
-  parameter.meaning = meaning;
-  parameter.required = required;
-  return parameter;
+  return {.name = name, .kind = kind, .meaning = meaning, .required = required};
 }
 
 const v1::Argument* find(const std::vector<v1::Argument>& arguments, const std::string& name) {
@@ -85,8 +80,7 @@ void Agent::handle(const v1::Request& request) {
     answers_.write(known->second);
     return;
   }
-  v1::Answer underway;
-  underway.code = v1::ANSWER_UNDERWAY;
+  v1::Answer underway{.code = v1::ANSWER_UNDERWAY};
   known_.emplace_back(id, underway);
   if (known_.size() > kKnown)
     known_.pop_front();
@@ -132,17 +126,12 @@ v1::GoalId Agent::set(v1::Trigger trigger) {
 }
 
 void Agent::take_back(const v1::GoalId& trigger) {
-  v1::Trigger withdrawn;
-  withdrawn.id = trigger;
+  v1::Trigger withdrawn{.id = trigger};
   triggers_.dispose(withdrawn);
 }
 
 void Agent::tell(const std::string& functor, std::vector<v1::Argument> arguments) {
-  v1::AgentEvent event;
-  event.source = self_.name;
-  event.functor = functor;
-  event.arguments = std::move(arguments);
-  events_.write(event);
+  events_.write({.source = self_.name, .functor = functor, .arguments = std::move(arguments)});
 }
 
 std::string agent_address(std::uint64_t id, const std::string& name) {
@@ -151,11 +140,7 @@ std::string agent_address(std::uint64_t id, const std::string& name) {
 
 v1::Capability capability(const std::string& functor, const std::string& summary,
                           std::vector<v1::CapabilityParameter> parameters) {
-  v1::Capability result;
-  result.functor = functor;
-  result.summary = summary;
-  result.parameters = std::move(parameters);
-  return result;
+  return {.functor = functor, .summary = summary, .parameters = std::move(parameters)};
 }
 
 v1::Capability action(const std::string& functor, const std::string& summary,
@@ -176,18 +161,11 @@ v1::CapabilityParameter number_slot(const std::string& name, const std::string& 
 }
 
 v1::Answer done(std::vector<v1::Argument> results, const std::string& text) {
-  v1::Answer answer;
-  answer.code = v1::ANSWER_DONE;
-  answer.text = text;
-  answer.results = std::move(results);
-  return answer;
+  return {.code = v1::ANSWER_DONE, .text = text, .results = std::move(results)};
 }
 
 v1::Answer refused(const std::string& text) {
-  v1::Answer answer;
-  answer.code = v1::ANSWER_REFUSED;
-  answer.text = text;
-  return answer;
+  return {.code = v1::ANSWER_REFUSED, .text = text};
 }
 
 std::string text_of(const std::vector<v1::Argument>& arguments, const std::string& name) {
@@ -201,10 +179,7 @@ double number_of(const std::vector<v1::Argument>& arguments, const std::string& 
 }
 
 v1::Argument open(const std::string& name) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = v1::ARGUMENT_UNBOUND;
-  return argument;
+  return {.name = name, .kind = v1::ARGUMENT_UNBOUND};
 }
 
 }  // namespace saphira::bus

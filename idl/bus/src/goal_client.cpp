@@ -31,9 +31,7 @@ GoalClient::GoalClient(Node& node, std::string requester, std::chrono::milliseco
       keep_(keep) {}
 
 v1::GoalId GoalClient::ask(v1::Goal goal) {
-  v1::GoalId id;
-  id.writer = node_.instance();
-  id.number = next_request_number();
+  v1::GoalId id{.writer = node_.instance(), .number = next_request_number()};
   own_[key_of(id)];  // before the writing, which may fail
   change(id, std::move(goal));
   return id;
@@ -115,9 +113,7 @@ void GoalClient::forget() {
       ++own;
       continue;
     }
-    v1::Goal goal;
-    goal.id.writer = own->first.first;
-    goal.id.number = own->first.second;
+    v1::Goal goal{.id = {own->first.first, own->first.second}};
     if (!writer_.dispose(goal))
       return;  // the bus is full: later
     known_.erase(own->first);
@@ -180,10 +176,7 @@ std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
   const auto count = number_in<std::uint64_t>(std::string_view(text).substr(colon + 1));
   if (!writer || !count)
     return std::nullopt;
-  v1::GoalId id;
-  id.writer = *writer;
-  id.number = *count;
-  return id;
+  return v1::GoalId{.writer = *writer, .number = *count};
 }
 
 std::string describe(const v1::GoalStatus& status) {

@@ -109,16 +109,14 @@ struct Node::Impl {
     internal::write_log(level, options.name, text);
     if (level == v1::LOG_DEBUG)
       return;
-    v1::LogRecord record;
-    record.instance = status.instance;
-    record.name = options.name;
-    record.level = level;
-    record.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                         std::chrono::system_clock::now().time_since_epoch())
-                         .count();
-    record.stamp = status.stamp;
-    record.text = text;
-    log_writer->write(record);
+    log_writer->write({.instance = status.instance,
+                       .name = options.name,
+                       .level = level,
+                       .time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                      std::chrono::system_clock::now().time_since_epoch())
+                                      .count(),
+                       .stamp = status.stamp,
+                       .text = text});
   }
 
   const NodeOptions options;

@@ -85,11 +85,10 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
                               const std::function<void()>& meanwhile) {
   request = complete(std::move(request), next_request_number());
-  v1::Answer newest;
-  newest.asker = request.asker;
-  newest.number = request.number;
-  newest.code = v1::ANSWER_NOBODY;
-  newest.text = std::string("no program takes what is asked on ") + topic_.name;
+  v1::Answer newest{.asker = request.asker,
+                    .number = request.number,
+                    .code = v1::ANSWER_NOBODY,
+                    .text = std::string("no program takes what is asked on ") + topic_.name};
   bool heard = false;
   std::size_t matched = writer_.matched();
   auto again = Clock::now();
@@ -133,38 +132,21 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
 
 v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments,
                     const std::string& service) {
-  v1::Request made;
-  made.functor = functor;
-  made.arguments = std::move(arguments);
+  v1::Request made{.functor = functor, .arguments = std::move(arguments)};
   made.service = service;
   return made;
 }
 
 v1::Argument number(const std::string& name, double value) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = v1::ARGUMENT_NUMBER;
-  argument.number = value;
-  return argument;
+  return {.name = name, .kind = v1::ARGUMENT_NUMBER, .number = value};
 }
 
 v1::Argument text(const std::string& name, const std::string& value) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = v1::ARGUMENT_TEXT;
-  argument.text = value;
-  return argument;
+  return {.name = name, .kind = v1::ARGUMENT_TEXT, .text = value};
 }
 
 v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame) {
-  v1::Argument argument;
-  argument.name = name;
-  argument.kind = v1::ARGUMENT_POINT;
-  argument.point.x = x;
-  argument.point.y = y;
-  argument.point.th = th;
-  argument.frame = frame;
-  return argument;
+  return {.name = name, .kind = v1::ARGUMENT_POINT, .point = {x, y, th}, .frame = frame};
 }
 
 v1::Argument truth(const std::string& name, bool value) {

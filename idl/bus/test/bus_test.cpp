@@ -78,9 +78,7 @@ TEST_P(Bus, InLockstepAReaderOfALatchedTopicGetsWhatCameInBetween) {
   ASSERT_TRUE(eventually(*tool, [&] { return reader.matched() == 1; }));
   std::vector<std::uint64_t> revisions;
   for (const std::uint64_t revision : {1U, 2U, 3U}) {
-    v1::FloorMap map;
-    map.revision = revision;
-    ASSERT_TRUE(writer.write(map));
+    ASSERT_TRUE(writer.write({.revision = revision}));
   }
   EXPECT_TRUE(eventually(*tool, [&] {
     for (const auto& sample : reader.take())
@@ -255,8 +253,7 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
 TEST_P(Bus, CommandsAreNotForLateReaders) {
   auto a = node("a");
   auto writer = a->writer<v1::Request>(topics::kTimer);
-  v1::Request command;
-  command.number = 1;
+  v1::Request command{.number = 1};
   writer.write(command);
   auto b = node("b");
   auto reader = b->reader<v1::Request>(topics::kTimer);
@@ -374,14 +371,12 @@ TEST_P(Bus, StopEndsAWait) {
 TEST_P(Bus, EchoSpeaksJson) {
   auto a = node("a");
   auto writer = a->writer(topics::kGoalStatus);
-  v1::GoalStatus status;
-  status.id.writer = 18446744073709551615ULL;
-  status.id.number = 2;
-  status.state = v1::GOAL_FAILED;
-  status.code = v1::CODE_BLOCKED;
-  status.reason = "a \"wall\"\n";
-  status.progress = 0.1;
-  status.elapsed = std::numeric_limits<double>::quiet_NaN();
+  v1::GoalStatus status{.id = {18446744073709551615ULL, 2},
+                        .state = v1::GOAL_FAILED,
+                        .code = v1::CODE_BLOCKED,
+                        .reason = "a \"wall\"\n",
+                        .progress = 0.1,
+                        .elapsed = std::numeric_limits<double>::quiet_NaN()};
   writer.write(status);
   auto b = node("b");
   Echo echo(*b, "goals/status");
@@ -402,10 +397,9 @@ TEST_P(Bus, EchoSpeaksJson) {
 TEST_P(Bus, EchoSpeaksJsonOfAnyText) {
   auto a = node("a");
   auto writer = a->writer(topics::kGoalStatus);
-  v1::GoalStatus status;
-  status.reason =
-      "K\xFC"
-      "che, K\u00fcche, \U0001f600 \xE2\x82";
+  v1::GoalStatus status{.reason =
+                            "K\xFC"
+                            "che, K\u00fcche, \U0001f600 \xE2\x82"};
   writer.write(status);
   auto b = node("b");
   Echo echo(*b, "goals/status");

@@ -45,9 +45,7 @@ TEST_F(GatewayTest, WhatIsWrittenInsideIsReadOutside) {
 }
 
 TEST_F(GatewayTest, WhatIsKeptIsThereForWhoComesLate) {
-  v1::BeliefSet sample;
-  sample.stamp.cycle = 5;
-  beliefs_.write(sample);
+  beliefs_.write({.stamp = {.cycle = 5}});
   gateway_.carry();
   Reader<v1::BeliefSet> beliefs(person_.reader(topics::kBeliefs));
   EXPECT_TRUE(carried([&] {

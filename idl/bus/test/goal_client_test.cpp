@@ -23,8 +23,7 @@ class GoalClients : public testing::Test {
 
 TEST_F(GoalClients, AsksChangesAndCancels) {
   GoalClient client(agent_, "an agent");
-  v1::Goal goal;
-  goal.functor = "stop";
+  v1::Goal goal{.functor = "stop"};
   const v1::GoalId id = client.ask(goal);
   EXPECT_TRUE(client.delivered(1000));
   auto heard = goals_.take();
@@ -48,11 +47,8 @@ TEST_F(GoalClients, AsksChangesAndCancels) {
 
 TEST_F(GoalClients, ACancelMayHaveAReasonAndTheGoalIsDisposedLater) {
   GoalClient client(agent_, "an agent", std::chrono::milliseconds(0));
-  v1::Goal goal;
-  goal.functor = "stop";
-  v1::GoalId foreign;
-  foreign.writer = 7;
-  foreign.number = 8;
+  v1::Goal goal{.functor = "stop"};
+  v1::GoalId foreign{.writer = 7, .number = 8};
   for (const v1::GoalId& id : {client.ask(goal), foreign}) {
     goals_.take();
     client.cancel(id, "it is late");
@@ -79,11 +75,8 @@ TEST(GoalClient, IsNotDeliveredWhereNobodyReads) {
 
 TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
   GoalClient client(agent_, "an agent");
-  v1::GoalStatus own;
-  own.id = client.ask(v1::Goal());
-  v1::GoalStatus foreign;
-  foreign.id.writer = 7;
-  foreign.id.number = 8;
+  v1::GoalStatus own{.id = client.ask(v1::Goal())};
+  v1::GoalStatus foreign{.id = {7, 8}};
   EXPECT_FALSE(client.status(own.id));
   for (v1::GoalStatus* const status : {&own, &foreign}) {
     statuses_.write(*status);
@@ -104,11 +97,7 @@ TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
 TEST_F(GoalClients, TheNewestStatusIsTheLast) {
   GoalClient client(agent_, "an agent");
   for (const std::uint64_t number : {1U, 2U, 3U}) {
-    v1::GoalStatus status;
-    status.id.writer = number;
-    status.stamp.epoch = number == 1 ? 8 : 7;
-    status.stamp.cycle = 100 - number;
-    statuses_.write(status);
+    statuses_.write({.id = {.writer = number}, .stamp = {number == 1 ? 8 : 7, 100 - number}});
   }
   client.poll();
   std::vector<std::uint64_t> order;
@@ -121,10 +110,8 @@ TEST_F(GoalClients, TheNewestStatusIsTheLast) {
 TEST_F(GoalClients, AGoalWhoseEndWasMissedIsOver) {
   GoalClient patient(agent_, "an agent");
   GoalClient hasty(agent_, "an agent", std::chrono::milliseconds(0));
-  v1::GoalStatus never_heard;
-  never_heard.id = hasty.ask(v1::Goal());
-  v1::GoalStatus told_again;
-  told_again.id = patient.ask(v1::Goal());
+  v1::GoalStatus never_heard{.id = hasty.ask(v1::Goal())};
+  v1::GoalStatus told_again{.id = patient.ask(v1::Goal())};
   for (v1::GoalStatus* const status : {&never_heard, &told_again}) {
     status->state = v1::GOAL_UNDERWAY;
     statuses_.write(*status);
@@ -149,9 +136,7 @@ TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
   const v1::GoalId done = client.ask(v1::Goal());
   const v1::GoalId canceled = client.ask(v1::Goal());
   EXPECT_EQ(goals_.take().size(), 3U);
-  v1::GoalStatus status;
-  status.id = underway;
-  status.state = v1::GOAL_UNDERWAY;
+  v1::GoalStatus status{.id = underway, .state = v1::GOAL_UNDERWAY};
   statuses_.write(status);
   status.id = done;
   status.state = v1::GOAL_SUCCEEDED;
@@ -184,9 +169,7 @@ TEST_F(GoalClients, NoTwoGoalsHaveTheSameId) {
 }
 
 TEST(GoalClient, ReadsIdsAsItWritesThem) {
-  v1::GoalId id;
-  id.writer = 0xfedcba9876543210ULL;
-  id.number = 18446744073709551615ULL;
+  v1::GoalId id{.writer = 0xfedcba9876543210ULL, .number = 18446744073709551615ULL};
   EXPECT_EQ(describe(id), "fedcba9876543210:18446744073709551615");
   EXPECT_EQ(parse_goal_id(describe(id)), id);
   for (const char* const wrong : {"", ":", "1", "1:", ":1", "x:1", "1:x", "1:2:3", " 1:2", "1:2 ",
@@ -195,11 +178,8 @@ TEST(GoalClient, ReadsIdsAsItWritesThem) {
 }
 
 TEST(GoalClient, TellsAStatusInALine) {
-  v1::GoalStatus status;
-  status.state = v1::GOAL_UNDERWAY;
-  status.step = "driving";
-  status.progress = 0.25;
-  status.trend = v1::TREND_RISING;
+  v1::GoalStatus status{
+      .state = v1::GOAL_UNDERWAY, .step = "driving", .progress = 0.25, .trend = v1::TREND_RISING};
   EXPECT_EQ(describe(status), "underway: driving (25 % done, level 0.00)");
   status.level = 0.25;
   EXPECT_EQ(describe(status), "underway: driving (25 % done)");

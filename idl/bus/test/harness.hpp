@@ -68,36 +68,23 @@ std::vector<Sample<T>> take_at_least(Node& node, Reader<T>& reader, std::size_t 
 }
 
 inline v1::Goal goal(std::uint64_t number, const std::string& functor = "go_to") {
-  v1::Goal result;
-  result.id.writer = 77;
-  result.id.number = number;
-  result.functor = functor;
-  return result;
+  return {.id = {77, number}, .functor = functor};
 }
 
 inline v1::Stamp stamp(std::uint64_t epoch, std::uint64_t cycle) {
-  v1::Stamp result;
-  result.epoch = epoch;
-  result.cycle = cycle;
-  return result;
+  return {.epoch = epoch, .cycle = cycle};
 }
 
 inline v1::RobotState robot_state(std::uint64_t epoch, std::uint64_t cycle) {
-  v1::RobotState result;
-  result.stamp = stamp(epoch, cycle);
-  return result;
+  return {.stamp = stamp(epoch, cycle)};
 }
 
 inline v1::RobotDescription description(std::uint64_t epoch) {
-  v1::RobotDescription result;
-  result.stamp = stamp(epoch, 0);
-  return result;
+  return {.stamp = stamp(epoch, 0)};
 }
 
 inline v1::Intentions intentions(std::uint64_t epoch, std::uint64_t cycle) {
-  v1::Intentions result;
-  result.stamp = stamp(epoch, cycle);
-  return result;
+  return {.stamp = stamp(epoch, cycle)};
 }
 
 }  // namespace saphira::bus::test

@@ -12,14 +12,12 @@ using std::chrono::seconds;
 
 v1::ServiceStatus program(std::uint64_t instance, double uptime, v1::ServiceState state,
                           const std::string& name = "behaviors") {
-  v1::ServiceStatus status;
-  status.instance = instance;
-  status.name = name;
-  status.pid = static_cast<std::uint32_t>(instance);
-  status.host = "attic";
-  status.uptime = uptime;
-  status.state = state;
-  return status;
+  return {.instance = instance,
+          .name = name,
+          .host = "attic",
+          .pid = static_cast<std::uint32_t>(instance),
+          .state = state,
+          .uptime = uptime};
 }
 
 /// True where `own` yields, with that other one beside it.

@@ -32,13 +32,8 @@ double seconds_since(Clock::time_point start) {
 int write(Node& node, const Wanted& wanted, const Stop& stop) {
   auto goals = node.writer(topics::kGoals);
   auto robot = node.writer(topics::kRobotState);
-  v1::Goal goal;
-  goal.id.writer = node.instance();
-  goal.id.number = 1;
-  goal.functor = "stop";
-  goals.write(goal);
-  v1::RobotState state;
-  state.stamp.epoch = node.instance();
+  goals.write({.id = {node.instance(), 1}, .functor = "stop"});
+  v1::RobotState state{.stamp = {.epoch = node.instance()}};
   auto next = Clock::now();
   while (!stop.requested()) {
     if (Clock::now() >= next) {

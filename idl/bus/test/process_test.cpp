@@ -147,8 +147,7 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   auto hears = sleeper.reader(topics::kMessages);
   auto reads = sleeper.reader(topics::kGoals);
   auto writer = peer("writer");
-  v1::Message message;
-  message.text = "one";
+  v1::Message message{.text = "one"};
   said.write(message);
   wishes.write(goal(5));
   EXPECT_EQ(take_at_least(sleeper, hears, 1).size(), 1U);

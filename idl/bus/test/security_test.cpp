@@ -112,9 +112,7 @@ std::unique_ptr<AnyEndpoint> endpoint(Node& node, const std::string& name, bool 
 }
 
 v1::MotorCommand command_of(const std::string& source) {
-  v1::MotorCommand command;
-  command.source = source;
-  return command;
+  return {.source = source};
 }
 
 TEST(Security, WhatAMemberWritesComesWithItsName) {

@@ -54,16 +54,14 @@ Trigger from_bus(const v1::Trigger& trigger) {
 }
 
 v1::Advice to_bus(const Advice& advice) {
-  v1::Advice result;
-  result.number = static_cast<std::uint32_t>(advice.number);
-  result.functor = describe(advice.kind);
-  result.arguments = {bus::text("about", advice.about), bus::text("value", advice.value)};
-  result.words = describe(advice);
-  result.speaker = advice.speaker;
-  result.said = advice.said;
-  result.time = advice.time;
-  result.artifact = advice.artifact;
-  return result;
+  return {.number = static_cast<std::uint32_t>(advice.number),
+          .functor = describe(advice.kind),
+          .arguments = {bus::text("about", advice.about), bus::text("value", advice.value)},
+          .words = describe(advice),
+          .speaker = advice.speaker,
+          .said = advice.said,
+          .time = advice.time,
+          .artifact = advice.artifact};
 }
 
 }  // namespace saphira::agent_interface

@@ -81,9 +81,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
   for (const Claimed& one : dialogue_.claims())
     claim(one);
   for (const LastingGoal& goal : dialogue_.lasting()) {
-    v1::GoalId id;
-    id.writer = goal.ref.first;
-    id.number = goal.ref.second;
+    v1::GoalId id{.writer = goal.ref.first, .number = goal.ref.second};
     asked_[goal.tag] = id;
     if (!goal.sample.empty())
       orphans_[goal.tag] = goal.sample;
@@ -158,12 +156,11 @@ void DialogueShell::take_stops(double seconds) {
 void DialogueShell::want(const WantedGoal& wanted) {
   if (wanted.functor == "stop" && !node_.options().lockstep)
     return ask_to_stop(wanted);
-  v1::Goal goal;
-  goal.functor = wanted.functor;
-  goal.arguments = to_bus(wanted.arguments);
-  goal.deadline = wanted.deadline;
-  goal.priority = wanted.priority;
-  goal.requester = wanted.requester();
+  v1::Goal goal{.requester = wanted.requester(),
+                .functor = wanted.functor,
+                .arguments = to_bus(wanted.arguments),
+                .priority = wanted.priority,
+                .deadline = wanted.deadline};
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost = lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL;
   const v1::GoalId id = goals_.ask(goal);
@@ -181,30 +178,26 @@ void DialogueShell::claim(const Claimed& claim) {
     }
     return;
   }
-  v1::BeliefClaim sample;
-  sample.id.writer = node_.instance();
-  sample.id.number = known == claimed_.end() ? ++number_ : std::uint64_t{known->second.id.number};
-  sample.source = claim.source;
-  sample.name = claim.name;
-  sample.value = literal(claim);
-  sample.writer_lost = v1::WRITER_LOST_CANCEL;
+  v1::BeliefClaim sample{
+      .id = {node_.instance(),
+             known == claimed_.end() ? ++number_ : std::uint64_t{known->second.id.number}},
+      .source = claim.source,
+      .name = claim.name,
+      .value = literal(claim),
+      .writer_lost = v1::WRITER_LOST_CANCEL};
   claimed_[claim.name] = sample;
   claims_.write(sample);
 }
 
 void DialogueShell::perform(const Dialogue::Outputs& out) {
   for (const Said& said : out.said) {
-    v1::Utterance sample;
-    sample.id.writer = node_.instance();
-    sample.id.number = bus::next_request_number();
-    sample.answers.writer = said.answers.first;
-    sample.answers.number = said.answers.second;
-    sample.listener = said.listener;
-    sample.text = said.text;
-    sample.confidence = 1.0;
-    sample.refused = said.refused;
-    sample.end = said.end;
-    said_.write(sample);
+    said_.write({.id = {node_.instance(), bus::next_request_number()},
+                 .answers = {said.answers.first, said.answers.second},
+                 .listener = said.listener,
+                 .text = said.text,
+                 .confidence = 1.0,
+                 .refused = said.refused,
+                 .end = said.end});
   }
   for (const std::uint64_t tag : out.canceled)
     if (const auto goal = asked_.find(tag); goal != asked_.end()) {

@@ -40,8 +40,7 @@ void RobotAgent::announce(const v1::ActivitySchemas& schemas) {
   for (const v1::ActivitySchema& schema : schemas.schemas) {
     std::vector<v1::CapabilityParameter> parameters;
     for (const v1::ActivityParameter& one : schema.parameters) {
-      v1::CapabilityParameter parameter;
-      parameter.name = one.name;
+      v1::CapabilityParameter parameter{.name = one.name};
       parameter.kind = v1::ARGUMENT_UNBOUND;  // the intentions check it
       parameter.meaning = meaning_of(one);
       parameter.required = one.required;
@@ -64,12 +63,11 @@ Answer RobotAgent::begin(const Request& request, double now) {
   if (request.arguments.size() > kMostArguments)
     return {AnswerCode::refused,
             "a goal has " + std::to_string(kMostArguments) + " arguments at most"};
-  v1::Goal goal;
-  goal.functor = request.functor;
-  goal.arguments = to_bus(request.arguments);
-  goal.requester = request.source;
-  goal.deadline = goal_deadline(request.deadline);
-  goal.writer_lost = v1::WRITER_LOST_CANCEL;
+  v1::Goal goal{.requester = request.source,
+                .functor = request.functor,
+                .arguments = to_bus(request.arguments),
+                .deadline = goal_deadline(request.deadline),
+                .writer_lost = v1::WRITER_LOST_CANCEL};
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
   return {AnswerCode::underway, ""};
 }

@@ -27,13 +27,7 @@ class DialogueOnTheBus : public testing::Test {
   }
   /// The robot's answer, in one line.
   std::string say(const std::string& text, const std::string& speaker = "Alice") {
-    v1::Utterance utterance;
-    utterance.id.writer = 5;
-    utterance.id.number = ++number;
-    utterance.speaker = speaker;
-    utterance.text = text;
-    utterance.confidence = 1.0;
-    heard.write(utterance);
+    heard.write({.id = {5, ++number}, .speaker = speaker, .text = text, .confidence = 1.0});
     dialogue->step();
     return answers();
   }
@@ -47,20 +41,12 @@ class DialogueOnTheBus : public testing::Test {
   }
   /// The newest status of a goal; the robot's words then.
   std::string tell(const v1::GoalId& goal, v1::GoalState state, const std::string& reason = {}) {
-    v1::GoalStatus status;
-    status.id = goal;
-    status.state = state;
-    status.reason = reason;
-    statuses.write(status);
+    statuses.write({.id = goal, .state = state, .reason = reason});
     dialogue->step();
     return answers();
   }
   std::string message(std::uint64_t cycle, const std::string& text) {
-    v1::Message made;
-    made.stamp.epoch = 3;
-    made.stamp.cycle = cycle;
-    made.text = text;
-    messages.write(made);
+    messages.write({.stamp = {3, cycle}, .text = text});
     dialogue->step();
     return answers();
   }
@@ -97,30 +83,19 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   auto visions = person.writer(bus::topics::kVision);
   v1::FloorMap map;
   for (const auto& [id, name, y] : {std::tuple(1U, "north", 1.0), {2U, "south", -1.2}}) {
-    v1::MapArtifact door;
-    door.id = id;
-    door.type = v1::ARTIFACT_DOOR;
-    door.name = name;
-    door.pose_in_map.x = 2.0;
-    door.pose_in_map.y = y;
-    door.width = 0.9;
-    map.artifacts.push_back(door);
+    map.artifacts.push_back({.id = id,
+                             .type = v1::ARTIFACT_DOOR,
+                             .pose_in_map = {.x = 2.0, .y = y},
+                             .width = 0.9,
+                             .name = name});
   }
   maps.write(map);
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.stamp.cycle = 100;
-  registration.odom_in_map.x = -3.0;
+  v1::Registration registration{
+      .stamp = {.cycle = 100}, .state = v1::REGISTRATION_TRACKING, .odom_in_map = {.x = -3.0}};
   registrations.write(registration);
-  v1::SeenThing alice;
-  alice.kind = v1::SEEN_PERSON;
-  alice.pose_in_odom.x = 5.0;
-  alice.points = -1.5;
-  alice.pointed = 90;
-  v1::Vision vision;
-  vision.stamp.cycle = 100;
-  vision.things = {alice};
-  visions.write(vision);
+  v1::SeenThing alice{
+      .kind = v1::SEEN_PERSON, .pose_in_odom = {.x = 5.0}, .points = -1.5, .pointed = 90};
+  visions.write({.stamp = {.cycle = 100}, .things = {alice}});
   EXPECT_EQ(say("Flakey, this is Karen's office"), "I know now that south is karen's office");
   registration.stamp.cycle = 111;
   registrations.write(registration);
@@ -211,11 +186,7 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   // The writer keeps earlier sentences.
   start();
   EXPECT_EQ(message(52, "Please give me the mail"), "Please give me the mail");
-  v1::GoalStatus status;
-  status.id = asked[0].data.id;
-  status.state = v1::GOAL_SUCCEEDED;
-  status.reason = "brought";
-  statuses.write(status);
+  statuses.write({.id = asked[0].data.id, .state = v1::GOAL_SUCCEEDED, .reason = "brought"});
   dialogue->step();
   const auto told = said.take();
   ASSERT_EQ(told.size(), 1u);
@@ -262,13 +233,8 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
 
 TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsProgram) {
   const auto says = [&](v1::UtteranceMeans means, const std::string& text) {
-    v1::Utterance utterance;
-    utterance.id.writer = 6;
-    utterance.id.number = ++number;
-    utterance.speaker = "model";
-    utterance.text = text;
-    utterance.means = means;
-    utterance.confidence = 1.0;
+    v1::Utterance utterance{
+        .id = {6, ++number}, .speaker = "model", .text = text, .means = means, .confidence = 1.0};
     auto writer = std::make_unique<bus::Writer<v1::Utterance>>(person.writer(bus::topics::kHeard));
     writer->write(utterance);
     dialogue->step();
@@ -299,13 +265,11 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
 // The words of a program may come in the same moment as the news of its end.
 TEST_F(DialogueOnTheBus, WordsOfAProgramThatHasEndedBeginNothingThatStays) {
   {
-    v1::Utterance utterance;
-    utterance.id.writer = 6;
-    utterance.id.number = 1;
-    utterance.text = "Flakey, go forward";
-    utterance.means = v1::UTTERANCE_PROGRAM;
-    utterance.confidence = 1.0;
-    person.writer(bus::topics::kHeard).write(utterance);
+    person.writer(bus::topics::kHeard)
+        .write({.id = {6, 1},
+                .text = "Flakey, go forward",
+                .means = v1::UTTERANCE_PROGRAM,
+                .confidence = 1.0});
   }
   dialogue->step();
   const auto seen = goals.take();
@@ -396,14 +360,8 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
 
 TEST_F(DialogueOnTheBus, APersonWhosePlaceAnotherProgramBelievesIsLookedFor) {
   auto maps = person.writer(bus::topics::kMap);
-  v1::MapArtifact door;
-  door.id = 1;
-  door.type = v1::ARTIFACT_DOOR;
-  door.name = "north";
-  door.width = 0.9;
-  v1::FloorMap map;
-  map.artifacts = {door};
-  maps.write(map);
+  v1::MapArtifact door{.id = 1, .type = v1::ARTIFACT_DOOR, .width = 0.9, .name = "north"};
+  maps.write({.artifacts = {door}});
   v1::BeliefSet believed;
   believed.beliefs.resize(3);
   believed.beliefs[0].name = "place-of-karen";
@@ -425,9 +383,7 @@ TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   bus::Node hub(test::memory_options("facilitator"), memory);
   FacilitatorShell facilitator(hub, 0.0);
   bus::RequestClient client(person, bus::topics::kSolve, "a person");
-  v1::Request request;
-  request.functor = "forget";
-  request.arguments = {bus::number("number", 1.0)};
+  v1::Request request{.functor = "forget", .arguments = {bus::number("number", 1.0)}};
   double now = 0.0;
   const auto others = [&] {
     facilitator.step(now += 0.01);
@@ -442,18 +398,14 @@ TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
 TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
   bus::Node hub(test::memory_options("facilitator"), memory);
   FacilitatorShell facilitator(hub, 0.0);
-  v1::ActivitySchema schema;
-  schema.name = "go-to-place";
+  v1::ActivitySchema schema{.name = "go-to-place"};
   schema.parameters.resize(1);
   schema.parameters[0].name = "place";
   schema.parameters[0].kind = v1::PARAMETER_TEXT;
   schema.parameters[0].required = true;
-  v1::ActivitySchemas schemas;
-  schemas.schemas = {schema};
-  person.writer(bus::topics::kActivitySchemas).write(schemas);
+  person.writer(bus::topics::kActivitySchemas).write({.schemas = {schema}});
   auto client = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
-  v1::Request request;
-  request.functor = "go-to-place";
+  v1::Request request{.functor = "go-to-place"};
   double now = 3.0;
   std::optional<v1::Goal> goal;
   v1::GoalState state = v1::GOAL_SUCCEEDED;
@@ -462,11 +414,7 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
     for (const auto& sample : goals.take())
       if (!sample.info.disposed) {
         goal = sample.data;
-        v1::GoalStatus status;
-        status.id = goal->id;
-        status.state = state;
-        status.reason = "as the intentions say";
-        statuses.write(status);
+        statuses.write({.id = goal->id, .state = state, .reason = "as the intentions say"});
       }
   };
   others();  // the robot announces what it can do
@@ -484,13 +432,7 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
 }
 
 TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {
-  v1::Utterance old;
-  old.id.writer = 6;
-  old.id.number = 1;
-  old.text = "Flakey, go forward";
-  old.confidence = 1.0;
-  old.time = 1e9;
-  heard.write(old);
+  heard.write({.id = {6, 1}, .text = "Flakey, go forward", .confidence = 1.0, .time = 1e9});
   dialogue->step(0.0, 1e9 + 61.0);
   EXPECT_TRUE(answers().empty());
   EXPECT_TRUE(goals.take().empty());
@@ -508,12 +450,10 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   auto stops = bridge.reader(bus::topics::kDriveStop);
   auto done = bridge.writer(bus::topics::kRobotAnswers);
   const auto answer = [&](const v1::Request& request, v1::AnswerCode code) {
-    v1::Answer sample;
-    sample.asker = request.asker;
-    sample.number = request.number;
-    sample.code = code;
-    sample.text = "stopped: a program (direct)";
-    done.write(sample);
+    done.write({.asker = request.asker,
+                .number = request.number,
+                .code = code,
+                .text = "stopped: a program (direct)"});
     dialogue->step();
     return answers();
   };

@@ -15,10 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 
 v1::Request where_is_karen() {
-  v1::Request request;
-  request.functor = "place_of";
-  request.arguments = {bus::text("person", "karen"), bus::open("place")};
-  return request;
+  return {.functor = "place_of", .arguments = {bus::text("person", "karen"), bus::open("place")}};
 }
 
 v1::Capability place_of() {
@@ -106,16 +103,11 @@ class FacilitatorInMemory : public testing::Test {
     worker.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request& request) {
       begun.push_back(request.number);
       begun_request = request;
-      v1::Answer answer;
-      answer.code = v1::ANSWER_UNDERWAY;
-      answer.text = "sweeps";
-      return answer;
+      return v1::Answer{.code = v1::ANSWER_UNDERWAY, .text = "sweeps"};
     });
     worker.when_withdrawn([&](const v1::Request& request) {
       stopped.push_back(request.number);
-      v1::Answer end;
-      end.code = v1::ANSWER_GIVEN_UP;
-      end.text = "half of the floor is clean";
+      v1::Answer end{.code = v1::ANSWER_GIVEN_UP, .text = "half of the floor is clean"};
       worker.answer(request, end);
     });
   }
@@ -132,11 +124,7 @@ class FacilitatorInMemory : public testing::Test {
       worker.poll();
     }
   }
-  static v1::Request sweep() {
-    v1::Request request;
-    request.functor = "sweep";
-    return request;
-  }
+  static v1::Request sweep() { return v1::Request{.functor = "sweep"}; }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   std::optional<bus::Node> hub;
@@ -156,8 +144,7 @@ TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   const std::uint64_t number = asker.send(sweep());
   turn();
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
-  v1::Request withdrawal;
-  withdrawal.functor = bus::kWithdraw;
+  v1::Request withdrawal{.functor = bus::kWithdraw};
   asker.again(number, withdrawal);
   turn();
   EXPECT_EQ(stopped, begun);
@@ -227,11 +214,7 @@ TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
 }
 
 TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
-  v1::Trigger trigger;
-  trigger.kind = v1::TRIGGER_TIME;
-  trigger.period = 1.0;
-  trigger.action = "sweep";
-  trigger.times = 1;
+  v1::Trigger trigger{.kind = v1::TRIGGER_TIME, .period = 1.0, .action = "sweep", .times = 1};
   worker.set(trigger);
   turn();
   for (int i = 0; i < 3; ++i) {
@@ -244,10 +227,7 @@ TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
 }
 
 TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) {
-  v1::Trigger trigger;
-  trigger.kind = v1::TRIGGER_EVENT;
-  trigger.condition = "dust";
-  trigger.action = "sweep";
+  v1::Trigger trigger{.kind = v1::TRIGGER_EVENT, .condition = "dust", .action = "sweep"};
   worker.set(trigger);
   turn();
   bus::set_silent(*memory, "sweeper", true);
@@ -271,12 +251,8 @@ TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) 
 }
 
 TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
-  v1::Trigger trigger;
-  trigger.id.writer = 3;
-  trigger.id.number = 1;
-  trigger.kind = v1::TRIGGER_EVENT;
-  trigger.condition = "dust";
-  trigger.action = "sweep";
+  v1::Trigger trigger{
+      .id = {3, 1}, .kind = v1::TRIGGER_EVENT, .condition = "dust", .action = "sweep"};
   std::optional<bus::Writer<v1::Trigger>> first = person.writer(bus::topics::kTriggers);
   std::optional<bus::Writer<v1::Trigger>> second = other.writer(bus::topics::kTriggers);
   first->write(trigger);
@@ -309,11 +285,8 @@ TEST_F(FacilitatorInMemory, ATriggerLastsAsLongAsOneOfItsHolders) {
 /// With an activity that the robot can do.
 struct TheRobotInMemory : FacilitatorInMemory {
   TheRobotInMemory() {
-    v1::ActivitySchema schema;
-    schema.name = "explore";
-    v1::ActivitySchemas schemas;
-    schemas.schemas = {schema};
-    activities.write(schemas);
+    v1::ActivitySchema schema{.name = "explore"};
+    activities.write({.schemas = {schema}});
     turn();
   }
   bus::Writer<v1::ActivitySchemas> activities = person.writer(bus::topics::kActivitySchemas);
@@ -323,18 +296,15 @@ struct TheRobotInMemory : FacilitatorInMemory {
 TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
   auto statuses = person.writer(bus::topics::kGoalStatus);
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
-  v1::Request request;
-  request.functor = "explore";
-  request.deadline = 1.5;
+  v1::Request request{.functor = "explore", .deadline = 1.5};
   asker.send(request);
   turn();
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_NEAR(asked[0].data.deadline, 1.0, 1e-9);
-  v1::GoalStatus status;
-  status.id = asked[0].data.id;
-  status.state = v1::GOAL_SUCCEEDED;
-  status.reason = "drove 0.10 m until the deadline";
+  v1::GoalStatus status{.id = asked[0].data.id,
+                        .state = v1::GOAL_SUCCEEDED,
+                        .reason = "drove 0.10 m until the deadline"};
   now += 1.2;  // its deadline, and the way of the status
   statuses.write(status);
   turn();
@@ -343,8 +313,7 @@ TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
 
 TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   auto asker = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
-  v1::Request request;
-  request.functor = "explore";
+  v1::Request request{.functor = "explore"};
   asker->send(request);
   turn();
   const auto asked = goals.take();

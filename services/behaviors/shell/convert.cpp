@@ -59,30 +59,27 @@ Intent from_bus(const v1::Intentions& intentions) {
 v1::BehaviorState to_bus(const BehaviorState& state) {
   const Blended& blended = state.blended;
   const Activity& activity = blended.evaluation.activity;
-  v1::BehaviorState sample;
-  sample.name = state.name;
-  sample.schema = state.schema;
-  sample.priority = blended.priority;
-  sample.running = state.running;
-  sample.turn_activity = activity.turn;
-  sample.speed_activity = activity.speed;
-  sample.turn_weight = blended.turn_weight;
-  sample.speed_weight = blended.speed_weight;
-  sample.goal = activity.goal;
-  sample.progress = activity.progress;
-  sample.recommends_turn = blended.recommends_turn;
-  sample.turn = blended.turn;
-  sample.recommends_speed = blended.recommends_speed;
-  sample.speed = blended.speed;
+  v1::BehaviorState sample{.name = state.name,
+                           .schema = state.schema,
+                           .priority = blended.priority,
+                           .running = state.running,
+                           .turn_activity = activity.turn,
+                           .speed_activity = activity.speed,
+                           .turn_weight = blended.turn_weight,
+                           .speed_weight = blended.speed_weight,
+                           .goal = activity.goal,
+                           .progress = activity.progress,
+                           .recommends_turn = blended.recommends_turn,
+                           .turn = blended.turn,
+                           .recommends_speed = blended.recommends_speed,
+                           .speed = blended.speed};
   for (const Rule& rule : blended.evaluation.rules) {
     if (sample.rules.size() == kMostRules)
       break;
-    v1::RuleState out;
-    out.name = rule.name;
-    out.strength = rule.strength;
-    out.action = kActions.theirs(rule.action);
-    out.value = rule.value;
-    sample.rules.push_back(std::move(out));
+    sample.rules.push_back({.name = rule.name,
+                            .strength = rule.strength,
+                            .action = kActions.theirs(rule.action),
+                            .value = rule.value});
   }
   for (const auto& [name, value] : blended.evaluation.variables) {
     if (sample.variables.size() == kMostVariables)
@@ -104,8 +101,7 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
 }
 
 v1::BehaviorSet to_bus(const Output& output) {
-  v1::BehaviorSet sample;
-  sample.control = output.control;
+  v1::BehaviorSet sample{.control = output.control};
   sample.behaviors.reserve(output.behaviors.size());
   for (const BehaviorState& state : output.behaviors)
     sample.behaviors.push_back(to_bus(state));
@@ -126,21 +122,18 @@ v1::BehaviorSet to_bus(const Output& output) {
 }
 
 v1::BehaviorSchema to_bus(const Schema& schema) {
-  v1::BehaviorSchema sample;
-  sample.name = schema.name;
-  sample.summary = schema.summary;
-  sample.source = schema.source;
+  v1::BehaviorSchema sample{
+      .name = schema.name, .summary = schema.summary, .source = schema.source};
   for (const ParameterSpec& spec : schema.parameters) {
     if (sample.parameters.size() == kMostParameters)
       break;
-    v1::BehaviorParameter out;
-    out.name = spec.name;
-    out.kind = saphira::to_bus(spec.kind);
-    out.meaning = spec.meaning;
-    out.required = spec.required;
-    out.low = spec.low;
-    out.high = spec.high;
-    out.usual = spec.usual;
+    v1::BehaviorParameter out{.name = spec.name,
+                              .kind = saphira::to_bus(spec.kind),
+                              .meaning = spec.meaning,
+                              .required = spec.required,
+                              .low = spec.low,
+                              .high = spec.high,
+                              .usual = spec.usual};
     for (const std::string& choice : spec.choices)
       if (out.choices.size() < kMostChoices)
         out.choices.push_back(choice);
@@ -149,11 +142,8 @@ v1::BehaviorSchema to_bus(const Schema& schema) {
   for (const RuleSpec& rule : schema.rules) {
     if (sample.rules.size() == kMostRules)
       break;
-    v1::RuleText out;
-    out.name = rule.name;
-    out.antecedent = rule.antecedent;
-    out.action = rule.action;
-    sample.rules.push_back(std::move(out));
+    sample.rules.push_back(
+        {.name = rule.name, .antecedent = rule.antecedent, .action = rule.action});
   }
   return sample;
 }
@@ -168,8 +158,7 @@ v1::BehaviorSchemas to_bus(const Registry& registry, const std::string& trouble)
 }
 
 v1::MotorCommand command_to_bus(const Output& output) {
-  v1::MotorCommand command;
-  command.active = output.active;
+  v1::MotorCommand command{.active = output.active};
   if (output.active) {
     command.translation = v1::TRANSLATION_VELOCITY;
     command.velocity = output.speed;

@@ -14,13 +14,11 @@ namespace {
 
 v1::IntendedBehavior behavior(const char* schema, int priority,
                               std::vector<v1::Argument> parameters = {}) {
-  v1::IntendedBehavior b;
-  b.name = schema;
-  b.schema = schema;
-  b.priority = priority;
-  b.running = true;
-  b.parameters = std::move(parameters);
-  return b;
+  return {.name = schema,
+          .schema = schema,
+          .priority = priority,
+          .running = true,
+          .parameters = std::move(parameters)};
 }
 
 runtime::Shell::Make with(const Options& options) {
@@ -31,32 +29,21 @@ runtime::Shell::Make with(const Options& options) {
 class ShellTest : public testing::TestWithParam<bool> {
  protected:
   void describe() {
-    v1::RobotDescription description;
-    description.stamp.epoch = epoch;
-    description.radius = 0.22;
-    description.max_velocity = 0.4;
-    description.max_rotation_velocity = 1.7;
-    description.front_buffer = 30;
-    description.side_buffer = 40;
-    description.front_max_range = 2.5;
-    descriptions.write(description);
+    descriptions.write({.stamp = {.epoch = epoch},
+                        .radius = 0.22,
+                        .max_velocity = 0.4,
+                        .max_rotation_velocity = 1.7,
+                        .front_buffer = 30,
+                        .side_buffer = 40,
+                        .front_max_range = 2.5});
   }
   /// RobotState of the next cycle.
   void state() {
-    v1::RobotState sample;
-    sample.stamp.epoch = epoch;
-    sample.stamp.cycle = ++cycle;
-    sample.odom = 1;
-    sample.pose_in_odom.th = heading;
-    states.write(sample);
+    states.write({.stamp = {epoch, ++cycle}, .odom = 1, .pose_in_odom = {.th = heading}});
   }
   void intend(std::vector<v1::IntendedBehavior> set) {
-    v1::Intentions sample;
-    sample.stamp.epoch = epoch;
-    sample.stamp.cycle = cycle;
-    sample.behavior_control = true;
-    sample.behaviors = std::move(set);
-    intentions.write(sample);
+    intentions.write(
+        {.stamp = {epoch, cycle}, .behavior_control = true, .behaviors = std::move(set)});
   }
   void step() {
     ASSERT_TRUE(shell.step(stop));
@@ -218,23 +205,15 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
 
   bus::Stop stop;
   std::uint64_t cycle = 0;
-  v1::RobotDescription description;
-  description.stamp.epoch = 7;
-  description.max_velocity = 0.4;
-  descriptions.write(description);
+  descriptions.write({.stamp = {.epoch = 7}, .max_velocity = 0.4});
   // Twice as many cycles as are between two looks.
   const auto drive = [&] {
     double speed = 0.0;
     for (int i = 0; i < 20; ++i) {
-      v1::Intentions intended;
-      intended.stamp.epoch = 7;
-      intended.stamp.cycle = cycle;
-      intended.behavior_control = true;
-      intended.behaviors = {behavior("ConstantVelocity", 2)};
-      v1::RobotState state;
-      state.stamp.epoch = 7;
-      state.stamp.cycle = ++cycle;
-      states.write(state);
+      v1::Intentions intended{.stamp = {7, cycle},
+                              .behavior_control = true,
+                              .behaviors = {behavior("ConstantVelocity", 2)}};
+      states.write({.stamp = {7, ++cycle}});
       intentions.write(intended);
       EXPECT_TRUE(shell.step(stop));
       if (const auto newest = behaviors.take_newest())

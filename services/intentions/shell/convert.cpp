@@ -19,51 +19,6 @@ constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
     }},
     {ArgumentKind::truth, ArgumentKind::unbound},
     {v1::PARAMETER_ANY}};
-constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
-    {GoalState::kWaiting, v1::GOAL_WAITING},
-    {GoalState::kRefused, v1::GOAL_REFUSED},
-    {GoalState::kUnderway, v1::GOAL_UNDERWAY},
-    {GoalState::kSuspended, v1::GOAL_SUSPENDED},
-    {GoalState::kSucceeded, v1::GOAL_SUCCEEDED},
-    {GoalState::kFailed, v1::GOAL_FAILED},
-    {GoalState::kCanceled, v1::GOAL_CANCELED},
-}}};
-constexpr EnumPairs<GoalCode, v1::GoalCode, 17> kCodes{{{
-    {GoalCode::kNone, v1::CODE_NONE},
-    {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
-    {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
-    {GoalCode::kChanged, v1::CODE_CHANGED},
-    {GoalCode::kTooMany, v1::CODE_TOO_MANY},
-    {GoalCode::kForgotten, v1::CODE_FORGOTTEN},
-    {GoalCode::kDeadline, v1::CODE_DEADLINE},
-    {GoalCode::kBlocked, v1::CODE_BLOCKED},
-    {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},
-    {GoalCode::kNoPosition, v1::CODE_NO_POSITION},
-    {GoalCode::kNoRoute, v1::CODE_NO_ROUTE},
-    {GoalCode::kActivity, v1::CODE_ACTIVITY},
-    {GoalCode::kTimeout, v1::CODE_TIMEOUT},
-    {GoalCode::kDisposed, v1::CODE_DISPOSED},
-    {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
-    {GoalCode::kPreempted, v1::CODE_PREEMPTED},
-    {GoalCode::kStopped, v1::CODE_STOPPED},
-}}};
-constexpr EnumPairs<WriterLost, v1::WriterLost, 2> kPolicies{{{
-    {WriterLost::kCancel, v1::WRITER_LOST_CANCEL},
-    {WriterLost::kKeep, v1::WRITER_LOST_KEEP},
-}}};
-constexpr EnumPairs<Trend, v1::GoalTrend, 3> kTrends{{{
-    {Trend::kSteady, v1::TREND_STEADY},
-    {Trend::kRising, v1::TREND_RISING},
-    {Trend::kFalling, v1::TREND_FALLING},
-}}};
-constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{
-    {{
-        {Localization::kOff, v1::REGISTRATION_OFF},
-        {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
-        {Localization::kLost, v1::REGISTRATION_LOST},
-        {Localization::kTracking, v1::REGISTRATION_TRACKING},
-    }},
-    {Localization::kNone}};
 // The bus does not separate the first step after a suspension from the following ones; a removed
 // intention does not appear there.
 constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
@@ -81,76 +36,42 @@ constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
 
 }  // namespace
 
-GoalId from_bus(const v1::GoalId& id) {
-  return {id.writer, id.number};
-}
-
-v1::GoalId to_bus(const GoalId& id) {
-  v1::GoalId result;
-  result.writer = id.writer;
-  result.number = id.number;
-  return result;
-}
-
 Goal from_bus(const v1::Goal& goal) {
   Goal result;
-  result.id = from_bus(goal.id);
+  result.id = goal.id;
   result.requester = goal.requester;
   result.functor = goal.functor;
   result.arguments = saphira::from_bus(goal.arguments);
   result.priority = goal.priority;
   result.deadline = goal.deadline;
   result.level = goal.level;
-  result.writer_lost = kPolicies.ours(goal.writer_lost, WriterLost::kCancel);
-  return result;
-}
-
-v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
-  v1::GoalStatus result;
-  result.id = to_bus(status.id);
-  result.stamp = stamp;
-  result.requester = status.requester;
-  result.functor = status.functor;
-  result.state = kStates.theirs(status.state);
-  result.code = kCodes.theirs(status.code);
-  result.reason = status.reason;
-  result.step = status.step;
-  result.progress = status.progress;
-  result.level = status.level;
-  result.trend = kTrends.theirs(status.trend);
-  result.elapsed = status.elapsed;
-  result.note = status.note;
-  result.waits_for = to_bus(status.waits_for);
+  result.writer_lost = goal.writer_lost;
   return result;
 }
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
-  v1::IntendedBehavior result;
-  result.name = behavior.name;
-  result.schema = behavior.schema;
-  result.priority = behavior.priority;
-  result.running = behavior.running;
-  result.parameters = saphira::to_bus(behavior.parameters);
-  result.intention = behavior.intention;
-  result.blocking = behavior.blocking;
-  return result;
+  return {.name = behavior.name,
+          .schema = behavior.schema,
+          .priority = behavior.priority,
+          .running = behavior.running,
+          .parameters = saphira::to_bus(behavior.parameters),
+          .intention = behavior.intention,
+          .blocking = behavior.blocking};
 }
 
 v1::IntentionNode to_bus(const IntentionNode& node) {
-  v1::IntentionNode result;
-  result.id = node.id;
-  result.parent = node.parent;
-  result.name = node.name;
-  result.schema = node.schema;
-  result.arguments = node.arguments;
-  result.state = kIntentionStates.theirs(node.state);
-  result.blocking = node.blocking;
-  result.label = node.label;
-  result.step = node.step;
-  result.since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0));
-  result.priority = node.priority;
-  result.goal = to_bus(node.goal);
-  return result;
+  return {.id = node.id,
+          .parent = node.parent,
+          .name = node.name,
+          .schema = node.schema,
+          .arguments = node.arguments,
+          .state = kIntentionStates.theirs(node.state),
+          .blocking = node.blocking,
+          .label = node.label,
+          .step = node.step,
+          .since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)),
+          .priority = node.priority,
+          .goal = node.goal};
 }
 
 Robot from_bus(const v1::RobotState& robot) {
@@ -220,18 +141,16 @@ std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
 }
 
 v1::ActivitySchema to_bus(const Schema& schema) {
-  v1::ActivitySchema result;
-  result.name = schema.name;
-  result.summary = schema.summary;
-  result.source = schema.source;
+  v1::ActivitySchema result{
+      .name = schema.name, .summary = schema.summary, .source = schema.source};
   for (const Parameter& parameter : schema.parameters) {
-    v1::ActivityParameter out;
-    out.name = parameter.name;
-    out.kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind);
-    out.unit = parameter.unit;
-    out.required = parameter.required;
-    out.low = parameter.low;
-    out.high = parameter.high;
+    v1::ActivityParameter out{
+        .name = parameter.name,
+        .kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind),
+        .unit = parameter.unit,
+        .required = parameter.required,
+        .low = parameter.low,
+        .high = parameter.high};
     if (parameter.usual)
       out.usual = plain(*parameter.usual);
     else if (parameter.usual_text)
@@ -242,18 +161,16 @@ v1::ActivitySchema to_bus(const Schema& schema) {
 }
 
 v1::Belief to_bus(const Belief& belief) {
-  v1::Belief result;
-  result.name = belief.name;
-  result.value = to_text(belief.value);
-  result.said_by = belief.said_by;
-  result.since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0));
-  return result;
+  return {.name = belief.name,
+          .value = to_text(belief.value),
+          .said_by = belief.said_by,
+          .since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0))};
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
   ClaimEvent result;
   result.kind = kind;
-  result.id = from_bus(claim.id);
+  result.id = claim.id;
   result.source = claim.source;
   result.name = claim.name;
   if (kind == ClaimEvent::Kind::kSaid)
@@ -265,7 +182,7 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   Registered result;
   if (registration.stamp.cycle + kRegistrationLease < cycle)
     return result;
-  result.state = kLocalizations.ours(registration.state, Localization::kLost);
+  result.state = registration.state;
   result.pose_in_map = lps::from_bus(registration.pose_in_map);
   result.confidence = registration.confidence;
   result.environment = registration.environment;

@@ -18,11 +18,7 @@ namespace saphira::intentions {
 /// Conversions between the types of the bus and those of the library. An enumerator outside of the
 /// contract becomes the value that is refused, or the cautious one.
 
-GoalId from_bus(const v1::GoalId& id);
-v1::GoalId to_bus(const GoalId& id);
-
 Goal from_bus(const v1::Goal& goal);
-v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp);
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior);
 v1::IntentionNode to_bus(const IntentionNode& node);

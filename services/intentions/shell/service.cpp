@@ -261,11 +261,9 @@ void Service::look() {
   ports_.say(core_.know_activities(news).lines());
   if (!news.changed)
     return;
-  v1::ActivitySchemas sample;
-  sample.schemas = converted(core_.executor().registry().all(),
-                             [](const Schema* schema) { return to_bus(*schema); });
-  sample.trouble = folders_.trouble();
-  schemas_.write(std::move(sample));
+  schemas_.write({.schemas = converted(core_.executor().registry().all(),
+                                       [](const Schema* schema) { return to_bus(*schema); }),
+                  .trouble = folders_.trouble()});
 }
 
 void Service::remember(const News& news) {
@@ -287,22 +285,19 @@ void Service::remember(const News& news) {
 void Service::publish(const News& news) {
   Notes notes;
   for (const GoalStatus& status : news.changed) {
-    const v1::GoalStatus sample = to_bus(status, ports_.stamp());
+    v1::GoalStatus sample = status;
+    sample.stamp = ports_.stamp();
     if (!statuses_.write(sample))
       notes.warn("the status of goal " + describe(status.id) + " did not get onto the bus");
     told_[status.id] = sample;
   }
   for (const GoalId& id : news.withdrawn) {
-    GoalStatus status;
-    status.id = id;
-    statuses_.dispose(to_bus(status, ports_.stamp()));
+    statuses_.dispose({.id = id, .stamp = ports_.stamp()});
     told_.erase(id);
   }
   if (!news.changed.empty() || !news.withdrawn.empty()) {
-    v1::GoalStatusSet all;
-    all.goals = converted(
-        told_, [](const auto& told) { return told.second; }, kMostGoals);
-    goal_recall_.write(std::move(all));
+    goal_recall_.write({.goals = converted(
+                            told_, [](const auto& told) { return told.second; }, kMostGoals)});
   }
   ports_.say(notes.lines());
 }
@@ -316,12 +311,10 @@ void Service::publish(const Core::Outputs& said) {
     questions_[agents_.ask(question)] = question.number;
   while (questions_.size() > kMostQuestions)  // never answered
     questions_.erase(questions_.begin());
-  v1::Intentions sample;
-  sample.behavior_control = outputs.behavior_control;
-  sample.speed_limit = std::max(0.0, limit.speed);
-  sample.limit_reason = limit.reason;
-  sample.heeds.asker = core_.executor().heeds().asker;
-  sample.heeds.number = core_.executor().heeds().number;
+  v1::Intentions sample{.behavior_control = outputs.behavior_control,
+                        .speed_limit = std::max(0.0, limit.speed),
+                        .limit_reason = limit.reason,
+                        .heeds = {core_.executor().heeds().asker, core_.executor().heeds().number}};
   const auto carried = [](const auto& each) { return to_bus(each); };
   sample.behaviors = converted(outputs.behaviors, carried);
   sample.nodes = converted(outputs.nodes, carried, kMostNodes);
@@ -331,16 +324,12 @@ void Service::publish(const Core::Outputs& said) {
   intentions_.write(sample);
   recall_.write(std::move(sample));
   for (const Said& one : outputs.said) {
-    v1::Message message;
-    message.source = ports_.name() + ": " + one.schema;
-    message.text = one.text;
-    messages_.write(std::move(message));
+    messages_.write({.source = ports_.name() + ": " + one.schema, .text = one.text});
   }
 }
 
 void Service::draw_way(const std::vector<Vec2>& way) {
-  v1::Drawing drawing;
-  drawing.instance = ports_.instance();
+  v1::Drawing drawing{.instance = ports_.instance()};
   if (way.empty()) {
     drawings_.dispose(drawing);
     return;
@@ -348,12 +337,8 @@ void Service::draw_way(const std::vector<Vec2>& way) {
   drawing.source = ports_.name();
   drawing.frame = v1::FRAME_MAP;
   drawing.shape = v1::DRAWING_LINE;
-  drawing.points = converted(way, [](const Vec2& at) {
-    v1::DrawnPoint drawn;
-    drawn.x = at.x();
-    drawn.y = at.y();
-    return drawn;
-  });
+  drawing.points =
+      converted(way, [](const Vec2& at) { return v1::DrawnPoint{.x = at.x(), .y = at.y()}; });
   drawing.red = 70;
   drawing.green = 130;
   drawing.blue = 180;
@@ -361,10 +346,8 @@ void Service::draw_way(const std::vector<Vec2>& way) {
 }
 
 void Service::publish(const std::vector<Belief>& beliefs) {
-  v1::BeliefSet sample;
-  sample.beliefs = converted(
-      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs);
-  beliefs_.write(std::move(sample));
+  beliefs_.write({.beliefs = converted(
+                      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs)});
 }
 
 namespace {

@@ -79,7 +79,7 @@ Core::Outputs Core::step(Inputs inputs) {
   outputs.intended = executor_.step(now);
   if (!gone.empty())
     for (GoalStatus& status : outputs.intended.news.changed)
-      if (status.state == GoalState::kFailed)
+      if (status.state == v1::GOAL_FAILED)
         status.reason += "; " + gone;
   outputs.limit = limit_of(now, outputs.intended);
   outputs.edges = edges_near(now);
@@ -115,7 +115,7 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 std::vector<Edge> Core::edges_near(const intentions::Inputs& now) const {
   std::vector<Edge> edges;
   if (lines_ == nullptr || !now.robot.odom_in_map ||
-      now.around.registration.state != Localization::kTracking)
+      now.around.registration.state != v1::REGISTRATION_TRACKING)
     return edges;
   const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();
   const ToFrame to_odom(*now.robot.odom_in_map);
@@ -146,7 +146,7 @@ std::string Core::who_is_gone(const Inputs& inputs) {
     heard_epoch_ = inputs.stamp.epoch;
     registration_heard_ = 0;
   }
-  if (inputs.registered.state != Localization::kNone)
+  if (inputs.registered.state)
     registration_heard_ = now;
   std::string text;
   const auto add = [&](const char* name, std::uint64_t heard) {

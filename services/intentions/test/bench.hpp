@@ -39,7 +39,7 @@ class Bench {
     }
   }
   /// Steps until the goal is no longer in that state, to that cycle at most.
-  void run(std::uint64_t number, std::uint64_t until, GoalState while_in = GoalState::kUnderway) {
+  void run(std::uint64_t number, std::uint64_t until, GoalState while_in = v1::GOAL_UNDERWAY) {
     do
       step();
     while (state(number) == while_in && cycle < until);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "requests/shell/convert.hpp"
 
 namespace saphira::intentions {
@@ -14,100 +16,28 @@ Arguments all_kinds() {
 }
 
 TEST(Convert, AGoalIsTakenWhole) {
-  v1::Goal theirs;
-  theirs.id.writer = 0xffffffffffffffffULL;
-  theirs.id.number = 3;
-  theirs.requester = "somebody";
-  theirs.functor = "go_to";
-  theirs.arguments = saphira::to_bus(all_kinds());
-  theirs.priority = -7;
-  theirs.deadline = 12.5;
-  theirs.level = 0.25;
-  theirs.writer_lost = v1::WRITER_LOST_KEEP;
+  v1::Goal theirs{.id = {0xffffffffffffffffULL, 3},
+                  .requester = "somebody",
+                  .functor = "go_to",
+                  .arguments = saphira::to_bus(all_kinds()),
+                  .priority = -7,
+                  .deadline = 12.5,
+                  .writer_lost = v1::WRITER_LOST_KEEP,
+                  .level = 0.25};
   EXPECT_EQ(from_bus(theirs), (Goal{{0xffffffffffffffffULL, 3},
                                     "somebody",
                                     "go_to",
                                     all_kinds(),
                                     -7,
                                     12.5,
-                                    WriterLost::kKeep,
+                                    v1::WRITER_LOST_KEEP,
                                     0.25}));
 }
 
-TEST(Convert, AStatusIsToldWhole) {
-  GoalStatus status;
-  status.id = {1, 2};
-  status.requester = "somebody";
-  status.functor = "drive";
-  status.state = GoalState::kCanceled;
-  status.code = GoalCode::kPreempted;
-  status.reason = "why";
-  status.step = "driving";
-  status.progress = 0.3;
-  status.level = 0.4;
-  status.trend = Trend::kFalling;
-  status.elapsed = 4.1;
-  status.note = "note";
-  status.waits_for = {0xfffffffffffffffeULL, 7};
-  v1::Stamp stamp;
-  stamp.epoch = 5;
-  stamp.cycle = 6;
-  const v1::GoalStatus told = to_bus(status, stamp);
-  EXPECT_EQ(told.stamp, stamp);
-  EXPECT_EQ(told.id, to_bus(status.id));
-  EXPECT_EQ(told.requester, "somebody");
-  EXPECT_EQ(told.functor, "drive");
-  EXPECT_EQ(told.state, v1::GOAL_CANCELED);
-  EXPECT_EQ(told.code, v1::CODE_PREEMPTED);
-  EXPECT_EQ(told.reason, "why");
-  EXPECT_EQ(told.step, "driving");
-  EXPECT_EQ(told.progress, 0.3);
-  EXPECT_EQ(told.level, 0.4);
-  EXPECT_EQ(told.trend, v1::TREND_FALLING);
-  EXPECT_EQ(told.elapsed, 4.1);
-  EXPECT_EQ(told.note, "note");
-  EXPECT_EQ(told.waits_for, to_bus(status.waits_for));
-}
-
-TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {
-  const IntendedBehavior behavior{"GoToPos#3", "GoToPos", 2, false, all_kinds(), 3, false};
-  const v1::IntendedBehavior intended = to_bus(behavior);
-  EXPECT_EQ(intended.name, "GoToPos#3");
-  EXPECT_EQ(intended.schema, "GoToPos");
-  EXPECT_EQ(intended.priority, 2);
-  EXPECT_FALSE(intended.running);
-  EXPECT_EQ(saphira::from_bus(intended.parameters), all_kinds());
-  EXPECT_EQ(intended.intention, 3U);
-  EXPECT_FALSE(intended.blocking);
-
-  IntentionNode node;
-  node.id = 3;
-  node.parent = 2;
-  node.name = "GoToPos#3";
-  node.schema = "GoToPos";
-  node.blocking = false;
-  node.step = "B";
-  node.state = IntentionState::kResumed;
-  node.goal = {1, 2};
-  const v1::IntentionNode told = to_bus(node);
-  EXPECT_EQ(told.id, 3U);
-  EXPECT_EQ(told.parent, 2U);
-  EXPECT_EQ(told.name, "GoToPos#3");
-  EXPECT_EQ(told.schema, "GoToPos");
-  EXPECT_FALSE(told.blocking);
-  EXPECT_EQ(told.step, "B");
-  EXPECT_EQ(told.state, v1::INTENTION_RUNNING);
-  EXPECT_EQ(told.goal, to_bus(node.goal));
-}
-
 TEST(Convert, WhatDoesNotKeepToTheContractIsRefusedLater) {
-  v1::Argument argument;
-  argument.kind = static_cast<v1::ArgumentKind>(77);
-  argument.frame = static_cast<v1::Frame>(77);
+  v1::Argument argument{.kind = static_cast<v1::ArgumentKind>(77),
+                        .frame = static_cast<v1::Frame>(77)};
   EXPECT_EQ(saphira::from_bus(argument).kind, ArgumentKind::unbound);
-  v1::Goal goal;
-  goal.writer_lost = static_cast<v1::WriterLost>(77);
-  EXPECT_EQ(from_bus(goal).writer_lost, WriterLost::kCancel);
 }
 
 TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
@@ -136,59 +66,21 @@ TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
   EXPECT_EQ(heard.person, "");
 }
 
-TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
-  v1::RobotState state;
-  state.odom = 4;
-  state.pose_in_odom.x = 1.0;
-  state.pose_in_odom.y = 2.0;
-  state.pose_in_odom.th = 3.0;
-  state.velocity = 0.4;
-  state.rotation_velocity = -0.5;
-  state.target_velocity = 0.3;
-  state.target_heading_in_odom = 1.5;
-  state.status = v1::MOTORS_MOVING;
-  Robot robot = from_bus(state);
-  EXPECT_TRUE(robot.connected);
-  EXPECT_TRUE(robot.has_power);
-  EXPECT_EQ(robot.odom, 4U);
-  EXPECT_EQ(robot.pose_in_odom, (Pose{1.0, 2.0, 3.0}));
-  EXPECT_EQ(robot.velocity, 0.4);
-  EXPECT_EQ(robot.rotation_velocity, -0.5);
-  EXPECT_EQ(robot.target_velocity, 0.3);
-  EXPECT_EQ(robot.target_heading_in_odom, 1.5);
-  state.status = v1::MOTORS_NO_POWER;
-  EXPECT_FALSE(from_bus(state).has_power);
-  state.status = v1::MOTORS_NOT_CONNECTED;
-  EXPECT_FALSE(from_bus(state).connected);
-
-  v1::BehaviorSet behaviors;
-  v1::BehaviorState behavior;
-  behavior.name = "GoToPos#3";
-  behavior.goal = 0.7;
-  behavior.progress = 0.2;
-  behaviors.behaviors.push_back(behavior);
-  v1::MissingBehavior missing;
-  missing.name = "Fly#4";
-  missing.reason = "unknown schema";
-  behaviors.missing.push_back(missing);
-  const std::vector<BehaviorTrouble> troubles = troubles_from_bus(behaviors);
-  ASSERT_EQ(troubles.size(), 1U);
-  EXPECT_EQ(troubles[0].name, "Fly#4");
-  EXPECT_EQ(troubles[0].reason, "unknown schema");
-  const std::vector<BehaviorLevel> levels = from_bus(behaviors);
-  ASSERT_EQ(levels.size(), 1U);
-  EXPECT_EQ(levels[0].name, "GoToPos#3");
-  EXPECT_EQ(levels[0].goal, 0.7);
-  EXPECT_EQ(levels[0].progress, 0.2);
+TEST(Convert, WhichMotorsHavePowerAndWhichRobotIsConnected) {
+  for (const auto& [status, connected, power] :
+       {std::tuple(v1::MOTORS_MOVING, true, true), std::tuple(v1::MOTORS_NO_POWER, true, false),
+        std::tuple(v1::MOTORS_NOT_CONNECTED, false, true)}) {
+    const Robot robot = from_bus(v1::RobotState{.status = status});
+    EXPECT_EQ(robot.connected, connected) << status;
+    EXPECT_EQ(robot.has_power, power) << status;
+  }
 }
 
 TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.odom = 4;
-  registration.stamp.cycle = 100;
-  registration.odom_in_map.x = 2.0;
-  registration.odom_in_map.th = 0.5;
+  v1::Registration registration{.stamp = {.cycle = 100},
+                                .state = v1::REGISTRATION_TRACKING,
+                                .odom = 4,
+                                .odom_in_map = {.x = 2.0, .th = 0.5}};
   EXPECT_EQ(odom_in_map_from_bus(registration, 101, 4), (Pose{2.0, 0.0, 0.5}));
   EXPECT_TRUE(odom_in_map_from_bus(registration, 100 + kRegistrationLease, 4));
   EXPECT_FALSE(odom_in_map_from_bus(registration, 101 + kRegistrationLease, 4));
@@ -202,9 +94,7 @@ TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
 }
 
 TEST(Convert, WhatInterpretationSawCountsForAWhile) {
-  v1::Perception perception;
-  perception.stamp.cycle = 100;
-  perception.odom = 4;
+  v1::Perception perception{.stamp = {.cycle = 100}, .odom = 4};
   perception.percepts.emplace_back();
   EXPECT_EQ(percepts_from_bus(perception, 100 + kRegistrationLease, 4).value().size(), 1U);
   EXPECT_FALSE(percepts_from_bus(perception, 101 + kRegistrationLease, 4));

@@ -89,7 +89,7 @@ class CoreTest : public testing::Test {
 TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
   const Core::Outputs first = ask({written(1, kKaren)});
   EXPECT_FALSE(first.intended.behaviors.empty());
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   EXPECT_TRUE(says(first.notes, "\"go_to\" of \"a test\": underway"));
   EXPECT_TRUE(step().notes.empty());
 }
@@ -106,7 +106,7 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
     note(core_.step(inputs_).intended.news);
     inputs_.heard = {};
   }
-  EXPECT_EQ(state(1), GoalState::kFailed);
+  EXPECT_EQ(state(1), v1::GOAL_FAILED);
   EXPECT_NE(statuses_.at({5, 1}).reason.find("behaviors has not been heard for"), std::string::npos)
       << statuses_.at({5, 1}).reason;
 }
@@ -116,27 +116,27 @@ TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
   ask({written(1, kKaren)});
   inputs_.heard.grants = {{false, "", "", "karen"}};
   EXPECT_TRUE(step().intended.behaviors.empty());
-  EXPECT_EQ(state(1), GoalState::kSuspended);
+  EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(statuses_.at({5, 1}).reason, "karen drives: goes on when the robot is handed back");
   inputs_.heard.goals = {written(2, kJohn)};
   for (int i = 0; i < 600; ++i)
     step();
-  EXPECT_EQ(state(1), GoalState::kSuspended);
-  EXPECT_EQ(state(2), GoalState::kWaiting);
+  EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(state(2), v1::GOAL_WAITING);
   inputs_.heard.grants = {{false, "", "", "", true}};
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(statuses_.at({5, 1}).reason,
             "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)");
   inputs_.heard.grants = {{false, ""}};
   EXPECT_FALSE(step().intended.behaviors.empty());
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   inputs_.heard.goals = {written(1, kKaren)};
   inputs_.heard.grants = {{false, "", "", "karen"}};
   step();
-  EXPECT_EQ(state(1), GoalState::kWaiting);
+  EXPECT_EQ(state(1), v1::GOAL_WAITING);
   Core::Heard::Goal stop = written(2, kJohn);
   stop.event.goal.functor = "stop";
   stop.event.goal.arguments.clear();
@@ -147,15 +147,15 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   inputs_.heard.grants[0].stop = {7, 1};
   for (int i = 0; i < 5; ++i)
     step();
-  EXPECT_EQ(state(1), GoalState::kCanceled);
-  EXPECT_EQ(state(2), GoalState::kSucceeded);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
+  EXPECT_EQ(state(2), v1::GOAL_SUCCEEDED);
 }
 
 TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   ask({written(1, kKaren), written(2, kJohn)});
   inputs_.heard.lost_requesters = {kKaren};
   step();
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_FALSE(ended(state(2)));
   // Another writer has written it anew, and owns it from then on.
   ask({written(2, kKaren)});
@@ -169,7 +169,7 @@ TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
   const auto withdrawn = [&](const Core::Writer& asks, const Core::Writer& withdraws, bool gone) {
     static std::uint64_t number = 0;
     Core::Heard::Goal goal = written(++number, asks);
-    goal.event.goal.writer_lost = WriterLost::kKeep;
+    goal.event.goal.writer_lost = v1::WRITER_LOST_KEEP;
     ask({goal});
     if (gone)
       inputs_.heard.lost_requesters = {asks};
@@ -177,7 +177,7 @@ TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
     goal.event.kind = GoalEvent::Kind::kDisposed;
     goal.writer = withdraws;
     ask({goal});
-    EXPECT_EQ(state(number), GoalState::kCanceled);
+    EXPECT_EQ(state(number), v1::GOAL_CANCELED);
     return statuses_.at({5, number}).reason;
   };
   EXPECT_EQ(withdrawn(kKaren, kKaren, false), "withdrawn by the program that asked for it");
@@ -210,13 +210,13 @@ class OwnedGoal : public CoreTest {
 
 TEST_F(OwnedGoal, AnotherMayNeitherChangeNorCancelIt) {
   hear(by({"karen"}, kWritten));
-  ASSERT_EQ(state(1), GoalState::kUnderway);
+  ASSERT_EQ(state(1), v1::GOAL_UNDERWAY);
   EXPECT_TRUE(says(hear(by({"john"}, kDisposed)).notes,
                    "\"karen, a test\": john may not cancel it; its owner may, or an operator"));
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   EXPECT_TRUE(hear(by({"john"}, kWritten, 7)).notes.lines().empty());  // one message is enough
   hear(by({""}, kDisposed));
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(status().requester, "karen, a test");
   EXPECT_NE(status().reason, "changed by its requester");
 }
@@ -226,7 +226,7 @@ TEST_F(OwnedGoal, ItsOwnerMay) {
   hear(by({"karen"}, kWritten, 7));
   EXPECT_EQ(status().reason, "changed by its requester");
   hear(by({"karen"}, kDisposed));
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by the program that asked for it");
   // Another program of hers.
   Core::Heard::Goal second = by({"karen"}, kWritten);
@@ -246,9 +246,9 @@ TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
   // The goal is still hers: it does not end with the other person's program.
   inputs_.heard.lost_requesters = {kJohn};
   step();
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   hear(by({"john", true}, kDisposed));
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by john");
 }
 
@@ -259,7 +259,7 @@ TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {
   heard.goals[0].event.goal.functor = "fly";
   const Core::Told told = core_.between(heard, 0.01);
   note(told.news);
-  EXPECT_EQ(state(1), GoalState::kRefused);
+  EXPECT_EQ(state(1), v1::GOAL_REFUSED);
   EXPECT_TRUE(says(told.notes, "refused"));
 }
 
@@ -270,7 +270,7 @@ TEST_F(CoreTest, AGoalThatFailsWhileTheBridgeRefusesSaysWhy) {
     inputs_.heard.grants = {{false, "", "a person drove last: autonomy waits"}};
     step();
   }
-  ASSERT_EQ(state(1), GoalState::kFailed);
+  ASSERT_EQ(state(1), v1::GOAL_FAILED);
   EXPECT_NE(statuses_.at({5, 1}).reason.find("; a person drove last: autonomy waits"),
             std::string::npos)
       << statuses_.at({5, 1}).reason;
@@ -281,7 +281,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
   for (const Condition condition : {Condition::kNone, Condition::kDamaged, Condition::kWhole}) {
     Memory memory;
     memory.condition = condition;
-    memory.endings = {{{5, 3}, GoalState::kSucceeded, GoalCode::kNone, "arrived"}};
+    memory.endings = {{{5, 3}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"}};
     Core core(remembering(memory));
     for (const std::uint64_t number : {1U, 2U, 3U}) {
       inputs_.heard.goals.push_back(written(number, kKaren));
@@ -293,14 +293,14 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     step(core);
     step(core);
     const bool whole = condition == Condition::kWhole;
-    EXPECT_EQ(state(1), whole ? GoalState::kUnderway : GoalState::kRefused);
-    EXPECT_EQ(state(2), whole ? GoalState::kWaiting : GoalState::kUnderway)
+    EXPECT_EQ(state(1), whole ? v1::GOAL_UNDERWAY : v1::GOAL_REFUSED);
+    EXPECT_EQ(state(2), whole ? v1::GOAL_WAITING : v1::GOAL_UNDERWAY)
         << "programs of a deployment start together";
-    EXPECT_EQ(state(3), GoalState::kSucceeded) << "it is remembered";
+    EXPECT_EQ(state(3), v1::GOAL_SUCCEEDED) << "it is remembered";
     if (whole)
       continue;
     const GoalStatus& refused = statuses_.at({5, 1});
-    EXPECT_EQ(refused.code, GoalCode::kForgotten);
+    EXPECT_EQ(refused.code, v1::CODE_FORGOTTEN);
     EXPECT_NE(refused.reason.find("60 s before intentions started"), std::string::npos)
         << refused.reason;
     EXPECT_EQ(refused.reason.find("damaged") != std::string::npos,
@@ -308,7 +308,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     // A repeated request is another goal.
     inputs_.heard.goals = {written(4, kKaren)};
     step(core);
-    EXPECT_EQ(state(4), GoalState::kWaiting);
+    EXPECT_EQ(state(4), v1::GOAL_WAITING);
   }
 }
 
@@ -319,8 +319,8 @@ TEST_F(CoreTest, TheAgeOfAGoalCountsOnlyInTheFirstSecondsAfterTheStart) {
     inputs_.heard.goals[0].age = 60.0;
     step();
   }
-  EXPECT_EQ(state(1), GoalState::kRefused);
-  EXPECT_EQ(state(2), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_REFUSED);
+  EXPECT_EQ(state(2), v1::GOAL_UNDERWAY);
 }
 
 TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
@@ -350,28 +350,28 @@ TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
   ask({written(1, kKaren)});
   EXPECT_TRUE(core_.between({}, 0.9).news.changed.empty());
   note(core_.between({}, 1.1).news);
-  EXPECT_EQ(statuses_.at({5, 1}).code, GoalCode::kNoRobot);
+  EXPECT_EQ(statuses_.at({5, 1}).code, v1::CODE_NO_ROBOT);
   EXPECT_TRUE(core_.between({}, 5.0).news.changed.empty()) << "it is told once";
   step();
   step();
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST_F(CoreTest, AnEmergencyStopThatWasResetMeanwhileEndsGoalsAsWell) {
   ask({written(1, kKaren)});
   inputs_.heard.grants = {{true, "button"}, {false, ""}};
   step();
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   inputs_.heard.grants = {{false, ""}};
   ask({written(2, kKaren)});
-  EXPECT_EQ(state(2), GoalState::kUnderway);
+  EXPECT_EQ(state(2), v1::GOAL_UNDERWAY);
 }
 
 TEST_F(CoreTest, ASuspendedExecutionReleasesTheRobot) {
   ask({written(1, kKaren)});
   core_.processes().find("execute-intentions")->suspend();
   EXPECT_TRUE(step().intended.behaviors.empty());
-  EXPECT_EQ(state(1), GoalState::kSuspended);
+  EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(statuses_.at({5, 1}).reason, "execute-intentions is suspended");
   core_.processes().find("execute-intentions")->resume();
   step();
@@ -460,7 +460,7 @@ TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
   for (int i = 0; i < 3 && outputs.intended.behaviors.empty(); ++i)
     outputs = step(next);
   EXPECT_TRUE(ended(state(1))) << "it is not done twice";
-  EXPECT_EQ(state(2), GoalState::kUnderway);
+  EXPECT_EQ(state(2), v1::GOAL_UNDERWAY);
   ASSERT_EQ(outputs.intended.behaviors.size(), newest.intended.behaviors.size());
   for (std::size_t i = 0; i < outputs.intended.behaviors.size(); ++i)
     EXPECT_EQ(outputs.intended.behaviors[i].parameters, newest.intended.behaviors[i].parameters);
@@ -499,7 +499,7 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
     goal.event.goal.functor = functor;
     goal.event.goal.arguments.clear();
     ask({goal});
-    EXPECT_EQ(state(number), GoalState::kRefused);
+    EXPECT_EQ(state(number), v1::GOAL_REFUSED);
     return statuses_.at({5, number}).reason;
   };
   const std::string unknown = "there is no activity \"EJ-241\": saphira goal activities lists";
@@ -527,9 +527,9 @@ TEST_F(CoreTest, TellsTheEdgesOfTheMapNearTheRobotInOdom) {
                                          "OFFICE (2) 5000, 30000, 0, 4000, 4000\n",
                                          "a.map"))});
   inputs_.robot.odom_in_map = Pose{2.0, 0.5, 0.0};
-  inputs_.registered.state = Localization::kLost;
+  inputs_.registered.state = v1::REGISTRATION_LOST;
   EXPECT_TRUE(step().edges.empty()) << "its place is not sure";
-  inputs_.registered.state = Localization::kTracking;
+  inputs_.registered.state = v1::REGISTRATION_TRACKING;
   const std::vector<Edge> edges = step().edges;
   ASSERT_EQ(edges.size(), 8U);
   EXPECT_NEAR(edges[0].from.y(), 0.5, 1e-9) << "the nearest first, in odom";

@@ -26,8 +26,8 @@ TEST(Executor, RefusesWithAReason) {
   late.deadline = -1.0;
   bench.write(late);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kRefused);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kUnknownFunctor);
+  EXPECT_EQ(bench.state(1), v1::GOAL_REFUSED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_UNKNOWN_FUNCTOR);
   EXPECT_EQ(bench.status(1).reason,
             "there is no activity \"fly\": saphira goal activities lists the 5 that there are");
   bench.ask(4, "go_too", {});
@@ -35,7 +35,7 @@ TEST(Executor, RefusesWithAReason) {
   EXPECT_EQ(bench.status(4).reason,
             "there is no activity \"go_too\": did you mean go_to? saphira goal activities lists "
             "the 5 that there are");
-  EXPECT_EQ(bench.status(2).code, GoalCode::kBadArgument);
+  EXPECT_EQ(bench.status(2).code, v1::CODE_BAD_ARGUMENT);
   EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
   EXPECT_TRUE(bench.out.behaviors.empty());
 }
@@ -50,7 +50,7 @@ TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   Bench again(bench.memory());
   again.ask(1, "go_to", wrong);
   again.step();
-  EXPECT_EQ(again.state(1), GoalState::kRefused);
+  EXPECT_EQ(again.state(1), v1::GOAL_REFUSED);
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
 }
 
@@ -60,7 +60,7 @@ TEST(Executor, RefusesAnIdThatIsNone) {
   goal.id = {};
   bench.write(goal);
   bench.step();
-  EXPECT_EQ(bench.state(0), GoalState::kRefused);
+  EXPECT_EQ(bench.state(0), v1::GOAL_REFUSED);
 }
 
 TEST(Executor, RefusesWhatIsTooMany) {
@@ -70,9 +70,9 @@ TEST(Executor, RefusesWhatIsTooMany) {
   for (std::uint64_t i = 1; i <= 5; ++i)
     bench.ask(i, "drive", kSlow);
   bench.step();
-  EXPECT_EQ(bench.state(3), GoalState::kWaiting);
-  EXPECT_EQ(bench.state(4), GoalState::kRefused);
-  EXPECT_EQ(bench.status(5).code, GoalCode::kTooMany);
+  EXPECT_EQ(bench.state(3), v1::GOAL_WAITING);
+  EXPECT_EQ(bench.state(4), v1::GOAL_REFUSED);
+  EXPECT_EQ(bench.status(5).code, v1::CODE_TOO_MANY);
   EXPECT_EQ(bench.status(5).reason, "too many goals: 3 are open already");
 }
 
@@ -81,8 +81,8 @@ TEST(Executor, OfEqualsTheFirstIsUnderway) {
   bench.ask(2, "drive", kSlow);
   bench.ask(1, "go_to", kFar);
   bench.step();
-  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
-  EXPECT_EQ(bench.state(1), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(bench.state(1), v1::GOAL_WAITING);
   EXPECT_EQ(bench.status(1).reason,
             "waits for goal 1:2 (drive) of \"somebody\", which came first; with a "
             "priority of 1 it would go first");
@@ -90,9 +90,9 @@ TEST(Executor, OfEqualsTheFirstIsUnderway) {
   EXPECT_EQ(bench.status(2).waits_for, GoalId{});
   bench.dispose(2);
   bench.step();
-  EXPECT_EQ(bench.state(2), GoalState::kCanceled);
-  EXPECT_EQ(bench.status(2).code, GoalCode::kDisposed);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(2), v1::GOAL_CANCELED);
+  EXPECT_EQ(bench.status(2).code, v1::CODE_DISPOSED);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).reason, "");
   EXPECT_EQ(bench.status(1).waits_for, GoalId{});
 }
@@ -104,8 +104,8 @@ TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
   bench.step();
   bench.ask(2, "turn_to", {number("heading", 1.0)}, 5);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kPreempted);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_PREEMPTED);
   EXPECT_EQ(bench.status(1).reason,
             "interrupted by goal 1:2 (turn_to) of \"somebody\", which is more important (priority "
             "5 over 0)");
@@ -113,8 +113,8 @@ TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
   for (const IntendedBehavior& behavior : bench.out.behaviors)
     EXPECT_TRUE(behavior.schema == "TurnTo" || behavior.schema == "Stop");
   bench.run(2, 100);
-  EXPECT_EQ(bench.state(2), GoalState::kSucceeded);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(2), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   // Without a cycle of an empty intent.
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
 }
@@ -126,8 +126,8 @@ TEST(Executor, AChangedPriorityCounts) {
   bench.step();
   bench.ask(2, "drive", kSlow, 1);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
-  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
 }
 
 TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
@@ -137,27 +137,27 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   bench.ask(3, "drive", kSlow, 1000);
   bench.step();
   bench.step();
-  ASSERT_EQ(bench.state(3), GoalState::kUnderway);
+  ASSERT_EQ(bench.state(3), v1::GOAL_UNDERWAY);
   bench.ask(4, "stop", {}, -1000);
   bench.ask(5, "go_to", kFar);
   bench.step();
   for (const std::uint64_t stopped : {1U, 2U, 3U}) {
-    EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
-    EXPECT_EQ(bench.status(stopped).code, GoalCode::kStopped);
+    EXPECT_EQ(bench.state(stopped), v1::GOAL_CANCELED);
+    EXPECT_EQ(bench.status(stopped).code, v1::CODE_STOPPED);
     EXPECT_EQ(bench.status(stopped).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
     EXPECT_EQ(bench.status(stopped).waits_for, (GoalId{1, 4}));
   }
-  EXPECT_EQ(bench.state(5), GoalState::kUnderway) << "it came after the stop";
-  EXPECT_EQ(bench.state(4), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(5), v1::GOAL_UNDERWAY) << "it came after the stop";
+  EXPECT_EQ(bench.state(4), v1::GOAL_WAITING);
   bench.ask(6, "stop", {});
   bench.step();
-  EXPECT_EQ(bench.state(5), GoalState::kCanceled);
+  EXPECT_EQ(bench.state(5), v1::GOAL_CANCELED);
   bench.step(20);
-  EXPECT_EQ(bench.state(6), GoalState::kSucceeded);
-  EXPECT_EQ(bench.state(4), GoalState::kSucceeded);  // a stop does not end another
+  EXPECT_EQ(bench.state(6), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(bench.state(4), v1::GOAL_SUCCEEDED);  // a stop does not end another
   bench.ask(7, "go_to", kFar);
   bench.step();
-  EXPECT_EQ(bench.state(7), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(7), v1::GOAL_UNDERWAY);
 }
 
 constexpr StopId kFirst{7, 1};
@@ -171,18 +171,18 @@ TEST(Executor, AStopOfTheBridgeEndsAllGoalsThatDrive) {
   bench.stop = kFirst;
   bench.step();
   for (const std::uint64_t stopped : {1U, 2U}) {
-    EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
-    EXPECT_EQ(bench.status(stopped).code, GoalCode::kStopped);
+    EXPECT_EQ(bench.state(stopped), v1::GOAL_CANCELED);
+    EXPECT_EQ(bench.status(stopped).code, v1::CODE_STOPPED);
     EXPECT_EQ(bench.status(stopped).reason, "stopped by a person: ask anew to have it done");
   }
   EXPECT_TRUE(bench.out.behaviors.empty());
   EXPECT_EQ(bench.executor.heeds(), kFirst);
   bench.ask(3, "drive", kSlow);
   bench.step();
-  EXPECT_EQ(bench.state(3), GoalState::kUnderway) << "the same stop ends nothing later";
+  EXPECT_EQ(bench.state(3), v1::GOAL_UNDERWAY) << "the same stop ends nothing later";
   bench.stop = kSecond;
   bench.step();
-  EXPECT_EQ(bench.state(3), GoalState::kCanceled);
+  EXPECT_EQ(bench.state(3), v1::GOAL_CANCELED);
 }
 
 TEST(Executor, AStopFromBeforeTheStartEndsNothing) {
@@ -191,7 +191,7 @@ TEST(Executor, AStopFromBeforeTheStartEndsNothing) {
   bench.stop = kFirst;
   bench.stop_was_before = true;
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.executor.heeds(), kFirst);
 }
 
@@ -205,7 +205,7 @@ TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
     bench.stop = now;
     bench.stop_was_before = true;
     bench.step();
-    EXPECT_EQ(bench.state(1) == GoalState::kUnderway, now == kFirst);
+    EXPECT_EQ(bench.state(1) == v1::GOAL_UNDERWAY, now == kFirst);
   }
 }
 
@@ -217,7 +217,7 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
   bench.step(5);
   bench.ask(2, "stop", {});
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+  EXPECT_EQ(bench.state(1), v1::GOAL_CANCELED);
   ASSERT_EQ(bench.out.stop, "somebody");
   bench.executor.heed(kFirst);
   bench.step(4);
@@ -225,12 +225,12 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
   bench.step();
   ASSERT_EQ(bench.out.stop, "somebody") << "asked again";
   bench.executor.heed(kSecond);
-  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
   bench.ask(3, "drive", kSlow);
   bench.stop = kSecond;
   bench.step(3);
-  EXPECT_EQ(bench.state(2), GoalState::kSucceeded);
-  EXPECT_EQ(bench.state(3), GoalState::kUnderway) << "it came after the stop";
+  EXPECT_EQ(bench.state(2), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(bench.state(3), v1::GOAL_UNDERWAY) << "it came after the stop";
   EXPECT_EQ(bench.executor.heeds(), kSecond);
 }
 
@@ -265,7 +265,7 @@ TEST(Executor, AGoalStopThatNoBridgeConfirmsFails) {
   bench.step();
   bench.executor.heed(kSecond);
   bench.run(2, 1000);
-  EXPECT_EQ(bench.state(2), GoalState::kFailed);
+  EXPECT_EQ(bench.state(2), v1::GOAL_FAILED);
   bench.step();
   EXPECT_EQ(bench.executor.heeds(), kFirst) << "as the bridge has it";
 }
@@ -278,7 +278,7 @@ TEST(Executor, AStopEndsWhatAPersonHasInterrupted) {
   bench.step();
   bench.ask(2, "stop", {});
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+  EXPECT_EQ(bench.state(1), v1::GOAL_CANCELED);
 }
 
 TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
@@ -291,8 +291,8 @@ TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
   bench.ask(3, "go_to", kFar, 9);
   bench.step();
   for (const std::uint64_t ended : {1U, 2U, 3U}) {
-    EXPECT_EQ(bench.state(ended), GoalState::kCanceled);
-    EXPECT_EQ(bench.status(ended).code, GoalCode::kStopped);
+    EXPECT_EQ(bench.state(ended), v1::GOAL_CANCELED);
+    EXPECT_EQ(bench.status(ended).code, v1::CODE_STOPPED);
     EXPECT_EQ(bench.status(ended).reason,
               "emergency stop, pressed by \"button\": ask anew once it is released");
   }
@@ -302,7 +302,7 @@ TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
   EXPECT_TRUE(bench.out.behaviors.empty()) << "nothing goes on by itself";
   bench.ask(4, "drive", kSlow);
   bench.step();
-  EXPECT_EQ(bench.state(4), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(4), v1::GOAL_UNDERWAY);
 }
 
 TEST(Executor, ADeadlineCountsFromAcceptance) {
@@ -311,10 +311,10 @@ TEST(Executor, ADeadlineCountsFromAcceptance) {
   Goal goal = Bench::goal(2, "go_to", kFar);
   goal.deadline = 2.0;
   bench.write(goal);
-  bench.run(2, 100, GoalState::kWaiting);
+  bench.run(2, 100, v1::GOAL_WAITING);
   EXPECT_EQ(bench.cycle, 21U);
-  EXPECT_EQ(bench.state(2), GoalState::kFailed);
-  EXPECT_EQ(bench.status(2).code, GoalCode::kDeadline);
+  EXPECT_EQ(bench.state(2), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(2).code, v1::CODE_DEADLINE);
   EXPECT_EQ(bench.status(2).reason,
             "not done within its deadline of 2 s; it was waiting: waits for goal 1:1 (drive) of "
             "\"somebody\", which came first; with a priority of 1 it would go first");
@@ -325,16 +325,16 @@ TEST(Executor, TheLossOfItsWriterEndsAGoalUnlessItIsToBeKept) {
   Bench bench;
   bench.ask(1, "drive", kSlow);
   Goal kept = Bench::goal(2, "drive", kSlow);
-  kept.writer_lost = WriterLost::kKeep;
+  kept.writer_lost = v1::WRITER_LOST_KEEP;
   bench.write(kept);
   bench.step();
   bench.lose_writer(1);
   bench.lose_writer(2);
   bench.lose_writer(3);  // unknown: nothing
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kWriterLost);
-  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_CANCELED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_WRITER_LOST);
+  EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
 }
 
 TEST(Executor, ARepetitionChangesNothing) {
@@ -347,7 +347,7 @@ TEST(Executor, ARepetitionChangesNothing) {
   bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.step();
   EXPECT_EQ(bench.out.behaviors, before);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kNone);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_NONE);
 }
 
 TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
@@ -357,8 +357,8 @@ TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
   const std::vector<IntendedBehavior> before = bench.out.behaviors;
   bench.ask(1, "go_to", {point("position", {0.0, 3.0, 0.0}), number("speed", 0.2)});
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kChanged);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_CHANGED);
   EXPECT_EQ(bench.status(1).step, "driving to (0.00, 3.00)");
   ASSERT_EQ(bench.out.behaviors.size(), before.size());
   EXPECT_EQ(bench.out.behaviors[2].name, before[2].name);
@@ -366,7 +366,7 @@ TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
   EXPECT_EQ(find(bench.out.behaviors[2].parameters, "speed")->number, 0.2);
   EXPECT_EQ(bench.status(1).elapsed, 1.0);
   bench.run(1, 400);
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_LE((bench.world.robot.pose_in_odom.position() - Vec2(0.0, 3.0)).norm(), 0.15);
 }
 
@@ -376,7 +376,7 @@ TEST(Executor, AChangeOfTheFunctorBeginsAnew) {
   bench.step();
   bench.ask(1, "drive", kSlow);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).functor, "drive");
   EXPECT_EQ(bench.out.behaviors.at(1).schema, "ConstantVelocity");
 }
@@ -395,7 +395,7 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
     bench.ask(id, "go_to", {number("position", 3.0)});
   bench.step();
   EXPECT_EQ(bench.out.behaviors, before);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).reason, "goes on unchanged, " + refused);
   EXPECT_EQ(bench.status(2).reason,
             "waits for goal 1:1 (go_to) of \"somebody\", which came first; with a priority of 1 it "
@@ -403,12 +403,12 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
                 refused);
   EXPECT_EQ(bench.status(2).waits_for, (GoalId{1, 1}));
   for (const std::uint64_t id : {1U, 2U})
-    EXPECT_EQ(bench.status(id).code, GoalCode::kBadArgument);
+    EXPECT_EQ(bench.status(id).code, v1::CODE_BAD_ARGUMENT);
   bench.world.robot.connected = false;
   bench.step();
   EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is; " + refused);
   EXPECT_EQ(bench.status(2).reason, "waits for the robot; " + refused);
-  EXPECT_EQ(bench.status(2).code, GoalCode::kNoRobot);
+  EXPECT_EQ(bench.status(2).code, v1::CODE_NO_ROBOT);
   EXPECT_EQ(bench.status(2).waits_for, GoalId{});
   bench.ask(1, "go_to", kFar);
   bench.ask(2, "drive", kSlow);
@@ -421,7 +421,7 @@ TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   Bench bench;
   bench.ask(1, "stop", {});
   bench.step(4);
-  ASSERT_EQ(bench.state(1), GoalState::kSucceeded);
+  ASSERT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   bench.step(599);
   EXPECT_EQ(bench.statuses.count(1), 1U);
   bench.step();
@@ -429,7 +429,7 @@ TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   // Its id stays used after that.
   bench.ask(1, "drive", kSlow);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(bench.out.behaviors.empty());
 }
 
@@ -449,7 +449,7 @@ TEST(Executor, SoManyEndedGoalsAreKept) {
   EXPECT_EQ(bench.statuses.begin()->first, 7U) << "the oldest are gone";
   bench.ask(1, "fly", {});
   bench.hear();
-  EXPECT_EQ(bench.state(1), GoalState::kRefused);
+  EXPECT_EQ(bench.state(1), v1::GOAL_REFUSED);
   bench.step();
   EXPECT_EQ(bench.statuses.size(), 3U);
 }
@@ -466,14 +466,14 @@ TEST(Executor, HearsWithoutARobot) {
   bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.ask(2, "fly", {});
   bench.hear();
-  EXPECT_EQ(bench.state(1), GoalState::kWaiting);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kNoRobot);
+  EXPECT_EQ(bench.state(1), v1::GOAL_WAITING);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_ROBOT);
   EXPECT_EQ(bench.status(1).reason, "accepted; waits for the robot");
-  EXPECT_EQ(bench.state(2), GoalState::kRefused);
+  EXPECT_EQ(bench.state(2), v1::GOAL_REFUSED);
   // The point is from where the robot is when it is there.
   bench.world.robot.pose_in_odom = {0.0, 5.0, kPi};
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_NEAR(find(bench.out.behaviors.at(2).parameters, "goal")->point.x, -2.0, 1e-12);
 }
 
@@ -501,15 +501,15 @@ TEST(Executor, GoalsWaitForARobotThatIsGone) {
   bench.ask(2, "drive", kSlow);
   bench.step();
   bench.note(bench.executor.robot_gone());
-  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kNoRobot);
-  EXPECT_EQ(bench.state(2), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_ROBOT);
+  EXPECT_EQ(bench.state(2), v1::GOAL_WAITING);
   EXPECT_EQ(bench.status(2).reason, "waits for the robot");
   // Another connection to the same robot, with the same odom frame.
   bench.epoch = 101;
   bench.cycle = 0;
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
 }
 
@@ -519,11 +519,11 @@ TEST(Executor, NothingIsIntendedForARobotThatIsNotConnected) {
   bench.step();
   bench.world.robot.connected = false;
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
   EXPECT_TRUE(bench.out.behaviors.empty());
   bench.world.robot.connected = true;
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
@@ -542,12 +542,12 @@ TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
   bench.world.robot.odom = 2;
   bench.step();
   for (const std::uint64_t lost : {1U, 2U, 3U, 5U}) {
-    EXPECT_EQ(bench.state(lost), GoalState::kFailed) << lost;
-    EXPECT_EQ(bench.status(lost).code, GoalCode::kNoRobot);
+    EXPECT_EQ(bench.state(lost), v1::GOAL_FAILED) << lost;
+    EXPECT_EQ(bench.status(lost).code, v1::CODE_NO_ROBOT);
     EXPECT_NE(bench.status(lost).reason.find("position lost"), std::string::npos);
   }
-  EXPECT_EQ(bench.state(4), GoalState::kUnderway);
-  EXPECT_EQ(bench.state(6), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(4), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(bench.state(6), v1::GOAL_WAITING);
 }
 
 TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
@@ -566,11 +566,11 @@ TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
   again.write(second);  // the order in which they come again does not matter
   again.write(goal);
   again.step();
-  EXPECT_EQ(again.state(1), GoalState::kUnderway);
+  EXPECT_EQ(again.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(find(again.out.behaviors.at(2).parameters, "goal")->point, (Pose{3.0, 0.0, 0.0}));
   EXPECT_EQ(again.status(1).elapsed, 3.1);
   again.run(1, 100);
-  EXPECT_EQ(again.status(1).code, GoalCode::kDeadline);
+  EXPECT_EQ(again.status(1).code, v1::CODE_DEADLINE);
   EXPECT_EQ(again.cycle, 51U);
 }
 
@@ -582,7 +582,7 @@ TEST(Executor, ARestartKnowsThatThePositionIsLost) {
   again.world.robot.odom = 2;
   again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   again.step();
-  EXPECT_EQ(again.state(1), GoalState::kFailed);
+  EXPECT_EQ(again.state(1), v1::GOAL_FAILED);
 }
 
 TEST(Executor, TheTreeShowsWhatServesWhichGoal) {

@@ -100,7 +100,7 @@ TEST(Forest, ARootThatFinishesGoesWithAllItsOwn) {
   const auto id = forest.plant({1, 1}, "it", "test", act([&](Self& self) {
                                  self.intend_behavior("Stop", "Stop", 3, {});
                                  if (self.now() == 2)
-                                   self.fail(GoalCode::kBlocked, "no way");
+                                   self.fail(v1::CODE_BLOCKED, "no way");
                                }));
   forest.step(1, kRobot);
   EXPECT_TRUE(forest.contains(id));
@@ -109,7 +109,7 @@ TEST(Forest, ARootThatFinishesGoesWithAllItsOwn) {
   EXPECT_TRUE(forest.nodes().empty());
   const auto ended = forest.take_ended();
   EXPECT_EQ(ended.at(id).state, IntentionState::kFailure);
-  EXPECT_EQ(ended.at(id).code, GoalCode::kBlocked);
+  EXPECT_EQ(ended.at(id).code, v1::CODE_BLOCKED);
   EXPECT_EQ(ended.at(id).reason, "no way");
   EXPECT_TRUE(forest.take_ended().empty());
 }

@@ -29,11 +29,11 @@ TEST(GoTo, IntendsTheBehaviorsAndArrives) {
   EXPECT_EQ(find(parameters, "radius")->number, 0.15);
   EXPECT_EQ(bench.status(1).step, "driving to (2.00, 1.00)");
   double progress = 0.0;
-  for (bench.step(); bench.state(1) == GoalState::kUnderway && bench.cycle < 300; bench.step()) {
+  for (bench.step(); bench.state(1) == v1::GOAL_UNDERWAY && bench.cycle < 300; bench.step()) {
     EXPECT_GE(bench.status(1).progress, progress);
     progress = bench.status(1).progress;
   }
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED) << bench.status(1).reason;
   EXPECT_NE(bench.status(1).reason.find("arrived, 0."), std::string::npos);
   EXPECT_EQ(bench.status(1).progress, 1.0);
   EXPECT_TRUE(bench.out.behaviors.empty());
@@ -46,11 +46,11 @@ TEST(GoTo, SucceedsOnlyWhenTheRobotStands) {
   bench.world.robot.velocity = 0.3;
   bench.world.held = false;
   bench.step_without_moving();
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/3"});
   bench.world.robot.velocity = 0.0;
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
 }
 
 TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
@@ -63,7 +63,7 @@ TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
     bench.world.levels = {{name, 0.95, 0.0}};
     bench.step_without_moving();
   }
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
 
   Bench far;
   far.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}), number("radius", 0.15)});
@@ -74,7 +74,7 @@ TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
     far.world.levels = {{other, 1.0, 0.0}};
     far.step_without_moving();
   }
-  EXPECT_EQ(far.state(1), GoalState::kUnderway);
+  EXPECT_EQ(far.state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
@@ -108,9 +108,9 @@ TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
   bench.world.robot.odom_in_map = Pose{10.0, 5.5, kPi / 2};
   bench.step();
   EXPECT_NEAR(goal().x, 1.5, 1e-9);
-  for (int i = 0; i < 200 && bench.state(1) == GoalState::kUnderway; ++i)
+  for (int i = 0; i < 200 && bench.state(1) == v1::GOAL_UNDERWAY; ++i)
     bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.5, 0.2);
 }
 
@@ -130,8 +130,8 @@ TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
   bench.world.robot.odom_in_map.reset();
   bench.step(40);
-  EXPECT_EQ(bench.state(1), GoalState::kFailed);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_POSITION);
 }
 
 TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
@@ -147,17 +147,17 @@ TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   };
   wait(20, false);
   wait(20, true);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
   // Time before an interruption does not count after it.
   wait(20, false);
   bench.ask(2, "drive", {number("speed", 0.0)}, 5);
   wait(20, false);
-  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
   bench.dispose(2);
   wait(20, false);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
   wait(15, false);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_POSITION);
 }
 
 // Motion gives more readings. Without it, or without an end to it, a given pose would be an
@@ -165,29 +165,29 @@ TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
 TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
   const auto arrives = [](Bench& bench) {
     bench.world.robot.odom_in_map = Pose{};
-    bench.registration.state = Localization::kTracking;
+    bench.registration.state = v1::REGISTRATION_TRACKING;
     bench.registration.confidence = 0.5;
     bench.ask(1, "go_to", {point("position", {1.0, 0.0, 0.0}, Frame::map)});
     bench.step();
     for (int i = 0; i < 100 && bench.status(1).step != "moving about to confirm where it is"; ++i)
       bench.step();
     bench.step(50);
-    EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+    EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
     EXPECT_GT(bench.world.robot.pose_in_odom.x, 1.5) << "it moves about";
   };
   Bench bench;
   arrives(bench);
   bench.registration.confidence = 0.95;
   bench.step(200);
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.0, 0.2);
 
   Bench never;
   arrives(never);
-  for (int i = 0; i < 2000 && never.state(1) == GoalState::kUnderway; ++i)
+  for (int i = 0; i < 2000 && never.state(1) == v1::GOAL_UNDERWAY; ++i)
     never.step();
-  EXPECT_EQ(never.state(1), GoalState::kFailed);
-  EXPECT_EQ(never.status(1).code, GoalCode::kNoPosition);
+  EXPECT_EQ(never.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(never.status(1).code, v1::CODE_NO_POSITION);
 }
 
 TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
@@ -200,7 +200,7 @@ TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
     bench.world.robot.odom_in_map = i < 20 ? std::nullopt : std::optional(Pose{});
     bench.step();
   }
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
 }
 
 // Without AvoidCollision the others would drive on.
@@ -213,8 +213,8 @@ TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
       if (behavior.schema == missing)
         bench.troubles.push_back({behavior.name, "its file is broken"});
     bench.step();
-    EXPECT_EQ(bench.state(1), GoalState::kFailed);
-    EXPECT_EQ(bench.status(1).code, GoalCode::kActivity);
+    EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+    EXPECT_EQ(bench.status(1).code, v1::CODE_ACTIVITY);
     EXPECT_EQ(bench.status(1).reason, std::string(missing) + ": its file is broken");
     EXPECT_TRUE(bench.out.behaviors.empty());
   }
@@ -227,8 +227,8 @@ TEST(GoTo, GivesUpWhenItComesNoNearer) {
   bench.world.held = true;
   const std::uint64_t held = bench.cycle;
   bench.run(1, 300);
-  EXPECT_EQ(bench.state(1), GoalState::kFailed);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
   EXPECT_NEAR(static_cast<double>(bench.cycle - held), 50.0, 3.0);
   EXPECT_NE(bench.status(1).reason.find("no nearer for 5 s, 2."), std::string::npos)
       << bench.status(1).reason;
@@ -255,11 +255,11 @@ TEST(GoTo, HasMorePatienceWhileItGetsOn) {
     bench.radius = radius;
     bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
     bench.world.held = true;
-    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == GoalState::kUnderway)) {
+    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == v1::GOAL_UNDERWAY)) {
       bench.step();
       bench.world.robot.pose_in_odom.y += 0.005;  // 0.05 m/s past the obstacle
     }
-    EXPECT_EQ(bench.state(1), GoalState::kFailed);
+    EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
     EXPECT_NEAR(static_cast<double>(bench.cycle), radius < 0.1 ? 150.0 : 50.0, 5.0);
   }
 }
@@ -273,7 +273,7 @@ TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   EXPECT_EQ(schemas(bench.out.behaviors),
             (std::vector<std::string>{"AvoidCollision/0", "ConstantVelocity/2", "Stop/3"}));
   bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(bench.status(1).elapsed, 3.0);
   EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
 }
@@ -286,15 +286,15 @@ TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {
   bench.step();
   bench.ask(2, "drive", {number("speed", 0.1)}, 5);
   bench.step(40);
-  EXPECT_EQ(bench.state(1), GoalState::kFailed);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kDeadline);
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_DEADLINE);
 
   Bench held;
   held.write(goal);
   held.step();
   ASSERT_TRUE(held.executor.interrupt(held.out.nodes.at(0).id));
   held.step(40);
-  EXPECT_EQ(held.status(1).code, GoalCode::kDeadline);
+  EXPECT_EQ(held.status(1).code, v1::CODE_DEADLINE);
 }
 
 TEST(Drive, GivesUpWhenItDoesNotMove) {
@@ -302,7 +302,7 @@ TEST(Drive, GivesUpWhenItDoesNotMove) {
   bench.world.held = true;
   bench.ask(1, "drive", {number("speed", 0.2)});
   bench.run(1, 400);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
   EXPECT_EQ(bench.cycle, 201U);
 }
 
@@ -310,7 +310,7 @@ TEST(Drive, AtNoSpeedIsNotBlocked) {
   Bench bench;
   bench.ask(1, "drive", {number("speed", 0.0)});
   bench.step(400);
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST(TurnTo, TurnsToAHeading) {
@@ -323,7 +323,7 @@ TEST(TurnTo, TurnsToAHeading) {
   EXPECT_EQ(bench.out.behaviors, first);
   EXPECT_EQ(bench.status(1).step, "turning to 115 degrees");
   bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED) << bench.status(1).reason;
   EXPECT_NEAR(bench.world.robot.pose_in_odom.th, 2.0, radians(5.0));
 }
 
@@ -331,7 +331,7 @@ TEST(TurnTo, TurnsToAPositionTheShortWay) {
   Bench bench;
   bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::robot)});
   bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED) << bench.status(1).reason;
   EXPECT_NEAR(bench.world.robot.pose_in_odom.th, radians(-135.0), radians(5.0));
 }
 
@@ -341,7 +341,7 @@ TEST(TurnTo, GivesUp) {
   bench.world.robot.has_power = false;
   bench.ask(1, "turn_to", {number("heading", 1.0), number("patience", 2.0)});
   bench.run(1, 100);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
   EXPECT_EQ(bench.status(1).reason,
             "no nearer for 2 s, 57 degrees off; the motors have no power (saphira device motors "
             "on)");
@@ -354,12 +354,12 @@ TEST(GoTo, AsksForTheMotorsOfARobotThatHasNotMovedAtAll) {
     bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
     bench.world.held = !moves_first;
     bench.world.robot.left_stalled = stalled;
-    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == GoalState::kUnderway)) {
+    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == v1::GOAL_UNDERWAY)) {
       bench.world.robot.target_velocity = told;
       bench.step();
       bench.world.held = bench.world.held || bench.cycle > 20;
     }
-    EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+    EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
     return bench.status(1).reason;
   };
   EXPECT_EQ(reason(0.3, false, false),
@@ -376,13 +376,13 @@ TEST(Stop, SucceedsWhenTheRobotIsAtRest) {
   bench.ask(1, "stop", {});
   bench.step_without_moving();
   EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/0"});
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   // Not before the effect of another goal's command would show.
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+    EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
     bench.step();
   }
-  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(bench.status(1).reason, "the robot is at rest");
 }
 

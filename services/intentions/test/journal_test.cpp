@@ -8,8 +8,8 @@ namespace saphira::intentions {
 namespace {
 
 const Ending kEnding{{0xfedcba9876543210ULL, 7},
-                     GoalState::kFailed,
-                     GoalCode::kBlocked,
+                     v1::GOAL_FAILED,
+                     v1::CODE_BLOCKED,
                      "no nearer; 1.2 m from  the point"};
 const Placement kPlacement{
     {3, 4}, 0x8000000000000001ULL, 12, 2, {{"position", {2.0, 0.1, 0.0}, {1.0 / 3.0, -4.5, 3.0}}}};
@@ -29,29 +29,25 @@ TEST(Journal, ReadsWhatItWrote) {
 }
 
 TEST(Journal, ReadsEveryStateAndCodeThatAGoalCanEndWith) {
-  const auto known = [](const char* name) { return name != std::string("?"); };
-  int states = 0;
-  for (int i = 0; known(name_of(static_cast<GoalState>(i))); ++i) {
-    Ending ending = kEnding;
-    ending.state = static_cast<GoalState>(i);
-    if (!ended(ending.state)) {
-      std::vector<FileError> damaged;
-      EXPECT_TRUE(read_journal("memory", write_line(ending), damaged).endings.empty()) << i;
-      ASSERT_EQ(damaged.size(), 1U) << i;
-      EXPECT_NE(std::string(damaged[0].what()).find("expected the state"), std::string::npos);
-      continue;
-    }
-    EXPECT_EQ(read(write_line(ending)).endings, std::vector{ending});
-    ++states;
+  const auto read_back = [](const Ending& ending) {
+    std::vector<FileError> damaged;
+    const bool same =
+        read_journal("memory", write_line(ending), damaged).endings == std::vector{ending};
+    EXPECT_EQ(damaged.empty(), same);
+    return same;
+  };
+  Ending ending = kEnding;
+  for (const GoalState state :
+       {v1::GOAL_WAITING, v1::GOAL_REFUSED, v1::GOAL_UNDERWAY, v1::GOAL_SUSPENDED,
+        v1::GOAL_SUCCEEDED, v1::GOAL_FAILED, v1::GOAL_CANCELED}) {
+    ending.state = state;
+    EXPECT_EQ(read_back(ending), ended(state)) << state;
   }
-  EXPECT_EQ(states, 4);
+  ending = kEnding;
   int codes = 0;
-  for (; known(name_of(static_cast<GoalCode>(codes))); ++codes) {
-    Ending ending = kEnding;
-    ending.code = static_cast<GoalCode>(codes);
-    EXPECT_EQ(read(write_line(ending)).endings, std::vector{ending});
-  }
-  EXPECT_EQ(codes, static_cast<int>(GoalCode::kStopped) + 1);
+  for (ending.code = 0; ending.code < 400; ++ending.code)
+    codes += read_back(ending) ? 1 : 0;
+  EXPECT_EQ(codes, 17);
 }
 
 TEST(Journal, TheNewestPlacementCountsAndAnEndingEndsIt) {

@@ -205,8 +205,8 @@ TEST(ActivityErrors, AtRunTimeReachTheGoal) {
   Stage stage("(defintention :it :params (x) :goals '((= y (+ x 1)) (SUCCEED \"~a\" y)))");
   stage.ask(1, "it", {text("x", "abc")});
   stage.step(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
-  EXPECT_EQ(stage.status(1).code, GoalCode::kActivity);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
+  EXPECT_EQ(stage.status(1).code, v1::CODE_ACTIVITY);
   EXPECT_EQ(stage.status(1).reason, "(+) expected a number, got the text \"abc\"");
 }
 

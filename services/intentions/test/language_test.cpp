@@ -20,7 +20,7 @@ TEST(Activities, OneGoalSetForACycle) {
   EXPECT_EQ(stage.display(), "* it THREE");
   stage.step();
   EXPECT_EQ(stage.messages.back(), "three");
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
 
 TEST(Activities, ParametersVariablesAndConditions) {
@@ -39,7 +39,7 @@ TEST(Activities, ParametersVariablesAndConditions) {
   EXPECT_EQ(stage.status(3).reason, "small 2");
   stage.ask(4, "it", {number("n", 10.0)});
   stage.step();
-  EXPECT_EQ(stage.status(4).state, GoalState::kRefused);
+  EXPECT_EQ(stage.status(4).state, v1::GOAL_REFUSED);
   EXPECT_EQ(stage.status(4).reason, "argument \"n\": expected a number from 0 to 9, got 10");
 }
 
@@ -62,17 +62,17 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   EXPECT_EQ(stage.out.behaviors[0].priority, 1);
   stage.satisfy("second", 1.0);
   stage.step(3);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(stage.out.behaviors.empty());
 }
 
 TEST(Activities, WaitsThatLong) {
   Stage stage(activity("(WAIT 2s) (SUCCEED \"waited\")"));
   stage.begin(19);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   EXPECT_NE(stage.status(1).step.find("waits for 2s"), std::string::npos) << stage.status(1).step;
   stage.step(4);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(1).reason, "waited");
 }
 
@@ -135,24 +135,24 @@ TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
   EXPECT_EQ(first.arguments[0], text("person", "karen"));
   EXPECT_EQ(first.arguments[1].kind, ArgumentKind::unbound);
   stage.step(10);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   EXPECT_TRUE(stage.out.questions.empty()) << "it is asked once";
   answers[first.number] = {AnswerCode::done, "", {text("place", "EJ-231")}};
   stage.step(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(1).reason, "EJ-231");
 
   const Request refused = asks(2, "where");
   EXPECT_NE(refused.number, first.number);
   answers[refused.number] = {AnswerCode::refused, "nobody has told me", {}};
   stage.step(2);
-  EXPECT_EQ(stage.status(2).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(2).reason, "nobody has told me");
 
   const Request silence = asks(3, "anyway");
   EXPECT_NE(silence.number, 0U);
   stage.step(60);
-  EXPECT_EQ(stage.status(3).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(3).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(3).reason, "not told: nobody has answered");
   asks(4, "where");
   stage.step(60);
@@ -181,7 +181,7 @@ TEST(Activities, Figure9RunsFromItsFile) {
   stage.inputs.robot.odom_in_map = Pose{};
   stage.step(8);
   EXPECT_EQ(stage.messages, Names({"Planning path to nowhere", "No passable routes"}));
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).reason, "no way to nowhere");
 
   stage.messages.clear();
@@ -201,7 +201,7 @@ TEST(Activities, Figure9RunsFromItsFile) {
   EXPECT_TRUE(stage.belief("*failed-execution*").nil());
   stage.satisfy("way", 1.0);
   stage.step(8);
-  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
 }
 
 // The planner and the check of zones may disagree, since the check does not know the way so far.
@@ -221,7 +221,7 @@ TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
   stage.ask(1, "plan-and-execute", {text("dest", "lab")});
   stage.step(100);
   EXPECT_EQ(stage.messages, Names(4, "Planning path to lab"));
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).reason, "the way is not allowed: keep-out zone 7");
 
   // Two refusals, as for a zone that people have just told of, are no failure.
@@ -231,7 +231,7 @@ TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
     stage.step();
   forbidden = false;
   stage.step(20);
-  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded) << stage.status(2).reason;
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED) << stage.status(2).reason;
   EXPECT_TRUE(stage.belief("*refusals*").nil());
 }
 

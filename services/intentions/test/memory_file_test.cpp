@@ -16,7 +16,7 @@
 namespace saphira::intentions {
 namespace {
 
-const Ending kEnding{{1, 2}, GoalState::kSucceeded, GoalCode::kNone, "arrived"};
+const Ending kEnding{{1, 2}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"};
 
 TEST(MemoryFile, WithoutAPathNothingIsRemembered) {
   MemoryFile memory("");
@@ -50,7 +50,7 @@ TEST(MemoryFile, OneThatWasCutIsDamaged) {
     {
       MemoryFile memory(path);
       for (std::uint64_t i = 1; i <= 4; ++i)
-        memory.append(write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "there"}));
+        memory.append(write_line(Ending{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "there"}));
     }
     cut(path);
     const MemoryFile memory(path);
@@ -120,8 +120,8 @@ TEST(MemoryFile, DoesNotGrowForEver) {
   ASSERT_TRUE(memory.append(write_line(Placement{{1, 1000}, 3, 4, 5, {}})));
   std::size_t longest = 0;
   for (std::uint64_t i = 1; i <= 200; ++i) {
-    ASSERT_TRUE(memory.append(
-        write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "arrived"})));
+    ASSERT_TRUE(
+        memory.append(write_line(Ending{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"})));
     longest = std::max(longest, read_file(path).size());
   }
   EXPECT_LT(longest, 23 * write_line(kEnding).size() + 60);

@@ -21,8 +21,8 @@ TEST(Modality, TestFailsWithAReasonUpToTheGoal) {
       "(defintention :it :goals '((INTEND :part ())))"
       "(defintention :part :goals '((TEST (> 1 2) :reason (format \"~a is too small\" 1))))");
   stage.begin(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
-  EXPECT_EQ(stage.status(1).code, GoalCode::kActivity);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
+  EXPECT_EQ(stage.status(1).code, v1::CODE_ACTIVITY);
   EXPECT_EQ(stage.status(1).reason, "part: 1 is too small");
 }
 
@@ -44,13 +44,13 @@ TEST(Modality, WaitForAConditionAndItsLimit) {
   EXPECT_EQ(stage.status(1).step, "waits until a wheel is stalled");
   stage.inputs.robot.left_stalled = true;
   stage.step(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 
   stage.inputs.robot.left_stalled = false;
   stage.ask(2, "it");
   stage.step(6);  // it begins in the first, and 5 cycles are its limit
-  EXPECT_EQ(stage.status(2).state, GoalState::kFailed);
-  EXPECT_EQ(stage.status(2).code, GoalCode::kTimeout);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_FAILED);
+  EXPECT_EQ(stage.status(2).code, v1::CODE_TIMEOUT);
   EXPECT_EQ(stage.status(2).reason, "waited 0.5 s for stalled");
 }
 
@@ -73,10 +73,10 @@ TEST(Modality, TimeoutsOfBehaviorsAndActivities) {
       "(defintention :c :goals '((INTEND :b () :timeout 0.3s)))");
   stage.ask(1, "a");
   stage.step(10);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.step(2);
   EXPECT_EQ(stage.status(1).reason, "GoToPos: not satisfied in 1 s");
-  EXPECT_EQ(stage.status(1).code, GoalCode::kTimeout);
+  EXPECT_EQ(stage.status(1).code, v1::CODE_TIMEOUT);
   stage.ask(2, "b");
   stage.step(12);
   EXPECT_EQ(stage.status(2).reason, "not done in 1 s");
@@ -111,14 +111,14 @@ TEST(Modality, AndJoinsSplitDoesNot) {
   put("c");
   EXPECT_EQ(stage.messages, Names({"b", "aside", "c"}));
   put("d");
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
 
 TEST(Modality, AReasonThatCannotBeComputedFails) {
   Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
               "(defintention :part :goals '((= x nil) (SUCCEED \"~a\" (+ 1 x))))");
   stage.begin(5);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.messages.size(), 1U);
 }
 
@@ -150,7 +150,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   EXPECT_EQ(all.behaviors(), Names({"Watch", "Follow"}));
   claim(all, "*x*", true);
   EXPECT_TRUE(all.behaviors().empty());
-  EXPECT_EQ(all.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(all.status(1).state, v1::GOAL_UNDERWAY);
 
   Stage maintain(
       activity("(MAINTAIN (not stalled) :by (SEQ (SPLIT (INTEND :Back ()))"
@@ -180,7 +180,7 @@ TEST(Modality, ASplitGoesOnBehindTheGoalThatItStoodIn) {
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"}));
   stage.inputs.robot.left_stalled = true;
   stage.step(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"})) << "they do not stand in what failed";
 }
 
@@ -198,7 +198,7 @@ TEST(Modality, AGotoLeavesWhatItStandsIn) {
     EXPECT_TRUE(stage.behaviors().empty());
     stage.step(4);
     EXPECT_EQ(stage.messages, Names({"end"})) << "once, and nothing that stands before it";
-    EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+    EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
     EXPECT_EQ(stage.display(), "* it END");
   }
 }
@@ -215,7 +215,7 @@ TEST(Modality, AndFailsWithOneOfItsGoalsAndEndsTheOthers) {
   stage.step(2);
   EXPECT_EQ(stage.messages, Names({"part: enough"}));
   EXPECT_TRUE(stage.behaviors().empty());
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
 }
 
 TEST(Modality, WhatIsNotWaitedForEndsWithItsParent) {
@@ -227,7 +227,7 @@ TEST(Modality, WhatIsNotWaitedForEndsWithItsParent) {
   EXPECT_EQ(stage.display(), "* it END; o guard END; o AvoidCollision B; * GoToPos B");
   stage.satisfy("go", 1.0);
   stage.step(3);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(stage.out.nodes.empty());
 }
 
@@ -259,7 +259,7 @@ TEST(Modality, AnActivityMayEndWhatItStandsIn) {
               "(defintention :outer :goals '((INTEND :inner ()) (FAIL \"not this\")))"
               "(defintention :inner :goals '((UNINTEND 'outer) (WAIT-FOR stalled :forever t)))");
   stage.begin(3);
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded) << stage.status(1).reason;
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED) << stage.status(1).reason;
   EXPECT_EQ(stage.status(1).reason, "removed");
 }
 
@@ -294,7 +294,7 @@ TEST(Modality, MaintainRestoresAndGoesOn) {
   stage.satisfy("go", 1.0);
   stage.step(8);
   EXPECT_EQ(stage.messages, Names({"walked", "there"}));
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
 
 TEST(Modality, MaintainWithinMaintainGoesOnWhenBothHold) {
@@ -344,7 +344,7 @@ TEST(Modality, MaintainFailsWhereItCannotRestore) {
   stage.begin(3);
   stage.inputs.robot.left_stalled = true;
   stage.step();
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).reason, "(not stalled) could not be restored");
   EXPECT_EQ(stage.messages, Names({"trying"}));
 }
@@ -359,15 +359,15 @@ TEST(Modality, AnInterruptedGoalGoesOnWhereItWas) {
   stage.ask(2, "other", {}, 1);
   stage.step(50);
   EXPECT_EQ(stage.behaviors(), Names({"TurnTo"}));
-  EXPECT_EQ(stage.status(1).state, GoalState::kSuspended);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUSPENDED);
   stage.satisfy("turn", 1.0);
   stage.step(2);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "no timeout has run meanwhile";
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.satisfy("go", 1.0);
   stage.step(6);
   EXPECT_EQ(stage.messages, Names({"begun", "part", "over"})) << "nothing is done twice";
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
 
 TEST(Modality, APersonInterruptsAndResumesAnIntention) {
@@ -399,9 +399,9 @@ TEST(Modality, LevelsAndTrends) {
     stage.step();
   }
   EXPECT_NEAR(stage.status(1).level, 0.5, 0.1);
-  EXPECT_EQ(stage.status(1).trend, Trend::kRising);
+  EXPECT_EQ(stage.status(1).trend, v1::TREND_RISING);
   stage.step(40);
-  EXPECT_EQ(stage.status(1).trend, Trend::kSteady);
+  EXPECT_EQ(stage.status(1).trend, v1::TREND_STEADY);
   stage.dispose(1);
   stage.step();
   // A goal with a lower level.
@@ -409,10 +409,10 @@ TEST(Modality, LevelsAndTrends) {
   stage.level = 0.5;
   stage.ask(2, "it");
   stage.step(10);
-  EXPECT_EQ(stage.status(2).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_UNDERWAY);
   stage.satisfy("go", 0.6);
   stage.step(2);
-  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(2).reason, "satisfied to 0.6, 0.5 was asked for");
 }
 
@@ -493,7 +493,7 @@ TEST(Modality, ABehaviorThatCannotBeMadeFailsItsIntention) {
   stage.begin(2);
   stage.inputs.troubles = {{stage.out.behaviors.at(0).name, "there is no behavior \"Fly\""}};
   stage.step();
-  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).reason, "Fly: there is no behavior \"Fly\"");
 }
 
@@ -534,11 +534,11 @@ TEST(Modality, ConcurrentGoalsAreUnderwayBesideTheOneThatDrives) {
   stage.ask(3, "watch", {}, 9);
   stage.step();
   for (const std::uint64_t id : {1U, 2U, 3U})
-    EXPECT_EQ(stage.status(id).state, GoalState::kUnderway) << id;
+    EXPECT_EQ(stage.status(id).state, v1::GOAL_UNDERWAY) << id;
   stage.inputs.robot.left_stalled = true;
   stage.step();
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
-  EXPECT_EQ(stage.status(2).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_UNDERWAY);
 }
 
 TEST(Modality, AConcurrentActivityDoesNotDrive) {
@@ -555,7 +555,7 @@ TEST(Modality, AConcurrentActivityDoesNotDrive) {
   EXPECT_EQ(stage.status(1).reason, "a concurrent activity does not drive");
   EXPECT_EQ(stage.status(2).reason, "drives: a concurrent activity does not drive");
   EXPECT_EQ(stage.status(3).reason, "drive: a concurrent activity does not drive");
-  EXPECT_EQ(stage.status(4).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(4).state, v1::GOAL_UNDERWAY);
   EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
 }
 
@@ -567,7 +567,7 @@ TEST(Modality, TheEndOfAConcurrentGoalIsNoStepForTheOneThatDrives) {
   stage.step(3);
   stage.inputs.robot.left_stalled = true;
   stage.step();
-  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.messages.size(), 4U);
 }
 
@@ -582,7 +582,7 @@ TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
   for (const Schema& schema : changed.schemas)
     stage.executor->add(schema);
   stage.step(2);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.inputs.robot.left_stalled = true;
   stage.step(3);
   EXPECT_EQ(stage.status(1).reason, "part: new part") << "what it begins anew is the new one";
@@ -613,7 +613,7 @@ TEST(Modality, WhenABeliefWasSaid) {
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 1}, "a person", "answer", "yes"});
   stage.step(3);
   stage.begin(5);
-  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 2}, "a person", "answer", "Yes"});
   stage.step(4);
   EXPECT_EQ(stage.status(1).reason, "t Yes nil");
@@ -625,7 +625,7 @@ TEST(Modality, ClaimsOfThirdPartiesAreBeliefs) {
   stage.inputs.claims.push_back(
       {ClaimEvent::Kind::kSaid, {9, 1}, "a door", "door_open", Value::truth(true)});
   stage.step();
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   const auto all = stage.executor->beliefs().all();
   const auto claimed = std::find_if(all.begin(), all.end(),
                                     [](const Belief& each) { return each.name == "door_open"; });
@@ -653,23 +653,23 @@ TEST(Modality, NothingGrowsWithoutBound) {
   Stage round(activity("(:again (SPLIT (INTEND :part ()))) (GOTO :again)") +
               "(defintention :part :goals '((SUCCEED)))");
   round.begin(2500);
-  EXPECT_EQ(round.status(1).state, GoalState::kUnderway) << round.status(1).reason;
+  EXPECT_EQ(round.status(1).state, v1::GOAL_UNDERWAY) << round.status(1).reason;
   EXPECT_LT(round.out.nodes.size(), 10U);
 
   Stage deep("(defintention :it :goals '((INTEND :it ())))");
   deep.begin(3);
-  EXPECT_EQ(deep.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(deep.status(1).state, v1::GOAL_FAILED);
   EXPECT_NE(deep.status(1).reason.find("64 deep"), std::string::npos) << deep.status(1).reason;
 
   Stage wide(activity("(:again (INTEND :part () :blocking nil)) (GOTO :again)") +
              "(defintention :part :goals '((WAIT-FOR stalled :forever t)))");
   wide.begin(3000);
-  EXPECT_EQ(wide.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(wide.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already");
 
   Stage driving(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
   driving.begin(3000);
-  EXPECT_EQ(driving.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(driving.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(driving.status(1).reason,
             "there are 256 behaviors already: does an activity begin others without end?");
 
@@ -698,7 +698,7 @@ TEST(Modality, NothingGrowsWithoutBound) {
 
   Stage bomb("(defintention :it :goals '((AND (INTEND :it ()) (INTEND :it ()))))");
   bomb.begin(200);
-  EXPECT_EQ(bomb.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(bomb.status(1).state, v1::GOAL_FAILED);
 
   Stage lists(
       activity("(:again (= x (list x x)) (= y (format \"~a~a~a\" y y \"abc\"))) (GOTO :again)"));

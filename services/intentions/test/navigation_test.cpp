@@ -34,7 +34,7 @@ class Navigation : public testing::Test {
     around.map = std::make_shared<const maps::Map>(maps::parse_map(kMap, "test.map"));
     around.topology = std::make_shared<const maps::Topology>(*around.map);
     around.map_revision = 1;
-    around.registration.state = Localization::kTracking;
+    around.registration.state = v1::REGISTRATION_TRACKING;
     robot.connected = true;
     be_at({1.0, 0.0, 0.0});
   }
@@ -124,7 +124,7 @@ TEST_F(Navigation, NobodyIsAskedToOpenAWayThatIsOpen) {
     stage.ask(1, "go_to_place", {text("place", "north")});
     stage.step(60);
     EXPECT_EQ(stage.messages, std::vector<std::string>(4, "I try"));
-    EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+    EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
     return stage.status(1).reason;
   };
   EXPECT_EQ(reason_after("(FAIL \"a behavior is missing\")"),

@@ -36,7 +36,7 @@ TEST(ExecutorProperty, HoldsForRandomGoals) {
       int underway = 0;
       GoalId serving;
       for (const auto& [id, status] : bench.statuses) {
-        if (status.state == GoalState::kUnderway) {
+        if (status.state == v1::GOAL_UNDERWAY) {
           ++underway;
           serving = status.id;
         }
@@ -76,7 +76,7 @@ TEST(ExecutorProperty, HoldsForRandomGoals) {
         if (random.chance(0.3))
           goal.deadline = random.uniform(0.0, 20.0);
         if (random.chance(0.3))
-          goal.writer_lost = WriterLost::kKeep;
+          goal.writer_lost = v1::WRITER_LOST_KEEP;
         bench.write(goal);
       }
       const std::uint64_t some = 1 + random.next() % (last + 1);

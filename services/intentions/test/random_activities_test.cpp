@@ -198,8 +198,8 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
   }
   // The worlds are rich enough for activity.
   EXPECT_GT(most_seen, 50U);
-  EXPECT_GT(ends[GoalState::kSucceeded], 200);
-  EXPECT_GT(ends[GoalState::kFailed], 200);
+  EXPECT_GT(ends[v1::GOAL_SUCCEEDED], 200);
+  EXPECT_GT(ends[v1::GOAL_FAILED], 200);
 }
 
 /// A world that runs twice runs the same.

@@ -59,23 +59,16 @@ class ScriptedBus {
   void publish_state() {
     ++cycle;
     if (std::exchange(described_, epoch) != epoch) {
-      v1::RobotDescription description;
-      description.stamp = stamp();
-      description.front_buffer = 30;
-      description.side_buffer = 20;
-      description.front_max_range = 2.5;
-      description_.write(description);
+      description_.write(
+          {.stamp = stamp(), .front_buffer = 30, .side_buffer = 20, .front_max_range = 2.5});
     }
-    v1::RobotState state;
-    state.stamp = stamp();
-    state.odom = world.robot.odom;
-    state.pose_in_odom.x = world.robot.pose_in_odom.x;
-    state.pose_in_odom.y = world.robot.pose_in_odom.y;
-    state.pose_in_odom.th = world.robot.pose_in_odom.th;
-    state.velocity = world.robot.velocity;
-    state.rotation_velocity = world.robot.rotation_velocity;
-    state.status = v1::MOTORS_MOVING;
-    state_.write(state);
+    state_.write({.stamp = stamp(),
+                  .odom = world.robot.odom,
+                  .pose_in_odom = {world.robot.pose_in_odom.x, world.robot.pose_in_odom.y,
+                                   world.robot.pose_in_odom.th},
+                  .velocity = world.robot.velocity,
+                  .rotation_velocity = world.robot.rotation_velocity,
+                  .status = v1::MOTORS_MOVING});
   }
 
   /// Carries out this cycle's intent, if it has come: publishes the behaviors sample of the cycle
@@ -91,14 +84,9 @@ class ScriptedBus {
     for (const v1::IntendedBehavior& behavior : intended->behaviors)
       behaviors.push_back(from_bus(behavior));
     world.move(behaviors);
-    v1::BehaviorSet sample;
-    sample.stamp = stamp();
-    sample.control = true;
+    v1::BehaviorSet sample{.stamp = stamp(), .control = true};
     for (const BehaviorLevel& level : world.levels) {
-      v1::BehaviorState state;
-      state.name = level.name;
-      state.goal = level.goal;
-      sample.behaviors.push_back(state);
+      sample.behaviors.push_back({.name = level.name, .goal = level.goal});
     }
     behaviors_.write(sample);
     return true;
@@ -107,12 +95,7 @@ class ScriptedBus {
   std::optional<v1::Intentions> intended;  ///< the newest that were acted on
 
  private:
-  v1::Stamp stamp() const {
-    v1::Stamp made;
-    made.epoch = epoch;
-    made.cycle = cycle;
-    return made;
-  }
+  v1::Stamp stamp() const { return v1::Stamp{.epoch = epoch, .cycle = cycle}; }
 
   std::uint64_t described_ = 0;  ///< the epoch
   bus::Writer<v1::RobotDescription> description_;

@@ -78,10 +78,7 @@ TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
   cycle();
   cycle();
   ASSERT_EQ(state(id), v1::GOAL_UNDERWAY);
-  v1::Grant grant;
-  grant.estopped = true;
-  grant.estop_source = "button";
-  grants.write(grant);
+  grants.write({.estopped = true, .estop_source = "button"});
   grants.write(v1::Grant());  // reset before the service read it
   cycle();
   EXPECT_EQ(state(id), v1::GOAL_CANCELED) << bus::describe(*goals.status(id));
@@ -159,12 +156,10 @@ TEST_F(ShellTest, AProgramThatWasSilentIsBelievedAgainAndItsEndedGoalsStayEnded)
   bus::Node node(test::memory_options("another", true), bus);
   bus::GoalClient another(node, "another");
   auto claims = node.writer(bus::topics::kBeliefClaims);
-  v1::BeliefClaim claim;
-  claim.id.number = 1;
-  claim.name = "door";
-  claim.value = "open";
-  claim.writer_lost = v1::WRITER_LOST_CANCEL;
-  claims.write(claim);
+  claims.write({.id = {.number = 1},
+                .name = "door",
+                .value = "open",
+                .writer_lost = v1::WRITER_LOST_CANCEL});
   const v1::GoalId id = another.ask(go_to(5.0, 0.0));
   EXPECT_TRUE(believed());
   EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
@@ -278,10 +273,8 @@ TEST_F(ShellTest, AnActivityAsksAgents) {
     for (const auto& sample : asked.take()) {
       EXPECT_EQ(sample.data.functor, "place_of");
       EXPECT_EQ(bus::text_of(sample.data.arguments, "person"), "karen");
-      v1::Answer answer;
-      answer.asker = sample.data.asker;
-      answer.number = sample.data.number;
-      answer.code = v1::ANSWER_UNDERWAY;
+      v1::Answer answer{
+          .asker = sample.data.asker, .number = sample.data.number, .code = v1::ANSWER_UNDERWAY};
       answers.write(answer);
       answer.code = v1::ANSWER_DONE;
       answer.results.push_back(bus::text("place", "EJ-231"));
@@ -306,12 +299,8 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
           return belief;
     return std::nullopt;
   };
-  v1::BeliefClaim claim;
-  claim.id.writer = 7;
-  claim.id.number = 1;
-  claim.source = "a person";
-  claim.name = "karen-is-in";
-  claim.value = "(a \"b\" 2.5)";
+  v1::BeliefClaim claim{
+      .id = {7, 1}, .source = "a person", .name = "karen-is-in", .value = "(a \"b\" 2.5)"};
   claims.write(claim);
   cycle();
   const auto believed = find("karen-is-in");

@@ -161,7 +161,7 @@ TEST(Work, AHalfTurnIsAHalfTurnHoweverOftenTheServiceIsKilled) {
     if (!site.over() && i % 5 == 4)
       site.kill(1);
   }
-  EXPECT_EQ(site.status.state, GoalState::kSucceeded) << site.status.reason;
+  EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
   EXPECT_NEAR(site.turned, kPi, 0.11);
 }
 
@@ -170,7 +170,7 @@ TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
   std::uint64_t cycles = 0;
   for (; !whole.over() && cycles < 500; ++cycles)
     whole.step();
-  ASSERT_EQ(whole.status.state, GoalState::kSucceeded) << whole.status.reason << whole.said;
+  ASSERT_EQ(whole.status.state, v1::GOAL_SUCCEEDED) << whole.status.reason << whole.said;
   EXPECT_EQ(whole.status.reason, "success, 0.4, on");
   EXPECT_NEAR(whole.driven, 1.9, 0.2);
   for (std::uint64_t at = 1; at < cycles; ++at) {
@@ -180,7 +180,7 @@ TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
       if (i + 1 == at)
         site.kill(2);
     }
-    EXPECT_EQ(site.status.state, GoalState::kSucceeded) << at << " " << site.status.reason;
+    EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << at << " " << site.status.reason;
     EXPECT_EQ(site.status.reason, whole.status.reason) << at;
     EXPECT_EQ(site.said, whole.said) << "killed at cycle " << at;
     EXPECT_NEAR(site.driven, whole.driven, 0.1) << "killed at cycle " << at;
@@ -198,7 +198,7 @@ TEST(Work, AnotherEpochGoesOn) {
   site.kill(0);
   for (int i = 0; !site.over() && i < 300; ++i)
     site.step();
-  EXPECT_EQ(site.status.state, GoalState::kSucceeded) << site.status.reason;
+  EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
   EXPECT_NEAR(site.turned, kPi, 0.11);
 }
 
@@ -228,7 +228,7 @@ TEST(Work, WhatCannotBeTakenUpIsTold) {
     one.happens(site);
     site.kill(0);
     site.step();
-    EXPECT_EQ(site.status.state, GoalState::kUnderway);
+    EXPECT_EQ(site.status.state, v1::GOAL_UNDERWAY);
     EXPECT_NE(site.status.note.find("begun anew"), std::string::npos) << site.status.note;
     EXPECT_NE(site.status.note.find(one.told), std::string::npos) << site.status.note;
   }

@@ -10,19 +10,16 @@ constexpr std::size_t kMostPercepts = 256;  // the bound of Perception.percepts
 }  // namespace
 
 v1::Perception to_bus(const Output& output) {
-  v1::Perception sample;
-  sample.percepts = converted(
-      output.percepts, [](const auto& percept) { return lps::to_bus(percept); }, kMostPercepts);
-  sample.left_wall = output.left_wall ? output.left_wall->id : 0;
-  sample.right_wall = output.right_wall ? output.right_wall->id : 0;
-  return sample;
+  return {
+      .percepts = converted(
+          output.percepts, [](const auto& percept) { return lps::to_bus(percept); }, kMostPercepts),
+      .left_wall = output.left_wall ? output.left_wall->id : 0,
+      .right_wall = output.right_wall ? output.right_wall->id : 0};
 }
 
 v1::GridTile to_bus(const TileKey& key) {
-  v1::GridTile tile;
-  tile.column = static_cast<std::int32_t>(key.column);
-  tile.row = static_cast<std::int32_t>(key.row);
-  return tile;
+  return {.column = static_cast<std::int32_t>(key.column),
+          .row = static_cast<std::int32_t>(key.row)};
 }
 
 v1::GridTile to_bus(const Grid& grid, const TileKey& key) {

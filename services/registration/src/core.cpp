@@ -240,7 +240,7 @@ Core::Outputs Core::registered(const Inputs& inputs) {
   const std::set<std::uint32_t>& closed = registration_->closed_doors();
   outputs.closed_doors.assign(closed.begin(), closed.end());
   bool news = amend(output.presence, output.objects, outputs.notes);
-  if (output.state == State::tracking)
+  if (output.state == v1::REGISTRATION_TRACKING)
     news = grow(inputs, output.pose_in_map, outputs.notes) || news;
   if (news)
     registration_->set_map(now_.editor.map());
@@ -251,7 +251,7 @@ Core::Outputs Core::registered(const Inputs& inputs) {
 Core::Outputs Core::built(const Inputs& inputs) {
   Outputs outputs;
   grow(inputs, std::nullopt, outputs.notes);
-  outputs.state = State::tracking;
+  outputs.state = v1::REGISTRATION_TRACKING;
   outputs.reason = "builds the map";
   outputs.pose_in_map = now_.builder->pose_in_map();
   outputs.covariance = now_.builder->covariance();

@@ -31,15 +31,15 @@ Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
 
 }  // namespace
 
-std::string_view word(State state) {
+std::string_view word(v1::RegistrationState state) {
   switch (state) {
-    case State::off:
+    case v1::REGISTRATION_OFF:
       return "off";
-    case State::unplaced:
+    case v1::REGISTRATION_UNPLACED:
       return "unplaced";
-    case State::tracking:
+    case v1::REGISTRATION_TRACKING:
       return "tracking";
-    case State::lost:
+    case v1::REGISTRATION_LOST:
       return "lost";
   }
   return "";
@@ -127,7 +127,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   search_.clear();
   now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
   now_.contradiction = 0.0;
-  now_.state = State::tracking;
+  now_.state = v1::REGISTRATION_TRACKING;
   now_.confirmed = confidence > kUnconfirmed;
   now_.doubted = now_.carried = now_.other_map = false;
   now_.done.clear();
@@ -147,7 +147,7 @@ void Registration::Self::suspect_it_was_carried() {
   now_.confirmed = false;
   now_.doubted = true;
   now_.carried = true;
-  now_.state = State::lost;
+  now_.state = v1::REGISTRATION_LOST;
 }
 
 /// No reading of this odometry frame has tested the pose yet.
@@ -159,9 +159,9 @@ void Registration::Self::doubt() {
   const Pose& pose = now_.filter->pose();
   const bool at_start = now_.start && (now_.start->position() - pose.position()).norm() < kNear &&
                         std::abs(norm2_angle(now_.start->th - pose.th)) < kNearTurn;
-  if (at_start && now_.state == State::tracking)
+  if (at_start && now_.state == v1::REGISTRATION_TRACKING)
     return;
-  now_.state = State::lost;
+  now_.state = v1::REGISTRATION_LOST;
   now_.doubted = true;
   if (now_.start && !at_start)
     search_.suspect(PoseFilter(*now_.start, covariance_of({}), 0.0,
@@ -174,12 +174,13 @@ void Registration::Self::doubt_the_map() {
   if (now_.filter &&
       maps::outside(map_, now_.filter->pose().position(), kBesideTheMap).has_value()) {
     forget();
-  } else if (now_.filter && now_.state == State::tracking) {
+  } else if (now_.filter && now_.state == v1::REGISTRATION_TRACKING) {
     const Pose pose = now_.filter->pose();
     place(pose, covariance_of({}), now_.filter->drift(), now_.filter->covariance()(3, 3),
           kUnconfirmed);
   }
-  now_.other_map = now_.state == State::tracking || now_.state == State::unplaced;
+  now_.other_map =
+      now_.state == v1::REGISTRATION_TRACKING || now_.state == v1::REGISTRATION_UNPLACED;
   report();
 }
 
@@ -188,7 +189,7 @@ void Registration::Self::forget() {
   now_.doubted = now_.carried = now_.other_map = false;
   now_.filter.reset();
   search_.clear();
-  now_.state = State::unplaced;
+  now_.state = v1::REGISTRATION_UNPLACED;
   now_.done.clear();
   forget_looks();
 }
@@ -225,7 +226,7 @@ Memory Registration::Self::save() const {
   Memory memory;
   memory.odom = now_.doubted ? kNoFrame : now_.odom.value_or(kNoFrame);
   memory.pose_in_odom = now_.pose_in_odom;
-  memory.placed = now_.filter.has_value() && (now_.state != State::lost || now_.doubted);
+  memory.placed = now_.filter.has_value() && (now_.state != v1::REGISTRATION_LOST || now_.doubted);
   if (now_.filter) {
     memory.pose_in_map = now_.filter->pose();
     memory.covariance = now_.filter->covariance();
@@ -477,7 +478,8 @@ bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
 void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double score) {
   if ((cloud.pose.position() - now_.filter->pose().position()).norm() > kNear ||
       std::abs(norm2_angle(cloud.pose.th - now_.filter->pose().th)) > kNearTurn)
-    now_.state = State::lost;  // reported, so that users of the pose learn that it did not hold
+    now_.state =
+        v1::REGISTRATION_LOST;  // reported, so that users of the pose learn that it did not hold
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
@@ -512,17 +514,17 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
       place(found.pose(), found.pose_covariance(), found.drift(), found.covariance()(3, 3), 1.0);
       return;
     }
-  const auto best = search_.best(now_.state == State::tracking);
+  const auto best = search_.best(now_.state == v1::REGISTRATION_TRACKING);
   if (!best)
     return;
   const Pose there = best->hypothesis->filter.pose();
   const bool near = now_.filter &&
                     (there.position() - now_.filter->pose().position()).norm() < kNear &&
                     std::abs(norm2_angle(there.th - now_.filter->pose().th)) < kNearTurn;
-  if (now_.state == State::tracking && !near) {
+  if (now_.state == v1::REGISTRATION_TRACKING && !near) {
     // Reported before the correction, so that users of the pose learn that it did not hold.
     if (best->likely)
-      now_.state = State::lost;
+      now_.state = v1::REGISTRATION_LOST;
     return;
   }
   if (!best->sure)
@@ -537,7 +539,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
 /// Missing artifacts of the map, and objects where the map has none.
 void Registration::Self::look_for_news(const Inputs& inputs,
                                        const std::vector<PlacedReading>& readings) {
-  if (now_.state != State::tracking || now_.search.own_score < settings_.sure ||
+  if (now_.state != v1::REGISTRATION_TRACKING || now_.search.own_score < settings_.sure ||
       now_.filter->sigma_position() > settings_.sure_position)
     return;
   std::vector<Look> looks;
@@ -580,15 +582,15 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     look_elsewhere(readings, percepts);
     if (now_.standing.step(now_.moved, readings))
       suspect_it_was_carried();
-    if (now_.state == State::tracking &&
+    if (now_.state == v1::REGISTRATION_TRACKING &&
         (now_.search.own_score < settings_.lost || now_.contradiction >= settings_.refuted))
-      now_.state = State::lost;
-    else if (now_.state == State::lost && holds_again())
-      now_.state = State::tracking;
-    if (now_.state == State::tracking)
+      now_.state = v1::REGISTRATION_LOST;
+    else if (now_.state == v1::REGISTRATION_LOST && holds_again())
+      now_.state = v1::REGISTRATION_TRACKING;
+    if (now_.state == v1::REGISTRATION_TRACKING)
       now_.doubted = now_.carried = false;
     now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
-    if (now_.state == State::tracking && now_.confirmed)
+    if (now_.state == v1::REGISTRATION_TRACKING && now_.confirmed)
       now_.other_map = false;
     look_for_news(inputs, readings);
   }
@@ -599,7 +601,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
 void Registration::Self::find_environment() {
   const auto before = now_.output.environment;
   now_.output.environment.reset();
-  if (now_.state != State::tracking && now_.state != State::off)
+  if (now_.state != v1::REGISTRATION_TRACKING && now_.state != v1::REGISTRATION_OFF)
     return;
   if (!now_.filter)
     return;
@@ -619,7 +621,7 @@ void Registration::Self::find_environment() {
 }
 
 void Registration::Self::report() {
-  now_.output.state = now_.on ? now_.state : State::off;
+  now_.output.state = now_.on ? now_.state : v1::REGISTRATION_OFF;
   if (now_.filter) {
     now_.output.pose_in_map = now_.filter->pose();
     now_.output.covariance = now_.filter->pose_covariance();
@@ -632,13 +634,13 @@ void Registration::Self::report() {
     now_.output.confidence = now_.filter ? 0.5 : 0.0;
   } else if (lines_.empty()) {
     now_.output.reason = "the map has no walls";
-  } else if (now_.state == State::unplaced) {
+  } else if (now_.state == v1::REGISTRATION_UNPLACED) {
     now_.output.confidence = 0.0;
     now_.output.reason =
         now_.other_map ? "another map was loaded: looking for where the robot is on it"
         : now_.search.hypotheses.empty() ? "looking for where it is: no opening seen yet"
                                          : "looking for where it is: several places would do";
-  } else if (now_.state == State::lost) {
+  } else if (now_.state == v1::REGISTRATION_LOST) {
     now_.output.reason = now_.doubted && now_.carried
                              ? "all around has changed while it stood, as if it had been carried: "
                                "what is heard has not confirmed yet that it is where it was"

@@ -178,7 +178,7 @@ class RegistrationInAHall : public testing::Test {
 
 TEST_F(RegistrationInAHall, RegistersFromTheStartOfTheMapAndSaysItOnce) {
   const Core::Outputs first = robot.stand(core);
-  EXPECT_EQ(first.state, State::tracking);
+  EXPECT_EQ(first.state, v1::REGISTRATION_TRACKING);
   EXPECT_TRUE(says(first.notes, "tracking"));
   EXPECT_EQ(first.environment, 1U);
   EXPECT_NEAR(first.pose_in_map.x, 3.5, 0.1);
@@ -190,7 +190,7 @@ TEST(RegistrationCore, WithoutAStartTheRobotHasToBeFound) {
   unplaced.start.reset();
   Core core(unplaced);
   Robot robot;
-  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
 }
 
 TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {
@@ -218,7 +218,7 @@ TEST_F(RegistrationInAHall, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
       contains(core.act(load("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).text, "at most 25 ha"));
   EXPECT_EQ(core.map_revision(), revision);
   EXPECT_EQ(core.map_source(), "hall.map");
-  EXPECT_EQ(robot.stand(core).state, State::tracking);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING);
 
   EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
   EXPECT_GT(core.map_revision(), revision);
@@ -233,7 +233,7 @@ TEST_F(RegistrationInAHall, OnAnotherMapThePoseIsAGuess) {
   // The same place on it by chance: the readings confirm the guess.
   EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
   const Core::Outputs guess = robot.stand(core);
-  EXPECT_EQ(guess.state, State::tracking);
+  EXPECT_EQ(guess.state, v1::REGISTRATION_TRACKING);
   EXPECT_NEAR(guess.pose_in_map.x, before.pose_in_map.x, 0.1);
   EXPECT_LE(guess.confidence, 0.5);
   EXPECT_TRUE(contains(guess.reason, "another map was loaded")) << guess.reason;
@@ -246,7 +246,7 @@ TEST_F(RegistrationInAHall, OffAnotherMapThePoseIsForgotten) {
   drive(100);
   EXPECT_EQ(core.act(load("CORRIDOR (7) 60000, 0, 0, 20000, 2000\n")).text, "");
   const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, State::unplaced);
+  EXPECT_EQ(after.state, v1::REGISTRATION_UNPLACED);
   EXPECT_EQ(after.confidence, 0.0);
   EXPECT_TRUE(contains(after.reason, "another map was loaded")) << after.reason;
   EXPECT_FALSE(core.remembered()->memory.placed);
@@ -303,11 +303,11 @@ TEST_F(RegistrationInAHall, PlacesTheRobotWhereItCanBe) {
 TEST_F(RegistrationInAHall, FindsAndSwitches) {
   robot.stand(core);
   EXPECT_EQ(core.act(request("switch", false)).text, "");
-  EXPECT_EQ(robot.stand(core).state, State::off);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
   EXPECT_EQ(core.act(request("switch", true)).text, "");
-  EXPECT_EQ(robot.stand(core).state, State::tracking);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING);
   EXPECT_EQ(core.act(request("find")).text, "");
-  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
 }
 
 TEST_F(RegistrationInAHall, AddsFeaturesAndSnapsAsItIsAsked) {
@@ -318,7 +318,8 @@ TEST_F(RegistrationInAHall, AddsFeaturesAndSnapsAsItIsAsked) {
   EXPECT_EQ(core.act(request("snap", false)).text, "");
   EXPECT_TRUE(core.adds_features());
   EXPECT_FALSE(core.snaps());
-  EXPECT_EQ(robot.stand(core).state, State::tracking) << "on a map that is known it is registered";
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING)
+      << "on a map that is known it is registered";
 }
 
 TEST(RegistrationCore, WhatItCanBeAskedForIsDeclared) {
@@ -356,7 +357,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   const Pose before = robot.stand(core).pose_in_map;
   EXPECT_EQ(core.act(request("add_features", false)).text, "");
   const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
   EXPECT_NE(after.reason, "builds the map");
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.1);
   EXPECT_NEAR(after.pose_in_map.y, before.y, 0.1);
@@ -404,14 +405,14 @@ TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {
 TEST_F(RegistrationInAHall, WhatWasAskedForOutlastsTheLink) {
   robot.stand(core);
   core.act(request("switch", false));
-  EXPECT_EQ(robot.stand(core).state, State::off);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
   robot.reconnect();
-  EXPECT_EQ(robot.stand(core).state, State::off);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
   core.act(request("switch", true));
   core.act(request("find"));
-  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
   robot.reconnect();
-  EXPECT_EQ(robot.stand(core).state, State::unplaced) << "it may be far from the start";
+  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED) << "it may be far from the start";
 }
 
 TEST_F(RegistrationInAHall, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
@@ -420,7 +421,7 @@ TEST_F(RegistrationInAHall, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
   EXPECT_GT(before.x, 5.5);
   robot.reconnect();
   const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
@@ -431,14 +432,14 @@ TEST_F(RegistrationInAHall, InAnotherOdometryFrameThePoseIsAGuessUntilTheReading
   const Core::Outputs after = robot.stand(core);
   EXPECT_NEAR(after.pose_in_map.x, before.pose_in_map.x, 0.1);
   EXPECT_GT(after.covariance(0, 0), before.covariance(0, 0));
-  EXPECT_EQ(after.state, State::lost);
+  EXPECT_EQ(after.state, v1::REGISTRATION_LOST);
   EXPECT_NE(after.reason.find("dead reckoning has begun anew"), std::string::npos) << after.reason;
   EXPECT_TRUE(core.remembered()->memory.placed) << "a restart now has the same guess";
   EXPECT_NE(core.remembered()->memory.odom, robot.frame());
   Core::Outputs later = after;
-  for (int i = 0; i < 100 && later.state != State::tracking; ++i)
+  for (int i = 0; i < 100 && later.state != v1::REGISTRATION_TRACKING; ++i)
     later = robot.step(core);
-  EXPECT_EQ(later.state, State::tracking);
+  EXPECT_EQ(later.state, v1::REGISTRATION_TRACKING);
 }
 
 TEST(RegistrationCore, AZoneIsPutWithItsRule) {
@@ -458,7 +459,7 @@ TEST(RegistrationCore, AZoneIsPutWithItsRule) {
 
 TEST_F(RegistrationInAHall, APoseThatWasOnlyToldIsHalfTrusted) {
   const Core::Outputs told = robot.stand(core);
-  EXPECT_EQ(told.state, State::tracking);
+  EXPECT_EQ(told.state, v1::REGISTRATION_TRACKING);
   EXPECT_LE(told.confidence, 0.5);
   EXPECT_NE(told.reason.find("as it was told"), std::string::npos) << told.reason;
   const Core::Outputs later = drive(100);
@@ -474,9 +475,9 @@ TEST_F(RegistrationInAHall, ASuspendedProcessDoesNothingUntilItIsResumed) {
   EXPECT_EQ(ask("test-environment", ProcessAction::suspend).environment, 0U);
   EXPECT_EQ(ask("test-environment", ProcessAction::resume).environment, 1U);
   const Core::Outputs suspended = ask("test-match", ProcessAction::suspend);
-  EXPECT_EQ(suspended.state, State::off);
+  EXPECT_EQ(suspended.state, v1::REGISTRATION_OFF);
   EXPECT_EQ(suspended.reason, "test-match is suspended: the pose goes on by dead reckoning");
-  EXPECT_EQ(ask("test-match", ProcessAction::resume).state, State::tracking);
+  EXPECT_EQ(ask("test-match", ProcessAction::resume).state, v1::REGISTRATION_TRACKING);
 }
 
 // State that outlives the core.
@@ -491,7 +492,7 @@ TEST_F(RegistrationInAHall, ARestartGoesOnFromWhatWasRemembered) {
   EXPECT_TRUE(next.map_changed());
   robot.reconnect();
   const Core::Outputs after = robot.stand(next);
-  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
@@ -501,7 +502,7 @@ TEST_F(RegistrationInAHall, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDo
   robot.reconnect();
   robot.new_frame();
   const Core::Outputs after = robot.stand(next);
-  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
   EXPECT_LE(after.confidence, 0.5);
 }
 
@@ -514,7 +515,7 @@ TEST_F(RegistrationInAHall, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   EXPECT_EQ(next.map_source(), "a;b  c.map");
   EXPECT_FALSE(next.map_changed());
   robot.reconnect();
-  EXPECT_EQ(robot.stand(next).state, State::unplaced);
+  EXPECT_EQ(robot.stand(next).state, v1::REGISTRATION_UNPLACED);
 }
 
 TEST_F(RegistrationInAHall, ARestartKnowsThatTheMapWasDeleted) {

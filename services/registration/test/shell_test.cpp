@@ -57,14 +57,10 @@ class RegistrationShell : public testing::Test {
  protected:
   RegistrationShell() {
     drive.scene().set_door("n2", true);
-    v1::RobotDescription description;
-    description.stamp.epoch = 7;
-    description.radius = 0.22;
+    v1::RobotDescription description{.stamp = {.epoch = 7}, .radius = 0.22};
     for (const lps::SonarMount& mount : drive.mounts()) {
-      v1::SonarPose pose;
-      pose.sonar = static_cast<std::uint8_t>(mount.sonar);
-      pose.pose_in_robot = lps::to_bus(mount.in_robot);
-      description.sonars.push_back(pose);
+      description.sonars.push_back({.sonar = static_cast<std::uint8_t>(mount.sonar),
+                                    .pose_in_robot = lps::to_bus(mount.in_robot)});
     }
     descriptions.write(description);
   }
@@ -79,17 +75,12 @@ class RegistrationShell : public testing::Test {
   /// One cycle of robot and services.
   void cycle() {
     const test::Seen& seen = drive.advance();
-    v1::RobotState state;
-    state.stamp.epoch = 7;
-    state.stamp.cycle = seen.cycle;
-    state.odom = odom;
-    state.pose_in_odom = lps::to_bus(seen.pose_in_odom);
+    v1::RobotState state{
+        .stamp = {7, seen.cycle}, .odom = odom, .pose_in_odom = lps::to_bus(seen.pose_in_odom)};
     for (const lps::SonarReading& reading : seen.readings) {
-      v1::SonarReading sample;
-      sample.sonar = static_cast<std::uint8_t>(reading.sonar);
-      sample.range = static_cast<float>(reading.range);
-      sample.echo = reading.echo;
-      state.sonars.push_back(sample);
+      state.sonars.push_back({.sonar = static_cast<std::uint8_t>(reading.sonar),
+                              .range = static_cast<float>(reading.range),
+                              .echo = reading.echo});
     }
     states.write(state);
     ASSERT_TRUE(eyes_shell.step(stop));

@@ -53,8 +53,7 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
 }
 
 ProcessesOnBus::~ProcessesOnBus() {
-  v1::ProcessSet sample;
-  sample.instance = node_.instance();
+  v1::ProcessSet sample{.instance = node_.instance()};
   states_.dispose(sample);
 }
 
@@ -85,19 +84,15 @@ std::optional<Answer> ProcessesOnBus::act(const Request& request) {
 void ProcessesOnBus::publish() {
   if (!table_.take_changed())
     return;
-  v1::ProcessSet sample;
-  sample.instance = node_.instance();
-  sample.service = node_.options().name;
-  sample.stamp.epoch = stamp_.epoch;
-  sample.stamp.cycle = stamp_.cycle;
+  v1::ProcessSet sample{.instance = node_.instance(),
+                        .service = node_.options().name,
+                        .stamp = {stamp_.epoch, stamp_.cycle}};
   for (const Process* process : table_.processes()) {
-    v1::Process one;
-    one.name = process->name();
-    one.state = state_of(*process);
-    one.number = process->state() >= kFirstOwnState ? process->state() : 0;
-    one.since = process->since();
-    one.effect = process->effect();
-    sample.processes.push_back(std::move(one));
+    sample.processes.push_back({.name = process->name(),
+                                .state = state_of(*process),
+                                .number = process->state() >= kFirstOwnState ? process->state() : 0,
+                                .since = process->since(),
+                                .effect = process->effect()});
   }
   states_.write(sample);
 }

@@ -13,8 +13,7 @@ class ProcessesOnBusTest : public ::testing::Test {
  protected:
   std::optional<v1::Answer> ask(const std::string& whom, const std::string& process,
                                 const char* functor, std::optional<double> cycles = {}) {
-    v1::Request request;
-    request.source = "a person";
+    v1::Request request{.source = "a person"};
     request.number = ++number;
     request.service = whom;
     request.functor = functor;

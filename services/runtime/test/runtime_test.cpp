@@ -35,9 +35,7 @@ class Repeater final : public Service {
     seen_.new_robot.push_back(turn.new_robot);
     seen_.new_frame.push_back(turn.new_frame);
     EXPECT_EQ(turn.description.stamp.epoch, turn.stamp.epoch);
-    v1::BehaviorSet sample;
-    sample.control = intentions_.value() != nullptr;
-    behaviors_.write(sample);
+    behaviors_.write({.control = intentions_.value() != nullptr});
     Notes notes;
     for (const auto& message : messages_.take())
       notes.warn(message.data.text);
@@ -62,22 +60,11 @@ class RuntimeTest : public testing::TestWithParam<bool> {
  protected:
   void state(std::uint64_t odom = 1) {
     if (cycle_ == 0) {
-      v1::RobotDescription description;
-      description.stamp.epoch = epoch_;
-      descriptions_.write(description);
+      descriptions_.write({.stamp = {.epoch = epoch_}});
     }
-    v1::RobotState sample;
-    sample.stamp.epoch = epoch_;
-    sample.stamp.cycle = ++cycle_;
-    sample.odom = odom;
-    states_.write(sample);
+    states_.write({.stamp = {epoch_, ++cycle_}, .odom = odom});
   }
-  void intend() {
-    v1::Intentions sample;
-    sample.stamp.epoch = epoch_;
-    sample.stamp.cycle = cycle_;
-    intentions_.write(sample);
-  }
+  void intend() { intentions_.write({.stamp = {epoch_, cycle_}}); }
 
   std::shared_ptr<bus::MemoryBus> memory_ = bus::make_memory_bus();
   bus::Node bridge_{test::memory_options("bridge", GetParam()), memory_};

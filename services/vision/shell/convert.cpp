@@ -30,10 +30,8 @@ Channels from_bus(const v1::VisionChannels& channels) {
 }
 
 v1::Vision to_bus(const std::vector<lps::SeenThing>& things) {
-  v1::Vision sample;
-  sample.things = converted(
-      things, [](const auto& thing) { return lps::to_bus(thing); }, kMostThings);
-  return sample;
+  return {.things = converted(
+              things, [](const auto& thing) { return lps::to_bus(thing); }, kMostThings)};
 }
 
 }  // namespace saphira::vision

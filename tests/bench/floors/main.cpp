@@ -109,7 +109,7 @@ Patrolled patrol(const Options& options, const Site& site) {
     any.look(robot);
     const registration::Core::Outputs& told = robot.registered();
     const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
-    if (told.state == registration::State::tracking) {
+    if (told.state == v1::REGISTRATION_TRACKING) {
       ++result.tracking;
       result.offs.add(told.pose_in_map, robot.truth());
     }
@@ -192,14 +192,14 @@ Carried carry(const Options& options, const Site& site) {
       if (whole.registered().confidence >= 0.9 && (whole.believed().position() - now).norm() > 0.5)
         sure += (now - before).norm();
       way += (now - before).norm();
-      if (!lost && whole.registered().state != registration::State::tracking)
+      if (!lost && whole.registered().state != v1::REGISTRATION_TRACKING)
         lost = way;
       before = now;
     }
     result.lost_way.push_back(lost.value_or(way));
     ++result.goals;
     result.sure_way.push_back(sure);
-    if (whole.status(id).state != intentions::GoalState::kSucceeded)
+    if (whole.status(id).state != v1::GOAL_SUCCEEDED)
       continue;
     const bool there = (whole.truth().position() - place).norm() < kThere;
     result.arrived += there ? 1 : 0;

@@ -14,7 +14,6 @@ namespace {
 
 using Output = registration::Core::Outputs;
 using registration::Core;
-using registration::State;
 
 maps::Map office() {
   return maps::load_map(config_folder() + "/maps/office-floor.map");
@@ -87,38 +86,38 @@ TEST(Localization, WithoutAPoseItFindsItAndSaysNothingBefore) {
     options.start_in_world = Pose{points[0].x(), points[0].y(), std::atan2(ahead.y(), ahead.x())};
     points.erase(points.begin());
     Drive robot(registered_on(office(), options, false));
-    EXPECT_EQ(robot.registered().state, State::unplaced);
+    EXPECT_EQ(robot.registered().state, v1::REGISTRATION_UNPLACED);
     Tour tour(points, true);
     bool found = false;
     for (int i = 0; i < 3000; ++i) {
       tour.act(robot, robot.truth());
       robot.advance();
       const Output& output = robot.registered();
-      if (output.state == State::tracking) {
+      if (output.state == v1::REGISTRATION_TRACKING) {
         found = true;
         ASSERT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.5)
             << "seed " << seed << " cycle " << i;
       }
     }
     EXPECT_TRUE(found) << "seed " << seed;
-    EXPECT_EQ(robot.registered().state, State::tracking);
+    EXPECT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
   }
 }
 
 TEST(Localization, WhoIsCarriedAwaySaysThatHeIsLostAndFindsHimselfAgain) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 1200);
-  ASSERT_EQ(robot.registered().state, State::tracking);
+  ASSERT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
   ASSERT_TRUE(robot.robot().place({25.6, 12.0, kPi / 2}));
   Tour tour({{25.6, 24.0}, {24.0, 25.0}, {17.5, 25.0}, {17.5, 9.0}}, true);
   bool lost = false;
   for (int i = 0; i < 1800; ++i) {
     tour.act(robot, robot.truth());
     robot.advance();
-    lost = robot.registered().state == State::lost || lost;
+    lost = robot.registered().state == v1::REGISTRATION_LOST || lost;
   }
   EXPECT_TRUE(lost);
-  EXPECT_EQ(robot.registered().state, State::tracking);
+  EXPECT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
   EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.3);
 }
 
@@ -221,7 +220,7 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   again.processes().step(seen.cycle);
   const Output output = again.step({seen.cycle, &robot.mounts(), 1, seen.pose_in_odom,
                                     robot.cores().said().percepts, seen.readings});
-  EXPECT_EQ(output.state, State::tracking);
+  EXPECT_EQ(output.state, v1::REGISTRATION_TRACKING);
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
 
@@ -243,14 +242,14 @@ bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
     core.processes().step(seen.cycle);
     told = core.step({seen.cycle, seen.cycle == 1 ? &robot.mounts() : nullptr, 2, seen.pose_in_odom,
                       before, seen.readings});
-    EXPECT_TRUE(seen.cycle > 1 || told.state == State::lost) << "nothing was heard yet";
+    EXPECT_TRUE(seen.cycle > 1 || told.state == v1::REGISTRATION_LOST) << "nothing was heard yet";
     const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
-    if (told.state == State::tracking && off > 0.6) {
+    if (told.state == v1::REGISTRATION_TRACKING && off > 0.6) {
       ADD_FAILURE() << "tracks " << off << " m off in cycle " << seen.cycle;
       return false;
     }
   }
-  return told.state == State::tracking;
+  return told.state == v1::REGISTRATION_TRACKING;
 }
 
 TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
@@ -277,13 +276,13 @@ TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
     tour.act(robot, robot.believed());
     robot.advance();
     const Output& output = robot.registered();
-    EXPECT_EQ(output.state, State::off);
+    EXPECT_EQ(output.state, v1::REGISTRATION_OFF);
     EXPECT_TRUE(output.matches.empty());
   }
   EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.6);
   robot.cores().registration().act({"switch", {{"on", true}}});
   robot.advance();
-  EXPECT_EQ(robot.registered().state, State::tracking);
+  EXPECT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
 }
 
 TEST(Localization, TheEnvironmentIsTheCorridorOrJunctionThatItIsIn) {

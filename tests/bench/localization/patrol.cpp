@@ -27,7 +27,7 @@ PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles) {
     result.way += (robot.truth().position() - last).norm();
     last = robot.truth().position();
     result.reckoned.add(robot.reckoned(), robot.truth());
-    if (told.state == registration::State::tracking)
+    if (told.state == v1::REGISTRATION_TRACKING)
       result.registered.add(told.pose_in_map, robot.truth());
     else
       ++result.not_tracking;

@@ -99,13 +99,5 @@ TEST(Bridge, SaysWhichParameterFilesItLookedFor) {
   })) << scene.status.reason;
 }
 
-TEST(BridgeOptions, AWrongOneEndsItWithAMessage) {
-  Scene scene;
-  scene.robots_folder = "/nonexistent";
-  scene.start_bridge();
-  EXPECT_EQ(scene.bridge->wait(), 2);
-  EXPECT_NE(scene.bridge_log().find("/nonexistent: expected a folder"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace saphira::test

@@ -83,10 +83,7 @@ void Scene::publish() {
 void Scene::permit(std::uint64_t last) {
   // A command before the bridge is discovered reaches nobody, and each is sent once.
   EXPECT_TRUE(until([this] { return driver_->matched() > 0; }));
-  v1::StepPermit sample;
-  sample.source = "test";
-  sample.until_cycle = last;
-  permits_.write(sample);
+  permits_.write({.source = "test", .until_cycle = last});
 }
 
 void Scene::take() {

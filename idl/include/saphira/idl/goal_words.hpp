@@ -2,8 +2,12 @@
 
 #include "saphira/idl/intention.hpp"
 
-/// Words for values of the contract. In its namespace, so that a call needs none.
+/// Words and order of the contract's values. In its namespace, so that a call needs none.
 namespace saphira::v1 {
+
+inline bool operator<(const GoalId& a, const GoalId& b) {
+  return a.writer != b.writer ? a.writer < b.writer : a.number < b.number;
+}
 
 inline const char* name_of(GoalState state) {
   switch (state) {

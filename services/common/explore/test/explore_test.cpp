@@ -108,7 +108,7 @@ TEST(Explore, TheRobotNavigatesByTheMapThatItBuilt) {
   ASSERT_NE(door, doors.end()) << "L7's";
   const auto status =
       built.whole.achieve("go-to-place", {saphira::text("place", std::to_string(door->id))}, 3000);
-  EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
   EXPECT_LT((built.whole.truth().position() - Vec2(11.95, 15.6)).norm(), 1.2);
   EXPECT_EQ(built.whole.drive().contacts(), 0);
 }

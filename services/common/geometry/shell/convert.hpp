@@ -17,11 +17,7 @@ inline Pose from_bus(const v1::Pose2& pose) {
 }
 
 inline v1::Pose2 to_bus(const Pose& pose) {
-  v1::Pose2 result;
-  result.x = pose.x;
-  result.y = pose.y;
-  result.th = pose.th;
-  return result;
+  return {.x = pose.x, .y = pose.y, .th = pose.th};
 }
 
 /// The converted items, in their order: the first `most`, which is the bound of the sequence.

@@ -81,19 +81,18 @@ Percept from_bus(const v1::Percept& percept) {
 }
 
 v1::Percept to_bus(const Percept& percept) {
-  v1::Percept result;
-  result.id = percept.id;
-  result.type = to_bus(percept.type);
-  result.side = kSides.theirs(percept.side);
-  result.pose_in_odom = to_bus(percept.pose_in_odom);
-  result.length = percept.length;
-  result.width = percept.width;
-  result.sigma_along = percept.sigma_along;
-  result.sigma_across = percept.sigma_across;
-  result.sigma_heading = percept.sigma_heading;
-  result.confidence = percept.confidence;
-  result.since = percept.since;
-  result.seen = percept.seen;
+  v1::Percept result{.id = percept.id,
+                     .type = to_bus(percept.type),
+                     .side = kSides.theirs(percept.side),
+                     .pose_in_odom = to_bus(percept.pose_in_odom),
+                     .length = percept.length,
+                     .width = percept.width,
+                     .sigma_along = percept.sigma_along,
+                     .sigma_across = percept.sigma_across,
+                     .sigma_heading = percept.sigma_heading,
+                     .confidence = percept.confidence,
+                     .since = percept.since,
+                     .seen = percept.seen};
   const std::size_t count = std::min(percept.readings.size(), kMostReadings);
   result.reading_cycles.reserve(count);
   result.reading_sonars.reserve(count);
@@ -126,24 +125,22 @@ SeenThing from_bus(const v1::SeenThing& thing) {
 }
 
 v1::SeenThing to_bus(const SeenThing& thing) {
-  v1::SeenThing result;
-  result.id = thing.id;
-  result.kind = thing.kind == SeenThing::Kind::blob ? v1::SEEN_BLOB : v1::SEEN_PERSON;
-  result.channel = static_cast<std::uint8_t>(std::max(0, thing.channel));
-  result.pose_in_odom = to_bus(thing.pose_in_odom);
-  result.velocity_x = thing.velocity_in_odom.x();
-  result.velocity_y = thing.velocity_in_odom.y();
-  result.range_known = thing.range_known;
-  result.sigma = thing.sigma;
-  result.width = thing.width;
-  result.height = thing.height;
-  result.area = thing.area;
-  result.confidence = thing.confidence;
-  result.since = thing.since;
-  result.seen = thing.seen;
-  result.points = thing.points_in_odom;
-  result.pointed = thing.pointed;
-  return result;
+  return {.id = thing.id,
+          .kind = thing.kind == SeenThing::Kind::blob ? v1::SEEN_BLOB : v1::SEEN_PERSON,
+          .channel = static_cast<std::uint8_t>(std::max(0, thing.channel)),
+          .pose_in_odom = to_bus(thing.pose_in_odom),
+          .velocity_x = thing.velocity_in_odom.x(),
+          .velocity_y = thing.velocity_in_odom.y(),
+          .range_known = thing.range_known,
+          .sigma = thing.sigma,
+          .width = thing.width,
+          .height = thing.height,
+          .area = thing.area,
+          .confidence = thing.confidence,
+          .since = thing.since,
+          .seen = thing.seen,
+          .points = thing.points_in_odom,
+          .pointed = thing.pointed};
 }
 
 }  // namespace saphira::lps

@@ -59,23 +59,6 @@ TEST(Convert, OfManyReadingsTheNewest) {
   EXPECT_EQ(sample.reading_cycles.back(), 1000U);
 }
 
-TEST(Convert, Readings) {
-  v1::RobotState state;
-  v1::SonarReading reading;
-  reading.sonar = 6;
-  reading.range = 1.5F;
-  reading.echo = true;
-  state.sonars.push_back(reading);
-  reading.echo = false;
-  state.sonars.push_back(reading);
-  const std::vector<SonarReading> readings = sonars_from_bus(state);
-  ASSERT_EQ(readings.size(), 2U);
-  EXPECT_EQ(readings[0].sonar, 6);
-  EXPECT_EQ(readings[0].range, 1.5);
-  EXPECT_TRUE(readings[0].echo);
-  EXPECT_FALSE(readings[1].echo);
-}
-
 TEST(Convert, TypesNobodyKnowsAreInvalid) {
   EXPECT_EQ(from_bus(static_cast<v1::ArtifactType>(77)), PointType::invalid);
   EXPECT_EQ(from_bus(v1::ARTIFACT_BREAK), PointType::breach);

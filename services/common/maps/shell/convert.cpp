@@ -30,17 +30,15 @@ Feature from_bus(const v1::MapArtifact& artifact) {
 }
 
 v1::MapArtifact to_bus(const Feature& feature) {
-  v1::MapArtifact artifact;
-  artifact.type = lps::to_bus(feature.type);
-  artifact.id = feature.id;
-  artifact.pose_in_map = lps::to_bus(feature.pose_in_map);
-  artifact.length = feature.length;
-  artifact.width = feature.width;
-  artifact.name = feature.name;
-  artifact.learned = feature.learned;
-  artifact.rule = kRules.theirs(feature.rule);
-  artifact.speed = feature.speed;
-  return artifact;
+  return {.id = feature.id,
+          .type = lps::to_bus(feature.type),
+          .pose_in_map = lps::to_bus(feature.pose_in_map),
+          .length = feature.length,
+          .width = feature.width,
+          .name = feature.name,
+          .learned = feature.learned,
+          .rule = kRules.theirs(feature.rule),
+          .speed = feature.speed};
 }
 
 Map from_bus(const v1::FloorMap& map) {
@@ -50,9 +48,7 @@ Map from_bus(const v1::FloorMap& map) {
 }
 
 v1::FloorMap to_bus(const Map& map) {
-  v1::FloorMap result;
-  result.artifacts = converted(map.features, [](const auto& each) { return to_bus(each); });
-  return result;
+  return {.artifacts = converted(map.features, [](const auto& each) { return to_bus(each); })};
 }
 
 }  // namespace saphira::maps

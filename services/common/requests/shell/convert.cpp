@@ -69,14 +69,12 @@ Argument from_bus(const v1::Argument& argument) {
 }
 
 v1::Argument to_bus(const Argument& argument) {
-  v1::Argument result;
-  result.name = argument.name;
-  result.kind = kKinds.theirs(argument.kind);
-  result.number = argument.number;
-  result.text = argument.text;
-  result.point = to_bus(argument.point);
-  result.frame = kFrames.theirs(argument.frame);
-  return result;
+  return {.name = argument.name,
+          .kind = kKinds.theirs(argument.kind),
+          .number = argument.number,
+          .text = argument.text,
+          .point = to_bus(argument.point),
+          .frame = kFrames.theirs(argument.frame)};
 }
 
 Arguments from_bus(const std::vector<v1::Argument>& arguments) {
@@ -99,17 +97,14 @@ Request from_bus(const v1::Request& request) {
 }
 
 v1::Request to_bus(const Request& request) {
-  v1::Request result;
-  result.stamp.epoch = request.stamp.epoch;
-  result.stamp.cycle = request.stamp.cycle;
-  result.asker = request.asker;
-  result.number = request.number;
-  result.source = request.source;
-  result.service = request.service;
-  result.functor = request.functor;
-  result.arguments = to_bus(request.arguments);
-  result.deadline = request.deadline;
-  return result;
+  return {.stamp = {request.stamp.epoch, request.stamp.cycle},
+          .asker = request.asker,
+          .number = request.number,
+          .source = request.source,
+          .service = request.service,
+          .functor = request.functor,
+          .arguments = to_bus(request.arguments),
+          .deadline = request.deadline};
 }
 
 Answer from_bus(const v1::Answer& answer) {
@@ -117,11 +112,8 @@ Answer from_bus(const v1::Answer& answer) {
 }
 
 v1::Answer to_bus(const Answer& answer) {
-  v1::Answer result;
-  result.code = kCodes.theirs(answer.code);
-  result.text = answer.text;
-  result.results = to_bus(answer.results);
-  return result;
+  return {
+      .code = kCodes.theirs(answer.code), .text = answer.text, .results = to_bus(answer.results)};
 }
 
 }  // namespace saphira

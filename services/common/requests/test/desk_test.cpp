@@ -33,10 +33,7 @@ class DeskTest : public testing::Test {
     return client.ask(request, patience, nullptr, [this] { desk->take(now); });
   }
   static v1::Request count(double by) {
-    v1::Request request;
-    request.functor = "count";
-    request.arguments = {bus::number("by", by)};
-    return request;
+    return v1::Request{.functor = "count", .arguments = {bus::number("by", by)}};
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
@@ -67,8 +64,7 @@ TEST_F(DeskTest, AnswersWithResults) {
 TEST_F(DeskTest, RefusesWhatIsNotDeclared) {
   open();
   EXPECT_EQ(ask(count(11.0)).code, v1::ANSWER_BAD_ARGUMENT);
-  v1::Request request;
-  request.functor = "sing";
+  v1::Request request{.functor = "sing"};
   const v1::Answer answer = ask(request);
   EXPECT_EQ(answer.code, v1::ANSWER_UNKNOWN_FUNCTOR);
   EXPECT_EQ(answer.text, "functor \"sing\" is not known here: expected count, later");
@@ -103,8 +99,7 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
 
 TEST_F(DeskTest, SaysLaterWhatBecameOfIt) {
   open();
-  v1::Request request;
-  request.functor = "later";
+  v1::Request request{.functor = "later"};
   const v1::Answer answer = client.ask(request, kPatience, nullptr, [this] {
     desk->take(now);
     if (newest.functor == "later")

@@ -225,12 +225,11 @@ void Executor::take_in(const GoalEvent& event) {
     return;
   Entry& entry = found->second;
   if (event.kind == GoalEvent::Kind::kDisposed) {
-    end(entry, GoalState::kCanceled, GoalCode::kDisposed,
+    end(entry, v1::GOAL_CANCELED, v1::CODE_DISPOSED,
         "withdrawn by " + (event.by.empty() ? "its requester" : event.by) +
             (event.why.empty() ? "" : ": " + event.why));
-  } else if (entry.goal.writer_lost == WriterLost::kCancel) {
-    end(entry, GoalState::kCanceled, GoalCode::kWriterLost,
-        "the program that asked for it is gone");
+  } else if (entry.goal.writer_lost == v1::WRITER_LOST_CANCEL) {
+    end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST, "the program that asked for it is gone");
   }
 }
 
@@ -257,12 +256,12 @@ void Executor::take_written(const GoalEvent& event) {
 
   if (const auto done = remembered_.find(goal.id); done != remembered_.end()) {
     become(entry, done->second.state, done->second.code, done->second.reason);
-    entry.status.progress = done->second.state == GoalState::kSucceeded ? 1.0 : 0.0;
+    entry.status.progress = done->second.state == v1::GOAL_SUCCEEDED ? 1.0 : 0.0;
     entry.ended = now_;
     ended_order_.push_back(goal.id);
     return;
   }
-  GoalCode code = GoalCode::kForgotten;
+  GoalCode code = v1::CODE_FORGOTTEN;
   Arguments complete;
   std::string wrong = event.forgotten;
   if (wrong.empty())
@@ -271,19 +270,19 @@ void Executor::take_written(const GoalEvent& event) {
     const auto count = std::count_if(entries_.begin(), entries_.end(),
                                      [](const auto& each) { return open(each.second.status); });
     if (static_cast<std::size_t>(count) > options_.max_open) {
-      code = GoalCode::kTooMany;
+      code = v1::CODE_TOO_MANY;
       wrong = "too many goals: " + std::to_string(options_.max_open) + " are open already";
     }
   }
   if (!wrong.empty()) {
-    end(entry, GoalState::kRefused, code, std::move(wrong));
+    end(entry, v1::GOAL_REFUSED, code, std::move(wrong));
     return;
   }
   put_up(entry, goal, std::move(complete));
   if (!robot_here_)
-    wait(entry, GoalCode::kNoRobot, "accepted; waits for the robot");
+    wait(entry, v1::CODE_NO_ROBOT, "accepted; waits for the robot");
   else
-    wait(entry, GoalCode::kNone, "accepted");
+    wait(entry, v1::CODE_NONE, "accepted");
 }
 
 /// Makes the entry one for this goal with checked arguments.
@@ -313,7 +312,7 @@ bool Executor::depends_on_odom(const Entry& entry, bool placed) {
 }
 
 void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
-  GoalCode code = GoalCode::kNone;
+  GoalCode code = v1::CODE_NONE;
   Arguments complete;
   const std::string wrong = complaint(goal, code, complete);
   if (!wrong.empty()) {
@@ -321,7 +320,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
     entry.status.code = code;
     entry.refusal = wrong;
     entry.refusal_code = code;
-    if (entry.status.state == GoalState::kUnderway)
+    if (entry.status.state == v1::GOAL_UNDERWAY)
       entry.status.reason.clear();
     return;
   }
@@ -341,7 +340,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
     entry.goal = goal;
     entry.status.requester = goal.requester;
   }
-  entry.status.code = GoalCode::kChanged;
+  entry.status.code = v1::CODE_CHANGED;
   entry.status.waits_for = {};
   entry.status.reason = "changed by " + (by.empty() ? "its requester" : by);
 }
@@ -355,13 +354,13 @@ bool Executor::is_place(const std::string& functor) const {
 std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
   const Schema* const schema = registry_->find(goal.functor);
   if (schema == nullptr) {
-    code = GoalCode::kUnknownFunctor;
+    code = v1::CODE_UNKNOWN_FUNCTOR;
     return "there is no activity " + quoted(goal.functor) +
            (is_place(goal.functor)
                 ? ", but a place of that name: did you mean go " + goal.functor + "?"
                 : ": " + registry_->instead_of(goal.functor));
   }
-  code = GoalCode::kBadArgument;
+  code = v1::CODE_BAD_ARGUMENT;
   if (goal.id == GoalId{})
     return "expected an id that is unique for ever, got 0:0";
   if (!(goal.deadline >= 0.0) || !std::isfinite(goal.deadline))
@@ -370,7 +369,7 @@ std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& com
     return "expected a level from 0 (the usual one) to 1, got " + plain(goal.level);
   std::string wrong = check_arguments(*schema, goal.arguments, complete);
   if (wrong.empty())
-    code = GoalCode::kNone;
+    code = v1::CODE_NONE;
   return wrong;
 }
 
@@ -391,7 +390,7 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
   ended_order_.push_back(entry.goal.id);
   become(entry, state, code, reason.empty() ? name_of(state) : std::move(reason));
   entry.status.step.clear();
-  if (state == GoalState::kSucceeded)
+  if (state == v1::GOAL_SUCCEEDED)
     entry.status.progress = 1.0;
   const Ending ending{entry.goal.id, state, code, shortened(entry.status.reason)};
   remembered_places_.erase(ending.id);
@@ -400,21 +399,21 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
 }
 
 void Executor::wait(Entry& entry, GoalCode code, std::string reason) {
-  become(entry, GoalState::kWaiting, code, std::move(reason));
+  become(entry, v1::GOAL_WAITING, code, std::move(reason));
 }
 
 void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
-  if (entry.status.state == GoalState::kUnderway && entry.node != 0)
+  if (entry.status.state == v1::GOAL_UNDERWAY && entry.node != 0)
     forest_.interrupt(entry.node);
-  become(entry, GoalState::kSuspended, code, std::move(reason));
+  become(entry, v1::GOAL_SUSPENDED, code, std::move(reason));
   entry.status.step.clear();
 }
 
 void Executor::lose_robot(const std::string& hold) {
   robot_here_ = false;
-  const GoalCode code = hold.empty() ? GoalCode::kNoRobot : GoalCode::kNone;
+  const GoalCode code = hold.empty() ? v1::CODE_NO_ROBOT : v1::CODE_NONE;
   for (auto& [id, entry] : entries_) {
-    if (entry.status.state == GoalState::kWaiting)
+    if (entry.status.state == v1::GOAL_WAITING)
       wait(entry, code, hold.empty() ? "waits for the robot" : hold);
     else if (open(entry.status))
       suspend(entry, code, hold.empty() ? "the robot is not connected; goes on when it is" : hold);
@@ -425,7 +424,7 @@ void Executor::meet_odom(std::uint64_t odom) {
   if (odom_ && *odom_ != odom) {
     for (auto& [id, entry] : entries_) {
       if (open(entry.status) && entry.odom && *entry.odom != odom)
-        end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+        end(entry, v1::GOAL_FAILED, v1::CODE_NO_ROBOT, kPositionLost);
       // Its memory has places in the earlier odom: it begins anew.
       if (open(entry.status) && entry.node != 0 && entry.schema->program) {
         forest_.remove(entry.node);
@@ -477,7 +476,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
   if (depends_on_odom(entry, true)) {
     entry.odom = placement.odom;
     if (placement.odom != robot.odom) {
-      end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+      end(entry, v1::GOAL_FAILED, v1::CODE_NO_ROBOT, kPositionLost);
       return;
     }
   }
@@ -508,16 +507,16 @@ void Executor::check_deadlines(const Robot& robot) {
     if (seconds(now_ - entry.accepted) + 0.5 * kTick < entry.goal.deadline)
       continue;
     std::string success;
-    if (entry.status.state == GoalState::kUnderway && entry.node != 0 &&
+    if (entry.status.state == v1::GOAL_UNDERWAY && entry.node != 0 &&
         !forest_.held(entry.node, Hold::kPerson))
       success = forest_.activity(entry.node).at_deadline(robot);
     if (!success.empty()) {
-      end(entry, GoalState::kSucceeded, GoalCode::kNone, std::move(success));
+      end(entry, v1::GOAL_SUCCEEDED, v1::CODE_NONE, std::move(success));
       continue;
     }
     const GoalStatus& status = entry.status;
-    const std::string& doing = status.state == GoalState::kUnderway ? status.step : status.reason;
-    end(entry, GoalState::kFailed, GoalCode::kDeadline,
+    const std::string& doing = status.state == v1::GOAL_UNDERWAY ? status.step : status.reason;
+    end(entry, v1::GOAL_FAILED, v1::CODE_DEADLINE,
         "not done within its deadline of " + plain(entry.goal.deadline) + " s; it was " +
             name_of(status.state) + (doing.empty() ? "" : ": " + doing));
   }
@@ -536,8 +535,7 @@ void Executor::replace() {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
       if (open(other.status) && drives(other) && earlier) {
-        end(other, GoalState::kCanceled, GoalCode::kStopped,
-            "stopped by " + name_of_goal(stop.goal));
+        end(other, v1::GOAL_CANCELED, v1::CODE_STOPPED, "stopped by " + name_of_goal(stop.goal));
         other.status.waits_for = id;
       }
     }
@@ -583,7 +581,7 @@ void Executor::heed(const StopId& own) {
 void Executor::end_driving(const std::string& why) {
   for (auto& [id, entry] : entries_)
     if (open(entry.status) && drives(entry))
-      end(entry, GoalState::kCanceled, GoalCode::kStopped, why);
+      end(entry, v1::GOAL_CANCELED, v1::CODE_STOPPED, why);
 }
 
 /// The present work of an intention, for people: an activity of the language uses the words of its
@@ -626,10 +624,10 @@ Executor::Entry* Executor::arbitrate(const World& world) {
   for (auto& [id, entry] : entries_) {
     if (!open(entry.status) || !waits_for_person(entry))
       continue;
-    if (entry.status.state == GoalState::kWaiting)
-      wait(entry, GoalCode::kNone, person_);
+    if (entry.status.state == v1::GOAL_WAITING)
+      wait(entry, v1::CODE_NONE, person_);
     else
-      suspend(entry, GoalCode::kPreempted, person_);
+      suspend(entry, v1::CODE_PREEMPTED, person_);
   }
   Entry* const chosen = best();
   if (chosen == nullptr)
@@ -651,20 +649,20 @@ void Executor::queue(Entry& entry, const Goal& front) {
       (more ? ", which is more important (priority " + std::to_string(front.priority) + " over " +
                   std::to_string(entry.goal.priority) + ")"
             : ", which came first");
-  if (entry.status.state == GoalState::kWaiting)
-    wait(entry, GoalCode::kNone,
+  if (entry.status.state == v1::GOAL_WAITING)
+    wait(entry, v1::CODE_NONE,
          "waits for " + who +
              (more ? ""
                    : "; with a priority of " + std::to_string(std::int64_t{front.priority} + 1) +
                          " it would go first"));
   else
-    suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
+    suspend(entry, v1::CODE_PREEMPTED, "interrupted by " + who);
   entry.status.waits_for = front.id;
 }
 
 void Executor::begin(Entry& entry, const World& world) {
-  if (entry.status.state != GoalState::kUnderway) {
-    become(entry, GoalState::kUnderway, GoalCode::kNone, {});
+  if (entry.status.state != v1::GOAL_UNDERWAY) {
+    become(entry, v1::GOAL_UNDERWAY, v1::CODE_NONE, {});
     if (entry.node != 0)
       forest_.resume(entry.node);
   }
@@ -783,10 +781,10 @@ bool Executor::resume(std::uint32_t node) {
 /// Updates the goal's satisfaction.
 void Executor::measure(Entry& entry) {
   GoalStatus& status = entry.status;
-  if (status.state != GoalState::kUnderway || entry.node == 0) {
-    if (status.state == GoalState::kSucceeded && entry.goal.level <= 0.0)
+  if (status.state != v1::GOAL_UNDERWAY || entry.node == 0) {
+    if (status.state == v1::GOAL_SUCCEEDED && entry.goal.level <= 0.0)
       status.level = 1.0;
-    status.trend = Trend::kSteady;
+    status.trend = v1::TREND_STEADY;
     entry.levels.clear();
     return;
   }
@@ -795,9 +793,9 @@ void Executor::measure(Entry& entry) {
   if (entry.levels.size() > kTrend)
     entry.levels.pop_front();
   const double change = status.level - entry.levels.front();
-  status.trend = change > kTrendStep    ? Trend::kRising
-                 : change < -kTrendStep ? Trend::kFalling
-                                        : Trend::kSteady;
+  status.trend = change > kTrendStep    ? v1::TREND_RISING
+                 : change < -kTrendStep ? v1::TREND_FALLING
+                                        : v1::TREND_STEADY;
 }
 
 /// Updates the goals from the step; true where one has ended.
@@ -810,10 +808,10 @@ bool Executor::collect() {
     if (const auto outcome = outcomes.find(entry.node); outcome != outcomes.end()) {
       entry.node = 0;
       const bool success = outcome->second.state == IntentionState::kSuccess;
-      end(entry, success ? GoalState::kSucceeded : GoalState::kFailed, outcome->second.code,
+      end(entry, success ? v1::GOAL_SUCCEEDED : v1::GOAL_FAILED, outcome->second.code,
           outcome->second.reason);
       any = true;
-    } else if (entry.status.state == GoalState::kUnderway) {
+    } else if (entry.status.state == v1::GOAL_UNDERWAY) {
       entry.status.step = forest_.held(entry.node, Hold::kPerson)
                               ? "interrupted by a person; waits to be resumed"
                               : step_of(forest_.foremost(entry.node));
@@ -821,7 +819,7 @@ bool Executor::collect() {
       const double level = forest_.level_of(entry.node);
       if (entry.goal.level > 0.0 && level >= entry.goal.level) {
         entry.status.level = level;
-        end(entry, GoalState::kSucceeded, GoalCode::kNone,
+        end(entry, v1::GOAL_SUCCEEDED, v1::CODE_NONE,
             "satisfied to " + plain(level) + ", " + plain(entry.goal.level) + " was asked for");
         any = true;
       }
@@ -838,7 +836,7 @@ std::optional<GoalStatus> Executor::refused_change(const Entry& entry) {
   status.reason += (status.reason.empty() ? "goes on unchanged, " : "; ");
   status.reason += "the change was refused: " + entry.refusal;
   // Only where the state has no reason of its own: what it waits for has its member.
-  if (status.code == GoalCode::kNone || status.waits_for != GoalId{})
+  if (status.code == v1::CODE_NONE || status.waits_for != GoalId{})
     status.code = entry.refusal_code;
   return status;
 }

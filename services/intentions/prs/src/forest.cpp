@@ -171,7 +171,7 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
   node.since = world.now;
   node.level = 0.0;
   if (!node.parameters.place(node.behavior.parameters, world))
-    throw ActivityError("the robot does not know where it is on the map", GoalCode::kNoPosition);
+    throw ActivityError("the robot does not know where it is on the map", v1::CODE_NO_POSITION);
 }
 
 void Forest::interrupt(std::uint32_t id, Hold why) {
@@ -322,7 +322,7 @@ void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
           finished(node->shown.state))
         continue;
       node->shown.state = IntentionState::kFailure;
-      node->outcome = {IntentionState::kFailure, GoalCode::kActivity, trouble.reason};
+      node->outcome = {IntentionState::kFailure, v1::CODE_ACTIVITY, trouble.reason};
       Node& parent = *at(node->shown.parent);
       if (!parent.suspended && !parent.activity->waits_for(id))
         parent.trouble = node->behavior.schema + ": " + trouble.reason;
@@ -338,10 +338,10 @@ void Forest::watch(Node& node, const World& world) {
   if (node.until_satisfied && node.level.value_or(0.0) >= kSatisfied) {
     changed_ = true;
     node.shown.state = IntentionState::kSuccess;
-    node.outcome = {IntentionState::kSuccess, GoalCode::kNone, "satisfied"};
+    node.outcome = {IntentionState::kSuccess, v1::CODE_NONE, "satisfied"};
   } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
     node.shown.state = IntentionState::kTimeout;
-    node.outcome = {IntentionState::kTimeout, GoalCode::kTimeout,
+    node.outcome = {IntentionState::kTimeout, v1::CODE_TIMEOUT,
                     "not satisfied in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
   }
 }
@@ -412,7 +412,7 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
     node.shown.state = IntentionState::kSuspended;
   } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
     node.shown.state = IntentionState::kTimeout;
-    node.outcome = {IntentionState::kTimeout, GoalCode::kTimeout,
+    node.outcome = {IntentionState::kTimeout, v1::CODE_TIMEOUT,
                     "not done in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
   } else {
     node.shown.state = IntentionState::kRunning;

@@ -149,7 +149,7 @@ void Forest::Handle::believe_while(const std::string& name, Value value) {
 }
 
 void Forest::Handle::succeed(std::string reason) {
-  node_.outcome = {IntentionState::kSuccess, GoalCode::kNone, std::move(reason)};
+  node_.outcome = {IntentionState::kSuccess, v1::CODE_NONE, std::move(reason)};
 }
 
 void Forest::Handle::fail(GoalCode code, std::string reason) {

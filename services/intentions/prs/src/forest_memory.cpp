@@ -36,7 +36,7 @@ struct SavedNode {
   std::optional<Ticks> suspended_at;
   unsigned holds = 0;
   IntentionState state = IntentionState::kInit;
-  GoalCode code = GoalCode::kNone;
+  GoalCode code = v1::CODE_NONE;
   std::string reason;
   Value activity;       ///< the value of Activity::save()
   Value::List beliefs;  ///< that end with it: name, value, and so on

@@ -102,7 +102,7 @@ Pose pose_in(Values arguments, std::size_t index, Frame frame, const World& worl
   if (!pose)
     throw ActivityError(
         "(" + std::string(function) + ") the robot does not know where it is on the map",
-        GoalCode::kNoPosition);
+        v1::CODE_NO_POSITION);
   return *pose;
 }
 

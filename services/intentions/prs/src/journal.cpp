@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <map>
-#include <optional>
+#include <utility>
 
 #include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
@@ -35,24 +36,48 @@ GoalId read_id(LineReader& reader) {
   return id;
 }
 
-/// The value with that name by name_of; none: no such value. Values are numbered from 0 without
-/// gaps.
-template <class Enum>
-std::optional<Enum> value_named(std::string_view name) {
-  for (int i = 0; name_of(static_cast<Enum>(i)) != std::string_view("?"); ++i) {
-    if (name == name_of(static_cast<Enum>(i)))
-      return static_cast<Enum>(i);
-  }
-  return std::nullopt;
+constexpr std::pair<GoalCode, std::string_view> kCodes[] = {
+    {v1::CODE_NONE, "none"},
+    {v1::CODE_UNKNOWN_FUNCTOR, "unknown_functor"},
+    {v1::CODE_BAD_ARGUMENT, "bad_argument"},
+    {v1::CODE_CHANGED, "changed"},
+    {v1::CODE_TOO_MANY, "too_many"},
+    {v1::CODE_FORGOTTEN, "forgotten"},
+    {v1::CODE_DEADLINE, "deadline"},
+    {v1::CODE_BLOCKED, "blocked"},
+    {v1::CODE_NO_ROBOT, "no_robot"},
+    {v1::CODE_NO_POSITION, "no_position"},
+    {v1::CODE_NO_ROUTE, "no_route"},
+    {v1::CODE_ACTIVITY, "activity"},
+    {v1::CODE_TIMEOUT, "timeout"},
+    {v1::CODE_DISPOSED, "disposed"},
+    {v1::CODE_WRITER_LOST, "writer_lost"},
+    {v1::CODE_PREEMPTED, "preempted"},
+    {v1::CODE_STOPPED, "stopped"},
+};
+constexpr std::pair<GoalState, std::string_view> kEnds[] = {
+    {v1::GOAL_SUCCEEDED, "succeeded"},
+    {v1::GOAL_FAILED, "failed"},
+    {v1::GOAL_CANCELED, "canceled"},
+    {v1::GOAL_REFUSED, "refused"},
+};
+
+/// A value without a name, which is none of an ending, is written as "?".
+template <class Names, class Value>
+std::string name_in(const Names& names, Value value) {
+  const auto* const found = std::find_if(std::begin(names), std::end(names),
+                                         [&](const auto& each) { return each.first == value; });
+  return found == std::end(names) ? "?" : std::string(found->second);
 }
 
-template <class Enum>
-Enum read_name(LineReader& reader, std::string_view what) {
+template <class Names>
+auto read_name(LineReader& reader, const Names& names, std::string_view what) {
   const std::string_view word = reader.word(what);
-  const std::optional<Enum> value = value_named<Enum>(word);
-  if (!value)
+  const auto* const found = std::find_if(std::begin(names), std::end(names),
+                                         [&](const auto& each) { return each.second == word; });
+  if (found == std::end(names))
     reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
-  return *value;
+  return found->first;
 }
 
 Pose read_pose(LineReader& reader) {
@@ -66,11 +91,8 @@ Pose read_pose(LineReader& reader) {
 Ending read_ending(LineReader& reader, const Line& line) {
   Ending ending;
   ending.id = read_id(reader);
-  ending.state = read_name<GoalState>(reader, "the state at the end, such as succeeded");
-  if (!ended(ending.state))
-    reader.fail(std::string("expected the state at the end, such as succeeded, found \"") +
-                name_of(ending.state) + "\"");
-  ending.code = read_name<GoalCode>(reader, "a code, such as none");
+  ending.state = read_name(reader, kEnds, "the state at the end, such as succeeded");
+  ending.code = read_name(reader, kCodes, "a code, such as none");
   // A reason is free text: the rest of the line.
   const std::string_view code = line.words.at(4).text;
   const auto begin = static_cast<std::size_t>(code.data() + code.size() - line.text.data());
@@ -122,8 +144,8 @@ std::string write_line(const Ending& ending) {
   std::replace_if(
       reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
       ' ');
-  return sealed_line("ended " + write_id(ending.id) + " " + name_of(ending.state) + " " +
-                     name_of(ending.code) + " " + reason) +
+  return sealed_line("ended " + write_id(ending.id) + " " + name_in(kEnds, ending.state) + " " +
+                     name_in(kCodes, ending.code) + " " + reason) +
          "\n";
 }
 

@@ -227,7 +227,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
   if (!schema.bind && !others.empty())
     throw ActivityError(schema.name + ": argument " + quoted(others.front().first) + " cannot be " +
                             kind_of(others.front().second),
-                        GoalCode::kBadArgument);
+                        v1::CODE_BAD_ARGUMENT);
   // An argument that the check cannot see counts as present.
   Schema rest = schema;
   if (schema.bind) {
@@ -237,7 +237,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
                        [&](const Parameter& each) { return normal(each.name) == normal(name); }))
         throw ActivityError(schema.name + " has no argument " + quoted(name) + ": it takes " +
                                 names_of(schema.parameters),
-                            GoalCode::kBadArgument);
+                            v1::CODE_BAD_ARGUMENT);
       std::erase_if(rest.parameters, [&](const Parameter& each) {
         return normal(each.name) == normal(name) && saphira::find(arguments, name) == nullptr;
       });
@@ -246,7 +246,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
   Arguments complete;
   const std::string wrong = check_arguments(rest, arguments, complete);
   if (!wrong.empty())
-    throw ActivityError(wrong, GoalCode::kBadArgument);
+    throw ActivityError(wrong, v1::CODE_BAD_ARGUMENT);
   if (!schema.bind)
     return schema.make(complete);
   for (const Argument& argument : complete)

@@ -156,7 +156,7 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
   if (!since || begins(self))
     since = self.now();
   if (static_cast<double>(self.now() - *since) * kTick >= patience)
-    self.fail(GoalCode::kNoPosition,
+    self.fail(v1::CODE_NO_POSITION,
               format("the robot has not known where it is on the map for %.0f s", patience));
 }
 
@@ -187,7 +187,7 @@ class GoTo : public Activity {
     }
     if (const std::string why = why_kept_out(self.world(), target_.point, target_.frame);
         !why.empty()) {
-      self.fail(GoalCode::kNoRoute, format_point(target_) + " " + why);
+      self.fail(v1::CODE_NO_ROUTE, format_point(target_) + " " + why);
       return;
     }
     const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
@@ -226,7 +226,7 @@ class GoTo : public Activity {
       else if (checks_ < kChecks)
         checking_since_ = self.now();
       else
-        self.fail(GoalCode::kNoPosition,
+        self.fail(v1::CODE_NO_POSITION,
                   format("it may stand %.2f m from the point, but what it hears does not confirm "
                          "where it is on the map",
                          left));
@@ -242,7 +242,7 @@ class GoTo : public Activity {
     if (whole_way_ > 0.0)
       self.progress(1.0 - left / whole_way_);
     if (keep_out_.stops(self, false)) {
-      self.fail(GoalCode::kNoRoute, keep_out_.reason());
+      self.fail(v1::CODE_NO_ROUTE, keep_out_.reason());
       return;
     }
     const bool late = watchdog_.check(left, self.now());
@@ -250,9 +250,9 @@ class GoTo : public Activity {
                                                : 0.0;
     last_ = self.robot().pose_in_odom;
     if (late && !makes_a_detour(self))
-      self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.2f m from the point",
-                                           watchdog_.waited(self.now()), left) +
-                                        why_not_moving(self.robot(), motion_));
+      self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.2f m from the point",
+                                         watchdog_.waited(self.now()), left) +
+                                      why_not_moving(self.robot(), motion_));
   }
 
  private:
@@ -347,10 +347,10 @@ class Drive : public Activity {
     }
     const double still = static_cast<double>(self.now() - anchored_) * kTick;
     if (keep_out_.stops(self, speed_ < 0.0))
-      self.fail(GoalCode::kNoRoute, keep_out_.reason());
+      self.fail(v1::CODE_NO_ROUTE, keep_out_.reason());
     else if (std::abs(speed_) > kRestVelocity && still >= patience_)
-      self.fail(GoalCode::kBlocked, format("has not moved for %.0f s", patience_) +
-                                        why_not_moving(self.robot(), motion_));
+      self.fail(v1::CODE_BLOCKED, format("has not moved for %.0f s", patience_) +
+                                      why_not_moving(self.robot(), motion_));
   }
 
   std::string at_deadline(const Robot& robot) override {
@@ -423,9 +423,9 @@ class TurnTo : public Activity {
     if (satisfied && at_rest(self.robot()))
       self.succeed(format("turned, %.1f degrees off", degrees(left)));
     else if (watchdog_.check(left, self.now()))
-      self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.0f degrees off",
-                                           watchdog_.patience(), degrees(left)) +
-                                        why_not_moving(self.robot(), motion_));
+      self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.0f degrees off",
+                                         watchdog_.patience(), degrees(left)) +
+                                      why_not_moving(self.robot(), motion_));
   }
 
  private:
@@ -470,7 +470,7 @@ class Halt : public Activity {
     const Surroundings& around = self.world().around;
     const bool over = static_cast<double>(passed) * kTick >= kPatience;
     if (!around.stop_confirmed)
-      return over ? self.fail(GoalCode::kBlocked,
+      return over ? self.fail(v1::CODE_BLOCKED,
                               "the bridge has not confirmed the stop: the "
                               "emergency stop is saphira estop")
                   : self.say("asks the bridge to stop the robot");
@@ -481,7 +481,7 @@ class Halt : public Activity {
     else if (at_rest(self.robot()))
       self.succeed("the robot is at rest");
     else if (over)
-      self.fail(GoalCode::kBlocked,
+      self.fail(v1::CODE_BLOCKED,
                 format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
   }
 

@@ -57,7 +57,7 @@ class ExploreUnknown : public Activity {
       if (std::none_of(found.begin(), found.end(), [](const maps::Feature& one) {
             return one.type == lps::PointType::corridor;
           }))
-        self.fail(GoalCode::kActivity,
+        self.fail(v1::CODE_ACTIVITY,
                   format("no corridor was found in %.0f m of way: the robot understands floors of "
                          "corridors with rooms at them, and maps nothing else",
                          way_length()));
@@ -65,7 +65,7 @@ class ExploreUnknown : public Activity {
         self.succeed(next.reason);
       else
         self.fail(
-            GoalCode::kBlocked,
+            v1::CODE_BLOCKED,
             "not all of the floor could be explored: " + left.front() +
                 (left.size() == 1 ? "" : " and " + std::to_string(left.size() - 1) + " more"));
       return;

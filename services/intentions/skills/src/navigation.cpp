@@ -226,8 +226,7 @@ Value next_to_explore(const World& world, Values arguments) {
 /// its best guess of the pose. In odom; nil without a guess.
 Value way_to_corridor(const World& world, Values) {
   const Registered& guess = world.around.registration;
-  if (world.around.topology == nullptr || guess.state == Localization::kNone ||
-      guess.state == Localization::kUnplaced)
+  if (world.around.topology == nullptr || !guess.state || guess.state == v1::REGISTRATION_UNPLACED)
     return {};
   const maps::Topology& map = *world.around.topology;
   const Vec2 here = guess.pose_in_map.position();
@@ -481,7 +480,7 @@ void add_conditions(Functions& functions) {
   functions.add("map-known", "whether there is a map",
                 [](const World& world) { return Value::truth(world.around.topology != nullptr); });
   functions.add("lost", "whether it has lost its place on the map", [](const World& world) {
-    return Value::truth(world.around.registration.state == Localization::kLost);
+    return Value::truth(world.around.registration.state == v1::REGISTRATION_LOST);
   });
 }
 

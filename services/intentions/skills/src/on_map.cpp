@@ -18,7 +18,7 @@ using Kind = Reference::Kind;
 
 const maps::Topology& map_of(const World& world, std::string_view function) {
   if (world.around.topology == nullptr)
-    throw ActivityError(std::string(function) + ": there is no map", GoalCode::kNoRoute);
+    throw ActivityError(std::string(function) + ": there is no map", v1::CODE_NO_ROUTE);
   return *world.around.topology;
 }
 

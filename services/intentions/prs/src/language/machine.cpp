@@ -121,7 +121,7 @@ class Machine : public Activity {
     double threshold = 0.0;
     std::vector<Child> children;  ///< its own
     std::string failed;           ///< the reason, when it is over
-    GoalCode code = GoalCode::kNone;
+    GoalCode code = v1::CODE_NONE;
     bool has_failed = false;
   };
 
@@ -258,7 +258,7 @@ class Machine : public Activity {
     switch (step.op) {
       case Step::Op::kTest:
         if (value(step.expression, self).nil()) {
-          failure(thread, GoalCode::kActivity,
+          failure(thread, v1::CODE_ACTIVITY,
                   step.reason ? spoken(value(*step.reason, self)) : step.text + " does not hold",
                   self);
           return;
@@ -297,7 +297,7 @@ class Machine : public Activity {
       case Step::Op::kPreserve:
       case Step::Op::kMaintain:
         if (step.op == Step::Op::kPreserve && value(step.expression, self).nil()) {
-          failure(thread, GoalCode::kActivity, step.text + " does not hold", self);
+          failure(thread, v1::CODE_ACTIVITY, step.text + " does not hold", self);
           return;
         }
         branch(thread, step.branches[0], self);
@@ -324,7 +324,7 @@ class Machine : public Activity {
         return;
       }
       case Step::Op::kFail:
-        failure(thread, GoalCode::kActivity,
+        failure(thread, v1::CODE_ACTIVITY,
                 step.reason ? spoken(value(*step.reason, self)) : "failed", self);
         return;
     }
@@ -383,7 +383,7 @@ class Machine : public Activity {
           if (!too_late(thread, self))
             return false;
           failure(
-              thread, GoalCode::kTimeout,
+              thread, v1::CODE_TIMEOUT,
               "waited " + plain(kTick * static_cast<double>(thread.limit)) + " s for " + step.text,
               self);
           return true;
@@ -472,9 +472,9 @@ class Machine : public Activity {
     const Outcome* const outcome = self.child_outcome(thread.child);
     reason_ = outcome == nullptr ? "" : outcome->reason;
     if (state == IntentionState::kFailure || state == IntentionState::kTimeout) {
-      const GoalCode code = state == IntentionState::kTimeout ? GoalCode::kTimeout
-                            : outcome == nullptr || outcome->code == GoalCode::kNone
-                                ? GoalCode::kActivity
+      const GoalCode code = state == IntentionState::kTimeout ? v1::CODE_TIMEOUT
+                            : outcome == nullptr || outcome->code == v1::CODE_NONE
+                                ? v1::CODE_ACTIVITY
                                 : outcome->code;
       const std::string& schema = program_->steps[thread.at].intend->schema;
       // With its origin for the parent; without it for people.
@@ -607,7 +607,7 @@ class Machine : public Activity {
   bool poll_preserve(Thread& thread, const Step& step, Self& self) {
     if (value(step.expression, self).truthy())
       return false;
-    failure(thread, GoalCode::kActivity, step.text + " does not hold any more", self);
+    failure(thread, v1::CODE_ACTIVITY, step.text + " does not hold any more", self);
     return true;
   }
 
@@ -640,7 +640,7 @@ class Machine : public Activity {
   /// Releases the body of a MAINTAIN, or lets the MAINTAIN fail.
   bool end_restoring(Thread& thread, const Thread& restoring, bool holds, Self& self) {
     if (restoring.has_failed || !holds) {
-      const GoalCode code = restoring.has_failed ? restoring.code : GoalCode::kActivity;
+      const GoalCode code = restoring.has_failed ? restoring.code : v1::CODE_ACTIVITY;
       const std::string why = restoring.has_failed ? ": " + restoring.failed : "";
       failure(thread, code, program_->steps[thread.at].text + " could not be restored" + why, self);
       return true;

@@ -46,7 +46,7 @@ struct CoreState {
     std::uint64_t odom = 0;  ///< of the newest step
     Pose pose_in_odom;
     Pose pose_in_map;  ///< from the newest step; before that, the start
-    State told = State::unplaced;
+    v1::RegistrationState told = v1::REGISTRATION_UNPLACED;
   };
   /// Of the Registration.
   struct Placed {
@@ -97,7 +97,7 @@ class Core {
     bool operator==(const Matched&) const = default;
   };
   struct Outputs {
-    State state = State::unplaced;
+    v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
     std::string reason;
     Pose pose_in_map;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th

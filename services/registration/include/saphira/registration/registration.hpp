@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
+#include "saphira/idl/map.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/map.hpp"
@@ -78,13 +79,7 @@ struct Settings {
   ObjectFinderSettings objects;
 };
 
-enum class State {
-  off,       ///< switched off: the pose follows dead reckoning (manual 6.9.2)
-  unplaced,  ///< no pose; searching
-  tracking,
-  lost  ///< the pose does not hold; searching
-};
-std::string_view word(State state);
+std::string_view word(v1::RegistrationState state);
 
 struct Inputs {
   std::uint64_t cycle = 0;
@@ -98,7 +93,7 @@ struct Inputs {
 };
 
 struct Output {
-  State state = State::unplaced;
+  v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
   std::string_view reason;  ///< of the state, in words
   Pose pose_in_map;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
@@ -170,7 +165,7 @@ class Registration {
   /// The part that the service saves over a restart: much less.
   Memory save() const;
   /// Continues from there in the same odometry frame. In another one the pose is a guess, beside
-  /// `start`: State::lost until the readings fit only one of them.
+  /// `start`: lost until the readings fit only one of them.
   void restore(const Memory& memory, const std::optional<Pose>& start = std::nullopt);
 
  private:

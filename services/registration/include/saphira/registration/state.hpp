@@ -43,7 +43,7 @@ struct RegistrationState {
   bool operator==(const RegistrationState&) const = default;
 
   bool on = true;
-  State state = State::unplaced;
+  v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
   std::optional<PoseFilter> filter;
   /// The readings have fitted the pose since it was given.
   bool confirmed = false;

@@ -147,7 +147,7 @@ class Executor {
     GoalStatus status;
     bool before = false;  ///< it was accepted before a restart of the service
     std::string refusal;  ///< of the newest change, which was rejected; empty: none
-    GoalCode refusal_code = GoalCode::kNone;
+    GoalCode refusal_code = v1::CODE_NONE;
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
     std::deque<double> levels;  ///< of the last cycles, for the trend

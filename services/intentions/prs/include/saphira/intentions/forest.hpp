@@ -38,7 +38,7 @@ struct IntentionNode {
 /// The result of an ended intention.
 struct Outcome {
   IntentionState state = IntentionState::kRunning;
-  GoalCode code = GoalCode::kNone;
+  GoalCode code = v1::CODE_NONE;
   std::string reason;
 };
 

@@ -19,7 +19,7 @@ namespace saphira::intentions {
 /// reason.
 class ActivityError : public std::runtime_error {
  public:
-  explicit ActivityError(const std::string& reason, GoalCode code = GoalCode::kActivity)
+  explicit ActivityError(const std::string& reason, GoalCode code = v1::CODE_ACTIVITY)
       : std::runtime_error(reason), code_(code) {}
   GoalCode code() const { return code_; }
 

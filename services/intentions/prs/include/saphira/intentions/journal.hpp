@@ -15,8 +15,8 @@ namespace saphira::intentions {
 /// The end of a goal, saved over a restart so that the service never does a goal twice.
 struct Ending {
   GoalId id;
-  GoalState state = GoalState::kSucceeded;
-  GoalCode code = GoalCode::kNone;
+  GoalState state = v1::GOAL_SUCCEEDED;
+  GoalCode code = v1::CODE_NONE;
   std::string reason;
 
   bool operator==(const Ending&) const = default;

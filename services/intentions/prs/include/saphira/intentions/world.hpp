@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/idl/map.hpp"
 #include "saphira/intentions/goal.hpp"
 #include "saphira/requests/request.hpp"
 
@@ -52,8 +53,6 @@ struct Robot {
   double target_heading_in_odom = 0.0;  ///< [rad] the robot's own setpoint
 };
 
-enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
-
 /// Limits for rest, with room for the rounding of the packet.
 inline constexpr double kRestVelocity = 0.02;          ///< [m/s]
 inline constexpr double kRestRotation = radians(3.0);  ///< [rad/s]
@@ -63,12 +62,12 @@ bool at_rest(const Robot& robot);
 
 /// Registration's output.
 struct Registered {
-  Localization state = Localization::kNone;  ///< kNone: there is no registration
-  Pose pose_in_map;                          ///< of the robot; while lost: the best guess
-  double confidence = 0.0;                   ///< [0..1]
-  std::uint32_t environment = 0;             ///< the artifact around the robot; 0: none known
-  bool adds_features = false;                ///< new percepts are added to the map
-  std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when last seen
+  std::optional<v1::RegistrationState> state;  ///< none: there is no registration
+  Pose pose_in_map;                            ///< of the robot; while lost: the best guess
+  double confidence = 0.0;                     ///< [0..1]
+  std::uint32_t environment = 0;               ///< the artifact around the robot; 0: none known
+  bool adds_features = false;                  ///< new percepts are added to the map
+  std::set<std::uint32_t> closed_doors;        ///< by id: those that were closed when last seen
 };
 
 /// Knowledge beside the robot's state. The pointers' targets outlive the step.
@@ -114,7 +113,7 @@ struct World {
   /// any position.
   bool unsure_of_position() const {
     constexpr double kSure = 0.9;
-    return around.registration.state == Localization::kTracking &&
+    return around.registration.state == v1::REGISTRATION_TRACKING &&
            around.registration.confidence < kSure;
   }
 };
