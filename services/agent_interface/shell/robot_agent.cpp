@@ -6,6 +6,7 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -68,6 +69,7 @@ Answer RobotAgent::begin(const Request& request, double now) {
   goal.functor = request.functor;
   goal.arguments = to_bus(request.arguments);
   goal.requester = request.source;
+  goal.person = bus::to_bus(request.person);
   goal.deadline = goal_deadline(request.deadline);
   goal.writer_lost = v1::WRITER_LOST_CANCEL;
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
