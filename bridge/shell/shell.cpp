@@ -12,6 +12,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/notes.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/sender.hpp"
@@ -94,7 +95,14 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
     camera_.emplace(node_, options_.vision);
     devices_.know(*camera_);
   }
+  if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
+    try {
+      audit_file_.emplace(options_.state_file + ".audit");
+    } catch (const std::exception& error) {  // the robot is worth more than its audit
+      node_.error(std::string("no audit is kept: ") + error.what());
+    }
   const double now = BootClock::seconds();
+  begun_ = now;
   if (!lockstep_ && !memory)
     core_.hold_off(now + look_around(node.profile));
   core_.restore(latch_file_.read());
@@ -222,6 +230,7 @@ void Shell::take_all(double now) {
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
+  take_audit(now);
   devices_.take(core_.stamp(), core_.in_session());  // nothing waits for them
   core_.step(now);
   deliver(now);
@@ -229,7 +238,7 @@ void Shell::take_all(double now) {
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
   for (auto& sample : reader.take()) {
-    sample.data.source = bus::named(sample.data.source, sample.info);
+    sample.data.source = named(sample.data.source, bus::asker_of(sample.info));
     if (!sample.info.disposed)
       core_.command(to_drive(sample.data, role, sample.info.writer), now);
   }
@@ -368,6 +377,25 @@ void Shell::perform(const StatusReport& report, double) {
 
 void Shell::perform(const Note& note, double) {
   bus::log(node_, note);
+}
+
+// ---- The audit.
+
+void Shell::take_audit(double now) {
+  // The bus repeats older entries to a new reader: they were taken before a restart.
+  for (const auto& sample : audit_reader_.take())
+    if (!sample.info.disposed && sample.info.age <= now - begun_)
+      if (const auto entry = reported(bus::from_bus(sample.data), bus::asker_of(sample.info)))
+        perform(*entry, now);
+  for (const std::string& text : node_.take_refused())
+    perform(AuditEntry{AuditEntry::Act::refused, "somebody on the bus", text}, now);
+}
+
+void Shell::perform(const AuditEntry& entry, double) {
+  const std::string trouble = audit_file_ ? audit_file_->write(entry, unix_time()) : "";
+  if (trouble != audit_trouble_ && !trouble.empty())
+    node_.error("the audit has a gap: " + trouble);
+  audit_trouble_ = trouble;
 }
 
 }  // namespace saphira::bridge

@@ -17,6 +17,7 @@
 #include "position_file.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/security/audit_file.hpp"
 #include "saphira/transport/keeper.hpp"
 #include "saphira/transport/link.hpp"
 
@@ -33,8 +34,8 @@ struct BridgeOptions {
   bool guard = true;
   double contact_speed = 0.15;  ///< [m/s] at most, for a driver who wants contact; 0: never
   double guard_margin = 0.25;   ///< [m] CoreSettings
-  /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop;
-  /// empty: none.
+  /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop.
+  /// With ".audit" behind it the audit is kept. Empty: none.
   std::string state_file;
   bool free_step = false;  ///< lockstep: step without a permit
   /// The commands to the camera of a Fast Track vision system at the start (manual 9.1), such as
@@ -100,6 +101,8 @@ class Shell {
   void perform(const KeepOdometry& keep, double now);
   void perform(const StatusReport& report, double now);
   void perform(const Note& note, double now);
+  void perform(const AuditEntry& entry, double now);
+  void take_audit(double now);
   Surroundings surroundings() const;
   bool link_is_open() const { return link_.state() == transport::Link::State::open; }
 
@@ -129,11 +132,15 @@ class Shell {
   std::optional<Camera> camera_;
   PositionFile position_file_;
   LatchFile latch_file_;
+  bus::Reader<v1::AuditEntry> audit_reader_ = node_.reader(bus::topics::kAudit);
+  std::optional<security::AuditFile> audit_file_;
+  std::string audit_trouble_;
 
   v1::RobotState newest_state_;
   v1::Stamp recalled_;  ///< of the newest state in recall
   std::vector<std::uint8_t> input_;
   double last_beat_ = 0.0;  ///< [s] of the keeper
+  double begun_ = 0.0;      ///< [s]
 };
 
 }  // namespace saphira::bridge

@@ -182,6 +182,7 @@ std::vector<Type> types() {
       TYPE(ServiceStatus, 0xe17c5e96aa3e81c2),
       TYPE(Presence, 0x1460556a0fb51e13),
       TYPE(LogRecord, 0xc1dbf47e69a09277),
+      TYPE(AuditEntry, 0x0),
   };
 #undef TYPE
 }

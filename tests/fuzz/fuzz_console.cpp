@@ -51,7 +51,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   AccessSettings access{"right", {"robot.example"}};
   Caller caller{std::string(rest.substr(0, 40)), std::string(rest.substr(0, size / 2)), false};
   static_cast<void>(refusal(access, caller));
-  if (may_watch(access, caller, rest))
+  if (may_watch(access, caller) ||
+      visitor_of(access, {}, rest, 0).may(saphira::security::DoorRight::watch))
     std::abort();
 
   const Control::Settings settings;

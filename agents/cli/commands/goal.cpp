@@ -215,7 +215,8 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
       return bus::kExitOk;
   }
   complain("saphira: %s\n",
-           asked ? "withdrawn, and it has not ended yet"
+           asked ? "it goes on: with security only who asked for it or an operator may cancel it "
+                   "(saphira goal list says whose it is); saphira goal stop is anybody's"
                  : ("nothing is known of this goal; " + who_is_there(processes)).c_str());
   return bus::kExitFailed;
 }

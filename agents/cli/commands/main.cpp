@@ -18,12 +18,13 @@ namespace {
 
 /// In the order of the help.
 constexpr AddCommand* kCommands[]{
-    add_demo,    add_scenario,  add_up,     add_check,      add_stop,      add_renew,
-    add_console, add_mcp,       add_record, add_replay,     add_foxglove,  add_security,
-    add_estop,   add_status,    add_goal,   add_intentions, add_behaviors, add_why,
-    add_beliefs, add_processes, add_say,    add_talk,       add_knows,     add_ask,
-    add_agents,  add_map,       add_drive,  add_direct,     add_device,    add_list,
-    add_echo,    add_write,     add_log,    add_wiring,     add_bench,     add_complete};
+    add_demo,      add_scenario, add_up,      add_check,     add_stop,     add_renew,
+    add_console,   add_mcp,      add_record,  add_replay,    add_foxglove, add_security,
+    add_keys,      add_audit,    add_estop,   add_status,    add_goal,     add_intentions,
+    add_behaviors, add_why,      add_beliefs, add_processes, add_say,      add_talk,
+    add_knows,     add_ask,      add_agents,  add_map,       add_drive,    add_direct,
+    add_device,    add_list,     add_echo,    add_write,     add_log,      add_wiring,
+    add_bench,     add_complete};
 
 int print_help(const CLI::App& root, const std::string& name) {
   std::vector<std::string> names;
@@ -43,8 +44,8 @@ int print_help(const CLI::App& root, const std::string& name) {
 
 /// A command joins a running bus of this machine, as far as its options leave that open.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
-  static const std::set<std::string> others{"demo", "scenario", "up",       "check",
-                                            "stop", "renew",    "security", "bench"};
+  static const std::set<std::string> others{"demo",  "scenario", "up",    "check", "stop",
+                                            "renew", "security", "bench", "keys",  "audit"};
   const auto commands = root.get_subcommands();
   if (commands.empty() || others.contains(commands.front()->get_name()))
     return options;
@@ -89,7 +90,8 @@ int main(int argc, char** argv) {
         for (CLI::App* command : app.get_subcommands({}))
           command->fallthrough(!command->get_allow_extras() && !command->get_prefix_command());
       },
-      [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
+      [&](bus::NodeOptions options, const bus::Stop& stop) -> int {
+        options.for_terminal = true;
         if (chosen.run) {
           const int code = chosen.run(cli::with_running_bus(*root, options), stop);
           cli::flush_output();

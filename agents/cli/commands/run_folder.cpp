@@ -196,6 +196,24 @@ std::vector<RunningBus> running_buses() {
   return buses;
 }
 
+std::vector<std::string> audit_files() {
+  std::vector<std::filesystem::directory_entry> found;
+  std::error_code none;
+  for (const std::string& folder :
+       std::set<std::string>{own_folder(), temporary_folder(), kServiceFolder})
+    for (const auto& run : std::filesystem::directory_iterator(folder, none))
+      for (const auto& file : std::filesystem::directory_iterator(run.path(), none))
+        if (file.path().extension() == ".audit")
+          found.push_back(file);
+  std::sort(found.begin(), found.end(), [&](const auto& one, const auto& other) {
+    return one.last_write_time(none) > other.last_write_time(none);
+  });
+  std::vector<std::string> files;
+  for (const auto& file : found)
+    files.push_back(file.path());
+  return files;
+}
+
 std::string log_of(const std::string& name) {
   return own_folder() + "/" + name + ".log";
 }

@@ -39,6 +39,10 @@ std::vector<Running> running_deployments();
 /// The path of the log file of that deployment, for its output without a terminal.
 std::string log_of(const std::string& name);
 
+/// The audits of this machine's robots, the newest first: of this user, and of the system's
+/// service.
+std::vector<std::string> audit_files();
+
 /// Lets other commands find this bus, as long as the object lives (running_buses).
 class FoundBus {
  public:

@@ -59,12 +59,14 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options)
 
 Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept)
     : access_(access_of(options, kept)),
+      keys_(options.person_keys),
       origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
               web::name_of(options.server.place)),
       node_(node),
       server_(server_of(options, kept), access_, page_files(), events()) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);
+  look_at_keys();
   feed_all();
   board_.put(board_.topic("console"), "",
              "{\"robot\":" + quoted(node.robot) + ",\"host\":" + quoted(web::host_name()) +
@@ -184,6 +186,7 @@ void Gateway::poll() {
   goals_.poll();
   for (bus::RequestClient* client : {&stops_, &resets_, &registration_, &processes_})
     take_answers(*client);
+  tell_cancels();
   if (const v1::RobotState* const robot = mind_.robot())
     stamp_ = robot->stamp;
   if (auto grant = grants_.take_newest())
@@ -207,6 +210,7 @@ void Gateway::look_at_simulator() {
 
 void Gateway::tick() {
   poll();
+  look_at_keys();
   look_at_simulator();
   drive();
   press_estop();

@@ -10,6 +10,7 @@
 #include "dialer.hpp"
 #include "key.hpp"
 #include "mind.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
@@ -24,8 +25,9 @@ namespace saphira::console {
 
 struct GatewayOptions {
   ServerOptions server;
-  std::vector<std::string> names;      ///< further host names of this machine
-  bool always_key = false;             ///< for watching from this machine, too
+  std::vector<std::string> names;  ///< further host names of this machine
+  bool always_key = false;         ///< for watching from this machine, too
+  std::vector<std::string> person_keys = security::door_key_files();
   std::string simulator;               ///< socket of a simulator's own view; empty: none
   std::optional<relay::Address> dial;  ///< a relay for further access
   std::string dial_token;              ///< our token there
@@ -59,7 +61,7 @@ class Gateway {
     Channel channel = Channel::telemetry;
     Caller caller;
     bool greeted = false;        ///< it has sent hello, and may watch
-    bool trusted = false;        ///< it has the key
+    Visitor visitor;             ///< by its key
     std::string name;            ///< of the operator
     std::string ticket;          ///< joins a further connection to this operator's samples
     Connection operator_id = 0;  ///< the operator of the samples of this connection [0: none]
@@ -73,6 +75,11 @@ class Gateway {
   struct Asked {
     Connection connection = 0;
     std::uint64_t reference = 0;
+  };
+  struct Canceling {
+    Asked asked;
+    v1::GoalId goal;
+    double until = 0.0;  ///< [s] for its end
   };
 
   Server::Events events();
@@ -96,10 +103,12 @@ class Gateway {
   bool greet(Connection connection, Page& page, const Hello& hello);
   void name(Connection connection, Page& page, const std::string& name);
   void admit(Connection connection, Page& page, const Hello& hello);
+  void look_at_keys();
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const teleop::Control::Sample& sample);
   void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
   void cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel);
+  void tell_cancels();
   void hear(const Page& page, const Say& words);
   void hand_back(Connection connection);
   void say(Connection connection, std::string text);
@@ -107,9 +116,10 @@ class Gateway {
               const std::string& id = {});
   void take_answers(bus::RequestClient& client);
   void send(bus::RequestClient& client, v1::Request request, Connection connection,
-            std::uint64_t reference);
+            const Page& page, std::uint64_t reference);
 
   AccessSettings access_;
+  security::DoorKeysFile keys_;
   std::string origin_;
   bus::Node node_;
   Board board_;
@@ -126,12 +136,14 @@ class Gateway {
   bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
   bus::Writer<v1::AgentEvent> pointed_out_ = node_.writer(bus::topics::kAgentEvents);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Audit audit_{node_};
 
   std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
   int control_topic_ = 0;
   int why_topic_ = 0;
   std::map<Connection, Page> pages_;
   std::map<std::uint64_t, Asked> asked_;  ///< by the number of the request
+  std::vector<Canceling> canceling_;
   int viewers_ = 0;
   std::uint64_t events_ = 0;
 

@@ -13,7 +13,20 @@ namespace saphira::console {
 
 namespace {
 
+using security::DoorRight;
+
 constexpr std::size_t kMostQueued = 64;  // texts for a page that does not read
+constexpr double kCanceled = 2.0;        // [s] for the end of a goal
+
+std::int64_t seconds_since_1970() {
+  return static_cast<std::int64_t>(unix_time());
+}
+
+/// For the bus: whom the page's key names.
+v1::Person person_of(const Visitor& visitor) {
+  return visitor.person ? v1::Person{visitor.person->name, security::role_of(visitor.right)}
+                        : v1::Person{};
+}
 
 std::optional<v1::GoalId> goal_id(const std::string& text) {
   unsigned long long writer = 0;
@@ -124,8 +137,9 @@ void Gateway::ask_simulator(Connection connection, const Page& page, std::string
   const auto refuse = [&](const char* why) {
     say(connection, "{\"type\":\"trouble\",\"text\":" + quoted(why) + "}");
   };
-  if (!page.trusted)
-    return refuse("without the key you may watch: open the address that saphira has printed");
+  if (!page.visitor.may(DoorRight::operate))
+    return refuse(
+        "with this key, or without one, you may watch: open the address that saphira has printed");
   std::replace(text.begin(), text.end(), '\n', ' ');  // one line for each wish
   if (!simulator_ || !simulator_->say(text))
     refuse("the simulator is not there");
@@ -134,19 +148,21 @@ void Gateway::ask_simulator(Connection connection, const Page& page, std::string
 bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   if (page.greeted)
     return true;
-  page.trusted = right_key(access_, hello.key);
-  page.greeted = may_watch(access_, page.caller, hello.key);
-  page.name = hello.name;
+  page.visitor = visitor_of(access_, keys_.keys(), hello.key, seconds_since_1970());
+  page.greeted = page.visitor.may(DoorRight::watch) || may_watch(access_, page.caller);
+  page.name = page.visitor.person ? page.visitor.person->name : hello.name;
+  if (!hello.key.empty() && !page.visitor.may(DoorRight::watch))
+    audit_.wrong_key("the console", now());
   if (page.greeted && page.channel == Channel::telemetry)
     ++viewers_;
-  if (page.trusted && page.channel == Channel::commands)
+  if (page.visitor.may(DoorRight::drive) && page.channel == Channel::commands)
     admit(connection, page, hello);
   if (page.greeted && page.channel == Channel::telemetry)
     return true;
   // A page without the key gets this message, and is closed without the key in time.
   say(connection, std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +
                       ",\"may_watch\":" + (page.greeted ? "true" : "false") +
-                      ",\"may_drive\":" + (page.trusted ? "true" : "false") +
+                      ",\"may_drive\":" + (page.visitor.may(DoorRight::drive) ? "true" : "false") +
                       ",\"ticket\":" + quoted(page.ticket) + "}");
   return true;
 }
@@ -161,7 +177,10 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
   if (hello.ticket.empty()) {
     page.ticket = new_key();
     page.operator_id = connection;
-    name(connection, page, hello.name);
+    name(connection, page, page.name);
+    if (page.visitor.person)
+      audit_.write({AuditEntry::Act::let_in, page.name + " at the console",
+                    std::string("to ") + security::name_of(page.visitor.right)});
     return;
   }
   for (const auto& [other, known] : pages_)
@@ -169,12 +188,33 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
       page.operator_id = other;
 }
 
+/// A page whose key was revoked, or holds no longer, is closed.
+void Gateway::look_at_keys() {
+  if (const std::string trouble = keys_.look(seconds_since_1970()); !trouble.empty())
+    node_.error(trouble);
+  for (const auto& [connection, page] : pages_)
+    if (page.visitor.person && !keys_.keys().holds(*page.visitor.person, seconds_since_1970()))
+      server_.close(connection);
+}
+
 void Gateway::obey(Connection connection, Page& page, const Message& message) {
+  // Who watches from this machine has no key.
+  const DoorRight wanted = right_for(message);
+  if (wanted > DoorRight::watch && !page.visitor.may(wanted)) {
+    say(connection, page.visitor.person
+                        ? "{\"type\":\"note\",\"text\":\"Your key is to " +
+                              std::string(security::name_of(page.visitor.right)) +
+                              "; this needs one to " + security::name_of(wanted) +
+                              " (saphira keys).\"}"
+                        : "{\"type\":\"note\",\"text\":\"Without the key you may watch, and stop "
+                          "the robot. Open "
+                          "the address with the key that saphira console prints.\"}");
+    return;
+  }
   if (const auto* ping = std::get_if<Ping>(&message)) {
     return say(connection, format("{\"type\":\"pong\",\"at\":%.3f,\"cycle\":%llu}", ping->at,
                                   static_cast<unsigned long long>(stamp_.cycle)));
   }
-  // The right to watch includes the right to stop.
   if (std::holds_alternative<EmergencyStop>(message)) {
     pilot_.press(operator_of(page.name));
     press_estop();
@@ -182,13 +222,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   }
   if (const auto* stop = std::get_if<StopRobot>(&message))
     return send(stops_, bus::request("stop", {bus::text("by", operator_of(page.name))}), connection,
-                stop->reference);
-  if (!page.trusted) {
-    say(connection,
-        "{\"type\":\"note\",\"text\":\"Without the key you may watch, and stop the robot. Open the "
-        "address with the key that saphira console prints.\"}");
-    return;
-  }
+                page, stop->reference);
   const auto note = [&](const std::string& why) {
     if (!why.empty())
       say(connection, "{\"type\":\"note\",\"text\":" + quoted(why) + "}");
@@ -196,7 +230,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   if (const auto* sample = std::get_if<teleop::Control::Sample>(&message))
     take_sample(connection, page, *sample);
   else if (const auto* rename = std::get_if<Rename>(&message))
-    name(connection, page, rename->name);
+    name(connection, page, page.visitor.person ? page.name : rename->name);
   else if (const auto* take = std::get_if<TakeControl>(&message))
     note(control_.take(connection, take->force, now()));
   else if (std::holds_alternative<AskForControl>(message))
@@ -208,7 +242,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   else if (std::holds_alternative<HandBack>(message))
     hand_back(connection);
   else if (std::holds_alternative<ResetEmergencyStop>(message))
-    send(resets_, bus::request("reset"), connection, 0);
+    send(resets_, bus::request("reset"), connection, page, 0);
   else if (const auto* goal = std::get_if<AskGoal>(&message))
     ask_goal(connection, page, *goal);
   else if (const auto* cancel = std::get_if<CancelGoal>(&message))
@@ -218,12 +252,12 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   else if (const auto* process = std::get_if<AskProcess>(&message))
     send(processes_,
          bus::request(process->functor, {bus::text("process", process->process)}, process->service),
-         connection, process->reference);
+         connection, page, process->reference);
   else if (const auto* place = std::get_if<PlaceRobot>(&message))
     send(registration_,
          bus::request("place",
                       {bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)}),
-         connection, place->reference);
+         connection, page, place->reference);
   else if (const auto* out = std::get_if<PointOut>(&message)) {
     pointed_out_.write({.stamp = stamp_,
                         .source = operator_of(page.name),
@@ -258,7 +292,8 @@ void Gateway::hand_back(Connection connection) {
 void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& ask) {
   try {
     v1::Goal goal = cli::parse_request(words_of(ask.words));
-    goal.requester = operator_of(page.name);
+    goal.requester = page.visitor.person ? "the console" : operator_of(page.name);
+    goal.person = person_of(page.visitor);
     const v1::GoalId id = goals_.ask(goal);
     answer(connection, ask.reference, true, cli::describe(goal), key_text({id.writer, id.number}));
   } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
@@ -272,18 +307,37 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
     answer(connection, cancel.reference, false, "expected the id of a goal");
     return;
   }
-  goals_.cancel(*id, "by " + operator_of(page.name));
-  answer(connection, cancel.reference, true, "withdrawn", cancel.id);
+  goals_.cancel(*id, "by " + operator_of(page.name), person_of(page.visitor));
+  canceling_.push_back({{connection, cancel.reference}, *id, now() + kCanceled});
+}
+
+/// Intentions decide who may cancel a goal.
+void Gateway::tell_cancels() {
+  std::erase_if(canceling_, [this](const Canceling& one) {
+    const auto status = goals_.status(one.goal);
+    const bool done = !status || bus::ended(status->state);
+    if (!done && now() < one.until)
+      return false;
+    answer(one.asked.connection, one.asked.reference, done,
+           done ? "withdrawn"
+                : "it goes on: only who asked for it or an operator may cancel it. To stop the "
+                  "robot: k",
+           key_text({one.goal.writer, one.goal.number}));
+    return true;
+  });
 }
 
 /// Passes a person's typed words to the agent interface.
 void Gateway::hear(const Page& page, const Say& words) {
-  heard_.write(
-      situation::typed(node_.instance(), ++utterances_, page.name, words.text, unix_time()));
+  v1::Utterance utterance =
+      situation::typed(node_.instance(), ++utterances_, page.name, words.text, unix_time());
+  utterance.person = person_of(page.visitor);
+  heard_.write(utterance);
 }
 
 void Gateway::send(bus::RequestClient& client, v1::Request request, Connection connection,
-                   std::uint64_t reference) {
+                   const Page& page, std::uint64_t reference) {
+  request.person = person_of(page.visitor);
   asked_[client.send(std::move(request))] = {connection, reference};
 }
 

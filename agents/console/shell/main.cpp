@@ -81,6 +81,9 @@ int main(int argc, char** argv) {
                        "/simulator.html");
         app.add_option("--key-file", options.key_file,
                        "keeps key and port over a restart, so that open pages go on");
+        app.add_option("--person-keys", options.person_keys,
+                       "file with the keys of persons (saphira keys); several: the first that "
+                       "exists");
         app.add_option("--screenshot", screenshot.file,
                        "makes a picture of the page, and ends; needs Chromium, and no display");
         app.add_option("--width", screenshot.width, "[pixels] of the picture");

@@ -96,6 +96,9 @@ std::string refusal(const AccessSettings& settings, const Caller& caller) {
                     shown(origin.name));
 }
 
+namespace {
+
+/// A wrong key takes as long.
 bool right_key(const AccessSettings& settings, std::string_view key) {
   if (settings.key.empty() || key.size() != settings.key.size())
     return false;
@@ -105,9 +108,17 @@ bool right_key(const AccessSettings& settings, std::string_view key) {
   return difference == 0;
 }
 
-bool may_watch(const AccessSettings& settings, const Caller& caller, std::string_view key) {
+}  // namespace
+
+Visitor visitor_of(const AccessSettings& settings, const security::DoorKeys& keys,
+                   std::string_view key, std::int64_t now) {
   if (right_key(settings, key))
-    return true;
+    return {security::DoorRight::operate};
+  const security::DoorKey* const person = keys.find(key, now);
+  return person == nullptr ? Visitor{} : Visitor{person->right, *person};
+}
+
+bool may_watch(const AccessSettings& settings, const Caller& caller) {
   const Authority host = authority_of(caller.host);
   const bool is_here = host.name == "localhost" || host.name == "[::1]" ||
                        (is_address(host.name) && host.name.starts_with("127."));

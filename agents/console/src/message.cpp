@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace saphira::console {
@@ -150,6 +151,20 @@ std::vector<std::string> words_of(std::string_view text) {
   if (begun)
     words.push_back(word);
   return words;
+}
+
+security::DoorRight right_for(const Message& message) {
+  using security::DoorRight;
+  const auto is = [&]<class... Kinds>(std::type_identity<Kinds>...) {
+    return (std::holds_alternative<Kinds>(message) || ...);
+  };
+  if (is(std::type_identity<Ping>(), std::type_identity<Ack>(), std::type_identity<StopRobot>(),
+         std::type_identity<EmergencyStop>()))
+    return DoorRight::watch;
+  return is(std::type_identity<ResetEmergencyStop>(), std::type_identity<AskProcess>(),
+            std::type_identity<PlaceRobot>())
+             ? DoorRight::operate
+             : DoorRight::drive;
 }
 
 }  // namespace saphira::console

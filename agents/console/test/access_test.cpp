@@ -5,6 +5,9 @@
 namespace saphira::console {
 namespace {
 
+using security::DoorRight;
+
+constexpr std::int64_t kNow = 1'800'000'000;
 const AccessSettings kSettings{"0123456789abcdef", {"robot", "Robot.local."}, 8642, false};
 
 TEST(Access, OwnNamesAndAddressesMayConnect) {
@@ -49,31 +52,44 @@ TEST(Access, ARefusalNamesTheRemedyAndNothingOfAPage) {
 
 TEST(Access, WatchingFromThisMachineNeedsNoKey) {
   for (const char* host : {"localhost:8642", "LocalHost.:8642", "127.0.0.1:8642", "[::1]:8642"})
-    EXPECT_TRUE(may_watch(kSettings, {host, "", true}, "")) << host;
-  EXPECT_TRUE(may_watch(kSettings, {"localhost:8642", "http://localhost:8642", true}, ""));
-  EXPECT_FALSE(may_watch(kSettings, {"localhost:8642", "", false}, ""));
-  EXPECT_TRUE(may_watch(kSettings, {"robot", "", false}, kSettings.key));
+    EXPECT_TRUE(may_watch(kSettings, {host, "", true})) << host;
+  EXPECT_TRUE(may_watch(kSettings, {"localhost:8642", "http://localhost:8642", true}));
+  EXPECT_FALSE(may_watch(kSettings, {"localhost:8642", "", false}));
   AccessSettings always = kSettings;
   always.always = true;
-  EXPECT_FALSE(may_watch(always, {"localhost:8642", "", true}, ""));
-  EXPECT_TRUE(may_watch(always, {"localhost:8642", "", true}, kSettings.key));
+  EXPECT_FALSE(may_watch(always, {"localhost:8642", "", true}));
   AccessSettings usual = kSettings;
   usual.port = 80;
-  EXPECT_TRUE(may_watch(usual, {"localhost", "http://localhost", true}, ""));
+  EXPECT_TRUE(may_watch(usual, {"localhost", "http://localhost", true}));
 }
 
 TEST(Access, AHostOrAnOriginOfAProxyNeedsTheKey) {
   for (const char* host : {"robot:8642", "robot", "localhost", "localhost:8080", "192.168.1.7:8642",
                            "[::2]:8642", "127.0.0.1", ""})
-    EXPECT_FALSE(may_watch(kSettings, {host, "", true}, "")) << host;
-  EXPECT_FALSE(may_watch(kSettings, {"127.0.0.1:8642", "https://robot", true}, ""));
+    EXPECT_FALSE(may_watch(kSettings, {host, "", true})) << host;
+  EXPECT_FALSE(may_watch(kSettings, {"127.0.0.1:8642", "https://robot", true}));
 }
 
 TEST(Access, OnlyTheWholeKeyIsRight) {
-  EXPECT_TRUE(right_key(kSettings, "0123456789abcdef"));
+  EXPECT_TRUE(visitor_of(kSettings, {}, "0123456789abcdef", kNow).may(DoorRight::operate));
   for (const char* key : {"", "0", "0123456789abcdeF", "0123456789abcde", "0123456789abcdef0"})
-    EXPECT_FALSE(right_key(kSettings, key)) << key;
-  EXPECT_FALSE(right_key(AccessSettings{}, ""));
+    EXPECT_FALSE(visitor_of(kSettings, {}, key, kNow).may(DoorRight::watch)) << key;
+  EXPECT_FALSE(visitor_of({}, {}, "", kNow).may(DoorRight::watch));
+}
+
+TEST(Access, APersonsKeyHasItsRightsWhileItHolds) {
+  security::DoorKeys keys;
+  const std::string anna = keys.add("anna", DoorRight::drive, 30, kNow);
+  const Visitor visitor = visitor_of(kSettings, keys, anna, kNow);
+  EXPECT_TRUE(visitor.may(DoorRight::watch));
+  EXPECT_TRUE(visitor.may(DoorRight::drive));
+  EXPECT_FALSE(visitor.may(DoorRight::operate));
+  ASSERT_TRUE(visitor.person);
+  EXPECT_EQ(visitor.person->name, "anna");
+  EXPECT_FALSE(visitor_of(kSettings, keys, kSettings.key, kNow).person) << "it is of nobody";
+  EXPECT_FALSE(visitor_of(kSettings, keys, anna, visitor.person->until).may(DoorRight::watch));
+  keys.revoke("anna");
+  EXPECT_FALSE(visitor_of(kSettings, keys, anna, kNow).may(DoorRight::watch));
 }
 
 }  // namespace

@@ -103,5 +103,18 @@ TEST(Message, ThePagesGetTheStateOfControl) {
             R"("note":"ann took control"})");
 }
 
+TEST(Message, WhoWatchesMayStopAndWhatConcernsOthersIsToOperate) {
+  using security::DoorRight;
+  for (const Message& message : {Message(StopRobot{}), Message(EmergencyStop{}), Message(Ping{})})
+    EXPECT_EQ(right_for(message), DoorRight::watch);
+  for (const Message& message :
+       {Message(teleop::Control::Sample{}), Message(TakeControl{}), Message(AskGoal{}),
+        Message(CancelGoal{}), Message(Say{}), Message(HandBack{}), Message(PointOut{})})
+    EXPECT_EQ(right_for(message), DoorRight::drive);
+  for (const Message& message :
+       {Message(ResetEmergencyStop{}), Message(AskProcess{}), Message(PlaceRobot{})})
+    EXPECT_EQ(right_for(message), DoorRight::operate);
+}
+
 }  // namespace
 }  // namespace saphira::console

@@ -13,6 +13,8 @@ namespace saphira::mcp {
 
 namespace {
 
+using security::DoorRight;
+
 constexpr double kStopPatience = 10.0;  // [s]
 constexpr const char* kNotConfirmed =
     "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own";
@@ -51,11 +53,14 @@ std::string first_line(const std::string& text) {
 
 }  // namespace
 
-Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who)
+Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who,
+           const std::optional<security::DoorKey>& person)
     : node_(node),
       robot_(robot),
       session_(session),
       who_(who),
+      right_(person ? person->right : DoorRight::operate),
+      person_(person ? v1::Person{person->name, security::role_of(person->right)} : v1::Person{}),
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
       stops_(node, bus::topics::kDriveStop, who) {
@@ -181,10 +186,27 @@ void Door::note() {
                  first_line(outcome.text));
 }
 
+/// Who may watch may read and stop. False: the call is answered.
+bool Door::is_allowed(const Call& call) {
+  const auto& tools = robot_.tools();
+  const auto tool = std::find_if(tools.begin(), tools.end(),
+                                 [&](const Tool& one) { return one.name == call.tool; });
+  if (right_ >= DoorRight::drive || (tool != tools.end() && (tool->reads || tool->always)))
+    return true;
+  session_.answer(call.number, {"not done: the key of " + person_.name +
+                                    " is to watch; this needs one to drive (saphira keys)",
+                                nullptr, true});
+  return false;
+}
+
 void Door::begin(const Call& call) {
+  if (!is_allowed(call))
+    return;
   if (call.tool == "stop") {
+    v1::Request stop = bus::request("stop");
+    stop.person = person_;
     waiting_[call.number] = {.what = Waiting::For::stop,
-                             .number = stops_.send(bus::request("stop")),
+                             .number = stops_.send(std::move(stop)),
                              .until = now_ + kStopPatience};
     return;
   }
@@ -233,6 +255,7 @@ void Door::say(const Call& call) {
   v1::Utterance utterance = situation::typed(node_.instance(), bus::next_request_number(), who_,
                                              call.arguments.value("text", ""), unix_time());
   utterance.means = v1::UTTERANCE_PROGRAM;
+  utterance.person = person_;
   heard_writer_.write(utterance);
   words_[utterance.id.number] = {now_};
   waiting_[call.number] = {
@@ -265,7 +288,8 @@ void Door::request(const Call& call, const v1::Capability& capability) {
     return;
   v1::Request request{.source = who_,
                       .functor = capability.functor,
-                      .deadline = capability.acts ? kDeadline : kReply};
+                      .deadline = capability.acts ? kDeadline : kReply,
+                      .person = person_};
   for (const v1::CapabilityParameter& parameter : capability.parameters)
     request.arguments.push_back(call.arguments.contains(parameter.name)
                                     ? argument(parameter.name, call.arguments[parameter.name])
@@ -323,6 +347,7 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
       goal.arguments.push_back(argument(name, value));
   goal.deadline = kDeadline;
   goal.writer_lost = v1::WRITER_LOST_CANCEL;
+  goal.person = person_;
   follow(call, goals_.ask(goal));
 }
 
@@ -366,11 +391,15 @@ void Door::withdraw(Own& own, const std::string& why) {
     goals_.cancel(own.id, why);
 }
 
+/// The bus puts a checked identity before the client's name.
+bool Door::is_mine(const v1::GoalStatus& status) const {
+  return status.requester == who_ || status.requester.ends_with(", " + who_);
+}
+
 /// The goal of another client of this program, while it has not ended; nothing: it is none.
 std::optional<v1::GoalStatus> Door::other(const v1::GoalId& id) const {
   auto known = goals_.status(id);
-  if (known &&
-      (bus::ended(known->state) || id.writer != node_.instance() || known->requester == who_))
+  if (known && (bus::ended(known->state) || id.writer != node_.instance() || is_mine(*known)))
     known.reset();
   return known;
 }
@@ -383,6 +412,11 @@ void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
                            {"not done: this is no goal of yours that is underway; without a goal "
                             "the tool cancel ends all of yours, and what you began with say",
                             nullptr, true});
+  if (right_ < DoorRight::operate)
+    return session_.answer(call.number,
+                           {"not done: this is " + known->functor + " of " + known->requester +
+                                ", who may cancel it; a stop is anybody's",
+                            nullptr, true});
   if (!call.arguments.value("sure", false))
     return session_.answer(
         call.number,
@@ -390,7 +424,7 @@ void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
              bus::describe(*known) +
              ". Shall it end? Ask the person; after a yes call cancel again with sure: true",
          nullptr, true});
-  goals_.cancel(*id, who_ + " was sure, after a question");
+  goals_.cancel(*id, who_ + " was sure, after a question", person_);
   waiting_[call.number] = {.what = Waiting::For::cancel, .goal = id, .until = now_ + kStop};
 }
 
@@ -557,7 +591,7 @@ Json Door::goals() const {
   Json all = Json::array();
   for (const v1::GoalStatus& status : goals_.statuses()) {
     all.push_back(json_of(status));
-    all.back()["yours"] = status.id.writer == node_.instance() && status.requester == who_;
+    all.back()["yours"] = status.id.writer == node_.instance() && is_mine(status);
   }
   for (const Action& action : actions_.all()) {
     all.push_back(json_of(action));

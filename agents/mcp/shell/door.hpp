@@ -11,6 +11,7 @@
 #include "saphira/mcp/actions.hpp"
 #include "saphira/mcp/session.hpp"
 #include "saphira/mcp/surroundings.hpp"
+#include "saphira/security/door_keys.hpp"
 
 namespace saphira::mcp {
 
@@ -84,7 +85,9 @@ class Robot {
 /// this program is killed: their writer is lost then.
 class Door {
  public:
-  Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
+  /// person: whose key the client has; none: it may do all.
+  Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who,
+       const std::optional<security::DoorKey>& person = {});
 
   /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
   /// least ten times a second. now: [s] of a clock that never goes back.
@@ -133,6 +136,8 @@ class Door {
   void hear();
   void hear_reply(const v1::Utterance& reply);
   void begin(const Call& call);
+  bool is_allowed(const Call& call);
+  bool is_mine(const v1::GoalStatus& status) const;
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
@@ -161,6 +166,8 @@ class Door {
   const Robot& robot_;
   Session& session_;
   const std::string who_;
+  const security::DoorRight right_;
+  const v1::Person person_;
   bus::GoalClient goals_;
   bus::RequestClient requests_;
   bus::RequestClient stops_;

@@ -17,19 +17,32 @@ double now() {
   return BootClock::seconds();
 }
 
+std::int64_t seconds_since_1970() {
+  return static_cast<std::int64_t>(unix_time());
+}
+
+bool is_of(const console::Visitor& one, const console::Visitor& other) {
+  return one.person.has_value() == other.person.has_value() &&
+         (!one.person || one.person->name == other.person->name);
+}
+
 }  // namespace
 
 HttpDoor::HttpDoor(bus::Node& node, HttpDoorOptions options)
     : node_(node),
       options_(std::move(options)),
       access_{options_.token, options_.names},
+      keys_(options_.person_keys),
+      audit_(node),
       robot_(node, options_.described),
       server_(options_.port, events()) {
   server_.watch(node.wake_fd());
 }
 
 HttpServer::Events HttpDoor::events() {
-  return {[this](const HttpRequest& request) { return has_token(request); },
+  return {[this](const HttpRequest& request) {
+            return visitor_of(request).may(security::DoorRight::watch);
+          },
           [this](Exchange exchange, const HttpRequest& request) { came(exchange, request); },
           [this](Exchange exchange) { lost(exchange); },
           [this] {
@@ -51,13 +64,20 @@ bool HttpDoor::is_stop(const Sender& sender) const {
 
 /// The client of a request. Null: the request is refused.
 HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& request,
-                                      const Sender& sender, std::string& id) {
+                                      const Sender& sender, const console::Visitor& visitor,
+                                      std::string& id) {
   const bool modern = sender.modern || request.version == Session::kModern;
   const bool begins = !modern && sender.begins;
   // The newer era has no sessions: clients are distinguished by their own identity.
-  id = modern ? "client " + sender.client : begins ? console::new_key() : request.session;
-  if (const auto found = clients_.find(id); found != clients_.end() && id != Clients::kNobody)
-    return found->second.get();
+  id = modern   ? "client " + (visitor.person ? visitor.person->name + " " : "") + sender.client
+       : begins ? console::new_key()
+                : request.session;
+  if (const auto found = clients_.find(id); found != clients_.end() && id != Clients::kNobody) {
+    if (is_of(found->second->visitor, visitor))
+      return found->second.get();
+    refuse(exchange, 403, "this session began with another key");
+    return nullptr;
+  }
   const auto place = modern || begins ? presence_.place() : std::nullopt;
   if (!place) {
     if (!is_stop(sender)) {
@@ -80,7 +100,11 @@ HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& requ
   }
   auto& client = clients_[id];
   client =
-      std::make_unique<Client>(node_, robot_, options_, presence_.begin(id, sender.name, now()));
+      std::make_unique<Client>(node_, robot_, options_, presence_.begin(id, sender.name, now()),
+                               id == Clients::kNobody ? console::Visitor{} : visitor);
+  if (visitor.person)
+    audit_.write({AuditEntry::Act::let_in, visitor.person->name + " by " + client->door.who(),
+                  std::string("to ") + security::name_of(visitor.right)});
   client->is_new = begins;
   return client.get();
 }
@@ -96,10 +120,13 @@ std::map<std::string, std::unique_ptr<HttpDoor::Client>>::iterator HttpDoor::end
   return clients_.erase(found);
 }
 
-bool HttpDoor::has_token(const HttpRequest& request) const {
+console::Visitor HttpDoor::visitor_of(const HttpRequest& request) const {
   constexpr std::string_view kBearer = "Bearer ";
   const std::string_view given = request.authorization;
-  return given.starts_with(kBearer) && console::right_key(access_, given.substr(kBearer.size()));
+  return given.starts_with(kBearer)
+             ? console::visitor_of(access_, keys_.keys(), given.substr(kBearer.size()),
+                                   seconds_since_1970())
+             : console::Visitor{};
 }
 
 void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
@@ -107,12 +134,18 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
     return refuse(exchange, 403, why);
   if (!request.path.ends_with(kPath))  // a proxy may pass its own path on
     return refuse(exchange, 404, "there is only /mcp");
-  if (!has_token(request))
+  const console::Visitor visitor = visitor_of(request);
+  if (!visitor.may(security::DoorRight::watch)) {
+    if (!request.authorization.empty())
+      audit_.wrong_key("MCP by HTTP", now());
     return refuse(exchange, 401,
                   "expected the header Authorization: Bearer TOKEN, with the first line of " +
-                      options_.token_file + " as TOKEN");
+                      options_.token_file + ", or a person's key (saphira keys), as TOKEN");
+  }
   if (request.method == "DELETE") {
-    if (request.session == Clients::kNobody || !clients_.contains(request.session))
+    const auto found = clients_.find(request.session);
+    if (request.session == Clients::kNobody || found == clients_.end() ||
+        !is_of(found->second->visitor, visitor))
       return refuse(exchange, 404, "there is no such session");
     end(request.session);
     return server_.answer(exchange, 200, "text/plain", "");
@@ -122,7 +155,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
     return refuse(exchange, 405, "messages come by POST");
   const Sender sender = sender_of(request.body);
   std::string id;
-  Client* const client = client_of(exchange, request, sender, id);
+  Client* const client = client_of(exchange, request, sender, visitor, id);
   if (client == nullptr)
     return;
   presence_.came(id, now());
@@ -202,8 +235,16 @@ void HttpDoor::see(const std::string& id, Client& client) {
 
 void HttpDoor::tick() {
   turn();
+  if (const std::string trouble = keys_.look(seconds_since_1970()); !trouble.empty())
+    node_.error(trouble);
   for (auto each = clients_.begin(); each != clients_.end();) {
     const auto& [id, client] = *each;
+    if (const auto& person = client->visitor.person;
+        person && !keys_.keys().holds(*person, seconds_since_1970())) {
+      node_.info("the key of " + person->name + " holds no more: " + client->door.who() + " ends");
+      each = end(std::string(id));
+      continue;
+    }
     see(id, *client);
     if (presence_.is_gone(id, now())) {
       each = end(std::string(id));

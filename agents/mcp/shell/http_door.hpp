@@ -7,6 +7,7 @@
 
 #include "door.hpp"
 #include "http.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/mcp/clients.hpp"
 
 namespace saphira::mcp {
@@ -20,6 +21,7 @@ struct HttpDoorOptions {
   std::string instructions;
   std::vector<std::string> described;  ///< agents, as of Robot
   std::vector<std::string> names;      ///< host names of proxies before it
+  std::vector<std::string> person_keys = security::door_key_files();
 };
 
 /// Streamable HTTP: one door for each client. `Clients` decides which clients are there.
@@ -35,9 +37,11 @@ class HttpDoor {
 
   struct Client {
     Client(bus::Node& node, const Robot& robot, const HttpDoorOptions& options,
-           const std::string& name)
-        : session("saphira", options.version, options.instructions),
-          door(node, robot, session, options.who + " " + name) {}
+           const std::string& name, const console::Visitor& by)
+        : visitor(by),
+          session("saphira", options.version, options.instructions),
+          door(node, robot, session, options.who + " " + name, by.person) {}
+    const console::Visitor visitor;
     Session session;
     Door door;
     bool is_new = false;             ///< its first answer will contain its session
@@ -46,14 +50,14 @@ class HttpDoor {
   };
 
   HttpServer::Events events();
-  bool has_token(const HttpRequest& request) const;
+  console::Visitor visitor_of(const HttpRequest& request) const;
   void came(Exchange exchange, const HttpRequest& request);
   void lost(Exchange exchange);
   void open_stream(Exchange exchange, Client& client);
   void turn();
   void tick();
   Client* client_of(Exchange exchange, const HttpRequest& request, const Sender& sender,
-                    std::string& id);
+                    const console::Visitor& visitor, std::string& id);
   bool is_stop(const Sender& sender) const;
   std::map<std::string, std::unique_ptr<Client>>::iterator end(const std::string& id);
   void see(const std::string& id, Client& client);
@@ -63,6 +67,8 @@ class HttpDoor {
   bus::Node& node_;
   const HttpDoorOptions options_;
   const console::AccessSettings access_;
+  security::DoorKeysFile keys_;
+  bus::Audit audit_;
   Robot robot_;
   std::map<std::string, std::unique_ptr<Client>> clients_;  ///< by session or identity
   Clients presence_;                                        ///< of the same

@@ -39,13 +39,15 @@ struct Options {
   std::string token_file;
   std::vector<std::string> described{"dialogue"};
   std::vector<std::string> names;
+  std::vector<std::string> person_keys = security::door_key_files();
 };
 
 int serve_http(const bus::NodeOptions& options, const Options& own, const bus::Stop& stop) {
   bus::Node node(options);
-  mcp::HttpDoor door(node, {*own.port, console::keep(own.token_file).key,
-                            std::filesystem::absolute(own.token_file).lexically_normal().string(),
-                            own.who, bus::version(), kInstructions, own.described, own.names});
+  mcp::HttpDoor door(
+      node, {*own.port, console::keep(own.token_file).key,
+             std::filesystem::absolute(own.token_file).lexically_normal().string(), own.who,
+             bus::version(), kInstructions, own.described, own.names, own.person_keys});
   std::fprintf(stderr, "http://127.0.0.1:%d/mcp, with the token in %s\n", door.port(),
                own.token_file.c_str());
   door.run(stop);
@@ -107,7 +109,8 @@ int main(int argc, char** argv) {
         app.add_option("--who", own.who, "Name of the asker, as others see it");
         app.add_option("--describe", own.described,
                        "agents whose own descriptions the model gets, as quotations (dialogue, "
-                       "where the option is not given)");
+                       "where the option is not given); with security, of programs that are not "
+                       "the robot's own: members");
         const Option token =
             app.add_option("--token-file", own.token_file,
                            "with --http: keeps what a client has to send as its bearer token; "
@@ -120,6 +123,10 @@ int main(int argc, char** argv) {
                 .needs(token);
         app.add_option("--host-name", own.names,
                        "with --http: the name of a proxy on this machine, by which clients come")
+            .needs(http);
+        app.add_option("--person-keys", own.person_keys,
+                       "with --http: file with the keys of persons (saphira keys); several: the "
+                       "first that exists")
             .needs(http);
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

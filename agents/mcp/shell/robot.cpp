@@ -295,9 +295,12 @@ void Robot::make_tools() {
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_) {
-    // A description steers the model: it is shown where a person has allowed the agent.
-    const bool is_shown =
-        std::find(described_.begin(), described_.end(), agent.data.name) != described_.end();
+    // A description steers the model: it is shown where a person has allowed the agent. Where
+    // members are known, an agent of another program than the robot's own goes by its member.
+    const auto& sender = agent.info.sender;
+    const bool is_own = !sender || sender->role == "services" || sender->role == "robot";
+    const bool is_shown = std::find(described_.begin(), described_.end(),
+                                    is_own ? agent.data.name : sender->name) != described_.end();
     for (v1::Capability capability : agent.data.capabilities) {
       const std::string name = tool_name(capability.functor);
       // The agent "robot" announces the activities once more.

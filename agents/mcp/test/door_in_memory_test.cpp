@@ -632,6 +632,27 @@ TEST_F(DoorInMemory, TheDescriptionsOfAgentsAreQuotedWhereAPersonHasAllowedThem)
                       std::string()));
 }
 
+// An agent may call itself as the robot's own programs do; its certificate does not.
+TEST_F(DoorInMemory, WhereMembersAreKnownTheirDescriptionsGoByTheMember) {
+  v1::Agent agent;
+  agent.id = 8;
+  agent.name = "dialogue";
+  agent.capabilities = {bus::action("cook", "cooks")};
+  const auto is_shown = [&](const Identity& sender, const std::string& described) {
+    agents.set_sender(sender);
+    agents.write(agent);
+    Robot shown{node, {described}};
+    shown.poll(now);
+    return std::any_of(shown.tools().begin(), shown.tools().end(), [](const Tool& tool) {
+      return tool.name == "cook" && tool.description.find("says") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(is_shown({"planner", "agent"}, "dialogue"));
+  EXPECT_FALSE(is_shown({"", "services"}, "planner"));
+  EXPECT_TRUE(is_shown({"planner", "agent"}, "planner"));
+  EXPECT_TRUE(is_shown({"flakey", "services"}, "dialogue"));
+}
+
 TEST_F(DoorInMemory, ACallThatWasReadIsAnsweredAfterTheEndOfTheInput) {
   EXPECT_FALSE(door->leave());
   call(1, "wait_for", {{"wait_s", 5}});
@@ -669,6 +690,41 @@ TEST_F(DoorInMemory, EachToolThatReadsHasTheFormThatItDeclares) {
   }
   for (const Tool& tool : robot.tools())
     EXPECT_EQ(tool.output["type"], "object") << tool.name;
+}
+
+TEST_F(DoorInMemory, APersonsNameGoesWithWhatTheyAskFor) {
+  door = std::make_unique<Door>(node, robot, session, "model",
+                                security::DoorKey{"anna", security::DoorRight::drive, 0, ""});
+  begin_sweep();
+  const v1::Request request = heard();
+  EXPECT_EQ(request.person.name, "anna");
+  EXPECT_EQ(request.person.role, "agent");
+  call(2, "say", {{"text", "Flakey, turn left"}});
+  const auto said = words.take();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].data.person.name, "anna");
+  const v1::GoalStatus other_goal = tell_goal(v1::GOAL_UNDERWAY);
+  call(3, "cancel", {{"goal", bus::describe(other_goal.id)}, {"sure", true}});
+  EXPECT_EQ(result(3)["isError"], true) << "it needs the right to operate";
+  EXPECT_TRUE(goals.take().empty());
+}
+
+TEST_F(DoorInMemory, AKeyToWatchReadsAndStops) {
+  door = std::make_unique<Door>(node, robot, session, "model",
+                                security::DoorKey{"anna", security::DoorRight::watch, 0, ""});
+  auto stops = other.reader<v1::Request>(bus::topics::kDriveStop);
+  call(1, "sweep", {{"room", "kitchen"}, {"wait_s", 0}});
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_TRUE(solve.take().empty());
+  call(2, "say", {{"text", "Flakey, turn left"}});
+  EXPECT_EQ(result(2)["isError"], true);
+  EXPECT_TRUE(words.take().empty());
+  call(3, "robot_status", Json::object());
+  EXPECT_EQ(result(3)["isError"], false);
+  call(4, "stop", Json::object());
+  const auto stop = stops.take();
+  ASSERT_EQ(stop.size(), 1U);
+  EXPECT_EQ(stop[0].data.person.name, "anna");
 }
 
 }  // namespace

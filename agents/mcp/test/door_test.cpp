@@ -204,7 +204,8 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   system.start_all();
   ASSERT_TRUE(wait_activities(system));
   const std::string file = system.folder().path("token");
-  Process server({program("saphira-mcp"), "--http", "0", "--token-file", file},
+  Process server({program("saphira-mcp"), "--http", "0", "--token-file", file, "--person-keys",
+                  system.folder().path("door-keys")},
                  system.folder().path("http.out"), {{"SAPHIRA_ROBOT", system.robot()}});
   int port = 0;
   ASSERT_TRUE(wait_until([&] {
@@ -221,6 +222,31 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   EXPECT_TRUE(
       http(port, post + "\r\nOrigin: http://evil.example", "{}").starts_with("HTTP/1.1 403"));
   EXPECT_TRUE(http(port, post, std::string(1'100'000, ' ')).starts_with("HTTP/1.1 413"));
+  // A person's key, from when it is made until it is revoked.
+  const std::string keys = system.folder().path("door-keys");
+  const auto keys_say = [&](const std::string& words) {
+    Process process({"/bin/sh", "-c", program("saphira") + " keys " + words + " --file " + keys},
+                    system.folder().path("keys.out"));
+    EXPECT_EQ(process.wait(), 0) << process.output();
+    return process.output();
+  };
+  const std::string shown = keys_say("add anna");
+  const std::string anna =
+      "POST /mcp HTTP/1.1\r\nAuthorization: Bearer " + shown.substr(shown.find('\n') + 1, 32);
+  const char* const initialize =
+      R"({"id":1,"method":"initialize","params":{"protocolVersion":"2025-11-25"}})";
+  std::string hers;
+  ASSERT_TRUE(wait_until([&] {
+    hers = http(port, anna, initialize);
+    return hers.starts_with("HTTP/1.1 200");
+  })) << hers;
+  const std::string of_her = "\r\nMcp-Session-Id: " + value_of(hers, "mcp-session-id: ");
+  const char* const ping = R"({"id":2,"method":"ping"})";
+  EXPECT_TRUE(http(port, anna + of_her, ping).starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(http(port, post + of_her, ping).starts_with("HTTP/1.1 403")) << "another's session";
+  keys_say("revoke anna");
+  EXPECT_TRUE(
+      wait_until([&] { return http(port, anna + of_her, ping).starts_with("HTTP/1.1 401"); }));
   EXPECT_TRUE(http(port, post, R"({"id":1,"method":"ping"})").starts_with("HTTP/1.1 400"));
 
   // The older era, with a session.

@@ -15,6 +15,8 @@ namespace {
 
 using authority::Role;
 
+constexpr std::size_t kMostRefusedDrivers = 64;  // in the audit, under one driver
+
 std::uint64_t driver_of(const authority::WriterId& writer) {
   Fnv1a hash;
   for (const std::uint8_t byte : writer)
@@ -91,6 +93,15 @@ void Core::writer_lost(Role role, const authority::WriterId& writer, double now)
   arbiter_.lost(role, writer, time(now));
 }
 
+std::optional<AuditEntry> reported(AuditEntry entry, const Checked& writer) {
+  if (!writer || writer->role == "services" || writer->role == "robot")
+    return entry;
+  if (entry.act != AuditEntry::Act::let_in && entry.act != AuditEntry::Act::refused)
+    return std::nullopt;
+  entry.who = named(entry.who, writer);
+  return entry;
+}
+
 Answer Core::stop(const Request& request, double now) {
   const StopId id{request.asker, request.number != 0 ? request.number : ++numberless_stops_};
   const Argument* const by = find(request.arguments, "by");
@@ -101,6 +112,7 @@ Answer Core::stop(const Request& request, double now) {
     stopped += (stopped.empty() ? "" : ", ") + driver;
   stopped = stopped.empty() ? "nobody drove" : "stopped: " + stopped;
   info("stop by " + source + ": " + stopped);
+  put(AuditEntry{AuditEntry::Act::stopped, source, stopped});
   grant_changed_ = true;
   if (!in_session()) {
     grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
@@ -143,6 +155,9 @@ Answer Core::reset_estop(const std::string& source, double now) {
   const std::string why = arbiter_.reset(source, time(now));
   info(why.empty() ? "emergency stop reset by " + source
                    : "emergency stop not reset by " + source + ": " + why);
+  put(why.empty()
+          ? AuditEntry{AuditEntry::Act::reset, source, "the emergency stop"}
+          : AuditEntry{AuditEntry::Act::refused, source, "to reset the emergency stop: " + why});
   return why.empty() ? Answer{} : Answer{AnswerCode::refused, why};
 }
 
@@ -163,6 +178,8 @@ void Core::keep_latches(double now) {
   const authority::Latches& latches = arbiter_.latches();
   if (latches == kept_)
     return;
+  if (latches.estopped && !kept_.estopped)
+    put(AuditEntry{AuditEntry::Act::stopped, latches.estop_source, "the emergency stop"});
   if (latches.estopped && !kept_.estopped)
     warn("emergency stop, pressed by " + latches.estop_source +
          ": the robot stands until saphira estop reset" +
@@ -201,9 +218,12 @@ void Core::decide(double now) {
   // A latched stop does not expire.
   expires_at_ = grant_.role == Role::estop ? kForEver : t + grant_.expires_in + 1e-4;
   if (changed && grant_.role != Role::estop) {
-    words_.push_back(grant_.role == Role::none
-                         ? "nobody drives: " + grant_.reason
-                         : grant_.source + " drives (" + authority::name(grant_.role) + ")");
+    words_.info(grant_.role == Role::none
+                    ? "nobody drives: " + grant_.reason
+                    : grant_.source + " drives (" + authority::name(grant_.role) + ")");
+    if (drives(grant_.role))
+      words_.audit({AuditEntry::Act::drove, grant_.source, authority::name(grant_.role)});
+    refused_drivers_.clear();
   }
   grant_changed_ = grant_changed_ || changed;
 }
@@ -230,7 +250,7 @@ void Core::guard(reflector::Setpoints& wanted) {
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;
   if (guarded_.action == authority::GuardAction::stop && guarded_.action != before)
-    words_.push_back("guard: " + guarded_.reason);
+    words_.info("guard: " + guarded_.reason);
 }
 
 void Core::flush(double now) {
@@ -251,8 +271,11 @@ void Core::flush(double now) {
       put(Answered{});
   }
   // After the packets: nothing waits for the log.
-  for (std::string& text : std::exchange(words_, {}))
-    info(std::move(text));
+  const Notes words = std::exchange(words_, {});
+  for (const Note& line : words.lines())
+    put(line);
+  for (const AuditEntry& entry : words.audit())
+    put(entry);
   if (grant_changed_ && !settings_.lockstep)
     publish_grant();
 }
@@ -286,7 +309,16 @@ void Core::step(double now) {
 
 void Core::publish_grant() {
   grant_changed_ = false;
-  put(GrantDecided{grant_, told_, guarded_, arbiter_.take_refused(), session_.stamp});
+  std::vector<authority::Refusal> refused = arbiter_.take_refused();
+  std::vector<AuditEntry> entries;
+  for (const authority::Refusal& one : refused)
+    if (const std::string what = std::string("to drive (") + authority::name(one.role) + ")";
+        refused_drivers_.size() < kMostRefusedDrivers &&
+        refused_drivers_.insert(one.source + what).second)
+      entries.push_back({AuditEntry::Act::refused, one.source, what + ": " + one.reason});
+  put(GrantDecided{grant_, told_, guarded_, std::move(refused), session_.stamp});
+  for (AuditEntry& entry : entries)
+    put(std::move(entry));
 }
 
 }  // namespace saphira::bridge

@@ -124,5 +124,70 @@ TEST(Stop, NamesThePersonBehindTheProgram) {
   EXPECT_EQ(scene.core.grant().stop_source, "karen, through dialogue");
 }
 
+// The audit: who drove, stopped, reset and was refused.
+struct Audited : StopScene {
+  std::vector<std::string> acts() {
+    std::vector<std::string> found;
+    for (const AuditEntry& entry : all<AuditEntry>())
+      found.push_back(std::to_string(static_cast<int>(entry.act)) + " " + entry.who);
+    forget();
+    return found;
+  }
+  static std::string act(AuditEntry::Act act, const std::string& who) {
+    return std::to_string(static_cast<int>(act)) + " " + who;
+  }
+};
+
+TEST(Audit, NamesEachDriverOnceAndWhoStops) {
+  using Act = AuditEntry::Act;
+  Audited scene;
+  scene.cycles(3, Role::direct, 0.1);
+  EXPECT_EQ(scene.acts(), std::vector<std::string>{}) << "it drove before";
+  scene.drive(Role::teleop, 0.1);
+  scene.cycles(3, Role::teleop, 0.1);
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::drove, "teleop")});
+  scene.stop();
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::stopped, "a person")});
+}
+
+TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
+  using Act = AuditEntry::Act;
+  Audited scene;
+  scene.drive(Role::teleop, 0.1);
+  scene.forget();
+  for (int i = 0; i < 5; ++i) {
+    scene.tell(scene.wish(Role::direct, 0.1));
+    scene.cycles(1, Role::teleop, 0.1);
+  }
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::refused, "direct")});
+}
+
+TEST(Audit, NamesWhoPressesAndResetsTheEmergencyStop) {
+  using Act = AuditEntry::Act;
+  Audited scene;
+  scene.estop(true);
+  EXPECT_EQ(scene.acts(),
+            std::vector{Audited::act(Act::stopped, scene.core.latches().estop_source)});
+  scene.core.reset_estop("karen", scene.now);
+  scene.deliver();
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::refused, "karen")})
+      << "it is still pressed";
+  scene.estop(false);
+  scene.core.reset_estop("karen", scene.now);
+  scene.deliver();
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::reset, "karen")});
+}
+
+TEST(Audit, AProgramSpeaksForItselfUnlessItIsAService) {
+  const AuditEntry drove{AuditEntry::Act::drove, "karen (operator)", ""};
+  const AuditEntry wrong{AuditEntry::Act::refused, "somebody", "1 wrong key"};
+  EXPECT_EQ(reported(drove, Identity{"flakey", "services"}), drove);
+  EXPECT_EQ(reported(drove, std::nullopt), drove) << "an open bus";
+  EXPECT_EQ(reported(drove, Identity{"planner", "agent"}), std::nullopt);
+  const auto said = reported(wrong, Identity{"flakey", "operator"});
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->who, "flakey (operator), somebody");
+}
+
 }  // namespace
 }  // namespace saphira::bridge::test

@@ -96,8 +96,8 @@ void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
     endpoints_.erase(proxy.guid());
   } else {
     EndpointEntry endpoint;
-    endpoint.topic = proxy.topicName().to_string();
-    endpoint.type = proxy.typeName().to_string();
+    endpoint.topic = printable(proxy.topicName().to_string());
+    endpoint.type = printable(proxy.typeName().to_string());
     endpoint.writer = writer;
     for (const auto& partition : proxy.m_qos.m_partition.names())
       endpoint.robot += (endpoint.robot.empty() ? "" : ",") + partition;

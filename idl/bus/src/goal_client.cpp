@@ -52,7 +52,7 @@ void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
     own->second.goal = std::move(goal);
 }
 
-void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
+void GoalClient::cancel(const v1::GoalId& id, const std::string& why, const v1::Person& by) {
   // A dispose carries only the key: a goal with a reason is disposed when it is forgotten.
   auto own = own_.find(key_of(id));
   if (own == own_.end() && !why.empty())
@@ -60,6 +60,8 @@ void GoalClient::cancel(const v1::GoalId& id, const std::string& why) {
   v1::Goal goal = own == own_.end() ? v1::Goal() : own->second.goal;
   goal.id = id;
   goal.withdrawn = why;
+  if (!by.name.empty())
+    goal.person = by;
   if (why.empty() ? !writer_.dispose(goal) : !writer_.write(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
   if (own != own_.end() && !own->second.over)

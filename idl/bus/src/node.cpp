@@ -23,6 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::ptrdiff_t kMostRefused = 64;
 constexpr std::size_t kLongestLog = 2000;  // characters
 
 double to_seconds(const timeval& time) {
@@ -54,6 +55,27 @@ std::uint64_t random_instance() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32U) | device();
 }
+
+class TerminalReader : public RawReader {
+ public:
+  TerminalReader(std::unique_ptr<RawReader> reader, const TypeInfo& type)
+      : reader_(std::move(reader)), type_(type), copy_(type.create(), type.destroy) {}
+
+  void take(const std::function<void(const void*, const SampleInfo&)>& each) override {
+    reader_->take([&](const void* sample, const SampleInfo& info) {
+      type_.copy(sample, copy_.get());
+      type_.make_printable(copy_.get());
+      each(copy_.get(), info);
+    });
+  }
+  std::vector<WriterId> take_lost() override { return reader_->take_lost(); }
+  std::size_t matched() const override { return reader_->matched(); }
+
+ private:
+  std::unique_ptr<RawReader> reader_;
+  const TypeInfo& type_;
+  std::unique_ptr<void, void (*)(void*)> copy_;
+};
 
 }  // namespace
 
@@ -98,8 +120,12 @@ struct Node::Impl {
     }
     const internal::Refusals refusals = transport->take_refusals();
     status.refused_samples += refusals.samples;
-    for (const auto& text : refusals.texts)
+    for (const auto& text : refusals.texts) {
       log(v1::LOG_WARNING, text);
+      refused.push_back(text);
+    }
+    if (std::ssize(refused) > kMostRefused)
+      refused.erase(refused.begin(), refused.end() - kMostRefused);
   }
 
   void log(v1::LogLevel level, std::string text) {
@@ -124,6 +150,7 @@ struct Node::Impl {
   std::unique_ptr<internal::Transport> transport;
   v1::ServiceStatus status;
   NodeHealth health;
+  std::vector<std::string> refused;  ///< told by the log, and not taken yet
   std::optional<Writer<v1::ServiceStatus>> status_writer;
   std::optional<Writer<v1::LogRecord>> log_writer;
   const Clock::time_point started = Clock::now();
@@ -168,8 +195,11 @@ std::unique_ptr<RawWriter> Node::make_writer(const char* topic, Qos qos, const T
 }
 
 std::unique_ptr<RawReader> Node::make_reader(const char* topic, Qos qos, const TypeInfo& type) {
-  return impl_->transport->make_reader(topic, internal::policies(qos, impl_->options.lockstep),
-                                       type);
+  auto reader =
+      impl_->transport->make_reader(topic, internal::policies(qos, impl_->options.lockstep), type);
+  if (impl_->options.for_terminal)
+    reader = std::make_unique<TerminalReader>(std::move(reader), type);
+  return reader;
 }
 
 int Node::wake_fd() const {
@@ -239,6 +269,10 @@ std::string Node::bar() const {
 
 std::optional<Identity> Node::identity() const {
   return impl_->transport->identity();
+}
+
+std::vector<std::string> Node::take_refused() {
+  return std::exchange(impl_->refused, {});
 }
 
 const NodeOptions& Node::options() const {

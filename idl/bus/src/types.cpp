@@ -1,9 +1,14 @@
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
+#include <string>
+#include <type_traits>
 
 #include "cdr.hpp"
 #include "json.hpp"
 #include "json_reader.hpp"
+#include "saphira/base/printable.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/topics.hpp"
 
@@ -31,6 +36,16 @@ bool is_keyed() {
 }
 
 template <class T>
+void make_printable(T& item) {
+  if constexpr (std::is_same_v<T, std::string>)
+    item = printable(item, "\n\t");
+  else if constexpr (std::ranges::range<T>)
+    std::for_each(item.begin(), item.end(), [](auto&& part) { make_printable(part); });
+  else if constexpr (std::is_class_v<T>)
+    visit_members(item, [](const Member&, auto& part) { make_printable(part); });
+}
+
+template <class T>
 TypeInfo make_type(const char* name) {
   return {
       .name = name,
@@ -43,7 +58,8 @@ TypeInfo make_type(const char* name) {
       .json = [](const void* sample,
                  const char* prefix) { return to_json(*static_cast<const T*>(sample), prefix); },
       .parse = [](const std::string& json,
-                  void* sample) { internal::from_json(json, *static_cast<T*>(sample)); }};
+                  void* sample) { internal::from_json(json, *static_cast<T*>(sample)); },
+      .make_printable = [](void* sample) { make_printable(*static_cast<T*>(sample)); }};
 }
 
 }  // namespace

@@ -192,5 +192,45 @@ TEST(GoalClient, TellsAStatusInALine) {
   EXPECT_EQ(describe(status), "failed: no way");
 }
 
+TEST_F(GoalClients, ACancelNamesThePersonWhoWantsIt) {
+  GoalClient client(agent_, "an agent");
+  v1::Goal goal;
+  goal.person = {"anna", "agent"};
+  const v1::GoalId id = client.ask(goal);
+  client.cancel(id, "it is late", {"karen", "operator"});
+  const auto heard = goals_.take();
+  ASSERT_EQ(heard.size(), 2U);
+  EXPECT_EQ(heard[0].data.person.name, "anna");
+  EXPECT_EQ(heard[1].data.person.name, "karen");
+}
+
+// A program for people does not pass on what would drive their terminal.
+TEST_F(GoalClients, ATerminalGetsNoControlCharactersOfOthers) {
+  NodeOptions options = memory_options("cli");
+  options.for_terminal = true;
+  Node terminal(options, bus_);
+  auto reader = terminal.reader(topics::kGoals);
+  GoalClient client(agent_, "an\x1b[2Jagent");
+  v1::Goal goal;
+  goal.functor = "go\r\n\tto";
+  goal.arguments = {text("place\x07",
+                         "\xc2\x9b"
+                         "31m")};
+  goal.person.name = "\x7f";
+  client.ask(goal);
+  const auto raw = goals_.take();
+  ASSERT_EQ(raw.size(), 1U);
+  EXPECT_EQ(raw[0].data.functor, "go\r\n\tto");
+  const auto shown = reader.take();
+  ASSERT_EQ(shown.size(), 1U);
+  EXPECT_EQ(shown[0].data.requester, "an?[2Jagent");
+  EXPECT_EQ(shown[0].data.functor, "go?\n\tto");
+  EXPECT_EQ(shown[0].data.arguments.at(0).name, "place?");
+  EXPECT_EQ(shown[0].data.arguments.at(0).text, "\?\?31m");
+  EXPECT_EQ(shown[0].data.person.name, "?");
+  EXPECT_EQ(shown[0].data.id, raw[0].data.id);
+  EXPECT_EQ(shown[0].info.writer, raw[0].info.writer);
+}
+
 }  // namespace
 }  // namespace saphira::bus

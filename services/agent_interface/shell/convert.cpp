@@ -50,7 +50,8 @@ Trigger from_bus(const v1::Trigger& trigger) {
           saphira::from_bus(trigger.condition_arguments),
           trigger.action,
           saphira::from_bus(trigger.action_arguments),
-          trigger.times};
+          trigger.times,
+          std::nullopt};
 }
 
 v1::Advice to_bus(const Advice& advice) {

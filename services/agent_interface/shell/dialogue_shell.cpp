@@ -16,6 +16,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -65,7 +66,8 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       robots_(node.reader(bus::topics::kRobotDescription)),
       said_(node.writer(bus::topics::kSaid)),
       claims_(node.writer(bus::topics::kBeliefClaims)),
-      knows_(node.writer(bus::topics::kKnows)) {
+      knows_(node.writer(bus::topics::kKnows)),
+      audit_(node) {
   folder_.look();
   if (!options_.memory.empty()) {
     const std::string trouble = read_or_set_aside(
@@ -122,8 +124,9 @@ void DialogueShell::reload() {
 
 /// The bridge ends whatever moves the robot, also where no other program works.
 void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
-  stopping_[stops_.send(bus::request("stop", {bus::text("by", wanted.requester())}))] = {wanted.tag,
-                                                                                         {}};
+  v1::Request request = bus::request("stop", {bus::text("by", wanted.requester())});
+  request.person = bus::to_bus(wanted.person);
+  stopping_[stops_.send(std::move(request))] = {wanted.tag, {}};
 }
 
 void DialogueShell::take_stops(double seconds) {
@@ -161,6 +164,7 @@ void DialogueShell::want(const WantedGoal& wanted) {
                 .arguments = to_bus(wanted.arguments),
                 .priority = wanted.priority,
                 .deadline = wanted.deadline};
+  goal.person = bus::to_bus(wanted.person);
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost = lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL;
   const v1::GoalId id = goals_.ask(goal);
@@ -212,6 +216,8 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
     registration_.send(to_bus(put_on_map(feature)));
   if (!out.note.empty())
     node_.info(out.note);
+  if (!out.denied.text.empty())
+    audit_.write(out.denied);
   if (out.changed) {
     remember();
     publish();
@@ -332,6 +338,7 @@ void DialogueShell::take_utterances() {
     utterance.text = sample.data.text;
     utterance.confidence = sample.data.confidence;
     utterance.time = sample.data.time;
+    utterance.person = bus::asker_of(sample.info, sample.data.person);
     if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;
     situation_.goals = known_goals();

@@ -7,6 +7,7 @@
 #include "saphira/agent_interface/dialogue.hpp"
 #include "saphira/base/watched_folder.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
 
 namespace saphira::agent_interface {
@@ -64,6 +65,7 @@ class DialogueShell {
   bus::Writer<v1::Utterance> said_;
   bus::Writer<v1::BeliefClaim> claims_;
   bus::Writer<v1::Knowledge> knows_;
+  bus::Audit audit_;
   Situation situation_;
   v1::Vision seen_;                            ///< the newest
   std::map<std::uint64_t, v1::GoalId> asked_;  ///< by the dialogue's tag

@@ -7,6 +7,7 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -87,7 +88,11 @@ void FacilitatorShell::take_triggers(double now) {
       facilitator_.call_off(trigger.id);
   };
   for (const auto& sample : triggers_.take()) {
-    const Trigger trigger = from_bus(sample.data);
+    Trigger trigger = from_bus(sample.data);
+    trigger.person = bus::asker_of(sample.info);
+    trigger.source = named(trigger.source, trigger.person);
+    if (!facilitator_.may_change(trigger.id, trigger.person))
+      continue;
     if (sample.info.disposed) {
       release(sample.info.writer, trigger, false);
       continue;
@@ -116,7 +121,7 @@ void FacilitatorShell::take_requests(double now) {
     if (!sample.info.disposed) {
       const RequestId id{sample.data.asker, sample.data.number};
       note(requests_of_, sample.info.writer, id);
-      facilitator_.ask(saphira::from_bus(sample.data), now);
+      facilitator_.ask(saphira::from_bus(sample), now);
     }
   for (const bus::WriterId& writer : asked_.take_lost()) {
     const auto [begin, end] = requests_of_.equal_range(writer);
@@ -164,6 +169,8 @@ void FacilitatorShell::step(double now) {
     answer.service = solved.service;
     solved_.write(answer);
   }
+  for (const AuditEntry& entry : out.audit)
+    audit_.write(entry);
   for (const std::string& text : out.notes)
     node_.info(text);
   for (const std::string& text : out.warnings)

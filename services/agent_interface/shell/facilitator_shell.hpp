@@ -6,6 +6,7 @@
 
 #include "agent_interface/shell/robot_agent.hpp"
 #include "saphira/agent_interface/facilitator.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::agent_interface {
@@ -37,6 +38,7 @@ class FacilitatorShell {
   bus::Reader<v1::Answer> answers_;
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
+  bus::Audit audit_{node_};
   const double begun_;  ///< [s] of the clock of step()
   std::string memory_;
   Facilitator facilitator_;

@@ -6,6 +6,7 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -68,6 +69,7 @@ Answer RobotAgent::begin(const Request& request, double now) {
                 .arguments = to_bus(request.arguments),
                 .deadline = goal_deadline(request.deadline),
                 .writer_lost = v1::WRITER_LOST_CANCEL};
+  goal.person = bus::to_bus(request.person);
   begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
   return {AnswerCode::underway, ""};
 }

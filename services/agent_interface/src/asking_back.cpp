@@ -194,6 +194,7 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
   again.id = utterance.id;
   again.time = utterance.time;
   again.program = utterance.program;
+  again.person = utterance.person;
   Grammar::Understood next;
   const bool bare = understood.meanings.empty();
   const std::vector<Meaning>& heard = bare ? understood.bare : understood.meanings;

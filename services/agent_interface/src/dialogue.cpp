@@ -306,6 +306,8 @@ void Dialogue::add(Tasks::Outputs more, Outputs& out) {
   out.said.insert(out.said.end(), more.said.begin(), more.said.end());
   out.canceled.insert(out.canceled.end(), more.canceled.begin(), more.canceled.end());
   out.goals.insert(out.goals.end(), more.goals.begin(), more.goals.end());
+  if (!more.denied.text.empty())
+    out.denied = more.denied;
 }
 
 /// A sentence of several steps counts as a whole: where one is not possible, nothing is done.

@@ -247,8 +247,10 @@ void Facilitator::ask(const Request& request, double now) {
   const Id id{request.asker, request.number};
   const bool withdraws = request.functor == kWithdraw;
   if (open_.contains(id)) {
-    if (withdraws)
+    if (withdraws && may_end(request.person, open_.at(id).request.person))
       withdraw(request.asker, request.number);
+    else if (withdraws)
+      deny(request.source, "to withdraw a request of " + open_.at(id).request.source);
     return;
   }
   for (const auto& [known, solved] : ended_)
@@ -260,6 +262,19 @@ void Facilitator::ask(const Request& request, double now) {
     return list_triggers(request);
   if (!withdraws || begun(id))
     begin(request, std::nullopt, now);
+}
+
+bool Facilitator::may_change(const Id& trigger, const Checked& who) {
+  const auto found = triggers_.find(trigger);
+  if (found == triggers_.end() || may_end(who, found->second.trigger.person))
+    return true;
+  deny(who->text(), "to change or take back a trigger of " + found->second.trigger.source);
+  return false;
+}
+
+void Facilitator::deny(const std::string& who, const std::string& what) {
+  out_.warnings.push_back(who + " is refused " + what + "; who asked for it may, or an operator");
+  out_.audit.push_back({AuditEntry::Act::refused, who, what});
 }
 
 void Facilitator::list_triggers(const Request& request) {
@@ -478,6 +493,8 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   const Capability* const can = capability(agent, open.request.functor);
   const bool acts = begun(id) || (can != nullptr && can->acts);
   open.asked.push_back({agent, acts, now + kAgain});
+  if (acts && !open.acts)
+    out_.audit.push_back({AuditEntry::Act::asked, open.request.source, describe(open.request)});
   open.acts = open.acts || acts;
   // Requests of triggers and for parts are of one run of this program. So its agent does not know
   // the action of a conjunction again after a restart: agent 0, which is none, was asked.
@@ -686,6 +703,7 @@ void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
   Request request;
   request.functor = trigger.action;
   request.source = "a trigger of " + trigger.source;
+  request.person = trigger.person;
   request.asker = self_;
   request.number = ++number_;
   for (const Argument& argument : trigger.action_arguments) {
@@ -730,6 +748,7 @@ Facilitator::Outputs Facilitator::step(double now) {
     condition.functor = armed.trigger.condition;
     condition.arguments = armed.trigger.condition_arguments;
     condition.source = "a trigger of " + armed.trigger.source;
+    condition.person = armed.trigger.person;
     condition.asker = self_;
     condition.number = ++number_;
     begin(condition, id, now);

@@ -46,6 +46,7 @@ void Tasks::begin(Task task, Outputs& out) {
     hold_ = ++tag_;
     WantedGoal hold{hold_, "pause", {number("seconds", kLongestHold)}};
     hold.speaker = task.goal.speaker;
+    hold.person = task.goal.person;
     hold.priority = 1;
     out.goals.push_back(std::move(hold));
   }
@@ -93,6 +94,19 @@ Tasks::Outputs Tasks::left(const ProgramId& program) {
   return out;
 }
 
+Tasks::Outputs Tasks::deny(const Task& task, const Utterance& utterance) const {
+  Outputs out;
+  const std::string ends = named_task(task, utterance.speaker);
+  out.denied = {AuditEntry::Act::refused,
+                named(named_person(utterance.speaker) + " (by words)", utterance.person),
+                "to end " + ends + ": " + quoted(utterance.text)};
+  out.said.push_back({utterance.id, utterance.speaker,
+                      "that would end " + ends + ": " + task.goal.person->name +
+                          " or an operator may do that, and everybody may stop me",
+                      true, true});
+  return out;
+}
+
 Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, bool drops) {
   Outputs out;
   if (steps.empty())
@@ -103,9 +117,14 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
     step.answers = utterance.id;
     step.program = utterance.program;
     step.brief = all_brief;
+    step.goal.person = utterance.person;
   }
   const bool stop = is_stop(steps.front());
   const bool brief = !stop && all_brief;
+  for (const Task& one : open_)
+    if (!stop && !is_stop(one) && (one.brief || !brief) &&
+        !may_end(utterance.person, one.goal.person))
+      return deny(one, utterance);
   const Task* const other = task();
   if (!stop && !brief && !drops && other != nullptr &&
       !same_person(other->goal.speaker, utterance.speaker)) {
@@ -146,6 +165,8 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
 Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
   const auto wait = std::find_if(open_.begin(), open_.end(),
                                  [](const Task& one) { return one.goal.functor == "pause"; });
+  if (wait != open_.end() && !may_end(utterance.person, wait->goal.person))
+    return deny(*wait, utterance);
   if (wait != open_.end()) {
     const std::uint64_t tag = wait->goal.tag;
     Outputs out = ended({tag, true, "I was told to go on"});
@@ -247,7 +268,10 @@ std::vector<std::string> Tasks::save() const {
                       std::to_string(one.ref.second) + "\t" + std::to_string(one.answers.first) +
                       "\t" + std::to_string(one.answers.second) + "\t" + field(one.goal.speaker) +
                       "\t" + field(one.what) + "\t" + field(one.doing) + "\t" + field(one.name) +
-                      "\t" + one.goal.functor + "\t" + field(one.sample));
+                      "\t" + one.goal.functor + "\t" + field(one.sample) +
+                      (one.goal.person ? "\t" + field(one.goal.person->name) + "\t" +
+                                             field(one.goal.person->role)
+                                       : ""));
   return lines;
 }
 
@@ -255,6 +279,9 @@ void Tasks::restore(const std::string& line) {
   std::vector<std::string> parts = fields(line);
   if (parts.size() < 7)
     return;
+  Checked person;
+  if (parts.size() > 12)
+    person = Identity{parts[11], parts[12]};
   parts.resize(11);  // an older file has 7 or 10
   std::array<std::uint64_t, 5> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -269,6 +296,7 @@ void Tasks::restore(const std::string& line) {
   task.goal.functor = parts[9];
   task.goal.lasting = true;
   task.goal.speaker = parts[5];
+  task.goal.person = person;
   task.what = parts[6];
   task.doing = parts[7];
   task.name = parts[8];

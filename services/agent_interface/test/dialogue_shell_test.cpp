@@ -476,5 +476,62 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   EXPECT_TRUE(answers().starts_with("I could not: no bridge has confirmed the stop"));
 }
 
+// The bus says who speaks; what speakers call themselves is not checked.
+TEST_F(DialogueOnTheBus, AGoalByWordsNamesTheMemberWhoseProgramSaidThem) {
+  heard.set_sender({"flakey", "operator"});
+  say("Flakey, turn left", "Bob");
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked[0].data.person.name, "flakey");
+  EXPECT_EQ(asked[0].data.person.role, "operator");
+  EXPECT_EQ(asked[0].data.requester, "Bob (by words)");
+  heard.set_sender({"planner", "agent"});
+  say("Flakey, turn right", "Bob");
+  EXPECT_TRUE(refused);
+  EXPECT_TRUE(goals.take().empty()) << "it would replace the operator's";
+}
+
+TEST_F(DialogueOnTheBus, AGoalByWordsNamesThePersonAtADoor) {
+  heard.set_sender({"flakey", "operator"});
+  v1::Utterance utterance;
+  utterance.id.writer = 5;
+  utterance.id.number = ++number;
+  utterance.speaker = "Karen";
+  utterance.text = "Flakey, turn left";
+  utterance.confidence = 1.0;
+  utterance.person = {"anna", "agent"};
+  heard.write(utterance);
+  dialogue->step();
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked[0].data.person.name, "anna at flakey");
+  EXPECT_EQ(asked[0].data.person.role, "agent");
+}
+
+TEST_F(DialogueOnTheBus, ARequestOfTheRobotBecomesAGoalOfItsAsker) {
+  bus::Node hub(test::memory_options("facilitator"), memory);
+  FacilitatorShell facilitator(hub, 0.0);
+  v1::ActivitySchemas schemas;
+  schemas.schemas.resize(1);
+  schemas.schemas[0].name = "go-home";
+  person.writer(bus::topics::kActivitySchemas).write(schemas);
+  auto writer = person.writer<v1::Request>(bus::topics::kSolve);
+  writer.set_sender({"planner", "agent"});
+  double now = 3.0;
+  facilitator.step(now += 0.01);
+  v1::Request request = bus::request("go-home");
+  request.asker = 9;
+  request.number = 1;
+  request.source = "karen";
+  writer.write(request);
+  facilitator.step(now += 0.01);
+  facilitator.step(now += 0.01);
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked[0].data.person.name, "planner");
+  EXPECT_EQ(asked[0].data.person.role, "agent");
+  EXPECT_EQ(asked[0].data.requester, "planner (agent), karen");
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

@@ -891,5 +891,42 @@ TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
   }
 }
 
+// Where the bus checks who asks.
+TEST_F(Facilitation, ARequestIsWithdrawnByItsAskerAndByOperators) {
+  facilitator.announce(agent(1, "a", true));
+  Request request = place_of(5);
+  request.person = Identity{"anna", "agent"};
+  const auto asked = ask(request);
+  EXPECT_EQ(asked.requests.at(0).person, request.person);
+  ASSERT_EQ(asked.audit.size(), 1U);
+  EXPECT_EQ(asked.audit[0].act, AuditEntry::Act::asked);
+  Request other = withdrawal(5);
+  other.person = Identity{"planner", "agent"};
+  const auto refused = ask(other);
+  EXPECT_TRUE(refused.requests.empty() && refused.solved.empty());
+  EXPECT_EQ(refused.warnings.size(), 1U);
+  ASSERT_EQ(refused.audit.size(), 1U);
+  EXPECT_EQ(refused.audit[0].act, AuditEntry::Act::refused);
+  other.person = Identity{"karen", "operator"};
+  EXPECT_EQ(ask(other).requests.at(0).functor, kWithdraw);
+}
+
+TEST_F(Facilitation, ATriggerIsItsRequestersAndActsForThem) {
+  const Identity anna{"anna", "agent"};
+  facilitator.announce(agent(1, "a", true));
+  Trigger trigger{{1, 1}, "ann", TriggerKind::time, 5.0, "", {}, "place_of", {}, 1};
+  trigger.person = anna;
+  facilitator.set(trigger, now);
+  EXPECT_FALSE(facilitator.may_change({1, 1}, Identity{"planner", "agent"}));
+  EXPECT_TRUE(facilitator.may_change({1, 1}, anna));
+  EXPECT_TRUE(facilitator.may_change({1, 1}, Identity{"karen", "operator"}));
+  EXPECT_TRUE(facilitator.may_change({1, 2}, Identity{"planner", "agent"})) << "it is not known";
+  now += 5.0;
+  const auto fired = facilitator.step(now);
+  EXPECT_EQ(fired.warnings.size(), 1U);
+  ASSERT_EQ(fired.requests.size(), 1U);
+  EXPECT_EQ(fired.requests[0].person, anna);
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

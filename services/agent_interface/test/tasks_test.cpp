@@ -244,5 +244,76 @@ TEST_F(TasksTest, LastingGoalsOutliveARestart) {
   EXPECT_EQ(older.lasting().size(), 1u);
 }
 
+/// Checked identities, whatever the speakers call themselves.
+struct OwnedTask : TasksTest {
+  Tasks::Outputs want(std::vector<Task> steps, const Checked& person, bool drops = false) {
+    Utterance words{{7, ++number}, "alice", "do it"};
+    words.person = person;
+    return tasks.want(std::move(steps), words, drops);
+  }
+  const Identity planner{"planner", "agent"};
+  const Identity karen{"karen", "operator"};
+  const Identity anna{"anna", "agent"};
+};
+
+TEST_F(OwnedTask, OnlyItsOwnerAndOperatorsReplaceIt) {
+  want({errand("alice", "the mail")}, anna);
+  const Tasks::Outputs denied = want({errand("alice", "the books")}, planner, true);
+  EXPECT_FALSE(denied.denied.text.empty());
+  EXPECT_TRUE(denied.goals.empty() && denied.canceled.empty() && denied.asks.empty());
+  ASSERT_EQ(denied.said.size(), 1U);
+  EXPECT_TRUE(denied.said[0].refused && denied.said[0].end);
+  const Tasks::Outputs own = want({errand("alice", "the books")}, anna);
+  EXPECT_EQ(own.canceled, std::vector<std::uint64_t>{1});
+  ASSERT_EQ(own.goals.size(), 1U);
+  EXPECT_EQ(own.goals[0].person, anna);
+  EXPECT_EQ(want({errand("alice", "the mail")}, karen).canceled, std::vector<std::uint64_t>{2});
+}
+
+TEST_F(OwnedTask, AMotionInterruptsItAndIsItselfOwned) {
+  want({errand("alice", "the mail")}, anna);
+  EXPECT_EQ(want({motion("alice")}, planner).goals.size(), 1U);
+  EXPECT_FALSE(want({motion("alice")}, anna).denied.text.empty());
+  EXPECT_EQ(want({motion("alice")}, planner).canceled, std::vector<std::uint64_t>{2});
+}
+
+TEST_F(OwnedTask, AnybodyStopsItAndWhoGoesOnOwnsIt) {
+  want({errand("alice", "the mail"), errand("alice", "the books")}, karen);
+  const Tasks::Outputs stop = want({motion("alice", "stop")}, planner);
+  EXPECT_EQ(stop.canceled, std::vector<std::uint64_t>{1});
+  ASSERT_EQ(stop.goals.size(), 1U);
+  EXPECT_EQ(stop.goals[0].person, planner);
+  tasks.ended({2, true, "stopped"});
+  Utterance words{{7, ++number}, "alice", "go on"};
+  words.person = planner;
+  const Tasks::Outputs again = tasks.go_on(words);
+  ASSERT_EQ(again.goals.size(), 1U);
+  EXPECT_EQ(again.goals[0].person, planner) << "not in the name of who was stopped";
+  const Tasks::Outputs next = tasks.ended({3, true, "brought"});
+  ASSERT_EQ(next.goals.size(), 1U);
+  EXPECT_EQ(next.goals[0].person, planner);
+}
+
+TEST_F(OwnedTask, AWaitEndsForItsOwnerAndOperators) {
+  want({motion("alice", "pause")}, karen);
+  Utterance words{{7, ++number}, "alice", "go on"};
+  words.person = anna;
+  EXPECT_FALSE(tasks.go_on(words).denied.text.empty());
+  words.person = karen;
+  EXPECT_EQ(tasks.go_on(words).canceled, std::vector<std::uint64_t>{1});
+}
+
+TEST_F(OwnedTask, KeepsItsOwnerOverARestart) {
+  want({errand("alice", "the mail")}, anna);
+  tasks.asked(1, {40, 2}, "sample");
+  const std::vector<std::string> lines = tasks.save();
+  ASSERT_EQ(lines.size(), 1U);
+  tasks = Tasks();
+  tasks.restore(lines[0]);
+  EXPECT_EQ(tasks.save(), lines);
+  EXPECT_FALSE(want({errand("alice", "the books")}, planner, true).denied.text.empty());
+  EXPECT_TRUE(want({errand("alice", "the books")}, anna).denied.text.empty());
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

@@ -9,6 +9,7 @@
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/sender.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/intentions/functors.hpp"
@@ -17,8 +18,6 @@
 namespace saphira::intentions {
 namespace {
 
-// The role that may change the goals of others.
-constexpr const char* kCommands = "operator";
 constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
 constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
 constexpr std::size_t kMostGoals = 1024;     // of GoalStatusSet.goals
@@ -57,6 +56,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       beliefs_(ports.changes(bus::topics::kBeliefs)),
       messages_(ports.changes(bus::topics::kMessages)),
       drawings_(ports.changes(bus::topics::kDrawings)),
+      audit_(ports.changes(bus::topics::kAudit)),
       map_requests_(ports.asker(bus::topics::kRegistrationRequest)),
       servo_(ports.asker(bus::topics::kServo)),
       stops_(ports.asker(bus::topics::kDriveStop)),
@@ -98,6 +98,12 @@ std::string Service::missing() {
          std::to_string(registration->map_revision);
 }
 
+void Service::say(const Notes& notes) {
+  ports_.say(notes.lines());
+  for (const AuditEntry& entry : notes.audit())
+    audit_.write(bus::to_bus(entry));
+}
+
 void Service::step(const runtime::Turn& turn) {
   const Core::Outputs outputs = core_.step(inputs_of(turn));
   remember(outputs.intended.news);
@@ -111,7 +117,7 @@ void Service::step(const runtime::Turn& turn) {
     draw_way(*outputs.way);
   if (outputs.look)
     servo_.ask({"look", {{"angle", *outputs.look}}});
-  ports_.say(outputs.notes.lines());
+  say(outputs.notes);
 }
 
 void Service::between(double silence) {
@@ -120,7 +126,7 @@ void Service::between(double silence) {
   const Core::Told told = core_.between(heard, silence);
   remember(told.news);
   publish(told.news);
-  ports_.say(told.notes.lines());
+  say(told.notes);
 }
 
 Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
@@ -208,11 +214,9 @@ void Service::take_goals(Core::Heard& heard) {
     goal.event.why = sample.data.withdrawn;
     goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
                                                                       : GoalEvent::Kind::kWritten;
-    goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
+    goal.person = bus::asker_of(sample.info, sample.data.person);
     goal.writer = sample.info.writer;
     goal.age = sample.info.age;
-    if (const auto& sender = sample.info.sender)
-      goal.sender = {sender->name, sender->role == kCommands};
     heard.goals.push_back(std::move(goal));
   }
 }
@@ -221,7 +225,7 @@ void Service::take_claims(Core::Heard& heard) {
   heard.lost_claimants = claims_.take_lost();
   Notes notes;
   for (auto& sample : claims_.take()) {
-    sample.data.source = bus::named(sample.data.source, sample.info);
+    sample.data.source = named(sample.data.source, bus::asker_of(sample.info));
     try {
       heard.claims.push_back(
           {from_bus(sample.data,

@@ -56,6 +56,7 @@ class Service final : public runtime::Service {
   /// To the disk, before it is published: nothing reported or done is done again.
   void remember(const News& news);
   void publish(const News& news);
+  void say(const Notes& notes);
   void publish(const Core::Outputs& said);
   void publish(const std::vector<Belief>& beliefs);
   void draw_way(const std::vector<Vec2>& way);
@@ -80,6 +81,7 @@ class Service final : public runtime::Service {
   runtime::Output<v1::BeliefSet> beliefs_;
   runtime::Output<v1::Message> messages_;
   runtime::Output<v1::Drawing> drawings_;
+  runtime::Output<v1::AuditEntry> audit_;
   runtime::Asker map_requests_;
   runtime::Asker servo_;
   runtime::Asker stops_;

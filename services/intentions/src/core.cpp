@@ -304,17 +304,17 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
   std::vector<GoalEvent> events;
   for (const Heard::Goal& goal : heard.goals) {
     GoalEvent event = goal.event;
-    if (!take_sender(goal, event, notes))
+    const double before_start = heard.running < kStarting ? goal.age - heard.running : 0.0;
+    if (!take_person(goal, before_start > 0.0, event, notes))
       continue;
     if (const auto asked = requesters_.find(event.goal.id);
         event.kind == GoalEvent::Kind::kDisposed && event.by.empty() && asked != requesters_.end())
       event.by = asked->second == goal.writer ? "the program that asked for it"
-                 : goal.sender                ? goal.sender->name
+                 : goal.person                ? goal.person->name
                                               : "another program";
     // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
-    const double before_start = heard.running < kStarting ? goal.age - heard.running : 0.0;
     if (!remembers_ && !lockstep_ && before_start > kStartsTogether)
       event.forgotten =
           "was asked for " + plain(before_start) + " s before intentions started, " +
@@ -337,32 +337,50 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
   return events;
 }
 
-/// True where the sender may do that to the goal: the owner, who asked for it first, and the role
-/// that commands may. Names the sender in the event, where it is not the owner.
-bool Core::take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes) {
-  if (!goal.sender)
-    return true;
+/// True where the person may do that to the goal: the owner, who asked for it first, and operators.
+/// Names the person in the event, where it is not the owner. is_old: written before this start.
+bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Notes& notes) {
   const GoalId& id = event.goal.id;
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
+  const std::string who = named(event.goal.requester, goal.person);
+  event.goal.requester = who;
+  const auto note = [&](AuditEntry::Act act, const std::string& text) {
+    if (!is_old)
+      notes.audit({act, who, "goal " + describe(id) + (text.empty() ? "" : ", " + text)});
+  };
   const auto found = owners_.find(id);
   if (found == owners_.end()) {
-    if (writes)
-      owners_[id] = {goal.sender->name, event.goal.requester};
+    if (writes) {
+      owners_[id] = {goal.person, event.goal};
+      note(AuditEntry::Act::asked, describe(Request{event.goal.functor, event.goal.arguments}));
+    }
     return true;
   }
   Owner& owner = found->second;
-  if (!goal.sender->name.empty() && goal.sender->name == owner.name)
-    return true;
-  const std::string who = goal.sender->name.empty() ? "a stranger" : goal.sender->name;
-  if (!goal.sender->commands) {
-    if (!std::exchange(owner.told, true))
-      notes.warn("goal " + describe(id) + " of " + quoted(owner.requester) + ": " + who +
-                 " may not " + (writes ? "change" : "cancel") +
-                 " it; its owner may, or an operator");
+  const auto asked = requesters_.find(id);
+  const bool by_its_program = !writes && goal.event.why.empty() && asked != requesters_.end() &&
+                              asked->second == goal.writer;  // which knows for whom
+  if (!by_its_program && !may_end(goal.person, owner.person)) {
+    const std::string why = "goal " + describe(id) + " of " + quoted(owner.goal.requester) + ": " +
+                            (goal.person->name.empty() ? "a stranger" : goal.person->name) +
+                            " may not " + (writes ? "change" : "cancel") +
+                            " it; its owner may, or an operator";
+    if (!std::exchange(owner.told, true)) {
+      notes.warn(why);
+      note(AuditEntry::Act::refused, std::string("to ") + (writes ? "change" : "cancel") + " it");
+    }
     return false;
   }
-  event.by = who;
-  event.goal.requester = owner.requester;
+  if (goal.person && owner.person && goal.person->name != owner.person->name && !by_its_program) {
+    event.by = goal.person->name.empty() ? "a stranger" : goal.person->name;
+    event.goal.requester = owner.goal.requester;
+  }
+  if (!writes)
+    note(AuditEntry::Act::canceled, event.why);
+  else if (event.goal != owner.goal)
+    note(AuditEntry::Act::changed, describe(Request{event.goal.functor, event.goal.arguments}));
+  if (writes)
+    owner.goal = event.goal;
   return true;
 }
 

@@ -189,16 +189,19 @@ TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
 // The rights of programs on a goal, on a bus that knows the writer of a sample.
 class OwnedGoal : public CoreTest {
  protected:
-  using Sender = Core::Heard::Sender;
   static constexpr auto kWritten = GoalEvent::Kind::kWritten;
   static constexpr auto kDisposed = GoalEvent::Kind::kDisposed;
+  const Identity kKarenHerself{"karen", "agent"};
+  const Identity kAgent{"john", "agent"};
+  const Identity kOperator{"john", "operator"};
+  const Identity kStranger{"", "agent"};
 
-  static Core::Heard::Goal by(const Sender& sender, GoalEvent::Kind kind, int priority = 0) {
-    Core::Heard::Goal heard = written(1, sender.name == "karen" ? kKaren : kJohn);
+  static Core::Heard::Goal by(const Identity& person, GoalEvent::Kind kind, int priority = 0) {
+    Core::Heard::Goal heard = written(1, person.name == "karen" ? kKaren : kJohn);
     heard.event.kind = kind;
     heard.event.goal.priority = priority;
-    heard.event.goal.requester = sender.name + ", a test";
-    heard.sender = sender;
+    heard.event.goal.requester = "a test";
+    heard.person = person;
     return heard;
   }
   Core::Outputs hear(const Core::Heard::Goal& goal) {
@@ -209,27 +212,28 @@ class OwnedGoal : public CoreTest {
 };
 
 TEST_F(OwnedGoal, AnotherMayNeitherChangeNorCancelIt) {
-  hear(by({"karen"}, kWritten));
+  hear(by(kKarenHerself, kWritten));
   ASSERT_EQ(state(1), v1::GOAL_UNDERWAY);
-  EXPECT_TRUE(says(hear(by({"john"}, kDisposed)).notes,
-                   "\"karen, a test\": john may not cancel it; its owner may, or an operator"));
+  EXPECT_TRUE(
+      says(hear(by(kAgent, kDisposed)).notes,
+           "\"karen (agent), a test\": john may not cancel it; its owner may, or an operator"));
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
-  EXPECT_TRUE(hear(by({"john"}, kWritten, 7)).notes.lines().empty());  // one message is enough
-  hear(by({""}, kDisposed));
+  EXPECT_TRUE(hear(by(kAgent, kWritten, 7)).notes.lines().empty());  // one message is enough
+  hear(by(kStranger, kDisposed));
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
-  EXPECT_EQ(status().requester, "karen, a test");
+  EXPECT_EQ(status().requester, "karen (agent), a test");
   EXPECT_NE(status().reason, "changed by its requester");
 }
 
 TEST_F(OwnedGoal, ItsOwnerMay) {
-  hear(by({"karen"}, kWritten));
-  hear(by({"karen"}, kWritten, 7));
+  hear(by(kKarenHerself, kWritten));
+  hear(by(kKarenHerself, kWritten, 7));
   EXPECT_EQ(status().reason, "changed by its requester");
-  hear(by({"karen"}, kDisposed));
+  hear(by(kKarenHerself, kDisposed));
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by the program that asked for it");
   // Another program of hers.
-  Core::Heard::Goal second = by({"karen"}, kWritten);
+  Core::Heard::Goal second = by(kKarenHerself, kWritten);
   second.event.goal.id.number = 2;
   hear(second);
   second.event.kind = kDisposed;
@@ -239,17 +243,62 @@ TEST_F(OwnedGoal, ItsOwnerMay) {
 }
 
 TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
-  hear(by({"karen"}, kWritten));
-  hear(by({"john", true}, kWritten, 7));
+  hear(by(kKarenHerself, kWritten));
+  hear(by(kOperator, kWritten, 7));
   EXPECT_EQ(status().reason, "changed by john");
-  EXPECT_EQ(status().requester, "karen, a test");
+  EXPECT_EQ(status().requester, "karen (agent), a test");
   // The goal is still hers: it does not end with the other person's program.
   inputs_.heard.lost_requesters = {kJohn};
   step();
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
-  hear(by({"john", true}, kDisposed));
+  hear(by(kOperator, kDisposed));
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by john");
+}
+
+// The dialogue asks for those whose words it has heard, and knows when their goals end.
+TEST_F(OwnedGoal, TheProgramThatAskedForAnotherWithdrawsItAndASiblingDoesNot) {
+  Core::Heard::Goal goal = by(kKarenHerself, kWritten);
+  goal.writer = kJohn;
+  hear(goal);
+  Core::Heard::Goal end = by({"flakey", "services"}, kDisposed);
+  end.writer = kKaren;
+  hear(end);
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  end.writer = kJohn;
+  hear(end);
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+}
+
+// A door is one program for several persons: it names who cancels.
+TEST_F(OwnedGoal, APersonAtADoorDoesNotCancelThoseOfAnother) {
+  Core::Heard::Goal goal = by({"anna at flakey", "agent"}, kWritten);
+  hear(goal);
+  Core::Heard::Goal end = by({"bob at flakey", "agent"}, kDisposed);
+  end.event.why = "by bob";
+  hear(end);
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  end.person = Identity{"anna at flakey", "agent"};
+  hear(end);
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+}
+
+TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {
+  using Act = AuditEntry::Act;
+  const auto acts = [&](const Core::Heard::Goal& goal) {
+    std::vector<Act> all;
+    for (const AuditEntry& entry : hear(goal).notes.audit()) {
+      EXPECT_EQ(entry.who, goal.person->text() + ", a test");
+      all.push_back(entry.act);
+    }
+    return all;
+  };
+  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector{Act::asked});
+  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector<Act>{}) << "told once more";
+  EXPECT_EQ(acts(by(kAgent, kWritten, 7)), std::vector{Act::refused});
+  EXPECT_EQ(acts(by(kAgent, kDisposed)), std::vector<Act>{}) << "one entry is enough";
+  EXPECT_EQ(acts(by(kOperator, kWritten, 7)), std::vector{Act::changed});
+  EXPECT_EQ(acts(by(kOperator, kDisposed)), std::vector{Act::canceled});
 }
 
 TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {

@@ -7,6 +7,7 @@ import {ahead, askInstead, nameOf, quoted} from './goals';
 import {Legend} from './legend';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
+import {strangersIn} from './strangers';
 import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
 import {doubt, type Layers, type Target, View} from './view';
 import {forPage, keyless, old, percent, seconds} from './words';
@@ -109,6 +110,7 @@ function Header({link, seen: s}: {link: Link; seen: Seen}) {
   const info = link.data<ConsoleInfo>('console');
   // A replay also plays the recorder's own status.
   const runs = (name: string) => link.all<ServiceStatus>('system/status').some(([, {data, at}]) => data.name === name && performance.now() - at < 3000);
+  const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
     {runs('replay') ? <span class="chip warn" title="saphira replay plays it: nothing here moves">a recording</span>
@@ -118,6 +120,7 @@ function Header({link, seen: s}: {link: Link; seen: Seen}) {
       {link.roundTrip > 0 && s.state !== 'gone' && <span class="wide">, there and back {Math.round(link.roundTrip)} ms</span>}
     </span>
     <span class="grow" />
+    {strangers.length > 0 && <span class="chip bad" title="see Programs">{strangers.length === 1 ? 'a stranger is' : `${strangers.length} strangers are`} kept out</span>}
     {info?.simulator && <a class="wide" href="simulator.html">the simulator's own view</a>}
     {/* At the touch, also of a second finger, which makes no click; the click is the keyboard's. */}
     <button class="estop" onPointerDown={() => link.estop()} onClick={e => e.detail === 0 && link.estop()}

@@ -1,4 +1,5 @@
 // Panels: goals, behaviors, intentions, programs and messages, in words and bars.
+import {strangersIn} from './strangers';
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
@@ -226,10 +227,22 @@ function Because({cause, depth}: {cause: Cause; depth: number}) {
     <ul>{cause.because.map((c, i) => <Because key={c.kind + i} cause={c} depth={depth + 1} />)}</ul></details></li>;
 }
 
+// Who is not let in: the addresses, and from the log who called itself what.
+function KeptOut({link}: {link: Link}) {
+  const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
+  const refused = link.all<LogRecord>('system/log').filter(([, {data}]) => / is not let in /.test(data.text));
+  if (strangers.length + refused.length === 0) return null;
+  return <div class="told bad" role="alert"><strong>Kept out of the bus</strong>
+    <ul class="lines">{strangers.map(s => <li key={s.address}>{s.address}: {s.packets} packets in {s.during} s, the last {s.ago} s ago; heard by {s.by.join(', ')}</li>)}
+      {refused.map(([key, {data}]) => <li key={key}><time class="faint">{clock(data.time_ns / 1e6)}</time><span><span class="faint">{data.name}</span> {data.text}</span></li>)}</ul>
+  </div>;
+}
+
 export function Programs({link, now}: {link: Link; now: number}) {
   const programs = link.all<ServiceStatus>('system/status').sort((a, b) => a[1].data.name.localeCompare(b[1].data.name));
   const services = link.all<Processes>('processes').sort((a, b) => a[1].data.service.localeCompare(b[1].data.service));
   return <>
+    <KeptOut link={link} />
     <table class="programs"><thead><tr><th scope="col">Program</th><th scope="col">State</th><th scope="col" class="number">Load</th>
       <th scope="col" class="number">Step</th><th scope="col" class="number">Age</th></tr></thead>
       <tbody>{programs.map(([key, {data, at}]) => {

@@ -7,16 +7,17 @@ import http from 'node:http';
 import https from 'node:https';
 import net from 'node:net';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {output, start, until} from './processes.mjs';
 import {frame, socketTo} from './socket.mjs';
 
 const mostMemory = 80;       // [MB]
+const keyFile = join(mkdtempSync(join(tmpdir(), 'saphira-keys-')), 'door-keys');
 let gateway, port, key;
 
 before(async () => {
-  gateway = start('saphira-console', '--robot', `hostile-${process.pid}`, '--port', '0');
+  gateway = start('saphira-console', '--robot', `hostile-${process.pid}`, '--port', '0', '--person-keys', keyFile);
   const address = await until('the address', () => output().match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
   port = Number(address[1]);
   key = address[2];
@@ -25,6 +26,7 @@ after(async () => {
   gateway.kill('SIGTERM');
   const [code] = await new Promise(resolve => gateway.on('exit', (...end) => resolve(end)));
   assert.equal(code, 0, output());
+  rmSync(dirname(keyFile), {recursive: true});
 });
 
 function get(path, headers = {}) {
@@ -74,6 +76,31 @@ test('without the right key nothing but watching and the stop', async () => {
   own.say({type: 'hello', key, name: 'ann'});
   assert.equal((await until('an answer', () => own.texts[0])).may_drive, true);
   own.socket.destroy();
+});
+
+test('a person has the rights of their key until it is revoked', async () => {
+  const keys = (...words) => {
+    const run = spawnSync(join(process.env.SAPHIRA_BIN_DIR, 'saphira'), ['keys', ...words, '--file', keyFile], {encoding: 'utf8'});
+    assert.equal(run.status, 0, run.stderr);
+    return run.stdout.match(/^[0-9a-f]{32}$/m)?.[0];
+  };
+  const greet = (key, mayDrive) => until(`a greeting with may_drive ${mayDrive}`, async () => {
+    const person = await connect('saphira.commands');
+    person.say({type: 'hello', key, name: 'mallory'});
+    if ((await until('an answer', () => person.texts[0])).may_drive === mayDrive) return person;
+    person.socket.destroy();
+    return undefined;
+  });
+  const bob = keys('add', 'bob', '--right', 'watch'), anna = keys('add', 'anna', '--right', 'drive');
+  const driver = await greet(anna, true), watcher = await greet(bob, false);
+  driver.say({type: 'estop_reset'});
+  watcher.say({type: 'take', force: true});
+  for (const person of [driver, watcher])
+    await until('the refusal', () => person.texts.some(text => text.type === 'note' && /Your key is to/.test(text.text)));
+  keys('revoke', 'anna');
+  await until('the end of what the key had open', () => driver.closed);
+  const again = await greet(anna, false);
+  for (const person of [watcher, again]) person.socket.destroy();
 });
 
 test('who says no hello is let go', async () => {

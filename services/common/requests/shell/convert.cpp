@@ -2,6 +2,7 @@
 
 #include "geometry/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira {
 namespace {
@@ -85,15 +86,18 @@ std::vector<v1::Argument> to_bus(const Arguments& arguments) {
   return converted(arguments, [](const auto& each) { return to_bus(each); });
 }
 
-Request from_bus(const v1::Request& request) {
+Request from_bus(const bus::Sample<v1::Request>& sample) {
+  const v1::Request& request = sample.data;
+  const Checked person = bus::asker_of(sample.info, request.person);
   return {request.functor,
           from_bus(request.arguments),
-          request.source.substr(0, 255),
+          named(request.source.substr(0, 255), person),
           request.service,
           {request.stamp.epoch, request.stamp.cycle},
           request.asker,
           request.number,
-          request.deadline};
+          request.deadline,
+          person};
 }
 
 v1::Request to_bus(const Request& request) {
@@ -104,7 +108,8 @@ v1::Request to_bus(const Request& request) {
           .service = request.service,
           .functor = request.functor,
           .arguments = to_bus(request.arguments),
-          .deadline = request.deadline};
+          .deadline = request.deadline,
+          .person = bus::to_bus(request.person)};
 }
 
 Answer from_bus(const v1::Answer& answer) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "saphira/bus/endpoint.hpp"
 #include "saphira/idl/request.hpp"
 #include "saphira/requests/request.hpp"
 
@@ -18,8 +19,9 @@ v1::Argument to_bus(const Argument& argument);
 Arguments from_bus(const std::vector<v1::Argument>& arguments);
 std::vector<v1::Argument> to_bus(const Arguments& arguments);
 
-/// The source, which any program may write, is cut to the length of a line.
-Request from_bus(const v1::Request& request);
+/// The source, which any program may write, is cut to the length of a line, and has the asker's
+/// checked identity before it.
+Request from_bus(const bus::Sample<v1::Request>& sample);
 v1::Request to_bus(const Request& request);
 
 /// A code that is not of the contract reads as lost.

@@ -1,6 +1,7 @@
 #include "requests/shell/desk.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 
 #include "requests/shell/convert.hpp"
@@ -9,18 +10,16 @@
 namespace saphira {
 namespace {
 
-/// With the asker's identity, as checked by the bus.
-Request from(bus::Sample<v1::Request>& sample) {
-  sample.data.source = bus::named(sample.data.source, sample.info);
-  return from_bus(sample.data);
-}
-
 constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
 
 }  // namespace
 
 Desk::Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers)
-    : node_(node), writer_(node.writer(answers)) {}
+    : node_(node), writer_(node.writer(answers)) {
+  // The bridge, which keeps the audit, decides itself what it enters of its own requests.
+  if (std::string_view(answers.name) != bus::topics::kRobotAnswers.name)
+    audit_.emplace(node);
+}
 
 void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act) {
   counters_.push_back(std::make_unique<Counter>(
@@ -42,7 +41,7 @@ void Desk::take(Counter& counter) {
   for (auto& sample : counter.reader.take())
     if (!sample.info.disposed &&
         (sample.data.service.empty() || sample.data.service == node_.options().name))
-      counter.waiting.push_back(from(sample));
+      counter.waiting.push_back(from_bus(sample));
   const auto later = std::stable_partition(
       counter.waiting.begin(), counter.waiting.end(),
       [&](const Request& one) { return !node_.options().lockstep || is_due(one, now_); });
@@ -72,7 +71,13 @@ void Desk::handle(const Counter& counter, Request request) {
   std::optional<Answer> done = refusal(counter.functors, request);
   if (!done)
     done = counter.act(request);
-  if (done && !well(done->code)) {
+  const bool refuses = done && !well(done->code);
+  const bool is_own =
+      request.person && (request.person->role == "services" || request.person->role == "robot");
+  if (audit_ && !is_own)
+    audit_->write({refuses ? AuditEntry::Act::refused : AuditEntry::Act::asked, request.source,
+                   describe(request) + (refuses ? ": " + done->text : "")});
+  if (refuses) {
     ++refused_;
     node_.warn("a request of " + request.source + ": " + done->text);
   } else {

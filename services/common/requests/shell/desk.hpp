@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/requests/request.hpp"
 
@@ -52,6 +53,7 @@ class Desk {
   /// The newest requests, with the newest answer to each: oldest first.
   std::deque<std::pair<Id, std::optional<v1::Answer>>> known_;
   std::uint64_t refused_ = 0;
+  std::optional<bus::Audit> audit_;
 };
 
 }  // namespace saphira

@@ -160,5 +160,24 @@ TEST_F(DeskTest, LiveServicesAreHeardAtOnce) {
   EXPECT_EQ(total, 1.0);
 }
 
+TEST_F(DeskTest, NamesTheAskerAsTheBusHasCheckedIt) {
+  open();
+  writer.set_sender({"flakey", "operator"});
+  v1::Request request = count(1.0);
+  request.asker = 5;
+  request.number = 1;
+  request.source = "the console";
+  request.person = {"anna", "agent"};
+  writer.write(request);
+  auto audit = person.reader(bus::topics::kAudit);
+  desk->take(now);
+  const auto entries = audit.take();
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].data.act, v1::AUDIT_ASKED);
+  EXPECT_EQ(entries[0].data.who, "anna at flakey (agent), the console");
+  EXPECT_EQ(newest.person, (Identity{"anna at flakey", "agent"}));
+  EXPECT_EQ(newest.source, "anna at flakey (agent), the console");
+}
+
 }  // namespace
 }  // namespace saphira

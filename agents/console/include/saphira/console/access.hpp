@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "saphira/security/door_keys.hpp"
 
 namespace saphira::console {
 
 /// The rules of access. A browser also carries requests of other sites' pages to this program, so
 /// the origin of a request is checked before anything else.
 struct AccessSettings {
-  std::string key;                 ///< required for everything except watching from this machine
+  /// With all rights. This one or a person's is required for all but watching from this machine.
+  std::string key;
   std::vector<std::string> names;  ///< host names of this machine, and of proxies before it
   int port = 0;                    ///< of this program
   bool always = false;             ///< the key is required for watching from this machine, too
@@ -27,11 +32,19 @@ struct Caller {
 /// a proxy may have changed host or port, so the names of `settings` may be origins.
 std::string refusal(const AccessSettings& settings, const Caller& caller);
 
-/// True for the right key. A wrong one takes as long.
-bool right_key(const AccessSettings& settings, std::string_view key);
+/// Who has a key, and may do what.
+struct Visitor {
+  security::DoorRight right = security::DoorRight::none;
+  std::optional<security::DoorKey> person{};  ///< none: the one key of `settings`, or no key
+
+  bool may(security::DoorRight wanted) const { return right >= wanted; }
+};
+/// now: [s] since 1970.
+Visitor visitor_of(const AccessSettings& settings, const security::DoorKeys& keys,
+                   std::string_view key, std::int64_t now);
 
 /// Watching from this machine needs no key. A host or an origin that this program does not have on
 /// this machine is that of a proxy or a tunnel: anybody may be behind it.
-bool may_watch(const AccessSettings& settings, const Caller& caller, std::string_view key);
+bool may_watch(const AccessSettings& settings, const Caller& caller);
 
 }  // namespace saphira::console

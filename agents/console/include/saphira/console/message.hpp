@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "saphira/security/door_keys.hpp"
 #include "saphira/teleop/control.hpp"
 
 namespace saphira::console {
@@ -82,6 +83,9 @@ using Message =
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
+
+/// What a page needs for it. Who watches may stop; what concerns others is to operate.
+security::DoorRight right_for(const Message& message);
 
 /// For the pages: holder, name, asked (id and name of each), note, let_go.
 std::string to_json(const teleop::Control::State& state);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -194,7 +195,7 @@ class Core {
 
   CoreSettings settings_;
   std::vector<Output> out_;
-  std::vector<std::string> words_;  ///< to be logged when the packets are out
+  Notes words_;  ///< to be put out when the packets are out
 
   protocol::PacketParser parser_;
   reflector::Connection connection_;
@@ -220,9 +221,10 @@ class Core {
   Told told_;
   authority::Guarded guarded_;
   bool grant_changed_ = false;
-  bool driver_spoke_ = false;  ///< the present driver, since the last answer
-  double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
-  double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
+  std::set<std::string> refused_drivers_;  ///< in the audit since the driver changed
+  bool driver_spoke_ = false;              ///< the present driver, since the last answer
+  double expires_at_ = 0.0;                ///< [s] end of the present driver's lease
+  double flush_at_ = 0.0;  ///< [s] time to send without the driver's answer; 0: none
   struct Stopping {
     StopId id;
     std::string stopped;      ///< the stopped drivers, in words

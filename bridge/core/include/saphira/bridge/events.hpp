@@ -47,6 +47,11 @@ struct Surroundings {
   int keeper_restarts = 0;
 };
 
+/// An entry for the audit from another program, as far as its word counts: the robot's services
+/// have checked whom they name. Others say by themselves only who came in with which key, or was
+/// refused; nothing where it is more.
+std::optional<AuditEntry> reported(AuditEntry entry, const Checked& writer);
+
 // ---- Outputs of the core. The order counts.
 
 /// Bytes to the robot: one or more whole packets.
@@ -137,6 +142,6 @@ struct StatusReport {
 
 using Output = std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket,
                             DevicesChanged, GrantDecided, StopEnded, WatchLink, CloseLink,
-                            KeepLatches, KeepOdometry, StatusReport, Note>;
+                            KeepLatches, KeepOdometry, StatusReport, Note, AuditEntry>;
 
 }  // namespace saphira::bridge

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/identity.hpp"
 #include "saphira/bus/qos.hpp"
 
 namespace saphira::bus {
@@ -17,15 +18,8 @@ using WriterId = std::array<std::uint8_t, 16>;
 /// The key of a keyed sample, at most 16 bytes; all zero for a type without key.
 using InstanceKey = std::array<std::uint64_t, 2>;
 
-/// The identity of a program by its certificate, which the receiver has checked.
-struct Identity {
-  std::string name;  ///< of the machine or person, such as karen [empty: unknown]
-  std::string role;  ///< such as operator
-
-  bool operator==(const Identity&) const = default;
-  /// "karen (operator)".
-  std::string text() const { return name.empty() ? "a stranger" : name + " (" + role + ")"; }
-};
+/// By the program's certificate.
+using saphira::Identity;
 
 struct SampleInfo {
   WriterId writer{};
@@ -54,6 +48,8 @@ struct TypeInfo {
   /// Sets the members that the JSON object names. std::invalid_argument gives the place of an
   /// error.
   void (*parse)(const std::string& json, void* sample);
+  /// Makes all texts ones for a terminal (base/printable.hpp); line breaks and tabs stay.
+  void (*make_printable)(void* sample);
 };
 
 /// The types of idl/ alone; defined in src/types.cpp.
@@ -96,6 +92,10 @@ class Writer {
   /// Waits until every matched reliable reader has all written samples; true where they have.
   bool wait_acknowledged(int timeout_ms) { return raw_->wait_acknowledged(timeout_ms); }
   std::size_t matched() const { return raw_->matched(); }
+  /// In memory alone: as if the bus had checked that identity.
+  void set_sender(const Identity& sender) {
+    raw_->set_sender(std::make_shared<const Identity>(sender));
+  }
 
  private:
   std::unique_ptr<RawWriter> raw_;

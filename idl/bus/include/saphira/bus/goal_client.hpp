@@ -41,8 +41,9 @@ class GoalClient {
   void adopt(const v1::GoalId& id, v1::Goal goal);
   /// Replaces the goal under the id of one that this client asked for.
   void change(const v1::GoalId& id, v1::Goal goal);
-  /// Withdraws a goal: also one of another client, by its id. why: for its status, in words.
-  void cancel(const v1::GoalId& id, const std::string& why = {});
+  /// Withdraws a goal: also one of another client, by its id. why: for its status, in words; needed
+  /// with `by`, the person who cancels.
+  void cancel(const v1::GoalId& id, const std::string& why = {}, const v1::Person& by = {});
 
   /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.

@@ -30,12 +30,13 @@ struct NodeOptions {
   std::uint32_t domain = 0;       ///< DDS domain [0, 231]
   Profile profile = Profile::host;
   std::vector<std::string>
-      peers;              ///< wan: addresses of other machines; one that all name is enough
-  std::string interface;  ///< lan, wan: address of the one interface to use; empty: all
-  bool lockstep = false;  ///< cyclic topics lose nothing and steps wait for their inputs
-  std::string security;   ///< folder of credentials [empty or kOpenBus: an open bus]
-  std::string program;    ///< program name, which gives its role [empty: as its name]
-  bool dry_run = false;   ///< checks the credentials only; joins nothing but a bus in memory
+      peers;                  ///< wan: addresses of other machines; one that all name is enough
+  std::string interface;      ///< lan, wan: address of the one interface to use; empty: all
+  bool lockstep = false;      ///< cyclic topics lose nothing and steps wait for their inputs
+  std::string security;       ///< folder of credentials [empty or kOpenBus: an open bus]
+  std::string program;        ///< program name, which gives its role [empty: as its name]
+  bool for_terminal = false;  ///< readers hand over texts without control characters of others
+  bool dry_run = false;       ///< checks the credentials only; joins nothing but a bus in memory
 
   Files files() const { return dry_run ? Files::kStay : Files::kChange; }
 };
@@ -117,6 +118,10 @@ class Node {
   std::string bar() const;
   /// With security, the identity of this program; none on an open bus.
   std::optional<Identity> identity() const;
+
+  /// What the log has told of programs that were not let in, and of refused samples, since the last
+  /// call; the newest 64.
+  std::vector<std::string> take_refused();
 
   const NodeOptions& options() const;
   /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.

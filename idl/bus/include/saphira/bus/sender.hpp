@@ -1,17 +1,19 @@
 #pragma once
 
-#include <string>
-
 #include "saphira/bus/endpoint.hpp"
+#include "saphira/idl/common.hpp"
 
 namespace saphira::bus {
 
-/// The writer of a sample, for people: its own name, and with security its identity before that:
-/// "karen (operator), saphira drive".
-inline std::string named(const std::string& says, const SampleInfo& info) {
-  if (!info.sender)
-    return says;
-  return info.sender->text() + (says.empty() ? "" : ", " + says);
+/// For whom a sample counts: its writer, or the person that the writer names (base/identity.hpp).
+/// A withdrawn sample names nobody: its data are from before.
+inline Checked asker_of(const SampleInfo& info, const v1::Person& person = {}) {
+  const Checked writer = info.sender ? Checked(*info.sender) : std::nullopt;
+  return info.disposed ? writer : acting_for(writer, {person.name, person.role});
+}
+
+inline v1::Person to_bus(const Checked& who) {
+  return who ? v1::Person{who->name, who->role} : v1::Person{};
 }
 
 }  // namespace saphira::bus

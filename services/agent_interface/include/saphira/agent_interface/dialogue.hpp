@@ -107,6 +107,7 @@ class Dialogue {
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
     bool changed = false;                ///< save() has other contents
     std::string note;                    ///< for the log; empty: none
+    AuditEntry denied{};                 ///< the person may not do it; without a text: they may
     UnknownName unknown{};
     Answer answer{};  ///< of forget()
   };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/notes.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
@@ -39,6 +40,7 @@ struct Trigger {
   std::string action;
   Arguments action_arguments;  ///< unbound ones are filled from the condition's result
   std::uint64_t times = 0;     ///< firings at most; 0: without end
+  Checked person{};            ///< the requester, for whom its action is requested
 
   bool operator==(const Trigger&) const = default;
 };
@@ -81,6 +83,8 @@ class Facilitator {
   /// A known trigger is set anew where it has changed; otherwise its firings still count. One with
   /// a period below 0.1 s is not set, and a note says so.
   void set(const Trigger& trigger, double now);
+  /// True for its requester and operators, who may set it anew and take it back.
+  bool may_change(const std::pair<std::uint64_t, std::uint64_t>& trigger, const Checked& who);
   /// By its writer. Its action under way is withdrawn, as a goal ends with its client.
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   /// The trigger's writer is not heard any more: as take_back(). Its firings count when it is heard
@@ -91,7 +95,8 @@ class Facilitator {
   void call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
-  /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one.
+  /// A new request; a known one is ignored. With the functor `withdraw`: the end of a known one,
+  /// for its asker and for operators.
   void ask(const Request& request, double now);
   /// The asker no longer wants a request: no further agent gets it, and an agent that is at work on
   /// an action is told. That agent's answer is the end.
@@ -105,6 +110,7 @@ class Facilitator {
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< each once
+    std::vector<AuditEntry> audit;      ///< who asks for actions, and who is refused
     bool changed = false;  ///< the memory has changed: it is kept before the requests are sent
   };
   /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
@@ -176,6 +182,7 @@ class Facilitator {
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
   void list_triggers(const Request& request);
+  void deny(const std::string& who, const std::string& what);
   void stop_action(const Id& trigger);
   std::optional<Answer> take_apart(Open& open) const;
   void pose(const Id& id, double now);

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/identity.hpp"
+#include "saphira/base/notes.hpp"
 #include "saphira/requests/argument.hpp"
 
 namespace saphira::agent_interface {
@@ -24,6 +26,7 @@ struct Utterance {
   double confidence = 1.0;  ///< [0..1] of the recognizer
   double time = 0.0;        ///< [s] since 1970; 0: unknown
   ProgramId program{};      ///< the task ends with this program
+  Checked person{};         ///< who said it, as checked; the speaker's name is not
 };
 
 /// An utterance of the robot.
@@ -59,6 +62,7 @@ struct WantedGoal {
   bool lasting = false;   ///< a task, which continues while the dialogue restarts
   std::string speaker{};  ///< the person who asked for it; empty: unknown
   int priority = 0;       ///< larger: suspends the others
+  Checked person{};       ///< who asked for it
 
   /// The asker's name on the bus; empty: unknown.
   std::string requester() const { return speaker.empty() ? speaker : speaker + " (by words)"; }
@@ -96,7 +100,8 @@ struct Task {
 
 /// The tasks of all people, and their order. A brief goal (a motion, a look) interrupts a
 /// task, which goes on afterwards. A task takes the place of an earlier one of the same person; for
-/// that of somebody else the robot asks first. A value: no clock.
+/// that of somebody else the robot asks first. Where identities are checked, only its owner and
+/// operators end a task but by a stop. A value: no clock.
 class Tasks {
  public:
   struct Outputs {
@@ -104,6 +109,7 @@ class Tasks {
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
     std::vector<WantedGoal> goals;
     std::vector<Task> asks;  ///< the steps for which it asks "Shall I drop that?"
+    AuditEntry denied{};     ///< this person may not do it; without a text: they may
   };
 
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
@@ -139,6 +145,7 @@ class Tasks {
   void begin(Task task, Outputs& out);
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
   void release(Outputs& out);
+  Outputs deny(const Task& task, const Utterance& utterance) const;
 
   std::vector<Task> open_;     ///< at most one brief goal and one task
   std::vector<Task> stopped_;  ///< the steps of the task that the newest stop has ended

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/identity.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/base/stamp.hpp"
@@ -42,16 +43,11 @@ class Core {
   /// The events of a cycle, or between two. Lost writers come before new samples, which include
   /// their earlier ones.
   struct Heard {
-    /// Its writer, as checked by the bus.
-    struct Sender {
-      std::string name;       ///< empty: unknown
-      bool commands = false;  ///< may change and cancel the goals of others
-    };
     struct Goal {
-      GoalEvent event;
+      GoalEvent event;  ///< its requester: what that calls itself
       Writer writer{};
-      std::optional<Sender> sender{};  ///< none on an open bus
-      double age = 0.0;                ///< [s] since it was written
+      Checked person{};  ///< who writes it, or for whom
+      double age = 0.0;  ///< [s] since it was written
     };
     struct Claim {
       ClaimEvent event;
@@ -155,7 +151,7 @@ class Core {
 
  private:
   std::vector<GoalEvent> events_of(const Heard& heard, Notes& notes);
-  bool take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes);
+  bool take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Notes& notes);
   std::vector<ClaimEvent> claims_of(const Heard& heard);
   void note_grants(const std::vector<Heard::Grant>& estops);
   void look_around(const Inputs& inputs, Surroundings& around);
@@ -191,11 +187,11 @@ class Core {
   std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
   std::deque<MapNews> newer_maps_;     ///< lockstep: newer than the present cycle
   std::map<GoalId, Writer> requesters_;
-  /// With security: the first asker of a goal, its owner.
+  /// The first asker of a goal.
   struct Owner {
-    std::string name;
-    std::string requester;  ///< as in the goal's status
-    bool told = false;      ///< the refusal of another asker was reported
+    Checked person;
+    Goal goal;          ///< as it was written last, with the first asker as its requester
+    bool told = false;  ///< the refusal of another asker was reported
   };
   std::map<GoalId, Owner> owners_;
   std::map<std::uint64_t, Answer> answers_;  ///< the newest, by the number of the question

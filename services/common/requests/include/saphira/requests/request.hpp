@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/identity.hpp"
 #include "saphira/base/stamp.hpp"
 #include "saphira/base/withdraw.hpp"
 #include "saphira/requests/functor.hpp"
@@ -21,6 +22,7 @@ struct Request {
   std::uint64_t asker = 0;
   std::uint64_t number = 0;  ///< unique together with the asker; 0: not
   double deadline = 0.0;     ///< [s] after which an end is of no use; 0: none
+  Checked person{};          ///< who asks
 
   friend bool operator==(const Request&, const Request&) = default;
 };

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace saphira {
+
+/// A member of the site, or a person at a door of one, as the receiver of their samples has checked
+/// them.
+struct Identity {
+  std::string name;  ///< such as karen, or "karen at flakey", a person at a door [empty: unknown]
+  std::string role;  ///< such as operator
+
+  bool operator==(const Identity&) const = default;
+  /// "karen (operator)".
+  std::string text() const { return name.empty() ? "a stranger" : name + " (" + role + ")"; }
+};
+
+/// None: nobody is checked, as on an open bus.
+using Checked = std::optional<Identity>;
+
+/// A checked identity before what it calls itself: "karen (operator), saphira drive".
+inline std::string named(const std::string& says, const Checked& who) {
+  if (!who)
+    return says;
+  return who->text() + (says.empty() ? "" : ", " + says);
+}
+
+/// True where `who` may change, replace or end what `owner` has asked for: the owner and operators.
+/// A stop is anybody's, and no matter of this.
+inline bool may_end(const Checked& who, const Checked& owner) {
+  return !who || !owner || who->role == "operator" ||
+         (!who->name.empty() && who->name == owner->name);
+}
+
+/// For whom a sample counts whose writer names a person [empty name: nobody else]. The robot's own
+/// services have checked those whose words they pass on. A door is a member of the site: its person
+/// has a name within it, and at most its rights.
+inline Checked acting_for(const Checked& writer, const Identity& person) {
+  if (person.name.empty())
+    return writer;
+  if (!writer || writer->role == "services" || writer->role == "robot")
+    return person;
+  if (writer->name.empty() || (writer->role != "operator" && writer->role != "agent"))
+    return writer;
+  return Identity{person.name + " at " + writer->name, person.role == "operator" ? writer->role
+                                                       : person.role == "agent"  ? person.role
+                                                                                 : "observer"};
+}
+
+}  // namespace saphira

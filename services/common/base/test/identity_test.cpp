@@ -1,0 +1,60 @@
+#include "saphira/base/identity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira {
+namespace {
+
+const Identity kOperator{"karen", "operator"};
+const Identity kAgent{"planner", "agent"};
+
+TEST(Identity, OwnersAndOperatorsEndWhatIsAskedFor) {
+  const Identity observer{"john", "observer"};
+  EXPECT_TRUE(may_end(kAgent, kAgent));
+  EXPECT_TRUE(may_end(kOperator, kAgent));
+  EXPECT_FALSE(may_end(kAgent, kOperator));
+  EXPECT_FALSE(may_end(observer, kAgent));
+  EXPECT_TRUE(may_end(std::nullopt, kOperator));
+  EXPECT_TRUE(may_end(kAgent, std::nullopt));
+}
+
+TEST(Identity, TwoUnknownAreNotOnePerson) {
+  const Identity stranger{"", "agent"};
+  EXPECT_FALSE(may_end(stranger, stranger));
+}
+
+TEST(Identity, AWriterThatNamesNobodyActsForItself) {
+  EXPECT_EQ(acting_for(kAgent, {"", "operator"}), kAgent);
+  EXPECT_EQ(acting_for(std::nullopt, {}), std::nullopt);
+}
+
+TEST(Identity, TheRobotsServicesPassOnWhomTheyHaveChecked) {
+  EXPECT_EQ(acting_for(Identity{"flakey", "services"}, kOperator), kOperator);
+  EXPECT_EQ(acting_for(Identity{"flakey", "robot"}, kAgent), kAgent);
+  EXPECT_EQ(acting_for(std::nullopt, kAgent), kAgent);
+}
+
+TEST(Identity, APersonAtADoorIsNoMemberAndHasItsRightsAtMost) {
+  const Identity anna{"anna", "operator"};
+  EXPECT_EQ(acting_for(kOperator, anna), (Identity{"anna at karen", "operator"}));
+  EXPECT_EQ(acting_for(kAgent, anna), (Identity{"anna at planner", "agent"}));
+  EXPECT_EQ(acting_for(kOperator, {"anna", "agent"}), (Identity{"anna at karen", "agent"}));
+  EXPECT_EQ(acting_for(kOperator, {"anna", "services"}), (Identity{"anna at karen", "observer"}));
+  EXPECT_FALSE(may_end(acting_for(kAgent, kOperator), kOperator));
+}
+
+TEST(Identity, NobodyElseSpeaksForPersons) {
+  const Identity observer{"john", "observer"};
+  EXPECT_EQ(acting_for(observer, kOperator), observer);
+  const Identity stranger{"", "agent"};
+  EXPECT_EQ(acting_for(stranger, kOperator), stranger);
+}
+
+TEST(Identity, StandsBeforeWhatSomebodyCallsItself) {
+  EXPECT_EQ(named("saphira goal", kOperator), "karen (operator), saphira goal");
+  EXPECT_EQ(named("", kOperator), "karen (operator)");
+  EXPECT_EQ(named("saphira goal", std::nullopt), "saphira goal");
+}
+
+}  // namespace
+}  // namespace saphira
