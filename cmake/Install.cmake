@@ -44,7 +44,7 @@ saphira_component(behaviors geometry requests lps behaviors)
 if(SAPHIRA_WITH_DDS)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
                     ${CMAKE_BINARY_DIR}/idl/generated/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE)
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE PATTERN "*.py" EXCLUDE)
   # The contract itself, for agents in other languages and of other vendors: the types, also as JSON
   # Schema, the topics with the name of each one's QoS, and the README with the table of QoS and the
   # rule of partitions.
