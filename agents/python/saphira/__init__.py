@@ -1,0 +1,22 @@
+"""Agents for Saphira robots.
+
+    import saphira
+
+    robot = saphira.connect()
+    robot.go("N2").wait()
+
+With asyncio, `await robot.go("N2")`. docs/python.md has the rest.
+"""
+
+from . import topics, v1
+from ._bus import version
+from ._errors import Canceled, Failed, Nobody, Refused, Trouble
+from ._robot import Answer, Goal, Robot, Writer, connect
+from ._values import OPEN, Open, Point
+from ._waiting import Pending, Stream
+
+__version__ = version.split()[1].rstrip(",")
+__all__ = [
+    "OPEN", "Answer", "Canceled", "Failed", "Goal", "Nobody", "Open", "Pending", "Point",
+    "Refused", "Robot", "Stream", "Trouble", "Writer", "connect", "topics", "v1",
+]  # fmt: skip
