@@ -3,7 +3,7 @@
 import dataclasses
 import enum
 import math
-from typing import Any, get_args, get_origin
+from typing import Any, get_args, get_origin, get_type_hints
 
 import pytest
 import saphira
@@ -11,7 +11,7 @@ from saphira import _bus, topics, v1
 
 TYPES: list[Any] = sorted(
     {topic.type for topic in vars(topics).values() if isinstance(topic, topics.Topic)},
-    key=lambda type_: type_.__name__,
+    key=str,
 )
 
 
@@ -27,9 +27,9 @@ class Filler:
         if get_origin(type_) is list:
             return [self.value(get_args(type_)[0]) for _ in range(2)]
         if dataclasses.is_dataclass(type_):
-            fields = dataclasses.fields(type_)
-            return type_(*(self.value(field.type) for field in fields))
-        if isinstance(type_, type) and issubclass(type_, enum.IntEnum):
+            make: Any = type_
+            return make(*(self.value(member) for member in get_type_hints(type_).values()))
+        if issubclass(type_, enum.IntEnum):
             return type_([0, 1, 77][self.extreme])
         if type_ is bool:
             return self.count % 2 == 0

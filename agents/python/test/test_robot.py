@@ -25,7 +25,7 @@ def status_of(robot: saphira.Robot, id: v1.GoalId) -> v1.GoalStatus:
 
 
 def test_goes_to_a_place_with_progress(robot: saphira.Robot) -> None:
-    goal = robot.go("D")
+    goal = robot.go(0.5, 0.0)
     states = [status.state for status in goal]
     assert v1.GoalState.GOAL_UNDERWAY in states
     assert states[-1] == v1.GoalState.GOAL_SUCCEEDED
@@ -34,7 +34,7 @@ def test_goes_to_a_place_with_progress(robot: saphira.Robot) -> None:
 
 def test_asyncio_watches_while_it_goes(robot: saphira.Robot) -> None:
     async def drive() -> tuple[v1.GoalStatus, set[float]]:
-        task = asyncio.create_task(robot.go("A"))
+        task = asyncio.create_task(robot.go(saphira.Point(1.0, 0.0)))
         speeds = set()
         async for state in robot.state():
             speeds.add(state.velocity)
