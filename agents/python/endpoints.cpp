@@ -19,32 +19,13 @@ py::object python_of(const T& sample) {
   return to_python(sample, class_of(short_name<T>()));
 }
 
-/// What both kinds have: the endpoint, until it is closed.
+/// What both kinds have.
 template <class Face, class Kind>
-class Typed : public Face {
+class Typed : public Owned<Face, Kind> {
  public:
   Typed(const Owner& owner, Kind kind)
-      : owner_(owner), kind_(std::make_unique<Kind>(std::move(kind))) {}
-  ~Typed() override { close(); }
-  void close() override {
-    if (owner_.may_close())
-      kind_.reset();
-    else
-      static_cast<void>(kind_.release());  // its threads are not here
-  }
-  std::size_t matched() override { return kind().matched(); }
-
- protected:
-  Kind& kind() {
-    owner_.check();
-    if (!kind_)
-      throw std::runtime_error("the bus is closed");
-    return *kind_;
-  }
-
- private:
-  const Owner owner_;
-  std::unique_ptr<Kind> kind_;
+      : Owned<Face, Kind>(owner, std::make_unique<Kind>(std::move(kind))) {}
+  std::size_t matched() override { return this->kind().matched(); }
 };
 
 template <class T>

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "saphira/bus/node.hpp"
 
@@ -46,22 +47,49 @@ class Owner {
   const std::thread::id thread_ = std::this_thread::get_id();
 };
 
-/// A reader or writer of any topic. It is closed before its bus is.
+/// What is on a bus, such as a reader. It is closed before its bus is.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
   virtual void close() = 0;
-  virtual std::size_t matched() = 0;
+};
+
+/// An endpoint that is a `Kind`, until it is closed.
+template <class Face, class Kind>
+class Owned : public Face {
+ public:
+  Owned(const Owner& owner, std::unique_ptr<Kind> kind) : owner_(owner), kind_(std::move(kind)) {}
+  ~Owned() override { close(); }
+  void close() final {
+    if (owner_.may_close())
+      kind_.reset();
+    else
+      static_cast<void>(kind_.release());  // its threads are not here
+  }
+
+  /// std::runtime_error where it may not be used.
+  Kind& kind() {
+    owner_.check();
+    if (!kind_)
+      throw std::runtime_error("the bus is closed");
+    return *kind_;
+  }
+
+ private:
+  const Owner owner_;
+  std::unique_ptr<Kind> kind_;
 };
 
 class AnyReader : public Endpoint {
  public:
+  virtual std::size_t matched() = 0;
   /// (sample, withdrawn, sender or None, age) of each that has come, oldest first.
   virtual py::list take() = 0;
 };
 
 class AnyWriter : public Endpoint {
  public:
+  virtual std::size_t matched() = 0;
   virtual bool write(py::handle sample) = 0;
   virtual bool dispose(py::handle sample) = 0;
 };

@@ -9,17 +9,22 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "convert.hpp"
+#include "direct.hpp"
 #include "endpoints.hpp"
 #include "environment.hpp"
+#include "inquiry.hpp"
 #include "run_folder.hpp"
+#include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/request_client.hpp"
@@ -41,13 +46,35 @@ struct Parts {
   cli::Processes processes;
   bus::GoalClient goals;
   std::map<std::string, bus::RequestClient> clients;  ///< by topic
+  std::optional<bus::Agent> agent;
+  std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
 };
+
+using Driver = Owned<Endpoint, cli::DirectDriver>;
+using Inquiry = Owned<Endpoint, cli::Inquiry>;
+
+/// The explanation of what the robot does, as JSON.
+std::string explanation(Inquiry& inquiry, const std::string& wish) {
+  if (const std::string missing = inquiry.kind().missing(); !missing.empty())
+    throw py::index_error(missing);
+  const situation::Situation known = inquiry.kind().situation();
+  if (wish.empty())
+    return to_json(situation::why(known));
+  std::istringstream words(wish);
+  const auto parsed = situation::parse_wish(
+      {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()});
+  if (!parsed)
+    throw py::value_error("expected turn left, turn right, faster or slower, found " + wish);
+  return to_json(situation::why_not(known, *parsed));
+}
 
 class Bus {
  public:
   Bus(const std::string& name, const std::optional<std::string>& robot,
       const std::optional<std::uint32_t>& domain, const std::optional<std::string>& profile,
-      const std::vector<std::string>& peers, const std::optional<std::string>& security) {
+      const std::vector<std::string>& peers, const std::optional<std::string>& security,
+      std::string summary)
+      : summary_(std::move(summary)) {
     bus::NodeOptions options = bus::options_of_environment();
     options.name = name;
     options.program = name;
@@ -117,6 +144,10 @@ class Bus {
     Parts& own = parts();
     own.processes.poll();
     own.goals.poll();
+    if (own.agent) {
+      own.agent->poll();
+      own.node.publish_status();
+    }
   }
 
   std::string who_is_there() { return cli::who_is_there(parts().processes); }
@@ -164,6 +195,47 @@ class Bus {
     return list;
   }
 
+  /// Announces what this program can be asked for; its requests come out of requests().
+  void can(py::handle capability) {
+    const auto declared = sample_of<v1::Capability>(capability, "Capability");
+    agent().can(declared, [&own = parts()](const v1::Request& request) {
+      own.asked.push_back(request);
+      v1::Answer underway;
+      underway.code = v1::ANSWER_UNDERWAY;
+      return underway;
+    });
+  }
+  py::list requests() {
+    py::list list;
+    for (const v1::Request& request : std::exchange(parts().asked, {}))
+      list.append(to_python(request, class_of("Request")));
+    return list;
+  }
+  void answer(py::handle request, py::handle answer) {
+    agent().answer(sample_of<v1::Request>(request, "Request"),
+                   sample_of<v1::Answer>(answer, "Answer"));
+  }
+  py::object set(py::handle trigger) {
+    return to_python(agent().set(sample_of<v1::Trigger>(trigger, "Trigger")), class_of("GoalId"));
+  }
+  void take_back(py::handle trigger) {
+    agent().take_back(sample_of<v1::GoalId>(trigger, "GoalId"));
+  }
+  void tell(py::handle event) {
+    auto told = sample_of<v1::AgentEvent>(event, "AgentEvent");
+    agent().tell(told.functor, std::move(told.arguments));
+  }
+
+  /// Drives as a program, in the role direct.
+  std::shared_ptr<Driver> driver() {
+    return kept(std::make_shared<Driver>(
+        owner_, std::make_unique<cli::DirectDriver>(node(), bus::topics::kDriveDirect,
+                                                    node().options().name)));
+  }
+  std::shared_ptr<Inquiry> inquiry(std::int64_t cycle) {
+    return kept(std::make_shared<Inquiry>(owner_, std::make_unique<cli::Inquiry>(node(), cycle)));
+  }
+
   std::shared_ptr<AnyReader> reader(const std::string& topic) {
     return kept(make_reader(owner_, node(), topic));
   }
@@ -180,6 +252,15 @@ class Bus {
   }
   bus::Node& node() { return parts().node; }
 
+  bus::Agent& agent() {
+    Parts& own = parts();
+    if (!own.agent) {
+      own.agent.emplace(own.node, own.node.options().name, summary_);
+      own.agent->when_withdrawn(
+          [&own](const v1::Request& withdrawal) { own.asked.push_back(withdrawal); });
+    }
+    return *own.agent;
+  }
   bus::RequestClient& client_of(const std::string& topic) {
     Parts& own = parts();
     if (const auto found = own.clients.find(topic); found != own.clients.end())
@@ -201,6 +282,7 @@ class Bus {
   }
 
   const Owner owner_;
+  const std::string summary_;  ///< of the agent
   std::unique_ptr<Parts> parts_;
   std::vector<std::weak_ptr<Endpoint>> endpoints_;
 };
@@ -226,13 +308,38 @@ PYBIND11_MODULE(_bus, module) {
       .def("dispose", &AnyWriter::dispose)
       .def("matched", &AnyWriter::matched)
       .def("close", &AnyWriter::close);
+  py::class_<Driver, std::shared_ptr<Driver>>(module, "Driver")
+      .def("drive",
+           [](Driver& driver, py::handle command) {
+             driver.kind().drive(sample_of<saphira::v1::MotorCommand>(command, "MotorCommand"));
+           })
+      .def("release",
+           [](Driver& driver) {
+             auto& own = driver.kind();
+             unlocked([&] {
+               own.release();
+               return 0;
+             });
+           })
+      .def("poll", [](Driver& driver) { driver.kind().poll(); })
+      .def("drives", [](Driver& driver) { return driver.kind().drives(); })
+      .def("trouble", [](Driver& driver) { return driver.kind().trouble(); })
+      .def("stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); })
+      .def("close", &Driver::close);
+  py::class_<Inquiry, std::shared_ptr<Inquiry>>(module, "Inquiry")
+      .def("poll", [](Inquiry& inquiry) { return inquiry.kind().poll(); })
+      .def("explanation", &explanation)
+      .def("close", &Inquiry::close);
   py::class_<Bus>(module, "Bus")
       .def(py::init<const std::string&, const std::optional<std::string>&,
                     const std::optional<std::uint32_t>&, const std::optional<std::string>&,
-                    const std::vector<std::string>&, const std::optional<std::string>&>(),
-           arg("name"), arg("robot"), arg("domain"), arg("profile"), arg("peers"), arg("security"))
+                    const std::vector<std::string>&, const std::optional<std::string>&,
+                    std::string>(),
+           arg("name"), arg("robot"), arg("domain"), arg("profile"), arg("peers"), arg("security"),
+           arg("summary"))
       .def("close", &Bus::close)
       .def("is_open", &Bus::is_open)
+      .def("name", [](Bus& bus) { return bus.options().name; })
       .def("robot", [](Bus& bus) { return bus.options().robot; })
       .def("domain", [](Bus& bus) { return bus.options().domain; })
       .def("instance", &Bus::instance)
@@ -249,6 +356,14 @@ PYBIND11_MODULE(_bus, module) {
       .def("send", &Bus::send)
       .def("again", &Bus::again)
       .def("answers", &Bus::answers)
+      .def("can", &Bus::can)
+      .def("requests", &Bus::requests)
+      .def("answer", &Bus::answer)
+      .def("set", &Bus::set)
+      .def("take_back", &Bus::take_back)
+      .def("tell", &Bus::tell)
+      .def("driver", &Bus::driver)
+      .def("inquiry", &Bus::inquiry)
       .def("reader", &Bus::reader)
       .def("writer", &Bus::writer);
 }

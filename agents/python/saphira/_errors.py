@@ -22,14 +22,17 @@ class Trouble(Exception):
     """A goal or a request was not done."""
 
     def __init__(
-        self, code: "v1.GoalCode | v1.AnswerCode", reason: str, remedy: "str | None" = None
+        self,
+        reason: str,
+        code: "v1.GoalCode | v1.AnswerCode" = v1.AnswerCode.ANSWER_REFUSED,
+        remedy: "str | None" = None,
     ) -> None:
-        self.code = code
         #: in words
         self.reason = reason
+        self.code = code
         #: the advice for what to do [empty: none]
         self.remedy = remedy if remedy is not None else _remedy(code)
-        super().__init__(code, reason, self.remedy)
+        super().__init__(reason, code, self.remedy)
 
     def __str__(self) -> str:
         return self.reason + (f" ({self.remedy})" if self.remedy else "")
@@ -71,11 +74,11 @@ _OF_ANSWER = {
 def trouble_of_goal(status: v1.GoalStatus, advice: str) -> "Trouble | None":
     """None: it succeeded, or has not ended."""
     kind = _OF_GOAL.get(status.state)
-    return None if kind is None else kind(status.code, status.reason, advice or None)
+    return None if kind is None else kind(status.reason, status.code, advice or None)
 
 
 def trouble_of_answer(answer: v1.Answer) -> "Trouble | None":
     """None: it was answered, or is underway."""
     if answer.code <= v1.AnswerCode.ANSWER_SENT:
         return None
-    return _OF_ANSWER.get(answer.code, Failed)(answer.code, answer.text or answer.code.name)
+    return _OF_ANSWER.get(answer.code, Failed)(answer.text or answer.code.name, answer.code)

@@ -1,28 +1,39 @@
 """A robot on the bus."""
 
+import asyncio
 import atexit
 import sys
 import time
 import weakref
-from collections.abc import Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast, overload
 
 from . import _bus, topics, v1
-from ._errors import Failed, Nobody, Trouble, trouble_of_answer, trouble_of_goal
+from ._agent import Served, capability_of
+from ._drive import Drive
+from ._errors import Failed, Nobody, Refused, Trouble, trouble_of_answer, trouble_of_goal
 from ._values import Point, Values, arguments, values
 from ._waiting import Pending, Stream, Waiter
+from ._why import Explanation, explanation_of
 from .topics import Topic
 
+if TYPE_CHECKING:
+    from . import arrays
+
 T = TypeVar("T")
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 _EMPTY_BUS = 5.0  # [s] until a question is given up where no program is heard
 _UNANSWERED = 15.0  # [s] until a goal without a status is given up
 _SILENCE = 11.0  # [s] until a request is given up, after the newest word of an agent
 _AGAIN = 0.3  # [s] between two writings of a request, until it is answered
 _LOOK = 0.2  # [s]
+_PATIENCE = 5.0  # [s] until what a latched topic says is given up
+_QUIET = 0.3  # [s] after which no further tile of the grid is expected
 
 _robots: "weakref.WeakSet[Robot]" = weakref.WeakSet()
 
@@ -41,14 +52,40 @@ def connect(
     profile: "str | None" = None,
     peers: Sequence[str] = (),
     security: "str | None" = None,
+    summary: str = "",
 ) -> "Robot":
     """Joins the bus of a robot, as a program of that name (usual: the script's).
+
+    summary: a line about the program for people, where it can be asked for something.
 
     Without further arguments it is the robot that the commands of `saphira` mean: the one that
     runs on this machine, or the one of the variables SAPHIRA_ROBOT, SAPHIRA_DOMAIN and so on.
     """
     own = name if name is not None else Path(sys.argv[0]).stem if sys.argv[0] else "python"
-    return Robot(_bus.Bus(own or "python", robot, domain, profile, peers, security))
+    return Robot(_bus.Bus(own or "python", robot, domain, profile, peers, security, summary))
+
+
+@dataclass(frozen=True)
+class Call:
+    """A functor with its arguments, for triggers: call("go-to-place", place="N2")."""
+
+    functor: str
+    slots: "dict[str, Values]"
+
+
+def call(functor: str, /, **slots: Values) -> Call:
+    return Call(functor, slots)
+
+
+class Trigger:
+    """It fires until it is withdrawn, or the program ends."""
+
+    def __init__(self, bus: _bus.Bus, id: v1.GoalId) -> None:
+        self._bus = bus
+        self.id = id
+
+    def withdraw(self) -> None:
+        self._bus.take_back(self.id)
 
 
 class Answer:
@@ -88,8 +125,14 @@ class Goal(Pending[v1.GoalStatus]):
     @property
     def status(self) -> "v1.GoalStatus | None":
         """The newest; None: the robot has not answered yet."""
-        self._robot._bus.poll()
+        self._robot._poll()
         return self._robot._bus.status(self.id)
+
+    @property
+    def done(self) -> bool:
+        """It has ended, well or not: `wait()` says how."""
+        status = self.status
+        return status is not None and _ended(status)
 
     def cancel(self, why: str = "") -> None:
         """Withdraws it. The reason is for people."""
@@ -107,7 +150,7 @@ class Goal(Pending[v1.GoalStatus]):
             waited = time.monotonic() - self._began
             if status is None and waited > (_EMPTY_BUS if bus.is_empty() else _UNANSWERED):
                 self.cancel()
-                raise Nobody(v1.GoalCode.CODE_NO_ROBOT, bus.who_is_there())
+                raise Nobody(bus.who_is_there(), v1.GoalCode.CODE_NO_ROBOT)
             await self._waiter.news(_LOOK)
 
     async def _end(self) -> v1.GoalStatus:
@@ -161,7 +204,7 @@ class Writer(Generic[T]):
     def write(self, sample: T) -> None:
         """ValueError names a member that cannot have its value; nothing is written then."""
         if not self._writer.write(sample):
-            raise Failed(v1.AnswerCode.ANSWER_GIVEN_UP, "the bus did not take the sample")
+            raise Failed("the bus did not take the sample", v1.AnswerCode.ANSWER_GIVEN_UP)
 
     def withdraw(self, sample: T) -> None:
         """Withdraws the instance that has the sample's key."""
@@ -175,7 +218,14 @@ class Robot:
         self._bus = bus
         self._waiter = Waiter(bus)
         self._answers: dict[tuple[str, int], list[v1.Answer]] = {}
+        self._served = Served(bus.answer)
+        self._said = 0
         _robots.add(self)
+
+    def _poll(self) -> None:
+        self._bus.poll()
+        for request in self._bus.requests():
+            self._served.handle(request)
 
     def close(self) -> None:
         """Leaves the bus, which ends all that this program has begun."""
@@ -292,11 +342,11 @@ class Robot:
                 now = time.monotonic()
                 if len(told) > count:
                     count, heard = len(told), now
-                self._bus.poll()
+                self._poll()
                 nobody = "" if told else self._absence(topic)
                 if nobody or now > heard + patience:
                     why = nobody or f"{request.functor}: nothing was heard for {patience:.0f} s"
-                    raise Nobody(v1.AnswerCode.ANSWER_NOBODY, why)
+                    raise Nobody(why, v1.AnswerCode.ANSWER_NOBODY)
                 if now > again:
                     self._bus.again(topic.name, number, request)
                     again = now + (_AGAIN if not told else 10 * _AGAIN)
@@ -345,9 +395,226 @@ class Robot:
                 if came:
                     heard = True
                     return came.pop(0)
-                self._bus.poll()
+                self._poll()
                 if not heard and self._bus.is_empty() and time.monotonic() > began + _EMPTY_BUS:
-                    raise Nobody(v1.AnswerCode.ANSWER_NOBODY, self._bus.who_is_there())
+                    raise Nobody(self._bus.who_is_there(), v1.AnswerCode.ANSWER_NOBODY)
                 await self._waiter.news(_LOOK)
 
         return Stream(self._waiter, after)
+
+    def read(self, topic: "Topic[T]") -> Pending[T]:
+        """The next sample of a topic, or what a latched topic says now. Nobody: none in 5 s."""
+        return Pending(self._waiter, self._read(topic))
+
+    async def _read(self, topic: "Topic[T]") -> T:
+        reader = self._bus.reader(topic.name)
+        began = time.monotonic()
+        while time.monotonic() < began + _PATIENCE:
+            came = [sample for sample, withdrawn, _, _ in reader.take() if not withdrawn]
+            if came:
+                return cast(T, came[-1])
+            self._poll()
+            await self._waiter.news(_LOOK)
+        reason = f"nothing is said on {topic.name}; {self._bus.who_is_there()}"
+        raise Nobody(reason, v1.AnswerCode.ANSWER_NOBODY)
+
+    @property
+    def map(self) -> Pending[v1.FloorMap]:
+        """The map, with all that is on it."""
+        return self.read(topics.MAP)
+
+    @property
+    def knows(self) -> Pending[v1.Knowledge]:
+        """What people have told the robot."""
+        return self.read(topics.KNOWS)
+
+    @property
+    def grid(self) -> "Pending[arrays.Grid]":
+        """The occupancy grid, as an array of numpy."""
+        return Pending(self._waiter, self._grid())
+
+    async def _grid(self) -> "arrays.Grid":
+        from . import arrays
+
+        reader = self._bus.reader(topics.GRID.name)
+        tiles: dict[tuple[int, int], v1.GridTile] = {}
+        began = time.monotonic()
+        while time.monotonic() < began + (_QUIET if tiles else _PATIENCE):
+            for sample, withdrawn, _, _ in reader.take():
+                tile = cast(v1.GridTile, sample)
+                tiles.pop((tile.column, tile.row), None)
+                if not withdrawn:
+                    tiles[tile.column, tile.row] = tile
+                    began = max(began, time.monotonic()) if len(tiles) == 1 else began
+            self._poll()
+            await self._waiter.news(_QUIET)
+        if not tiles:
+            reason = "nothing is said of the grid; " + self._bus.who_is_there()
+            raise Nobody(reason, v1.AnswerCode.ANSWER_NOBODY)
+        return arrays.grid(list(tiles.values()))
+
+    def sonars(self) -> "Stream[arrays.Array]":
+        """The points of the newest echoes [m] in odom, rows (x, y), as an array of numpy."""
+        from . import arrays
+
+        stream = self._stream(topics.SONAR_BUCKETS, newest=True)
+
+        async def after() -> "arrays.Array":
+            return arrays.echoes(await stream.__anext__())
+
+        return Stream(self._waiter, after)
+
+    # Reasons
+
+    def why(self, cycle: int = 0) -> Pending[Explanation]:
+        """Why it does what it does; cycle: in that one, or so many before now (below 0)."""
+        return Pending(self._waiter, self._why(cycle, ""))
+
+    def why_not(self, wish: str, cycle: int = 0) -> Pending[Explanation]:
+        """Why it does not "turn left", "turn right", go "faster" or "slower"."""
+        return Pending(self._waiter, self._why(cycle, wish))
+
+    async def _why(self, cycle: int, wish: str) -> Explanation:
+        inquiry = self._bus.inquiry(cycle)
+        try:
+            while not inquiry.poll():
+                self._poll()
+                await self._waiter.news(_LOOK)
+            return explanation_of(inquiry.explanation(wish))
+        except LookupError as error:
+            raise Nobody(str(error), v1.AnswerCode.ANSWER_NOBODY) from None
+        finally:
+            inquiry.close()
+
+    # Driving
+
+    def drive(self) -> Drive:
+        """The wheels: `with robot.drive() as wheels: wheels.go(0.2, seconds=2).wait()`."""
+        return Drive(self._bus.driver(), self._waiter)
+
+    # Being asked
+
+    @overload
+    def capability(self, function: Function) -> Function: ...
+    @overload
+    def capability(self, *, name: str) -> Callable[[Function], Function]: ...
+    def capability(self, function: Any = None, *, name: str = "") -> Any:
+        """Lets others ask this function for a fact; asking changes nothing.
+
+        Its docstring's first line is the summary, its types are the arguments. What it returns
+        answers: values by name (a TypedDict or a dataclass declares them), or a text.
+        """
+        return self._announce(function, name, acts=False)
+
+    @overload
+    def action(self, function: Function) -> Function: ...
+    @overload
+    def action(self, *, name: str) -> Callable[[Function], Function]: ...
+    def action(self, function: Any = None, *, name: str = "") -> Any:
+        """As capability(), for what changes something: one agent is asked, once.
+
+        An `async def` may take its time; it is cancelled when its asker withdraws the request.
+        """
+        return self._announce(function, name, acts=True)
+
+    def _announce(self, function: Any, name: str, acts: bool) -> Any:
+        def announce(function: Function) -> Function:
+            capability = capability_of(function, name, acts)
+            self._served.add(capability.functor, function)
+            self._bus.can(capability)
+            return function
+
+        return announce if function is None else announce(function)
+
+    def serve(self) -> Pending[None]:
+        """Answers until it is cancelled. Every other wait answers meanwhile, too."""
+        return Pending(self._waiter, self._serve())
+
+    async def _serve(self) -> None:
+        while True:
+            self._poll()
+            await self._waiter.news(_LOOK)
+
+    def run(self) -> None:
+        """Answers until Ctrl-C."""
+        try:
+            asyncio.run(self._serve())
+        except KeyboardInterrupt:
+            pass
+
+    # Triggers
+
+    def every(self, period: float, action: Call, /, *, times: int = 0) -> Trigger:
+        """Asks for the action every so many seconds. times: at most so often [0: without end]."""
+        kind = v1.TriggerKind.TRIGGER_TIME
+        return self._set(v1.Trigger(kind=kind, period=period), None, action, times)
+
+    def when(
+        self, fact: Call, action: Call, /, *, period: float = 1.0, times: int = 0
+    ) -> Trigger:
+        """Asks for the action when the fact, asked each period [s], is answered differently.
+
+        OPEN slots of the action are filled with what the fact's answer says.
+        """
+        kind = v1.TriggerKind.TRIGGER_DATA
+        return self._set(v1.Trigger(kind=kind, period=period), fact, action, times)
+
+    def on(self, event: Call, action: Call, /, *, times: int = 0) -> Trigger:
+        """Asks for the action when some program tells the event."""
+        return self._set(v1.Trigger(kind=v1.TriggerKind.TRIGGER_EVENT), event, action, times)
+
+    def _set(
+        self, trigger: v1.Trigger, condition: "Call | None", action: Call, times: int
+    ) -> Trigger:
+        if condition is not None:
+            trigger.condition = condition.functor
+            trigger.condition_arguments = arguments(condition.slots)
+        trigger.action = action.functor
+        trigger.action_arguments = arguments(action.slots)
+        trigger.times = times
+        return Trigger(self._bus, self._bus.set(trigger))
+
+    def tell(self, event: str, /, **slots: Values) -> None:
+        """Reports an event, which triggers may wait for."""
+        self._bus.tell(v1.AgentEvent(functor=event, arguments=arguments(slots)))
+
+    # Words
+
+    def say(self, text: str, *, speaker: str = "") -> Pending[str]:
+        """Says a sentence to the robot, such as advice, and ends with its reply.
+
+        Refused: it does not act on it. What the sentence began ends with this program.
+        """
+        return Pending(self._waiter, self._say(text, speaker))
+
+    async def _say(self, text: str, speaker: str) -> str:
+        reader = self._bus.reader(topics.SAID.name)
+        writer = self._bus.writer(topics.HEARD.name)
+        self._said += 1
+        utterance = v1.Utterance(
+            id=v1.GoalId(self._bus.instance(), self._said),
+            speaker=speaker or self._bus.name(),
+            text=text,
+            means=v1.UtteranceMeans.UTTERANCE_PROGRAM,
+            confidence=1.0,
+            time=time.time(),
+        )
+        replies: list[v1.Utterance] = []
+        began = time.monotonic()
+        written = False
+        while not (replies and replies[-1].end):
+            if not written and writer.matched() > 0:
+                written = writer.write(utterance)
+            self._poll()
+            for sample, _, _, _ in reader.take():
+                reply = cast(v1.Utterance, sample)
+                if reply.answers == utterance.id:
+                    replies.append(reply)
+            if not replies and time.monotonic() > began + _PATIENCE:
+                absent = self._bus.absence("dialogue") or "nothing was answered"
+                raise Nobody(absent, v1.AnswerCode.ANSWER_NOBODY)
+            await self._waiter.news(_LOOK)
+        said = " ".join(reply.text for reply in replies)
+        if replies[-1].refused:
+            raise Refused(said)
+        return said

@@ -30,7 +30,8 @@ class Filler:
             make: Any = type_
             return make(*(self.value(member) for member in get_type_hints(type_).values()))
         if issubclass(type_, enum.IntEnum):
-            return type_([0, 1, 77][self.extreme])
+            numbers: Any = type_
+            return numbers([0, 1, 77][self.extreme])
         if type_ is bool:
             return self.count % 2 == 0
         if type_ is int:

@@ -2,9 +2,12 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
+
+import saphira
 
 PAGE = (Path(os.environ["SAPHIRA_SOURCE_DIR"]) / "docs" / "python.md").read_text()
 PROGRAMS = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
@@ -33,3 +36,20 @@ def test_the_first_agent_drives(programs: None, tmp_path: Path) -> None:
 def test_the_program_with_asyncio_drives(programs: None, tmp_path: Path) -> None:
     said = run(PROGRAMS[1].replace("N2", "D").replace("battery < 20", "battery < 99"), tmp_path)
     assert said.endswith("GOAL_SUCCEEDED 100% \n")
+
+
+def test_the_calendar_is_asked(robot: saphira.Robot, tmp_path: Path) -> None:
+    (tmp_path / "calendar_agent.py").write_text(PROGRAMS[2])
+    program = subprocess.Popen([sys.executable, "calendar_agent.py"], cwd=tmp_path)
+    for agent in robot.watch(saphira.topics.AGENTS):
+        if agent.name == "calendar":
+            break
+    assert robot.ask("place_of", person="karen", of="calendar").wait()["place"] == "library"
+    program.send_signal(signal.SIGINT)
+    assert program.wait(30) == 0
+
+
+def test_the_driver_turns_and_lets_go(robot: saphira.Robot, tmp_path: Path) -> None:
+    before = next(robot.state()).pose_in_odom.th
+    run(PROGRAMS[3], tmp_path)
+    assert abs(next(robot.state()).pose_in_odom.th - before) > 0.2
