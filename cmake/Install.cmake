@@ -44,7 +44,7 @@ saphira_component(behaviors geometry requests lps behaviors)
 if(SAPHIRA_WITH_DDS)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
                     ${CMAKE_BINARY_DIR}/idl/generated/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE)
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE PATTERN "*.py" EXCLUDE)
   # The contract itself, for agents in other languages and of other vendors: the types, also as JSON
   # Schema, the topics with the name of each one's QoS, and the README with the table of QoS and the
   # rule of partitions.
@@ -77,6 +77,9 @@ if(SAPHIRA_STRIP AND CMAKE_STRIP)
   saphira_strip(core "${CMAKE_INSTALL_BINDIR}/saphira*" --remove-section=.comment --remove-section=.note)
   if(TARGET saphira-speech)
     saphira_strip(speech "${CMAKE_INSTALL_BINDIR}/saphira-speech" --remove-section=.comment --remove-section=.note)
+  endif()
+  if(TARGET saphira_python)
+    saphira_strip(python "lib/python3/dist-packages/saphira/*.so" --strip-unneeded --remove-section=.comment --remove-section=.note)
   endif()
   saphira_strip(dev "${CMAKE_INSTALL_LIBDIR}/libsaphira_*.a" --strip-debug)
   if(TARGET sfx)

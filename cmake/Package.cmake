@@ -1,5 +1,5 @@
 # Debian packages, by `./saphira package`: saphira (programs, their configuration, a systemd unit),
-# saphira-speech, saphira-dev (to build agents and behaviors with, and the contract) and saphira-doc. The
+# saphira-speech, python3-saphira, saphira-dev (to build agents and behaviors with, and the contract) and saphira-doc. The
 # programs are one package: together they take less room than the libraries that each of them needs, and
 # programs of one version fit together. Hearing and voice are their own, for their 80 MB of models.
 if(NOT SAPHIRA_WITH_DDS)
@@ -25,10 +25,16 @@ set(components core dev doc)
 if(TARGET saphira-speech)
   list(APPEND components speech)
 endif()
+if(TARGET saphira_python)
+  list(APPEND components python)
+endif()
 foreach(component ${components})
   string(REPLACE core "" suffix ${component})
   string(REGEX REPLACE "(.+)" "-\\1" suffix "${suffix}")
   set(name saphira${suffix})
+  if(component STREQUAL python)
+    set(name python3-saphira)
+  endif()
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
   install(FILES ${packed}/copyright ${packed}/changelog.gz DESTINATION share/doc/${name}
@@ -66,6 +72,14 @@ set(CPACK_DEBIAN_SPEECH_PACKAGE_SUGGESTS "alsa-utils, espeak-ng")
 set(CPACK_COMPONENT_SPEECH_DESCRIPTION
   "What people say to the robot by voice, and the robot's own voice: one
 more program on the bus, for the sound card of this machine.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "saphira, jupyter-notebook, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+  "Agents for robots of Saphira in Python: programs that watch a robot, send
+it, ask others and can be asked, or drive. With types for mypy, and with or
+without asyncio.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "saphira (= ${PROJECT_VERSION}), libfastrtps-dev, libeigen3-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -1,11 +1,12 @@
 // Generates the contract's C++ from its IDL files.
 //
-//   saphira-idl-generate FOLDER FILE.idl...
+//   saphira-idl-generate FOLDER FILE.idl... [topics.def]
 //
 // FOLDER/saphira/idl/ gets a header with plain structs and enums for each file; types.hpp, which
 // includes them all; members.hpp, which visits the members of each struct with their names, keys
 // and bounds and names the enumerators (CDR, JSON and keys are made with it); and schema.json, the
-// JSON Schema of each type. Comments go with what they are about.
+// JSON Schema of each type; v1.py, a Python dataclass or enum for each, and topics.py, the topics
+// with their types. Comments go with what they are about.
 //
 // The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
 // with their constants, bounded sequences, strings. Anything else is an error that names the place.
@@ -17,6 +18,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -65,21 +67,23 @@ struct Base {
   const char* cpp;
   std::size_t size;  // in CDR
   const char* json;
+  const char* python;
 };
 
 const std::map<std::string, Base> bases{
-    {"boolean", {"bool", 1, R"("type": "boolean")"}},
-    {"octet", {"std::uint8_t", 1, R"("type": "integer", "minimum": 0, "maximum": 255)"}},
-    {"short", {"std::int16_t", 2, R"("type": "integer", "minimum": -32768, "maximum": 32767)"}},
+    {"boolean", {"bool", 1, R"("type": "boolean")", "bool"}},
+    {"octet", {"std::uint8_t", 1, R"("type": "integer", "minimum": 0, "maximum": 255)", "int"}},
+    {"short",
+     {"std::int16_t", 2, R"("type": "integer", "minimum": -32768, "maximum": 32767)", "int"}},
     {"unsigned short",
-     {"std::uint16_t", 2, R"("type": "integer", "minimum": 0, "maximum": 65535)"}},
-    {"long", {"std::int32_t", 4, R"("type": "integer")"}},
-    {"unsigned long", {"std::uint32_t", 4, R"("type": "integer", "minimum": 0)"}},
-    {"long long", {"std::int64_t", 8, R"("type": "integer")"}},
-    {"unsigned long long", {"std::uint64_t", 8, R"("type": "integer", "minimum": 0)"}},
-    {"float", {"float", 4, R"("type": ["number", "null"])"}},
-    {"double", {"double", 8, R"("type": ["number", "null"])"}},
-    {"string", {"std::string", kVaries, R"("type": "string")"}}};
+     {"std::uint16_t", 2, R"("type": "integer", "minimum": 0, "maximum": 65535)", "int"}},
+    {"long", {"std::int32_t", 4, R"("type": "integer")", "int"}},
+    {"unsigned long", {"std::uint32_t", 4, R"("type": "integer", "minimum": 0)", "int"}},
+    {"long long", {"std::int64_t", 8, R"("type": "integer")", "int"}},
+    {"unsigned long long", {"std::uint64_t", 8, R"("type": "integer", "minimum": 0)", "int"}},
+    {"float", {"float", 4, R"("type": ["number", "null"])", "float"}},
+    {"double", {"double", 8, R"("type": ["number", "null"])", "float"}},
+    {"string", {"std::string", kVaries, R"("type": "string")", "str"}}};
 
 class Parser {
  public:
@@ -284,6 +288,26 @@ class Generator {
     headers_[file.stem + ".hpp"] = out.str();
   }
 
+  /// The list of the topics, a macro's line each.
+  void add_topics(const std::filesystem::path& path) {
+    std::ifstream in(path);
+    if (!in)
+      throw std::runtime_error(path.string() + ": cannot be read");
+    const std::regex topic(R"re(SAPHIRA_(TOPIC|REQUESTS)\(k(\w+), ("[^"]+"), (\w+).*)re");
+    std::smatch found;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_match(line, found, topic)) {
+        const std::string type = found[1] == "TOPIC" ? found[4].str() : "Request";
+        std::string name;
+        for (const char c : found[2].str()) {
+          const auto letter = static_cast<unsigned char>(c);
+          name += name.empty() || std::isupper(letter) == 0 ? "" : "_";
+          name += static_cast<char>(std::toupper(letter));
+        }
+        topics_ << name << " = Topic(" << found[3] << ", v1." << type << ")\n";
+      }
+  }
+
   /// By file name.
   std::map<std::string, std::string> texts() const {
     std::map<std::string, std::string> all = headers_;
@@ -297,6 +321,8 @@ class Generator {
     all["schema.json"] =
         "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"$defs\": {" +
         schemas_.str() + "\n  }\n}\n";
+    all["v1.py"] = python_top + python_.str();
+    all["topics.py"] = topics_top + topics_.str();
     return all;
   }
 
@@ -323,7 +349,46 @@ constexpr void visit_members(T& sample, Visit&& visit) {
 
 )";
 
+  static constexpr const char* python_top = R"(# Generated from idl/; changes are lost.
+"""The types of the contract. Lengths are in m, angles in rad, times in s."""
+
+import enum
+from dataclasses import dataclass, field
+
+
+class Enumeration(enum.IntEnum):
+    """Names for numbers. A number without a name, from a newer program, stays as it is."""
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Enumeration | None":
+        if not isinstance(value, int):
+            return None
+        item = int.__new__(cls, value)
+        item._name_ = str(value)
+        item._value_ = value
+        return item
+)";
+  static constexpr const char* topics_top = R"(# Generated from idl/; changes are lost.
+"""The topics of the bus."""
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from . import v1
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Topic(Generic[T]):
+    name: str
+    type: type[T]
+
+
+)";
+
   void write(const Definition& item, std::ostream& out) {
+    python(item);
     const std::string comment = item.comment.empty() ? "" : "///" + item.comment + "\n";
     switch (item.kind) {
       case Kind::open:
@@ -352,6 +417,49 @@ constexpr void visit_members(T& sample, Visit&& visit) {
         structure(item, out);
         break;
     }
+  }
+
+  void python(const Definition& item) {
+    if (item.kind == Kind::constant)
+      python_ << "    " << item.name << " = " << item.value << python_behind(item.comment);
+    if (item.kind != Kind::enumeration && item.kind != Kind::structure && item.kind != Kind::alias)
+      return;
+    const bool is_struct = item.kind == Kind::structure;
+    python_ << "\n\n"
+            << (is_struct ? "@dataclass(slots=True)\n" : "") << "class " << item.name
+            << (is_struct ? "" : "(Enumeration)") << ":\n";
+    if (!item.comment.empty())
+      python_ << "    r\"\"\"" << trimmed(item.comment) << "\"\"\"\n\n";
+    std::size_t number = 0;
+    for (const Member& member : item.members) {
+      python_ << "    " << member.name;
+      if (is_struct)
+        python_ << ": " << python_member(member.type);
+      else
+        python_ << " = " << number++;
+      python_ << python_behind(member.comment);
+    }
+    if (!is_struct)
+      numbers_.insert(item.name);
+  }
+
+  static std::string python_behind(const std::string& comment) {
+    return (comment.empty() ? "" : "  #:" + comment) + "\n";
+  }
+
+  /// The type of a member, and its value where none is given.
+  std::string python_member(const Type& type) const {
+    static const std::map<std::string, std::string> zeros{
+        {"bool", "False"}, {"int", "0"}, {"float", "0.0"}, {"str", "\"\""}};
+    const auto base = bases.find(type.name);
+    const std::string name = base == bases.end() ? type.name : base->second.python;
+    if (type.name == "octet" && !type.bound.empty())
+      return "bytes = b\"\"";
+    if (!type.bound.empty())
+      return "list[" + name + "] = field(default_factory=list)";
+    if (base == bases.end() && !numbers_.contains(name))
+      return name + " = field(default_factory=" + name + ")";
+    return name + " = " + (base == bases.end() ? name + "(0)" : zeros.at(name));
   }
 
   static std::string behind(const std::string& comment) {
@@ -476,6 +584,9 @@ constexpr void visit_members(T& sample, Visit&& visit) {
   std::map<std::string, std::string> headers_;
   std::ostringstream members_;
   std::ostringstream schemas_;
+  std::ostringstream python_;
+  std::ostringstream topics_;
+  std::set<std::string> numbers_;  // Python's enums
   std::map<std::string, std::string> aliases_;
   std::map<std::string, std::vector<std::string>> constants_;  // by their type
   std::map<std::string, std::size_t> sizes_;
@@ -487,13 +598,17 @@ constexpr void visit_members(T& sample, Visit&& visit) {
 int main(int argc, char** argv) {
   try {
     if (argc < 3)
-      throw std::runtime_error("usage: saphira-idl-generate FOLDER FILE.idl...");
+      throw std::runtime_error("usage: saphira-idl-generate FOLDER FILE.idl... [topics.def]");
     std::map<std::string, File> files;
+    Generator generator;
     for (int i = 2; i < argc; ++i) {
+      if (std::filesystem::path(argv[i]).extension() == ".def") {
+        generator.add_topics(argv[i]);
+        continue;
+      }
       File file = Parser(argv[i]).parse();
       files[file.stem] = std::move(file);
     }
-    Generator generator;
     std::set<std::string> added;
     const std::function<void(const std::string&)> add = [&](const std::string& stem) {
       if (!added.insert(stem).second)

@@ -20,7 +20,6 @@
 
 #include "cli_fixture.hpp"
 #include "node_options.hpp"
-#include "pages.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
@@ -362,34 +361,6 @@ TEST_F(CliTest, AGoalIsFollowedToItsEnd) {
   const Outcome refused = run({"goal", "fly", "height=2"});
   EXPECT_EQ(refused.code, 1) << refused.text;
   EXPECT_TRUE(has(refused.text, "refused: no wings")) << refused.text;
-}
-
-// The text of docs/add-an-agent.md, up to the endless loop at its end.
-TEST_F(CliTest, ThePythonScriptOfTheDocumentDoesWhatItSays) {
-  const Scripted scripted(robot_);
-  bus::Node node(test::node_options("teller", robot_));
-  auto messages = node.writer(topics::kMessages);
-  v1::Message message{.text = "here I am"};
-  const std::string bin = std::filesystem::path(test::program("saphira")).parent_path().string();
-  // timeout: a signal to it ends the script with the commands that it has started.
-  test::Process script(
-      {"/usr/bin/timeout", "100", "/usr/bin/env", "PATH=" + bin + ":" + getenv("PATH"), "python3",
-       "-u", write("script.py", test::block_of("docs/add-an-agent.md", "python"))},
-      folder_.path("script"), {{"SAPHIRA_ROBOT", robot_}, {"SAPHIRA_DOMAIN", test::domain()}});
-  test::wait_until([&] {
-    node.wait(milliseconds(50));
-    messages.write(message);
-    return has(script.output(), "the robot says: here I am") || !script.running();
-  });
-  const std::string said = script.output();
-  script.signal(SIGTERM);
-  if (script.wait() == 127)
-    GTEST_SKIP() << "no python3";
-  EXPECT_TRUE(has(said, "battery 12.5 V")) << said;
-  EXPECT_TRUE(has(said, "succeeded: it is there")) << said;
-  EXPECT_FALSE(has(said, "not reached: N2")) << said;
-  EXPECT_TRUE(has(said, "not reached: S3")) << said;
-  EXPECT_TRUE(has(said, "the robot says: here I am")) << said;
 }
 
 TEST_F(CliTest, CtrlCWithdrawsTheGoal) {

@@ -35,10 +35,10 @@ class DirectDriver {
   const std::string& stopped_by() const { return stopped_by_; }
   /// A new trouble in words, each kind once: another driver, a refusal, the guard, no bridge.
   std::optional<std::string> news();
-
- private:
+  /// The present trouble in words; empty: none.
   std::string trouble() const;
 
+ private:
   bus::Node& node_;
   Processes processes_;
   bus::Writer<v1::MotorCommand> commands_;

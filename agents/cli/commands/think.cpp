@@ -6,7 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "mind.hpp"
+#include "inquiry.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/cli/displays.hpp"
 
@@ -16,9 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kMindPatience = 3.0;  // [s] for the first sample
-constexpr milliseconds kOthers{300};   // for programs that are discovered after the services
-constexpr double kRest = 0.5;          // [s] by then schemas and programs have come as well
+constexpr milliseconds kOthers{300};  // for programs that are discovered after the services
+constexpr double kRest = 0.5;         // [s] by then schemas and programs have come as well
 
 struct WatchOptions {
   bool once = false;
@@ -206,55 +205,17 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
       return bus::kExitUsage;
     }
   }
-  const bool past = why_options.cycle != 0;
   bus::Node node(options);
-  Mind mind(node, past);
-  const auto began = Clock::now();
-  std::uint64_t cycle = 0;
-  std::pair<std::uint64_t, std::uint64_t> before;
-  auto grown = began;
-  while (!stop.requested()) {
-    mind.listen(milliseconds(50), stop);
-    const auto known = mind.known();
-    // The newest cycle comes with each sample; recall ends with its oldest.
-    if (known.first != before.first)
-      grown = Clock::now();
-    before = known;
-    const double waited = seconds_since(began);
-    if (!past) {
-      cycle = mind.newest_cycle();
-      if ((mind.whole(cycle) && mind.knows_goals()) || waited > kMindPatience)
-        break;
-      if (mind.whole(cycle) && waited > 1.0)
-        break;
-      continue;
-    }
-    if (why_options.cycle > 0)
-      cycle = static_cast<std::uint64_t>(why_options.cycle);
-    else if (cycle == 0 && known.second > static_cast<std::uint64_t>(-why_options.cycle) &&
-             waited > 0.5)
-      // Relative to the time of the question, not of the answer.
-      cycle = known.second - static_cast<std::uint64_t>(-why_options.cycle);
-    if (cycle != 0 && mind.whole(cycle) && (mind.knows_goals() || waited > 1.0))
-      break;
-    if (waited > kMindPatience && seconds_since(grown) > 1.0)
-      break;
-  }
+  Inquiry inquiry(node, why_options.cycle);
+  while (!stop.requested() && !inquiry.poll())
+    node.wait(milliseconds(50), &stop);
   if (stop.requested())
     return bus::kExitFailed;
-  if (past && !mind.some(cycle)) {
-    const auto known = mind.known();
-    if (known.second == 0)
-      return nobody(mind, "what has been");
-    std::cerr << "saphira: cycle "
-              << (why_options.cycle > 0 ? std::to_string(why_options.cycle)
-                                        : std::to_string(-why_options.cycle) + " ago")
-              << " is not known; recalled are " << known.first << " to " << known.second << '\n';
+  if (const std::string missing = inquiry.missing(); !missing.empty()) {
+    std::cerr << "saphira: " << missing << '\n';
     return bus::kExitFailed;
   }
-  if (!mind.heard())
-    return nobody(mind, "the robot");
-  const situation::Situation known = mind.situation(cycle, past);
+  const situation::Situation known = inquiry.situation();
   const Explanation explanation = wish ? why_not(known, *wish) : situation::why(known);
   std::fputs((why_options.json ? to_json(explanation) + "\n" : to_text(explanation)).c_str(),
              stdout);

@@ -264,10 +264,10 @@ TEST_F(OwnedGoal, TheProgramThatAskedForAnotherWithdrawsItAndASiblingDoesNot) {
   Core::Heard::Goal end = by({"flakey", "services"}, kDisposed);
   end.writer = kKaren;
   hear(end);
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   end.writer = kJohn;
   hear(end);
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
 }
 
 // A door is one program for several persons: it names who cancels.
@@ -277,10 +277,10 @@ TEST_F(OwnedGoal, APersonAtADoorDoesNotCancelThoseOfAnother) {
   Core::Heard::Goal end = by({"bob at flakey", "agent"}, kDisposed);
   end.event.why = "by bob";
   hear(end);
-  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   end.person = Identity{"anna at flakey", "agent"};
   hear(end);
-  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
 }
 
 TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {

@@ -1,0 +1,369 @@
+// saphira._bus: the bus for Python. The package saphira (saphira/*.py) makes of it what agents use.
+//
+// The interpreter's lock is released while something is waited for. Threads of the bus never call
+// Python. A Bus is for the thread that made it, and for its process.
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert.hpp"
+#include "direct.hpp"
+#include "endpoints.hpp"
+#include "environment.hpp"
+#include "inquiry.hpp"
+#include "run_folder.hpp"
+#include "saphira/bus/agent.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/program.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "saphira/cli/goal_words.hpp"
+#include "watch.hpp"
+
+namespace saphira::python {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLook{100};  ///< how often a wait looks for signals
+
+/// The parts that live with the node.
+struct Parts {
+  explicit Parts(const bus::NodeOptions& options)
+      : node(options), processes(node), goals(node, options.name) {}
+  bus::Node node;
+  cli::Processes processes;
+  bus::GoalClient goals;
+  std::map<std::string, bus::RequestClient> clients;  ///< by topic
+  std::optional<bus::Agent> agent;
+  std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
+};
+
+using Driver = Owned<Endpoint, cli::DirectDriver>;
+using Inquiry = Owned<Endpoint, cli::Inquiry>;
+
+/// The explanation of what the robot does, as JSON.
+std::string explanation(Inquiry& inquiry, const std::string& wish) {
+  if (const std::string missing = inquiry.kind().missing(); !missing.empty())
+    throw py::index_error(missing);
+  const situation::Situation known = inquiry.kind().situation();
+  if (wish.empty())
+    return to_json(situation::why(known));
+  std::istringstream words(wish);
+  const auto parsed = situation::parse_wish(
+      {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()});
+  if (!parsed)
+    throw py::value_error("expected turn left, turn right, faster or slower, found " + wish);
+  return to_json(situation::why_not(known, *parsed));
+}
+
+class Bus {
+ public:
+  Bus(const std::string& name, const std::optional<std::string>& robot,
+      const std::optional<std::uint32_t>& domain, const std::optional<std::string>& profile,
+      const std::vector<std::string>& peers, const std::optional<std::string>& security,
+      std::string summary)
+      : summary_(std::move(summary)) {
+    bus::NodeOptions options = bus::options_of_environment();
+    options.name = name;
+    options.program = name;
+    options.robot = robot.value_or(options.robot);
+    options.domain = domain.value_or(options.domain);
+    if (profile)
+      options.profile = bus::profile_of(*profile);
+    if (!peers.empty())
+      options.peers = peers;
+    options.security = security.value_or(options.security);
+    const auto in_environment = [](const char* variable) {
+      const char* const value = std::getenv(variable);
+      return value != nullptr && *value != '\0';
+    };
+    const cli::GivenOptions given{
+        robot || in_environment("SAPHIRA_ROBOT"), domain || in_environment("SAPHIRA_DOMAIN"),
+        profile || !peers.empty() || in_environment("SAPHIRA_PROFILE") ||
+            in_environment("SAPHIRA_PEERS") || in_environment("SAPHIRA_INTERFACE"),
+        security || in_environment("SAPHIRA_SECURITY")};
+    if (const auto meant = cli::bus_meant(cli::bus_of("", options), cli::running_buses(), given))
+      options = cli::on_bus(*meant, options);
+    parts_ = unlocked([&] { return std::make_unique<Parts>(options); });
+  }
+  ~Bus() { close(); }
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// Leaves the bus, which ends the goals. In another thread or process than its own: nothing.
+  void close() {
+    if (!owner_.may_close()) {
+      static_cast<void>(parts_.release());
+      return;
+    }
+    for (const auto& weak : endpoints_)
+      if (const auto endpoint = weak.lock())
+        endpoint->close();
+    if (parts_)
+      unlocked([this] {
+        parts_.reset();
+        return 0;
+      });
+  }
+  bool is_open() const { return parts_ && owner_.may_close(); }
+
+  const bus::NodeOptions& options() { return node().options(); }
+  std::uint64_t instance() { return node().instance(); }
+  int fd() { return node().wake_fd(); }
+  void clear_wake() { node().clear_wake(); }
+
+  /// False: nothing has come for so long [s]. Signals are handled meanwhile.
+  bool wait(double seconds) {
+    bus::Node& own = node();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    for (;;) {
+      const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
+      const bool came =
+          unlocked([&] { return own.wait(std::max(milliseconds(0), std::min(left, kLook))); });
+      if (PyErr_CheckSignals() != 0)
+        throw py::error_already_set();
+      if (came || left <= kLook)
+        return came;
+    }
+  }
+
+  /// Takes what is known of programs and goals. Call after each wait.
+  void poll() {
+    Parts& own = parts();
+    own.processes.poll();
+    own.goals.poll();
+    if (own.agent) {
+      own.agent->poll();
+      own.node.publish_status();
+    }
+  }
+
+  std::string who_is_there() { return cli::who_is_there(parts().processes); }
+  bool is_empty() { return parts().processes.all().empty(); }
+  /// Why the program is not heard; empty: it is, or may still be.
+  std::string absence(const std::string& program) {
+    return cli::absence(node(), parts().processes, program);
+  }
+
+  py::object ask_goal(py::handle goal) {
+    Parts& own = parts();
+    const auto wanted = sample_of<v1::Goal>(goal, "Goal");
+    return to_python(unlocked([&] { return own.goals.ask(wanted); }), class_of("GoalId"));
+  }
+  void cancel(py::handle id, const std::string& why) {
+    Parts& own = parts();
+    const auto goal = sample_of<v1::GoalId>(id, "GoalId");
+    unlocked([&] {
+      own.goals.cancel(goal, why);
+      return 0;
+    });
+  }
+  py::object status(py::handle id) {
+    const auto status = parts().goals.status(sample_of<v1::GoalId>(id, "GoalId"));
+    return status ? to_python(*status, class_of("GoalStatus")) : py::none();
+  }
+
+  std::uint64_t send(const std::string& topic, py::handle request) {
+    bus::RequestClient& client = client_of(topic);
+    const auto asked = sample_of<v1::Request>(request, "Request");
+    return unlocked([&] { return client.send(asked); });
+  }
+  void again(const std::string& topic, std::uint64_t number, py::handle request) {
+    bus::RequestClient& client = client_of(topic);
+    const auto asked = sample_of<v1::Request>(request, "Request");
+    unlocked([&] {
+      client.again(number, asked);
+      return 0;
+    });
+  }
+  py::list answers(const std::string& topic) {
+    py::list list;
+    for (const v1::Answer& answer : client_of(topic).poll())
+      list.append(to_python(answer, class_of("Answer")));
+    return list;
+  }
+
+  /// Announces what this program can be asked for; its requests come out of requests().
+  void can(py::handle capability) {
+    const auto declared = sample_of<v1::Capability>(capability, "Capability");
+    agent().can(declared, [&own = parts()](const v1::Request& request) {
+      own.asked.push_back(request);
+      v1::Answer underway;
+      underway.code = v1::ANSWER_UNDERWAY;
+      return underway;
+    });
+  }
+  py::list requests() {
+    py::list list;
+    for (const v1::Request& request : std::exchange(parts().asked, {}))
+      list.append(to_python(request, class_of("Request")));
+    return list;
+  }
+  void answer(py::handle request, py::handle answer) {
+    agent().answer(sample_of<v1::Request>(request, "Request"),
+                   sample_of<v1::Answer>(answer, "Answer"));
+  }
+  py::object set(py::handle trigger) {
+    return to_python(agent().set(sample_of<v1::Trigger>(trigger, "Trigger")), class_of("GoalId"));
+  }
+  void take_back(py::handle trigger) {
+    agent().take_back(sample_of<v1::GoalId>(trigger, "GoalId"));
+  }
+  void tell(py::handle event) {
+    auto told = sample_of<v1::AgentEvent>(event, "AgentEvent");
+    agent().tell(told.functor, std::move(told.arguments));
+  }
+
+  /// Drives as a program, in the role direct.
+  std::shared_ptr<Driver> driver() {
+    return kept(std::make_shared<Driver>(
+        owner_, std::make_unique<cli::DirectDriver>(node(), bus::topics::kDriveDirect,
+                                                    node().options().name)));
+  }
+  std::shared_ptr<Inquiry> inquiry(std::int64_t cycle) {
+    return kept(std::make_shared<Inquiry>(owner_, std::make_unique<cli::Inquiry>(node(), cycle)));
+  }
+
+  std::shared_ptr<AnyReader> reader(const std::string& topic) {
+    return kept(make_reader(owner_, node(), topic));
+  }
+  std::shared_ptr<AnyWriter> writer(const std::string& topic) {
+    return kept(make_writer(owner_, node(), topic));
+  }
+
+ private:
+  Parts& parts() {
+    owner_.check();
+    if (!parts_)
+      throw std::runtime_error("the bus is closed");
+    return *parts_;
+  }
+  bus::Node& node() { return parts().node; }
+
+  bus::Agent& agent() {
+    Parts& own = parts();
+    if (!own.agent) {
+      own.agent.emplace(own.node, own.node.options().name, summary_);
+      own.agent->when_withdrawn(
+          [&own](const v1::Request& withdrawal) { own.asked.push_back(withdrawal); });
+    }
+    return *own.agent;
+  }
+  bus::RequestClient& client_of(const std::string& topic) {
+    Parts& own = parts();
+    if (const auto found = own.clients.find(topic); found != own.clients.end())
+      return found->second;
+#define SAPHIRA_REQUESTS(constant, text, answers)                                     \
+  if (topic == text)                                                                  \
+    return own.clients                                                                \
+        .try_emplace(topic, own.node, bus::topics::constant, own.node.options().name) \
+        .first->second;
+#include "saphira/bus/topics.def"
+    throw py::value_error("no topic of requests \"" + topic + "\": saphira.topics has them");
+  }
+
+  template <class Kind>
+  std::shared_ptr<Kind> kept(std::shared_ptr<Kind> endpoint) {
+    std::erase_if(endpoints_, [](const auto& weak) { return weak.expired(); });
+    endpoints_.push_back(endpoint);
+    return endpoint;
+  }
+
+  const Owner owner_;
+  const std::string summary_;  ///< of the agent
+  std::unique_ptr<Parts> parts_;
+  std::vector<std::weak_ptr<Endpoint>> endpoints_;
+};
+
+}  // namespace
+}  // namespace saphira::python
+
+PYBIND11_MODULE(_bus, module) {
+  using namespace saphira::python;
+  namespace py = pybind11;
+  using py::arg;
+  module.attr("version") = saphira::bus::version();
+  module.def("there_and_back", &there_and_back);
+  module.def("advice_after_failure", [](py::handle goal) {
+    return saphira::cli::advice_after_failure(sample_of<saphira::v1::Goal>(goal, "Goal"));
+  });
+  py::class_<AnyReader, std::shared_ptr<AnyReader>>(module, "Reader")
+      .def("take", &AnyReader::take)
+      .def("matched", &AnyReader::matched)
+      .def("close", &AnyReader::close);
+  py::class_<AnyWriter, std::shared_ptr<AnyWriter>>(module, "Writer")
+      .def("write", &AnyWriter::write)
+      .def("dispose", &AnyWriter::dispose)
+      .def("matched", &AnyWriter::matched)
+      .def("close", &AnyWriter::close);
+  py::class_<Driver, std::shared_ptr<Driver>>(module, "Driver")
+      .def("drive",
+           [](Driver& driver, py::handle command) {
+             driver.kind().drive(sample_of<saphira::v1::MotorCommand>(command, "MotorCommand"));
+           })
+      .def("release",
+           [](Driver& driver) {
+             auto& own = driver.kind();
+             unlocked([&] {
+               own.release();
+               return 0;
+             });
+           })
+      .def("poll", [](Driver& driver) { driver.kind().poll(); })
+      .def("drives", [](Driver& driver) { return driver.kind().drives(); })
+      .def("trouble", [](Driver& driver) { return driver.kind().trouble(); })
+      .def("stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); })
+      .def("close", &Driver::close);
+  py::class_<Inquiry, std::shared_ptr<Inquiry>>(module, "Inquiry")
+      .def("poll", [](Inquiry& inquiry) { return inquiry.kind().poll(); })
+      .def("explanation", &explanation)
+      .def("close", &Inquiry::close);
+  py::class_<Bus>(module, "Bus")
+      .def(py::init<const std::string&, const std::optional<std::string>&,
+                    const std::optional<std::uint32_t>&, const std::optional<std::string>&,
+                    const std::vector<std::string>&, const std::optional<std::string>&,
+                    std::string>(),
+           arg("name"), arg("robot"), arg("domain"), arg("profile"), arg("peers"), arg("security"),
+           arg("summary"))
+      .def("close", &Bus::close)
+      .def("is_open", &Bus::is_open)
+      .def("name", [](Bus& bus) { return bus.options().name; })
+      .def("robot", [](Bus& bus) { return bus.options().robot; })
+      .def("domain", [](Bus& bus) { return bus.options().domain; })
+      .def("instance", &Bus::instance)
+      .def("fd", &Bus::fd)
+      .def("clear_wake", &Bus::clear_wake)
+      .def("wait", &Bus::wait)
+      .def("poll", &Bus::poll)
+      .def("who_is_there", &Bus::who_is_there)
+      .def("is_empty", &Bus::is_empty)
+      .def("absence", &Bus::absence)
+      .def("ask_goal", &Bus::ask_goal)
+      .def("cancel", &Bus::cancel)
+      .def("status", &Bus::status)
+      .def("send", &Bus::send)
+      .def("again", &Bus::again)
+      .def("answers", &Bus::answers)
+      .def("can", &Bus::can)
+      .def("requests", &Bus::requests)
+      .def("answer", &Bus::answer)
+      .def("set", &Bus::set)
+      .def("take_back", &Bus::take_back)
+      .def("tell", &Bus::tell)
+      .def("driver", &Bus::driver)
+      .def("inquiry", &Bus::inquiry)
+      .def("reader", &Bus::reader)
+      .def("writer", &Bus::writer);
+}

@@ -1,0 +1,93 @@
+"""Driving the wheels, as a program (role direct)."""
+
+import time
+from types import TracebackType
+
+from . import _bus, v1
+from ._errors import Canceled, Refused
+from ._waiting import Pending, Waiter
+
+_PERIOD = 0.05  # [s]; the bridge's lease is 0.3 s
+_PATIENCE = 1.0  # [s] until commands are heeded
+
+
+class Drive:
+    """The wheels, until its context ends: `with robot.drive() as wheels`, or `async with`.
+
+    The robot stops 0.3 s after the newest command, so a program that hangs does not drive on.
+    """
+
+    def __init__(self, driver: _bus.Driver, waiter: Waiter) -> None:
+        self._driver = driver
+        self._waiter = waiter
+
+    def send(self, speed: float = 0.0, turn: float = 0.0) -> None:
+        """One command: [m/s] forward, [rad/s] to the left. At least five a second keep it moving.
+
+        Canceled: somebody has stopped the robot.
+        """
+        self._driver.poll()
+        if self._driver.stopped_by():
+            reason = "stopped by " + self._driver.stopped_by()
+            raise Canceled(reason, v1.GoalCode.CODE_STOPPED)
+        command = v1.MotorCommand(
+            active=True,
+            translation=v1.TranslationMode.TRANSLATION_VELOCITY,
+            velocity=speed,
+            rotation=v1.RotationMode.ROTATION_VELOCITY,
+            rotation_velocity=turn,
+        )
+        self._driver.drive(command)
+
+    def go(self, speed: float = 0.0, turn: float = 0.0, *, seconds: float) -> Pending[None]:
+        """Drives for so long. Refused: others drive, or nobody may."""
+        return Pending(self._waiter, self._go(speed, turn, seconds))
+
+    @property
+    def drives(self) -> bool:
+        """True where its commands go to the wheels."""
+        self._driver.poll()
+        return self._driver.drives()
+
+    @property
+    def trouble(self) -> str:
+        """In words: another driver, a refusal, what the guard does [empty: none]."""
+        self._driver.poll()
+        return self._driver.trouble()
+
+    async def _go(self, speed: float, turn: float, seconds: float) -> None:
+        began = time.monotonic()
+        while time.monotonic() < began + seconds:
+            self.send(speed, turn)
+            if not self.drives and time.monotonic() > began + _PATIENCE and self.trouble:
+                raise Refused(self.trouble, v1.GoalCode.CODE_PREEMPTED)
+            due = time.monotonic() + _PERIOD
+            while (left := due - time.monotonic()) > 0:
+                await self._waiter.news(left)
+
+    def release(self) -> None:
+        """Lets go, which stops the robot."""
+        self._driver.release()
+        self._driver.close()
+
+    def __enter__(self) -> "Drive":
+        return self
+
+    def __exit__(
+        self,
+        kind: "type[BaseException] | None",
+        error: "BaseException | None",
+        trace: "TracebackType | None",
+    ) -> None:
+        self.release()
+
+    async def __aenter__(self) -> "Drive":
+        return self
+
+    async def __aexit__(
+        self,
+        kind: "type[BaseException] | None",
+        error: "BaseException | None",
+        trace: "TracebackType | None",
+    ) -> None:
+        self.release()

@@ -1,0 +1,129 @@
+"""Programs that others ask, that drive, and that want to know why."""
+
+import asyncio
+import threading
+from collections.abc import Iterator
+from typing import TypedDict
+
+import pytest
+import saphira
+from saphira import topics, v1
+
+
+class Place(TypedDict):
+    place: str
+
+
+@pytest.fixture
+def calendar(programs: None) -> Iterator[saphira.Robot]:
+    with saphira.connect("calendar", summary="knows where people are") as calendar:
+        yield calendar
+
+
+def test_is_asked_for_a_fact(robot: saphira.Robot, calendar: saphira.Robot) -> None:
+    @calendar.capability
+    def place_of(person: str) -> Place:
+        """where a person is"""
+        if person != "karen":
+            raise saphira.Refused("the calendar has no " + person)
+        return {"place": "A"}
+
+    async def main() -> None:
+        serving = asyncio.create_task(calendar.serve())
+        async for agent in robot.watch(topics.AGENTS):
+            if agent.name == "calendar":
+                assert agent.summary == "knows where people are"
+                assert agent.capabilities[0].summary == "where a person is"
+                break
+        answer = await robot.ask("place_of", person="karen", place=saphira.OPEN)
+        assert (answer["place"], answer.agent) == ("A", "calendar")
+        assert [each["place"] for each in await robot.ask_all("place_of", person="karen")] == ["A"]
+        with pytest.raises(saphira.Refused, match="no john"):
+            await robot.ask("place_of", person="john")
+        serving.cancel()
+
+    asyncio.run(main())
+
+
+def test_a_trigger_asks_for_an_action(robot: saphira.Robot, calendar: saphira.Robot) -> None:
+    rung = asyncio.Event()
+
+    @calendar.action
+    async def note(door: str) -> None:
+        """Writes a door down"""
+        if door == "3":
+            rung.set()
+
+    async def main() -> None:
+        serving = asyncio.create_task(calendar.serve())
+        bell = saphira.call("bell", door=saphira.OPEN)
+        trigger = robot.on(bell, saphira.call("note", door=saphira.OPEN))
+        while not rung.is_set():
+            robot.tell("bell", door="3")
+            try:
+                await asyncio.wait_for(robot.ask("live-triggers"), 1.0)
+            except (asyncio.TimeoutError, saphira.Trouble):
+                pass
+        trigger.withdraw()
+        serving.cancel()
+
+    asyncio.run(main())
+
+
+def test_drives_and_lets_go(robot: saphira.Robot) -> None:
+    with robot.drive() as wheels:
+        wheels.go(turn=0.5, seconds=1.0).wait()
+        assert wheels.drives
+        for state in robot.state():
+            wheels.send(turn=0.5)
+            if state.rotation_velocity > 0.2:
+                break
+    for grant in robot.watch(topics.GRANT):
+        if not grant.source.startswith("test"):
+            break
+    for state in robot.state():
+        if state.rotation_velocity == 0.0:
+            break
+
+
+def test_a_stop_ends_a_drive(robot: saphira.Robot) -> None:
+    def stop() -> None:
+        with saphira.connect("other") as other:
+            other.stop().wait()
+
+    thread = threading.Thread(target=stop)
+    with robot.drive() as wheels:
+        wheels.go(turn=0.3, seconds=0.5).wait()
+        thread.start()
+        with pytest.raises(saphira.Canceled) as error:
+            wheels.go(turn=0.3, seconds=60).wait()
+    thread.join()
+    assert error.value.code == v1.GoalCode.CODE_STOPPED
+    assert "other" in error.value.reason
+
+
+def test_says_why_and_why_not(robot: saphira.Robot) -> None:
+    explanation = robot.why().wait()
+    assert explanation.cycle > 0
+    assert explanation.sentence in str(explanation)
+    assert robot.why_not("turn left").wait().cause.text
+    with pytest.raises(ValueError, match="turn left"):
+        robot.why_not("fly").wait()
+    with pytest.raises(saphira.Nobody, match="not known"):
+        robot.why(10**9).wait()
+
+
+def test_the_map_and_the_senses_are_arrays(robot: saphira.Robot) -> None:
+    np = pytest.importorskip("numpy")
+    from saphira import arrays
+
+    floor = robot.map.wait()
+    room = next(each for each in floor.artifacts if each.name == "A" and each.length > 2.0)
+    corners = arrays.outline(room)
+    assert corners.shape == (5, 2)
+    assert np.allclose(corners.min(axis=0), (0.5, 5.2), atol=0.05)
+    points = next(robot.sonars())
+    assert points.ndim == 2 and points.shape[1] == 2
+    grid = robot.grid.wait()
+    assert np.nanmax(grid.occupied) <= 1.0 and np.isnan(grid.occupied).any()
+    assert grid.extent[0] < grid.extent[1]
