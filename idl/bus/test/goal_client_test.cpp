@@ -97,7 +97,7 @@ TEST_F(GoalClients, KnowsTheNewestStatusAndKeepsItsOwn) {
 TEST_F(GoalClients, TheNewestStatusIsTheLast) {
   GoalClient client(agent_, "an agent");
   for (const std::uint64_t number : {1U, 2U, 3U}) {
-    statuses_.write({.id = {.writer = number}, .stamp = {number == 1 ? 8 : 7, 100 - number}});
+    statuses_.write({.id = {.writer = number}, .stamp = {number == 1 ? 8U : 7U, 100 - number}});
   }
   client.poll();
   std::vector<std::uint64_t> order;

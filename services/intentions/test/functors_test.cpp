@@ -242,9 +242,9 @@ TEST(GoTo, SleepOfTheServiceDoesNotCountAgainstItsPatience) {
   bench.cycle += 300;
   bench.step();
   const std::uint64_t awake = bench.cycle;
-  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   bench.run(1, 600);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
   EXPECT_NEAR(static_cast<double>(bench.cycle - awake), 40.0, 3.0);
 }
 

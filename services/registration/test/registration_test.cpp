@@ -196,12 +196,12 @@ TEST(Registration, TheGoodReadingsOfThePlaceBeforeDoNotHideThatItWasCarried) {
         .state;
   };
   for (int i = 0; i < 200; ++i)
-    ASSERT_EQ(drive_between(1.0, 1.0), State::tracking);
+    ASSERT_EQ(drive_between(1.0, 1.0), v1::REGISTRATION_TRACKING);
   EXPECT_EQ(registration.output().confidence, 1.0);
   EXPECT_EQ(registration.state().contradiction, 0.0);
-  for (int i = 0; i < 80 && drive_between(1.2, 1.2) == State::tracking; ++i)
+  for (int i = 0; i < 80 && drive_between(1.2, 1.2) == v1::REGISTRATION_TRACKING; ++i)
     EXPECT_TRUE(i < 30 || registration.output().confidence < 0.9) << i;
-  EXPECT_EQ(registration.output().state, State::lost) << "within 2.4 m";
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_LOST) << "within 2.4 m";
 }
 
 TEST(Registration, OnAMapOfSomewhereElseThePlacesOfTheOldOneAreForgotten) {
