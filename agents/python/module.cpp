@@ -327,7 +327,7 @@ PYBIND11_MODULE(_bus, module) {
       .def("stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); })
       .def("close", &Driver::close);
   py::class_<Inquiry, std::shared_ptr<Inquiry>>(module, "Inquiry")
-      .def("poll", [](Inquiry& inquiry) { return inquiry.kind().poll(); })
+      .def("poll", [](Inquiry& asked) { return asked.kind().poll(); })
       .def("explanation", &explanation)
       .def("close", &Inquiry::close);
   py::class_<Bus>(module, "Bus")
