@@ -54,10 +54,10 @@ using Driver = Owned<Endpoint, cli::DirectDriver>;
 using Inquiry = Owned<Endpoint, cli::Inquiry>;
 
 /// The explanation of what the robot does, as JSON.
-std::string explanation(Inquiry& inquiry, const std::string& wish) {
-  if (const std::string missing = inquiry.kind().missing(); !missing.empty())
+std::string explanation(Inquiry& asked, const std::string& wish) {
+  if (const std::string missing = asked.kind().missing(); !missing.empty())
     throw py::index_error(missing);
-  const situation::Situation known = inquiry.kind().situation();
+  const situation::Situation known = asked.kind().situation();
   if (wish.empty())
     return to_json(situation::why(known));
   std::istringstream words(wish);
