@@ -335,6 +335,10 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
       wall.openings.push_back(std::move(opening));
       continue;
     }
+    if (find_way_in(line, before, after, recess.through, other, others, opening)) {
+      wall.openings.push_back(std::move(opening));
+      continue;
+    }
     if (!has_door_in(line, recess, other + opening.through.size()))
       continue;
     const std::vector<const Return*> backwards(recess.through.rbegin(), recess.through.rend());
@@ -364,6 +368,45 @@ bool SideView::has_door_in(const Line& line, Opening& opening, std::size_t other
   });
   return 5 * static_cast<std::size_t>(agree) >= 4 * echoes.size() &&
          opening.depth >= settings_.min_back && opening.depth <= settings_.max_back;
+}
+
+/// True where the way through the gap is open, but narrower than the gap: a door stands open in its
+/// frame or niche. Its ends are then where the echoes from behind the line, `back`, end.
+bool SideView::find_way_in(const Line& line, const Stretch& before, const Stretch& after,
+                           const std::vector<const Return*>& back, std::size_t other,
+                           const std::deque<Return>& others, Opening& opening) const {
+  const auto& through = opening.through;
+  if (back.empty() || through.size() < static_cast<std::size_t>(settings_.min_through) ||
+      4 * other > through.size())
+    return false;
+  const double first = line.u(through.front()->sonar);
+  const double last = line.u(through.back()->sonar);
+  std::vector<const Return*> sides[2];
+  for (const Return* echo : back)
+    if (const double u = line.u(echo->sonar); u < first || u > last)
+      sides[u < first ? 0 : 1].push_back(echo);
+  if (back.size() - sides[0].size() - sides[1].size() > through.size())
+    return false;
+  const std::vector<const Return*> backwards(through.rbegin(), through.rend());
+  for (const bool upper : {true, false}) {
+    const auto& side = sides[upper ? 0 : 1];
+    End& end = upper ? opening.from : opening.to;
+    end = {};
+    if (side.empty()) {
+      place_end(line, upper ? before : after, upper, upper ? through : backwards, others, end);
+      continue;
+    }
+    // A corner is heard as farther back than the surface beside it.
+    Line behind = line;
+    double depth = settings_.through;
+    for (const Return* echo : side)
+      depth = std::min(depth, echo->range - line.distance(echo->sonar));
+    behind.offset += depth;
+    Stretch frame;
+    frame.echoes = side;
+    place_end(behind, frame, upper, upper ? through : backwards, others, end);
+  }
+  return opening.from.open && opening.to.open;
 }
 
 void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,

@@ -99,6 +99,17 @@ Corridor::Range recess(double from, double to, double depth) {
   };
 }
 
+/// A gap in the wall with an open door in its back, `depth` behind the wall.
+Corridor::Range niche(double from, double to, double depth, double door_from, double door_to) {
+  return [=, gap = recess(from, to, depth)](double x) {
+    const double back = 1.0 + depth;
+    const double seen = std::min(x - door_from, door_to - x);
+    if (gap(x) != back || seen <= 0.0)
+      return gap(x);
+    return seen < back * std::tan(radians(9.5)) ? std::hypot(back, seen) : 0.0;
+  };
+}
+
 std::vector<Percept> of(const Output& output, PointType type) {
   std::vector<Percept> found;
   std::copy_if(output.percepts.begin(), output.percepts.end(), std::back_inserter(found),
@@ -152,6 +163,25 @@ TEST(Interpretation, AClosedDoorThatStandsBackIsADoor) {
     EXPECT_NEAR(doors[0].width, 0.9, 0.1);
     // The place is no end of a wall.
     EXPECT_TRUE(of(corridor.drive(4.6), PointType::breach).empty());
+  }
+}
+
+TEST(Interpretation, SeesAnOpenDoorInItsFrameOrNiche) {
+  struct Case {
+    double to, depth, door_from, door_to;
+  };
+  for (const Case& each :
+       {Case{2.9, 0.2, 2.05, 2.85}, Case{3.3, 0.25, 2.1, 3.0}, Case{3.6, 0.15, 2.6, 3.5}}) {
+    Corridor corridor(niche(2.0, each.to, each.depth, each.door_from, each.door_to), nothing);
+    const Output output = corridor.drive(5.5);
+    const auto doors = of(output, PointType::door);
+    ASSERT_EQ(doors.size(), 1U) << each.to;
+    EXPECT_FALSE(doors[0].is_closed());
+    EXPECT_NEAR(doors[0].pose_in_odom.x, (each.door_from + each.door_to) / 2, 0.06) << each.to;
+    EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
+    EXPECT_NEAR(doors[0].width, each.door_to - each.door_from, 0.1) << each.to;
+    EXPECT_TRUE(of(output, PointType::breach).empty());
+    EXPECT_TRUE(of(output, PointType::junction).empty());
   }
 }
 

@@ -93,7 +93,7 @@ Interval inside(const Line& line, const Area& area) {
 
 class Builder {
  public:
-  explicit Builder(std::uint64_t seed) : random_(seed) {}
+  explicit Builder(std::uint64_t seed) : random_(seed), frames_(seed + 1'000'000) {}
 
   Floor make();
 
@@ -125,6 +125,7 @@ class Builder {
                bool is_recessed = false);
 
   Random random_;
+  Random frames_;  // of its own: the rest of a floor does not depend on its doors' frames
   std::vector<Corridor> corridors_;
   std::vector<Area> halls_;
   std::vector<Area> rooms_;
@@ -134,6 +135,7 @@ class Builder {
   std::ostringstream map_;
   std::ostringstream open_doors_;
   std::ostringstream recessed_doors_;
+  std::ostringstream noticeable_doors_;
 };
 
 void Builder::feature(const std::string& type, std::uint32_t id, const Pose& pose, double length,
@@ -154,6 +156,8 @@ void Builder::feature(const std::string& type, std::uint32_t id, const Pose& pos
     open_doors_ << line.str();
   if (is_recessed)
     recessed_doors_ << line.str();
+  if (is_open || is_recessed)
+    noticeable_doors_ << line.str();
 }
 
 void Builder::branch(double along, double side) {
@@ -277,12 +281,18 @@ void Builder::lay_rooms(const Corridor& corridor, double side) {
   }
 }
 
-/// The front of a room: the reveal between the corridor's side and the room, and the leaf.
+/// The front of a room: the reveal between the corridor's side and the room, its frame or niche,
+/// and the leaf.
 void Builder::lay_door(const Corridor& corridor, double side, const Area& room,
                        const std::string& name) {
   const double opening = one_of(std::array{0.8, 0.9, 0.9, 0.9, 0.9, 1.0, 1.2});
   const double reveal = chance(0.3) ? 0.0 : chance(0.7) ? between(0.05, 0.2) : between(0.2, 0.35);
-  const double wall_depth = std::max(reveal, 0.1);
+  const bool has_frame = reveal >= 0.05 && frames_.chance(0.5);
+  const double gap = opening + (!has_frame            ? 0.0
+                                : frames_.chance(0.5) ? 0.1
+                                                      : frames_.uniform(0.1, 0.4));
+  const double wall_depth =
+      has_frame ? reveal + frames_.uniform(0.10, 0.15) : std::max(reveal, 0.1);
   const double hinge = chance(0.5) ? 1.0 : -1.0;
   const double state = random_.uniform();
   const double leaf = radians(state < 0.25   ? 0.0
@@ -297,17 +307,25 @@ void Builder::lay_door(const Corridor& corridor, double side, const Area& room,
   for (const double end : {-room.width / 2, room.width / 2})
     wall(room.at(wall_depth, end), room.at(room.length, end));
   wall(room.at(room.length, -room.width / 2), room.at(room.length, room.width / 2));
-  for (const double jamb : {-opening / 2, opening / 2})
-    wall(at(0.0, jamb), at(wall_depth, jamb));
+  for (const double jamb : {-1.0, 1.0}) {
+    const double narrows_at = has_frame ? reveal : 0.0;
+    if (has_frame) {
+      wall(at(0.0, jamb * gap / 2), at(reveal, jamb * gap / 2));
+      wall(at(reveal, jamb * gap / 2), at(reveal, jamb * opening / 2));
+    }
+    wall(at(narrows_at, jamb * opening / 2), at(wall_depth, jamb * opening / 2));
+  }
   // The leaf opens into the room.
+  const bool is_open = leaf > radians(80.0);
+  const double turns_at = has_frame && is_open ? wall_depth : reveal;
   const double along = -hinge * std::cos(leaf) * opening;
-  wall(at(reveal, hinge * opening / 2),
-       at(reveal + std::sin(leaf) * opening, hinge * opening / 2 + along));
-  openings_.push_back({at(0.0, -opening / 2), at(0.0, opening / 2)});
+  wall(at(turns_at, hinge * opening / 2),
+       at(turns_at + std::sin(leaf) * opening, hinge * opening / 2 + along));
+  openings_.push_back({at(0.0, -gap / 2), at(0.0, gap / 2)});
   const Vec2 middle = at(0.0, 0.0);
   feature("DOOR", 1000 + static_cast<std::uint32_t>(rooms_.size()),
           {middle.x(), middle.y(), corridor.area.in_world.th - side * kPi / 2}, 0.0, opening, name,
-          leaf > radians(80.0), leaf == 0.0 && reveal >= 0.15);
+          is_open, reveal >= 0.15 && (is_open || leaf == 0.0));
   // A desk at the far wall.
   if (room.length > 3.5 && room.width > 2.6)
     box(compose(room.in_world, {room.length - 0.9, between(-0.3, 0.3), 0.0}), 0.8, 1.6);
@@ -462,7 +480,8 @@ Floor Builder::make() {
   const Pose start{tour_.front().x(), tour_.front().y(), 0.0};
   feature("POS", 90, start, 0.0, 0.0, "start");
   const Vec2 size = most + moved + Vec2(kRoom, kRoom);
-  return {world(size, start), map_.str(), open_doors_.str(), recessed_doors_.str(), tour_};
+  return {world(size, start),      map_.str(), open_doors_.str(), recessed_doors_.str(),
+          noticeable_doors_.str(), tour_};
 }
 
 }  // namespace

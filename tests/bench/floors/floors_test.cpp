@@ -74,7 +74,8 @@ TEST_P(Floors, DoorsAreOpenings) {
   for (const maps::Feature& door :
        maps::parse_map(floor_.recessed_doors, "recessed.map").features) {
     EXPECT_NE(maps::find(map_, door.id), nullptr);
-    EXPECT_EQ(maps::find(open, door.id), nullptr);
+    if (maps::find(open, door.id) != nullptr)
+      continue;
     // Flat, and at that depth.
     const double back = sim::distance(world_.segments, transform(door.pose_in_map, Vec2(0.0, 0.0)));
     EXPECT_GT(back, 0.149) << maps::describe(door);
@@ -107,8 +108,8 @@ TEST_P(Floors, NobodyGetsOut) {
     }
 }
 
-/// The closed doors that stand back from the corridor's wall, on floors that the robot was not
-/// tuned on.
+/// The doors that stand back from the corridor's wall, open and closed, on floors that the robot
+/// was not tuned on.
 TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   int passed = 0;
   int found = 0;
@@ -123,9 +124,9 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
     options.made_world = std::make_shared<sim::World>(sim::parse_world(floor.world, "floor.wld"));
     options.seed = seed;
     Drive robot(registered_on(map, options));
-    const maps::Map closed = maps::parse_map(floor.recessed_doors, "recessed.map");
+    const maps::Map standing_back = maps::parse_map(floor.recessed_doors, "recessed.map");
     std::set<std::uint32_t> matched;
-    Score recessed(robot, closed);
+    Score recessed(robot, standing_back);
     Score any(robot, map);
     Tour tour(floor.tour, true);
     for (int cycle = 0; cycle < 6000; ++cycle) {
@@ -134,10 +135,10 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
       recessed.look(robot);
       any.look(robot);
       for (const registration::Core::Matched& match : robot.registered().matches)
-        if (match.accepted && maps::find(closed, match.artifact) != nullptr)
+        if (match.accepted && maps::find(standing_back, match.artifact) != nullptr)
           matched.insert(match.artifact);
     }
-    on_map += closed.features.size();
+    on_map += standing_back.features.size();
     all_matched += matched.size();
     passed += recessed.doors_passed();
     found += recessed.doors_found();

@@ -45,7 +45,7 @@ struct Site {
   std::shared_ptr<const maps::Map> map;
   maps::Map open_doors;
   maps::Map recessed_doors;
-  maps::Map noticeable;  ///< both
+  maps::Map noticeable;
 };
 
 Site site(std::uint64_t seed) {
@@ -56,7 +56,7 @@ Site site(std::uint64_t seed) {
   made.open_doors = maps::parse_map(made.floor.open_doors, name + ", open doors");
   made.recessed_doors =
       maps::parse_map(made.floor.recessed_doors, name + ", doors that stand back");
-  made.noticeable = maps::parse_map(made.floor.open_doors + made.floor.recessed_doors, name);
+  made.noticeable = maps::parse_map(made.floor.noticeable_doors, name + ", noticeable doors");
   return made;
 }
 
@@ -78,7 +78,7 @@ struct Patrolled {
   int sure_right = 0;  ///< of these within 0.5 m
   int doors = 0;
   int noticed = 0;
-  int recessed = 0;  ///< of these, closed ones that stand back
+  int recessed = 0;  ///< of these, those that stand back
   int recessed_noticed = 0;
   int reported = 0;  ///< hypotheses of doors
   int real = 0;      ///< of any door, also of one that is ajar
@@ -351,7 +351,7 @@ int run(const Options& options) {
                               {"recessed_noticed", share(all.recessed_noticed, all.recessed)},
                               {"doors_precision", share(all.real, all.reported)},
                               {"recessed_built", share(recessed_found, built_recessed)},
-                              {"doors_false", built_false},
+                              {"false_doors", share(built_false, options.floors)},
                               {"explored", share(covered, length)},
                               {"doors_built", share(built_found, built_doors)},
                               {"built_well", good},

@@ -119,6 +119,9 @@ class SideView {
   void assign();
   void seek();
   void describe(const Candidate& candidate, const std::deque<Return>& others);
+  bool find_way_in(const Line& line, const Stretch& before, const Stretch& after,
+                   const std::vector<const Return*>& back, std::size_t other,
+                   const std::deque<Return>& others, Opening& opening) const;
   bool has_door_in(const Line& line, Opening& opening, std::size_t others) const;
   void place_end(const Line& line, const Stretch& stretch, bool upper,
                  const std::vector<const Return*>& beyond, const std::deque<Return>& others,
