@@ -26,10 +26,7 @@ class Drive:
 
         Canceled: somebody has stopped the robot.
         """
-        self._driver.poll()
-        if self._driver.stopped_by():
-            reason = "stopped by " + self._driver.stopped_by()
-            raise Canceled(reason, v1.GoalCode.CODE_STOPPED)
+        self._expect_no_stop()
         command = v1.MotorCommand(
             active=True,
             translation=v1.TranslationMode.TRANSLATION_VELOCITY,
@@ -38,6 +35,12 @@ class Drive:
             rotation_velocity=turn,
         )
         self._driver.drive(command)
+
+    def _expect_no_stop(self) -> None:
+        self._driver.poll()
+        if self._driver.stopped_by():
+            reason = "stopped by " + self._driver.stopped_by()
+            raise Canceled(reason, v1.GoalCode.CODE_STOPPED)
 
     def go(self, speed: float = 0.0, turn: float = 0.0, *, seconds: float) -> Pending[None]:
         """Drives for so long. Refused: others drive, or nobody may."""
@@ -60,6 +63,7 @@ class Drive:
         while time.monotonic() < began + seconds:
             self.send(speed, turn)
             if not self.drives and time.monotonic() > began + _PATIENCE and self.trouble:
+                self._expect_no_stop()  # it may have come just now
                 raise Refused(self.trouble, v1.GoalCode.CODE_PREEMPTED)
             due = time.monotonic() + _PERIOD
             while (left := due - time.monotonic()) > 0:
