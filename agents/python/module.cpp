@@ -54,10 +54,10 @@ using Driver = Owned<Endpoint, cli::DirectDriver>;
 using Inquiry = Owned<Endpoint, cli::Inquiry>;
 
 /// The explanation of what the robot does, as JSON.
-std::string explanation(Inquiry& inquiry, const std::string& wish) {
-  if (const std::string missing = inquiry.kind().missing(); !missing.empty())
+std::string explanation(Inquiry& asked, const std::string& wish) {
+  if (const std::string missing = asked.kind().missing(); !missing.empty())
     throw py::index_error(missing);
-  const situation::Situation known = inquiry.kind().situation();
+  const situation::Situation known = asked.kind().situation();
   if (wish.empty())
     return to_json(situation::why(known));
   std::istringstream words(wish);
@@ -327,7 +327,7 @@ PYBIND11_MODULE(_bus, module) {
       .def("stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); })
       .def("close", &Driver::close);
   py::class_<Inquiry, std::shared_ptr<Inquiry>>(module, "Inquiry")
-      .def("poll", [](Inquiry& inquiry) { return inquiry.kind().poll(); })
+      .def("poll", [](Inquiry& asked) { return asked.kind().poll(); })
       .def("explanation", &explanation)
       .def("close", &Inquiry::close);
   py::class_<Bus>(module, "Bus")

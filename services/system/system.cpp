@@ -29,7 +29,7 @@ const runtime::Unit kBridge{
      {"device/analog", Use::kEvents},   {"device/timer", Use::kEvents},
      {"device/sonar", Use::kEvents},    {"device/sound", Use::kEvents},
      {"device/server", Use::kEvents},   {"device/serial", Use::kEvents},
-     {"device/vision", Use::kEvents}}};
+     {"device/vision", Use::kEvents},   {"audit", Use::kEvents}}};
 
 }  // namespace
 

@@ -145,7 +145,7 @@ Type type(const char* name, const dds_topic_descriptor_t& cyclone, std::uint64_t
 std::vector<Type> types() {
 #define TYPE(T, hash) type<v1::T>(#T, saphira_v1_##T##_desc, hash)
   return {
-      TYPE(Request, 0xe9f719f3155ca70b),
+      TYPE(Request, 0xca3f3073e6a5b0af),
       TYPE(Answer, 0x2d4b1d9d5b531b89),
       TYPE(RobotState, 0x2cb327b289d748dd),
       TYPE(RobotDescription, 0x142f951cb6773f67),
@@ -163,7 +163,7 @@ std::vector<Type> types() {
       TYPE(Registration, 0x57b8253a9ba6293d),
       TYPE(BehaviorSet, 0x08ff02971f696d26),
       TYPE(Intentions, 0xf45b7312f344a20f),
-      TYPE(Goal, 0x08dab50ba10d9f1a),
+      TYPE(Goal, 0x5857111e1c09b4ad),
       TYPE(GoalStatus, 0xe8c7678efc09a706),
       TYPE(GoalStatusSet, 0xccdaf3db872e44a7),
       TYPE(BehaviorSchemas, 0x32697a16266de647),
@@ -173,7 +173,7 @@ std::vector<Type> types() {
       TYPE(Agent, 0x268881e626890c5b),
       TYPE(AgentEvent, 0xb50e10867c501a65),
       TYPE(Trigger, 0x9458268e38d10e10),
-      TYPE(Utterance, 0xb4607b10bfa6e615),
+      TYPE(Utterance, 0xa41d19303b4a0324),
       TYPE(Knowledge, 0x318938dc5aab7604),
       TYPE(ProgramMind, 0x4f60d3218e99aeeb),
       TYPE(ProcessSet, 0x5d398f03e1e919cd),
@@ -182,7 +182,7 @@ std::vector<Type> types() {
       TYPE(ServiceStatus, 0xe17c5e96aa3e81c2),
       TYPE(Presence, 0x1460556a0fb51e13),
       TYPE(LogRecord, 0xc1dbf47e69a09277),
-      TYPE(AuditEntry, 0x0),
+      TYPE(AuditEntry, 0xbfa1fa7286179647),
   };
 #undef TYPE
 }

@@ -71,7 +71,8 @@ int list(const KeyWords& words) {
   const DoorKeys keys = read(words.file);
   for (const DoorKey& key : keys.all())
     std::printf("%-32s %-8s until %s%s\n", key.name.c_str(), security::name_of(key.right),
-                utc_text(key.until - 1, "%Y-%m-%d").c_str(), key.until <= date_now() ? "  over" : "");
+                utc_text(key.until - 1, "%Y-%m-%d").c_str(),
+                key.until <= date_now() ? "  over" : "");
   if (keys.all().empty())
     std::cout << words.file << ": nobody has a key yet: saphira keys add NAME\n";
   return bus::kExitOk;

@@ -637,7 +637,7 @@ TEST_F(DoorInMemory, WhereMembersAreKnownTheirDescriptionsGoByTheMember) {
   v1::Agent agent;
   agent.id = 8;
   agent.name = "dialogue";
-  agent.capabilities = {bus::action("cook", "cooks")};
+  agent.capabilities = {bus::action("cook", "cooks", {})};
   const auto is_shown = [&](const Identity& sender, const std::string& described) {
     agents.set_sender(sender);
     agents.write(agent);

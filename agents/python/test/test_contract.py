@@ -47,7 +47,7 @@ class Filler:
 
 
 @pytest.mark.parametrize("extreme", [0, 1, 2])
-@pytest.mark.parametrize("type_", TYPES, ids=lambda type_: type_.__name__)
+@pytest.mark.parametrize("type_", TYPES, ids=[each.__name__ for each in TYPES])
 def test_each_type_comes_back_unchanged(type_: Any, extreme: int) -> None:
     sample = Filler(extreme).value(type_)
     assert repr(_bus.there_and_back(sample)) == repr(sample)

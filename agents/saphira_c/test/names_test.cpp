@@ -62,7 +62,7 @@ TEST(Names, EachOfTheManualIsInTheHeaderOrDiffers) {
   std::set<std::string> there = all(header(), R"(\b(\w+)\b)");
   there.merge(all(read(test::source("docs/c-api.md")), "`(\\w+)`"));
   std::set<std::string> named = all(manual, R"(\b(sf[A-Za-z0-9_]+)\b)");
-  named.merge(all(manual, R"(\b([A-Za-z]\w*_\w+)\b)"));
+  named.merge(all(manual, R"(\b([A-Za-z][A-Za-z0-9]*_\w+)\b)"));
   // Chapter 12: a prototype begins a line, or the text between two tags.
   const std::string reference = manual.substr(manual.rfind("12. Saphira API Reference"));
   named.merge(all(

@@ -92,7 +92,7 @@ TEST_F(Programs, ABlobIsSearchedForAndApproached) {
 
 // In the manner of course work for Saphira 6: no sfInitBasicProcs, degrees, float results.
 TEST_F(Programs, AProgramOfSaphira6GoesFromCornerToCorner) {
-  simulate();
+  simulate("19000 19000 0", "simple", "", "1");  // a loaded machine stops it late
   const std::string path = dir_.path("six.c");
   std::ofstream(path) << R"(
 #include "saphira.h"

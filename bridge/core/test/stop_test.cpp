@@ -126,10 +126,12 @@ TEST(Stop, NamesThePersonBehindTheProgram) {
 
 // The audit: who drove, stopped, reset and was refused.
 struct Audited : StopScene {
+  /// Without the drivers that a stronger one keeps from driving.
   std::vector<std::string> acts() {
     std::vector<std::string> found;
     for (const AuditEntry& entry : all<AuditEntry>())
-      found.push_back(std::to_string(static_cast<int>(entry.act)) + " " + entry.who);
+      if (!entry.text.starts_with("to drive"))
+        found.push_back(std::to_string(static_cast<int>(entry.act)) + " " + entry.who);
     forget();
     return found;
   }
@@ -154,12 +156,16 @@ TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
   using Act = AuditEntry::Act;
   Audited scene;
   scene.drive(Role::teleop, 0.1);
-  scene.forget();
   for (int i = 0; i < 5; ++i) {
     scene.tell(scene.wish(Role::direct, 0.1));
     scene.cycles(1, Role::teleop, 0.1);
   }
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::refused, "direct")});
+  const std::vector<AuditEntry> entries = scene.all<AuditEntry>();
+  EXPECT_EQ(std::count_if(entries.begin(), entries.end(),
+                          [](const AuditEntry& entry) {
+                            return entry.act == Act::refused && entry.who == "direct";
+                          }),
+            1);
 }
 
 TEST(Audit, NamesWhoPressesAndResetsTheEmergencyStop) {

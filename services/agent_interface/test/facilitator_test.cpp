@@ -915,6 +915,7 @@ TEST_F(Facilitation, ATriggerIsItsRequestersAndActsForThem) {
   const Identity anna{"anna", "agent"};
   facilitator.announce(agent(1, "a", true));
   Trigger trigger{{1, 1}, "ann", TriggerKind::time, 5.0, "", {}, "place_of", {}, 1};
+  trigger.action_arguments = {text("person", "karen")};
   trigger.person = anna;
   facilitator.set(trigger, now);
   EXPECT_FALSE(facilitator.may_change({1, 1}, Identity{"planner", "agent"}));

@@ -287,7 +287,8 @@ TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {
   using Act = AuditEntry::Act;
   const auto acts = [&](const Core::Heard::Goal& goal) {
     std::vector<Act> all;
-    for (const AuditEntry& entry : hear(goal).notes.audit()) {
+    const Core::Outputs outputs = hear(goal);
+    for (const AuditEntry& entry : outputs.notes.audit()) {
       EXPECT_EQ(entry.who, goal.person->text() + ", a test");
       all.push_back(entry.act);
     }

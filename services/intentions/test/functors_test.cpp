@@ -245,7 +245,7 @@ TEST(GoTo, SleepOfTheServiceDoesNotCountAgainstItsPatience) {
   EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   bench.run(1, 600);
   EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-  EXPECT_NEAR(static_cast<double>(bench.cycle - awake), 40.0, 3.0);
+  EXPECT_NEAR(static_cast<double>(bench.cycle - awake), 50.0, 3.0);
 }
 
 // The way around an obstacle leads away from the point. A small robot is slow, and gets on.

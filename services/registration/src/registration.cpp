@@ -90,7 +90,6 @@ class Registration::Self {
   void correct(const std::vector<const Percept*>& percepts);
   void correct(const std::vector<PlacedReading>& readings);
   void look_around(const std::vector<PlacedReading>& readings);
-  void count_against(double ratio);
   std::vector<PlacedReading> fresh_ones(const std::vector<PlacedReading>& readings);
   bool dense(const ParticleCloud::Estimate& cloud) const;
   void follow(const ParticleCloud::Estimate& cloud, double score);
@@ -126,7 +125,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
   now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
-  now_.contradiction = 0.0;
+  now_.search.own_recent = settings_.recently_sure;
   now_.state = v1::REGISTRATION_TRACKING;
   now_.confirmed = confidence > kUnconfirmed;
   now_.doubted = now_.carried = now_.other_map = false;
@@ -356,7 +355,6 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
       continue;
     }
     const Pose before = now_.filter->pose();
-    const Vec2 seen = relative(now_.pose_in_odom, percept->pose_in_odom).position();
     const Eigen::Matrix3d covariance_before = now_.filter->pose_covariance();
     const Match result =
         match(*percept, now_.pose_in_odom, map_, lines_, settings_.match, *now_.filter);
@@ -368,9 +366,6 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
       for (const lps::ReadingId& id : percept->readings)
         now_.used.insert({id.cycle, id.sonar});
     now_.output.matches.push_back(result);
-    count_against(percept->type == PointType::wall && !result.accepted && !result.ambiguous
-                      ? settings_.contradiction.wall
-                      : -search_.worth(*percept, result, transform(before, seen)));
   }
   while (now_.used.size() > kKeptReadings)
     now_.used.erase(now_.used.begin());
@@ -428,16 +423,13 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     const Pose middle = now_.cloud.estimate().pose;
     for (const PlacedReading& reading : fresh) {
       const Pose in_robot = relative(now_.pose_in_odom, reading.sensor_in_odom);
-      const Pose in_map = compose(now_.filter->pose(), in_robot);
-      count_against(
-          contradiction(field_, in_map, reading.range, reading.echo, settings_.contradiction));
       const auto worth = [&](const Pose& sensor_in_map) {
         return search_.worth(sensor_in_map, reading.range, reading.echo);
       };
       now_.cloud.weigh(in_robot, worth);
       const double here = worth(compose(middle, in_robot));
       now_.cloud_score += here;
-      now_.lead += here - worth(in_map);
+      now_.lead += here - worth(compose(now_.filter->pose(), in_robot));
     }
     now_.cloud.select();
   }
@@ -464,11 +456,6 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     follow(there, now_.cloud_score);
 }
 
-/// Page's test: a sum that never is below 0 forgets how well the place before has fitted.
-void Registration::Self::count_against(double ratio) {
-  now_.contradiction = std::clamp(now_.contradiction + ratio, 0.0, settings_.refuted);
-}
-
 bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
   return cloud.covariance(0, 0) + cloud.covariance(1, 1) < settings_.dense * settings_.dense &&
          cloud.covariance(2, 2) < settings_.dense_turned * settings_.dense_turned;
@@ -483,7 +470,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
-  now_.contradiction = 0.0;
+  now_.search.own_recent = settings_.recently_sure;
   now_.done.clear();
   now_.leads = true;
   now_.led = 0.0;
@@ -564,8 +551,8 @@ void Registration::Self::look_for_news(const Inputs& inputs,
 bool Registration::Self::holds_again() const {
   if (now_.doubted)
     return search_.own_leads();
-  return now_.search.own_score > settings_.again_sure && now_.contradiction < settings_.doubts &&
-         search_.own_is_best();
+  return now_.search.own_score > settings_.again_sure &&
+         now_.search.own_recent > settings_.recently_again && search_.own_is_best();
 }
 
 const Output& Registration::Self::step(const Inputs& inputs) {
@@ -583,7 +570,8 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     if (now_.standing.step(now_.moved, readings))
       suspect_it_was_carried();
     if (now_.state == v1::REGISTRATION_TRACKING &&
-        (now_.search.own_score < settings_.lost || now_.contradiction >= settings_.refuted))
+        (now_.search.own_score < settings_.lost ||
+         now_.search.own_recent < settings_.recently_lost))
       now_.state = v1::REGISTRATION_LOST;
     else if (now_.state == v1::REGISTRATION_LOST && holds_again())
       now_.state = v1::REGISTRATION_TRACKING;
@@ -648,12 +636,12 @@ void Registration::Self::report() {
                                           "confirmed yet that the robot is where it was"
                                         : "the readings do not fit the map at this pose";
   } else {
-    const auto between = [](double value, double lost, double sure) {
-      return std::clamp((value - lost) / (sure - lost), 0.0, 1.0);
+    const auto between = [](double score, double lost, double sure) {
+      return std::clamp((score - lost) / (sure - lost), 0.0, 1.0);
     };
     now_.output.confidence =
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
-                 between(now_.contradiction, settings_.refuted, settings_.doubts));
+                 between(now_.search.own_recent, settings_.recently_lost, settings_.recently_sure));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =

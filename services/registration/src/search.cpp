@@ -80,6 +80,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
+  now_.own_recent *= std::exp(-way / settings_.recent);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
     now_.travelled -= settings_.spacing;
@@ -87,7 +88,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
       if (now_.own)
-        now_.own_score += weigh(*now_.own, reading);
+        count_own(weigh(*now_.own, reading));
       now_.history.push_back(reading);
     }
     while (now_.history.size() > settings_.history)
@@ -97,16 +98,15 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
   for (const lps::Percept* percept : fresh) {
     const bool opening =
         percept->type == lps::PointType::door || percept->type == lps::PointType::junction;
-    const Vec2 seen = relative(pose_in_odom, percept->pose_in_odom).position();
     for (Hypothesis& h : now_.hypotheses) {
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, h.filter);
       h.openings += opening && result.accepted ? 1 : 0;
-      h.score += worth(*percept, result, transform(h.filter.pose(), seen));
+      h.score += worth(*percept, result, h.filter.pose());
     }
     if (own != nullptr) {
       PoseFilter copy = *own;
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
-      now_.own_score += worth(*percept, result, transform(own->pose(), seen));
+      count_own(worth(*percept, result, own->pose()));
     }
     if (opening)
       propose(*percept);
@@ -114,9 +114,14 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
   thin_out();
 }
 
+void Search::count_own(double worth) {
+  now_.own_score += worth;
+  now_.own_recent += worth;
+}
+
 /// The score of a present or missing object, for a place.
 double Search::worth(const lps::Percept& percept, const Match& match,
-                     const Vec2& seen_in_map) const {
+                     const Pose& robot_in_map) const {
   if (!percept.is_hypothesis() || match.ambiguous)
     return 0.0;
   // A corridor is seen anew every few steps, a door once.
@@ -125,8 +130,10 @@ double Search::worth(const lps::Percept& percept, const Match& match,
   if (match.accepted)
     return each;
   // A map of walls alone defines the places of walls, but not those without corridors and doors.
-  const bool denied =
-      corridor ? maps_corridors_ : !lines_->openings().empty() || is_wall(*lines_, seen_in_map);
+  const Pose seen_in_map = compose(robot_in_map, relative(*now_.odom, percept.pose_in_odom));
+  const bool denied = corridor
+                          ? maps_corridors_
+                          : !lines_->openings().empty() || is_wall(*lines_, seen_in_map.position());
   return denied ? -each : 0.0;
 }
 

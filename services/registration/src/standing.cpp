@@ -38,27 +38,22 @@ bool Standing::step(const Pose& moved, const std::vector<PlacedReading>& reading
       heard.ranges.push_back(range);
       continue;
     }
-    const auto known = [&](double within) {
-      return std::any_of(heard.ranges.begin(), heard.ranges.end(),
-                         [&](double each) { return std::abs(each - range) < within; });
-    };
-    heard.strange = known(settings_.same) ? 0 : heard.strange + 1;
-    heard.shifted =
-        known(std::max(settings_.close, settings_.close_share * range)) ? 0 : heard.shifted + 1;
+    const bool known = std::any_of(heard.ranges.begin(), heard.ranges.end(), [&](double each) {
+      return std::abs(each - range) < settings_.same;
+    });
+    heard.strange = known ? 0 : heard.strange + 1;
     if (heard.strange > settings_.accepted)
-      heard = {heard.direction, {}, 0, 0};
+      heard = {heard.direction, {}, 0};
   }
   std::size_t known = 0;
-  std::size_t others = 0;
   std::vector<double> changed;
   for (const auto& [sonar, heard] : sonars_) {
     known += heard.ranges.size() == static_cast<std::size_t>(settings_.learnt) ? 1 : 0;
-    others += heard.strange >= settings_.changed ? 1 : 0;
-    if (heard.shifted >= settings_.changed)
+    if (heard.strange >= settings_.changed)
       changed.push_back(heard.direction);
   }
-  if (others < static_cast<std::size_t>(settings_.least) ||
-      static_cast<double>(others) < settings_.share * static_cast<double>(known) ||
+  if (changed.size() < static_cast<std::size_t>(settings_.least) ||
+      static_cast<double>(changed.size()) < settings_.share * static_cast<double>(known) ||
       angle_of(std::move(changed)) < settings_.around)
     return false;
   sonars_.clear();

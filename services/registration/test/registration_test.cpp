@@ -178,32 +178,6 @@ TEST(Registration, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
     });
 }
 
-/// Carried into a corridor that is 0.4 m wider than the one that it believes to be in.
-TEST(Registration, TheGoodReadingsOfThePlaceBeforeDoNotHideThatItWasCarried) {
-  Registration registration(settings(), kMap, Pose{3.5, 0.0, 0.0});
-  std::uint64_t cycle = 0;
-  const auto drive_between = [&](double left, double right) {
-    std::vector<lps::SonarReading> readings;
-    for (int sonar = 0; sonar < kSonars; ++sonar) {
-      readings.emplace_back();
-      readings.back().sonar = sonar;
-      readings.back().echo = sonar == kSonars / 4 || sonar == 3 * kSonars / 4;
-      readings.back().range = sonar == kSonars / 4 ? left : right;
-    }
-    ++cycle;
-    return registration
-        .step({cycle, 1, {0.03 * static_cast<double>(cycle), 0.0, 0.0}, {}, readings})
-        .state;
-  };
-  for (int i = 0; i < 200; ++i)
-    ASSERT_EQ(drive_between(1.0, 1.0), v1::REGISTRATION_TRACKING);
-  EXPECT_EQ(registration.output().confidence, 1.0);
-  EXPECT_EQ(registration.state().contradiction, 0.0);
-  for (int i = 0; i < 80 && drive_between(1.2, 1.2) == v1::REGISTRATION_TRACKING; ++i)
-    EXPECT_TRUE(i < 30 || registration.output().confidence < 0.9) << i;
-  EXPECT_EQ(registration.output().state, v1::REGISTRATION_LOST) << "within 2.4 m";
-}
-
 TEST(Registration, OnAMapOfSomewhereElseThePlacesOfTheOldOneAreForgotten) {
   Registration registration(settings(), kMap);
   Robot robot(1);

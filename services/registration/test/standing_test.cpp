@@ -56,14 +56,6 @@ TEST(Standing, APersonWhoLeavesFromBeforeAPioneerChangesOneSideOfItsSonars) {
   EXPECT_EQ(carried(standing, of_pioneer(2.0, 3.0, 0.9), 50), 1) << "another place";
 }
 
-TEST(Standing, TheWallsOfAnotherCorridorAreAtNearlyTheSameRanges) {
-  Standing standing;
-  EXPECT_EQ(carried(standing, of_pioneer(2.1, 0.69, 0.72), 20), 0);
-  EXPECT_EQ(carried(standing, of_pioneer(3.3, 0.60, 0.61), 50), 1);
-  EXPECT_EQ(carried(standing, of_pioneer(2.1, 0.69, 0.72), 50), 1) << "and back";
-  EXPECT_EQ(carried(standing, of_pioneer(3.3, 0.66, 0.75), 50), 0) << "nothing else has changed";
-}
-
 TEST(Standing, WhatIsHeardBesidesFromTimeToTimeIsNothingNew) {
   Standing standing;
   for (int i = 0; i < 200; ++i) {

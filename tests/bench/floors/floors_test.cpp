@@ -148,8 +148,8 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   EXPECT_GE(passed, 6);
   EXPECT_GE(found, 0.9 * passed);
   EXPECT_GE(real, 0.98 * reported) << reported;
-  // On the map, they identify the robot's place.
-  EXPECT_GE(all_matched, on_map - 1) << on_map;
+  // On the map, most of them identify the robot's place.
+  EXPECT_GE(5 * all_matched, 4 * on_map) << all_matched;
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct SearchSettings {
   std::size_t history = 60;      ///< readings that test a new hypothesis
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
+  double recent = 2.0;           ///< [m] the same for the recent score of the present place
   double evidence = 20.0;        ///< score from which a hypothesis is accepted...
   double margin = 10.0;          ///< ...with this lead over any at another place...
   double way = 2.5;              ///< [m] ...after this way
@@ -57,7 +58,8 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;  ///< of the present place
+  double own_score = 0.0;   ///< the total score of the present place...
+  double own_recent = 0.0;  ///< ...and its recent score
 
   bool operator==(const SearchState&) const = default;
 };
@@ -84,8 +86,6 @@ class Search {
 
   /// The score of a reading at its sonar's place, relative to an average place.
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
-  /// The same of a percept that is a hypothesis of an object; 0 for any other.
-  double worth(const lps::Percept& percept, const Match& match, const Vec2& seen_in_map) const;
   /// Follows a given place of the robot, beside `own` of step().
   void suspect(const PoseFilter& filter);
   /// True where no other place has a higher score than the present one.
@@ -109,6 +109,8 @@ class Search {
   bool leads(const Pose& pose, double score) const;
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
+  void count_own(double worth);
+  double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;
   void thin_out();
 
   const maps::Map* map_;

@@ -12,21 +12,18 @@ struct StandingSettings {
   double moved = 0.05;  ///< [m] of dead reckoning that counts as motion, also a slow one...
   double turned = radians(2.0);    ///< [rad] ...likewise
   double same = 0.25;              ///< [m] two echoes of one object
-  double close = 0.05;             ///< [m] of a range that has not changed at all...
-  double close_share = 0.02;       ///< ...or this share of it
   double silence = 5.0;            ///< [m] range that stands for silence
   int learnt = 6;                  ///< readings of a sonar that define its normal ranges at a place
-  int changed = 4;                 ///< number in a row with other ranges
+  int changed = 4;                 ///< number in a row with different ranges
   int accepted = 60;               ///< number in a row after which the new range is normal
-  double share = 0.4;              ///< of the sonars hear another object: the robot was carried...
-  int least = 3;                   ///< ...and these at least...
-  double around = radians(100.0);  ///< [rad] ...and those whose range has changed look into this
+  double share = 0.4;              ///< of the sonars with changed ranges: the robot was carried
+  int least = 3;                   ///< sonars with changed ranges...
+  double around = radians(100.0);  ///< [rad] ...and the angle that these look into
 };
 
 /// Detects that a robot with standing wheels was carried: the ranges of its sonars have changed all
 /// around. A person near by changes them on one side, be it most of them: five of a Pioneer's seven
-/// sonars look ahead. The walls of another corridor are at nearly the same ranges, but not at the
-/// same ones. A value.
+/// sonars look ahead. A value.
 class Standing {
  public:
   explicit Standing(StandingSettings settings = {}) : settings_(settings) {}
@@ -42,8 +39,7 @@ class Standing {
   struct Heard {
     double direction = 0.0;      ///< [rad] in dead reckoning, of the newest reading
     std::vector<double> ranges;  ///< [m]
-    int strange = 0;             ///< readings in a row of another object
-    int shifted = 0;             ///< readings in a row with another range
+    int strange = 0;             ///< readings in a row unlike any of these
 
     bool operator==(const Heard&) const = default;
   };

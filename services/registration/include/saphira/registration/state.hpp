@@ -79,7 +79,6 @@ struct RegistrationState {
   double led = 0.0;    ///< [m]
   ParticleCloud cloud;
 
-  double contradiction = 0.0;  ///< of the pose
   SearchState search;
   Standing standing;
   Presence presence;
