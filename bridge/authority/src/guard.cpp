@@ -271,8 +271,8 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   allow(cut.scaled(body.knows_edges ? settings.person : settings.anything), settings.beside,
         cut.body(), points, forward, turning, allowed);
   allow(cut.scaled(settings.edge), 0.0, cut.body(), edges, forward, turning, allowed);
-  cut.beside(allowed);
   cut.ahead(allowed);
+  cut.beside(allowed);
   cut.contact(contact_speed, allowed);
   return cut.result();
 }
