@@ -79,30 +79,25 @@ struct Allowed {
   Vec2 beside_at{0.0, 0.0};
 };
 
-/// The hull passes an obstacle beside the path at its reach, and approaches it closer only up to
-/// `touch_velocity`. The approach to an obstacle that is passed at an angle is slower than the
-/// robot's own motion.
+/// The hull keeps an obstacle's reach. Where its path passes the obstacle at `least`, it approaches
+/// up to `touch_velocity`. The approach to an obstacle that is passed at an angle is slower than
+/// the robot's own motion.
 void pass(const Clearance& clearance, const Body& body, double ahead, double aside,
           const Vec2& point, Allowed& allowed) {
   const double deceleration = body.deceleration;
   const double room = body.radius + clearance.reach;
   if (ahead <= 0.0 || aside >= room)
     return;
-  const double away = std::hypot(ahead, aside);
-  if (away < body.radius + clearance.least) {
-    allowed.speed = 0.0;
-    allowed.beside = away - body.radius;
-    allowed.speed_at = point;
-    return;
-  }
   // The point where the hull reaches that distance, and the angle of its approach there.
   const double meets = std::min(ahead, std::sqrt(room * room - aside * aside));
   const double towards = meets / std::hypot(meets, aside);
-  const double at_last = clearance.touch_velocity / std::max(towards, 1e-3);
+  const double at_last = aside < body.radius + clearance.least
+                             ? 0.0
+                             : clearance.touch_velocity / std::max(towards, 1e-3);
   const double speed = approach_speed(ahead - meets, at_last, body.reaction, deceleration);
   if (speed < allowed.speed) {
     allowed.speed = speed;
-    allowed.beside = away - body.radius;
+    allowed.beside = std::hypot(ahead, aside) - body.radius;
     allowed.speed_at = point;
   }
 }
@@ -276,8 +271,8 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   allow(cut.scaled(body.knows_edges ? settings.person : settings.anything), settings.beside,
         cut.body(), points, forward, turning, allowed);
   allow(cut.scaled(settings.edge), 0.0, cut.body(), edges, forward, turning, allowed);
-  cut.beside(allowed);
   cut.ahead(allowed);
+  cut.beside(allowed);
   cut.contact(contact_speed, allowed);
   return cut.result();
 }

@@ -117,6 +117,40 @@ TEST(Guard, PassesEdgesOfTheMapCloserThanPeople) {
       << "ahead it is a wall";
 }
 
+TEST(Guard, KeepsAPersonsReach) {
+  Body body = kPioneer;
+  body.knows_edges = true;
+  for (const double bearing : {0.0, 30.0, 60.0, 70.0}) {
+    const Vec2 way(std::cos(radians(bearing)), std::sin(radians(bearing)));
+    EXPECT_EQ(guard({}, body, {0.46 * way}, 0.3, 0.0).velocity, 0.0) << bearing;
+    EXPECT_EQ(guard({}, body, {-0.46 * way}, 0.3, 0.0).action, GuardAction::none) << bearing;
+  }
+  // The path passes at 23 cm.
+  const Vec2 abreast(0.1, 0.45);
+  const double past = guard({}, body, {abreast}, 0.3, 0.0).velocity;
+  EXPECT_NEAR(past * abreast.x() / abreast.norm(), GuardSettings{}.person.touch_velocity, 1e-9);
+}
+
+TEST(Guard, LeavesAPersonUntouched) {
+  Random random(7);
+  Body body = kPioneer;
+  body.knows_edges = true;
+  const double least = body.radius + GuardSettings{}.person.least;
+  for (int run = 0; run < 100; ++run) {
+    const Vec2 shin(random.uniform(0.8, 2.0), random.uniform(-0.6, 0.6));
+    double x = 0.0;
+    double v = random.uniform(0.0, 0.4);
+    double command = v;
+    for (int tick = 0; tick < 3000; ++tick) {
+      if (tick % 10 == 0)
+        command = guard({}, body, {{shin.x() - x, shin.y()}}, 0.4, 0.0).velocity;
+      v += std::clamp(command - v, -body.deceleration * 0.01, 0.5 * 0.01);
+      x += v * 0.01;
+      ASSERT_GT(std::hypot(shin.x() - x, shin.y()), least - 0.002) << run;
+    }
+  }
+}
+
 // An object that reaches 0.14 m beyond its echo is never touched faster than allowed, at any place
 // and from any speed of the robot.
 TEST(Guard, TouchesNobodyFasterThanAllowed) {

@@ -29,9 +29,10 @@ constexpr double kMarginOfRange = 0.03;  // and that per metre
 constexpr double kTouchBearing = radians(60.0);
 // A robot that wants to drive but is held turns to and fro, so that its beams sweep the gaps
 // between them: the guard beside the robot forgets an echo only where a beam looks.
-constexpr double kHeld = 0.015;       // [m/s] slower than this it stands
-constexpr std::uint64_t kSweep = 20;  // [cycles] until it turns, and in each direction
-constexpr double kSwing = radians(20.0);
+constexpr double kHeld = 0.015;           // [m/s] slower than this it stands
+constexpr std::uint64_t kSweep = 20;      // [cycles] until it turns, and in each direction
+constexpr double kSwing = radians(20.0);  // the first two turns; later ones are wider
+constexpr std::uint64_t kWidest = 3;      // times as wide
 constexpr const char* kSlow = "the network, or a computer, is slow: ";
 
 std::string number(const char* format, double value) {
@@ -179,9 +180,11 @@ void Executive::sweep(const RobotNow& robot, Output& output) {
   const bool held = output.active && output.contact_speed == 0.0 &&
                     std::abs(output.speed) > kHeld && std::abs(robot.velocity) < kHeld;
   held_ = held ? held_ + 1 : 0;
-  if (held_ >= kSweep)
-    output.heading_in_odom =
-        norm2_angle(output.heading_in_odom + ((held_ / kSweep) % 2 == 1 ? kSwing : -kSwing));
+  const std::uint64_t turn = held_ / kSweep;
+  if (turn == 0)
+    return;
+  const double swing = kSwing * static_cast<double>(std::min((turn + 1) / 2, kWidest));
+  output.heading_in_odom = norm2_angle(output.heading_in_odom + (turn % 2 == 1 ? swing : -swing));
 }
 
 double Executive::contact_speed(const std::vector<Blended>& blended) const {

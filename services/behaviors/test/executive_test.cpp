@@ -117,7 +117,11 @@ TEST_F(ExecutiveTest, HeldItTurnsItsSonarsToAndFro) {
     EXPECT_EQ(swing(), 0.0);
   for (int cycle = 0; cycle < 20; ++cycle)
     EXPECT_NEAR(swing(), radians(20.0), 1e-9);
-  EXPECT_NEAR(swing(), -radians(20.0), 1e-9);
+  for (int cycle = 0; cycle < 20; ++cycle)
+    EXPECT_NEAR(swing(), -radians(20.0), 1e-9);
+  for (const double wider : {40.0, -40.0, 60.0, -60.0, 60.0})
+    for (int cycle = 0; cycle < 20; ++cycle)
+      EXPECT_NEAR(swing(), radians(wider), 1e-9);
   robot_.velocity = 0.1;
   EXPECT_EQ(swing(), 0.0) << "it drives again";
 }

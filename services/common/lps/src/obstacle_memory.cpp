@@ -17,9 +17,7 @@ constexpr double kTouched = 2.0;
 constexpr double kCells = 20.0;
 constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
-// In a cycle: less is rest.
-constexpr double kMoved = 0.001;           // [m]
-constexpr double kTurned = radians(0.25);  // [rad]
+constexpr double kMoved = 0.001;    // [m] in a cycle: less is rest, and a turn on the spot is
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
@@ -57,10 +55,9 @@ void ObstacleMemory::clear() {
 }
 
 void ObstacleMemory::move_to(const Pose& robot_in_odom) {
-  const Pose motion = relative(robot_in_odom_, robot_in_odom);
+  const double way = (robot_in_odom.position() - robot_in_odom_.position()).norm();
   robot_in_odom_ = robot_in_odom;
-  if (!settings_.keeps_at_rest || motion.position().norm() > kMoved ||
-      std::abs(motion.th) > kTurned)
+  if (!settings_.keeps_at_rest || way > kMoved)
     scale(beliefs_, settings_.fading);
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;

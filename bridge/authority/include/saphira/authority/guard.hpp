@@ -25,11 +25,11 @@ struct Body {
 /// The distances that the guard keeps from one kind of echo.
 struct Clearance {
   double side_margin = 0.0;  ///< [m] width beside the hull's path that counts as ahead
-  /// [m] An obstacle may reach this far beyond its echo. Nearer than this the hull approaches at
-  /// `touch_velocity` at most...
+  /// [m] An obstacle may reach this far beyond its echo. The hull stays this far away, but where it
+  /// passes at `least`: there it approaches at `touch_velocity` at most.
   double reach = 0.0;
   double touch_velocity = 0.0;  ///< [m/s]
-  double least = 0.0;           ///< [m] ...and nearer than this not at all, at any angle
+  double least = 0.0;           ///< [m] from the obstacle's echo to the sides of the hull's path
 };
 
 /// The guard's limits for one role. They come from the shape of a person: a sonar hears a shin, and
@@ -43,7 +43,7 @@ struct GuardSettings {
   /// heard dependably up to 1.5 m.
   double dependable_range = 1.5;
   double margin = 0.25;  ///< [m] distance at which the hull stops before an obstacle ahead
-  Clearance person{0.10, 0.25, 0.01, 0.10};     ///< from an echo that is of no edge of the map
+  Clearance person{0.10, 0.25, 0.01, 0.22};     ///< from an echo that is of no edge of the map
   Clearance anything{0.10, 0.15, 0.035, 0.10};  ///< from any echo, without a map
   Clearance edge{0.08, 0.15, 0.035, 0.0};       ///< from an edge of the map
   /// [m/s] An obstacle ahead may approach at this speed, so the robot slows early...

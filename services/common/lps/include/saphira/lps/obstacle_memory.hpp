@@ -22,7 +22,7 @@ struct MemorySettings {
   double least = -4.0;          ///< ...or below this
   double obstacle = 0.8;        ///< belief that makes an obstacle
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
-  bool keeps_at_rest = false;   ///< no belief fades while the robot stands
+  bool keeps_at_rest = false;   ///< none fades while the robot stands or turns
 };
 
 /// The settings for sonars that hear up to `range` [m]. Below 1 m the grid is finer, since a cone
