@@ -19,7 +19,7 @@ py::object python_of(const T& sample) {
   return to_python(sample, class_of(short_name<T>()));
 }
 
-/// What both kinds have.
+/// The part that both kinds have.
 template <class Face, class Kind>
 class Typed : public Owned<Face, Kind> {
  public:

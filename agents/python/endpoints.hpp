@@ -47,7 +47,7 @@ class Owner {
   const std::thread::id thread_ = std::this_thread::get_id();
 };
 
-/// What is on a bus, such as a reader. It is closed before its bus is.
+/// An endpoint on a bus, such as a reader. It is closed before its bus is.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;

@@ -116,8 +116,8 @@ int audit(const AuditWords& words) {
   }
   if (words.check)
     std::cout
-        << counted(record.lines.size(), "entry").c_str() << ", whole; the newest is number "
-        << record.number << ", hash " << record.hash
+        << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries")
+        << ", whole; the newest is number " << record.number << ", hash " << record.hash
         << "\nNote the hash elsewhere: saphira audit --check --known HASH finds an audit that "
            "was written anew.\n";
   return bus::kExitOk;

@@ -198,7 +198,7 @@ void Gateway::look_at_keys() {
 }
 
 void Gateway::obey(Connection connection, Page& page, const Message& message) {
-  // Who watches from this machine has no key.
+  // A person who watches from this machine has no key.
   const DoorRight wanted = right_for(message);
   if (wanted > DoorRight::watch && !page.visitor.may(wanted)) {
     say(connection, page.visitor.person

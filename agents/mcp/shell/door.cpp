@@ -186,7 +186,7 @@ void Door::note() {
                  first_line(outcome.text));
 }
 
-/// Who may watch may read and stop. False: the call is answered.
+/// A person who may watch may read and stop. False: the call is answered.
 bool Door::is_allowed(const Call& call) {
   const auto& tools = robot_.tools();
   const auto tool = std::find_if(tools.begin(), tools.end(),

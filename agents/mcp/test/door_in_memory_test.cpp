@@ -84,7 +84,7 @@ class DoorInMemory : public testing::Test {
     replies.write({.answers = spoken.id, .text = text, .end = end});
     turn();
   }
-  /// What intentions says of a goal that "rover" asked for in this program.
+  /// The status by intentions of a goal that "rover" asked for in this program.
   v1::GoalStatus tell_goal(v1::GoalState state) {
     v1::GoalStatus status{
         .id = {node.instance(), 77}, .requester = "rover 2", .functor = "patrol", .state = state};

@@ -227,7 +227,7 @@ function Because({cause, depth}: {cause: Cause; depth: number}) {
     <ul>{cause.because.map((c, i) => <Because key={c.kind + i} cause={c} depth={depth + 1} />)}</ul></details></li>;
 }
 
-// Who is not let in: the addresses, and from the log who called itself what.
+// The strangers that are kept out: their addresses, and from the log the names that they gave.
 function KeptOut({link}: {link: Link}) {
   const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
   const refused = link.all<LogRecord>('system/log').filter(([, {data}]) => / is not let in /.test(data.text));

@@ -32,7 +32,7 @@ struct Caller {
 /// a proxy may have changed host or port, so the names of `settings` may be origins.
 std::string refusal(const AccessSettings& settings, const Caller& caller);
 
-/// Who has a key, and may do what.
+/// The person behind a key, and their right.
 struct Visitor {
   security::DoorRight right = security::DoorRight::none;
   std::optional<security::DoorKey> person{};  ///< none: the one key of `settings`, or no key

@@ -84,7 +84,8 @@ using Message =
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
 
-/// What a page needs for it. Who watches may stop; what concerns others is to operate.
+/// The right that a message needs. Everybody who watches may stop; a change for others is to
+/// operate.
 security::DoorRight right_for(const Message& message);
 
 /// For the pages: holder, name, asked (id and name of each), note, let_go.

@@ -119,7 +119,7 @@ class Node {
   /// With security, the identity of this program; none on an open bus.
   std::optional<Identity> identity() const;
 
-  /// What the log has told of programs that were not let in, and of refused samples, since the last
+  /// The lines of the log about programs that were not let in and refused samples, since the last
   /// call; the newest 64.
   std::vector<std::string> take_refused();
 

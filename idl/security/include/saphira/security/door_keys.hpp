@@ -7,7 +7,7 @@
 
 namespace saphira::security {
 
-/// What a person may do at a door (the console, MCP over HTTP). Each right includes those before.
+/// The right of a person at a door (the console, MCP over HTTP). Each right includes those before.
 enum class DoorRight {
   none,
   watch,   ///< watch and stop
