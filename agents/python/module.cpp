@@ -53,7 +53,7 @@ struct Parts {
 using Driver = Owned<Endpoint, cli::DirectDriver>;
 using Inquiry = Owned<Endpoint, cli::Inquiry>;
 
-/// The explanation of what the robot does, as JSON.
+/// The explanation of the robot's behavior, as JSON.
 std::string explanation(Inquiry& asked, const std::string& wish) {
   if (const std::string missing = asked.kind().missing(); !missing.empty())
     throw py::index_error(missing);
@@ -139,7 +139,7 @@ class Bus {
     }
   }
 
-  /// Takes what is known of programs and goals. Call after each wait.
+  /// Takes the news of programs and goals. Call after each wait.
   void poll() {
     Parts& own = parts();
     own.processes.poll();

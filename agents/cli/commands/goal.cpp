@@ -214,10 +214,11 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
     if (status && follower.show(*status))
       return bus::kExitOk;
   }
-  complain("saphira: %s\n",
-           asked ? "it goes on: with security only who asked for it or an operator may cancel it "
-                   "(saphira goal list says whose it is); saphira goal stop is anybody's"
-                 : ("nothing is known of this goal; " + who_is_there(processes)).c_str());
+  complain(
+      "saphira: %s\n",
+      asked ? "asked to end, and it has not ended yet. With security only its owner and operators "
+              "may cancel it (saphira goal list); saphira goal stop is anybody's"
+            : ("nothing is known of this goal; " + who_is_there(processes)).c_str());
   return bus::kExitFailed;
 }
 

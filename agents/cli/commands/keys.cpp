@@ -30,10 +30,6 @@ struct KeyWords {
   int days = 90;
 };
 
-std::int64_t date_now() {
-  return static_cast<std::int64_t>(unix_time());
-}
-
 /// The file that this user's doors read: of root, the one of the machine's service.
 std::string usual_keys() {
   return geteuid() == 0 ? security::door_key_files().back() : security::door_key_files().front();
@@ -58,7 +54,7 @@ int add(const KeyWords& words) {
   const DoorRight right = words.right == "watch"   ? DoorRight::watch
                           : words.right == "drive" ? DoorRight::drive
                                                    : DoorRight::operate;
-  const std::string key = keys.add(words.name, right, words.days, date_now());
+  const std::string key = keys.add(words.name, right, words.days, unix_seconds());
   write(words.file, keys);
   std::cout << "The key of " << words.name << ", to " << words.right << ", is shown this once:\n"
             << key << "\nFor the page: behind the # of its address, as http://HOST:8642/#" << key
@@ -72,7 +68,7 @@ int list(const KeyWords& words) {
   for (const DoorKey& key : keys.all())
     std::printf("%-32s %-8s until %s%s\n", key.name.c_str(), security::name_of(key.right),
                 utc_text(key.until - 1, "%Y-%m-%d").c_str(),
-                key.until <= date_now() ? "  over" : "");
+                key.until <= unix_seconds() ? "  over" : "");
   if (keys.all().empty())
     std::cout << words.file << ": nobody has a key yet: saphira keys add NAME\n";
   return bus::kExitOk;

@@ -1,5 +1,4 @@
 // security: the authority of a site, and the credentials of its members.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -7,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -34,12 +34,6 @@ struct Words {
   bool json = false;
 };
 
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::string day_of(std::int64_t seconds) {
   return utc_text(seconds, "%Y-%m-%d");
 }
@@ -61,7 +55,8 @@ void tell_folder(const std::string& folder) {
 int init(const Words& words) {
   const std::string file =
       words.roles_file.empty() ? config_folder() + "/security/roles.yaml" : words.roles_file;
-  const Authority made = Authority::make(words.folder, words.name, read_file(file), file, now());
+  const Authority made =
+      Authority::make(words.folder, words.name, read_file(file), file, unix_seconds());
   std::cout
       << "The authority of " << made.site() << " is in " << made.folder()
       << ". Whoever reads that folder can make members: keep it off the robots, and keep a copy.\n"
@@ -74,12 +69,13 @@ int init(const Words& words) {
 }
 
 int add(const Words& words) {
-  tell_folder(Authority(words.folder).add(words.name, words.roles, words.robot, words.days, now()));
+  tell_folder(Authority(words.folder)
+                  .add(words.name, words.roles, words.robot, words.days, unix_seconds()));
   return bus::kExitOk;
 }
 
 int renew(const Words& words) {
-  tell_folder(Authority(words.folder).renew(words.name, words.days, now()));
+  tell_folder(Authority(words.folder).renew(words.name, words.days, unix_seconds()));
   std::cout << "Its programs take it when they are started again; the old certificates hold until "
                "they expire.\n";
   return bus::kExitOk;
@@ -99,10 +95,10 @@ int list(const Words& words) {
   const Authority authority(words.folder);
   nlohmann::json members = nlohmann::json::array();
   for (const auto& [name, member] : authority.members()) {
-    const std::int64_t days = (member.until - now()) / kDay;
-    const std::string state = member.revoked          ? "revoked"
-                              : member.until <= now() ? "expired"
-                              : days < kSoon          ? "expires in " + std::to_string(days) +
+    const std::int64_t days = (member.until - unix_seconds()) / kDay;
+    const std::string state = member.revoked                   ? "revoked"
+                              : member.until <= unix_seconds() ? "expired"
+                              : days < kSoon ? "expires in " + std::to_string(days) +
                                                    " days: saphira security renew " + name
                                              : "holds";
     members.push_back({{"name", name},
@@ -132,13 +128,14 @@ int check(const Words& words, const bus::NodeOptions& options) {
     return bus::kExitFailed;
   }
   for (const std::string& role : security::roles_in(folder)) {
-    const security::Credentials good = security::load_role(folder, role, now());
+    const security::Credentials good = security::load_role(folder, role, unix_seconds());
     if (const std::string trouble = security::trouble_of_key(good); !trouble.empty())
       throw std::invalid_argument(trouble);
     std::cout << folder << "/" << role << ": " << security::common_name(good.subject) << " of "
               << good.subject.site << ", " << role << ", until " << day_of(good.until) << '\n';
   }
-  const security::Credentials mine = security::load_credentials(folder, words.program, now());
+  const security::Credentials mine =
+      security::load_credentials(folder, words.program, unix_seconds());
   std::cout << words.program << " is " << mine.subject.name << " (" << mine.subject.role << ")\n";
   return bus::kExitOk;
 }

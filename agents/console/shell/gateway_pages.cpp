@@ -18,10 +18,6 @@ using security::DoorRight;
 constexpr std::size_t kMostQueued = 64;  // texts for a page that does not read
 constexpr double kCanceled = 2.0;        // [s] for the end of a goal
 
-std::int64_t seconds_since_1970() {
-  return static_cast<std::int64_t>(unix_time());
-}
-
 /// For the bus: whom the page's key names.
 v1::Person person_of(const Visitor& visitor) {
   return visitor.person ? v1::Person{visitor.person->name, security::role_of(visitor.right)}
@@ -148,7 +144,7 @@ void Gateway::ask_simulator(Connection connection, const Page& page, std::string
 bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   if (page.greeted)
     return true;
-  page.visitor = visitor_of(access_, keys_.keys(), hello.key, seconds_since_1970());
+  page.visitor = visitor_of(access_, keys_.keys(), hello.key, unix_seconds());
   page.greeted = page.visitor.may(DoorRight::watch) || may_watch(access_, page.caller);
   page.name = page.visitor.person ? page.visitor.person->name : hello.name;
   if (!hello.key.empty() && !page.visitor.may(DoorRight::watch))
@@ -190,10 +186,10 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
 
 /// A page whose key was revoked, or holds no longer, is closed.
 void Gateway::look_at_keys() {
-  if (const std::string trouble = keys_.look(seconds_since_1970()); !trouble.empty())
+  if (const std::string trouble = keys_.look(unix_seconds()); !trouble.empty())
     node_.error(trouble);
   for (const auto& [connection, page] : pages_)
-    if (page.visitor.person && !keys_.keys().holds(*page.visitor.person, seconds_since_1970()))
+    if (page.visitor.person && !keys_.keys().holds(*page.visitor.person, unix_seconds()))
       server_.close(connection);
 }
 
@@ -311,7 +307,7 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
   canceling_.push_back({{connection, cancel.reference}, *id, now() + kCanceled});
 }
 
-/// Intentions decide who may cancel a goal.
+/// Answers the pages whose goals have ended, or have not in time. Intentions decide who may cancel.
 void Gateway::tell_cancels() {
   std::erase_if(canceling_, [this](const Canceling& one) {
     const auto status = goals_.status(one.goal);
@@ -320,8 +316,8 @@ void Gateway::tell_cancels() {
       return false;
     answer(one.asked.connection, one.asked.reference, done,
            done ? "withdrawn"
-                : "it goes on: only who asked for it or an operator may cancel it. To stop the "
-                  "robot: k",
+                : "asked to end, and it has not ended yet. With security only its owner and "
+                  "operators may cancel it; everybody may stop the robot: k",
            key_text({one.goal.writer, one.goal.number}));
     return true;
   });

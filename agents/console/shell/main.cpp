@@ -101,9 +101,9 @@ int main(int argc, char** argv) {
         if (!options.dial_authority.empty())
           security::check_dial_authority(options.dial_authority);
         if (!options.server.place.certificate.empty()) {
-          const std::string trouble = security::check_pair(options.server.place.certificate,
-                                                           options.server.place.certificate_key,
-                                                           static_cast<std::int64_t>(unix_time()));
+          const std::string trouble =
+              security::check_pair(options.server.place.certificate,
+                                   options.server.place.certificate_key, unix_seconds());
           if (!trouble.empty())
             std::fprintf(stderr, "saphira-console: %s\n", trouble.c_str());
         }

@@ -186,7 +186,8 @@ void Door::note() {
                  first_line(outcome.text));
 }
 
-/// A person who may watch may read and stop. False: the call is answered.
+/// True where the key allows the call: with a key to watch, reading and stopping. Otherwise the
+/// call is answered.
 bool Door::is_allowed(const Call& call) {
   const auto& tools = robot_.tools();
   const auto tool = std::find_if(tools.begin(), tools.end(),

@@ -17,10 +17,6 @@ double now() {
   return BootClock::seconds();
 }
 
-std::int64_t seconds_since_1970() {
-  return static_cast<std::int64_t>(unix_time());
-}
-
 bool is_of(const console::Visitor& one, const console::Visitor& other) {
   return one.person.has_value() == other.person.has_value() &&
          (!one.person || one.person->name == other.person->name);
@@ -125,7 +121,7 @@ console::Visitor HttpDoor::visitor_of(const HttpRequest& request) const {
   const std::string_view given = request.authorization;
   return given.starts_with(kBearer)
              ? console::visitor_of(access_, keys_.keys(), given.substr(kBearer.size()),
-                                   seconds_since_1970())
+                                   unix_seconds())
              : console::Visitor{};
 }
 
@@ -235,12 +231,12 @@ void HttpDoor::see(const std::string& id, Client& client) {
 
 void HttpDoor::tick() {
   turn();
-  if (const std::string trouble = keys_.look(seconds_since_1970()); !trouble.empty())
+  if (const std::string trouble = keys_.look(unix_seconds()); !trouble.empty())
     node_.error(trouble);
   for (auto each = clients_.begin(); each != clients_.end();) {
     const auto& [id, client] = *each;
     if (const auto& person = client->visitor.person;
-        person && !keys_.keys().holds(*person, seconds_since_1970())) {
+        person && !keys_.keys().holds(*person, unix_seconds())) {
       node_.info("the key of " + person->name + " holds no more: " + client->door.who() + " ends");
       each = end(std::string(id));
       continue;

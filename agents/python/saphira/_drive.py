@@ -1,17 +1,16 @@
 """Driving the wheels, as a program (role direct)."""
 
 import time
-from types import TracebackType
 
 from . import _bus, v1
 from ._errors import Canceled, Refused
-from ._waiting import Pending, Waiter
+from ._waiting import Context, Pending, Waiter
 
 _PERIOD = 0.05  # [s]; the bridge's lease is 0.3 s
 _PATIENCE = 1.0  # [s] until commands are heeded
 
 
-class Drive:
+class Drive(Context):
     """The wheels, until its context ends: `with robot.drive() as wheels`, or `async with`.
 
     The robot stops 0.3 s after the newest command, so a program that hangs does not drive on.
@@ -69,29 +68,7 @@ class Drive:
             while (left := due - time.monotonic()) > 0:
                 await self._waiter.news(left)
 
-    def release(self) -> None:
+    def close(self) -> None:
         """Lets go, which stops the robot."""
         self._driver.release()
         self._driver.close()
-
-    def __enter__(self) -> "Drive":
-        return self
-
-    def __exit__(
-        self,
-        kind: "type[BaseException] | None",
-        error: "BaseException | None",
-        trace: "TracebackType | None",
-    ) -> None:
-        self.release()
-
-    async def __aenter__(self) -> "Drive":
-        return self
-
-    async def __aexit__(
-        self,
-        kind: "type[BaseException] | None",
-        error: "BaseException | None",
-        trace: "TracebackType | None",
-    ) -> None:
-        self.release()

@@ -9,7 +9,6 @@ from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast, overload
 
 from . import _bus, topics, v1
@@ -17,7 +16,7 @@ from ._agent import Served, capability_of
 from ._drive import Drive
 from ._errors import Failed, Nobody, Refused, Trouble, trouble_of_answer, trouble_of_goal
 from ._values import Point, Values, arguments, values
-from ._waiting import Pending, Stream, Waiter
+from ._waiting import Context, Pending, Stream, Waiter
 from ._why import Explanation, explanation_of
 from .topics import Topic
 
@@ -211,7 +210,7 @@ class Writer(Generic[T]):
         self._writer.dispose(sample)
 
 
-class Robot:
+class Robot(Context):
     """A robot, for the thread that connected. Also a context, which ends its goals."""
 
     def __init__(self, bus: _bus.Bus) -> None:
@@ -230,17 +229,6 @@ class Robot:
     def close(self) -> None:
         """Leaves the bus, which ends all that this program has begun."""
         self._bus.close()
-
-    def __enter__(self) -> "Robot":
-        return self
-
-    def __exit__(
-        self,
-        kind: "type[BaseException] | None",
-        error: "BaseException | None",
-        trace: "TracebackType | None",
-    ) -> None:
-        self.close()
 
     @property
     def name(self) -> str:
@@ -438,14 +426,16 @@ class Robot:
 
         reader = self._bus.reader(topics.GRID.name)
         tiles: dict[tuple[int, int], v1.GridTile] = {}
-        began = time.monotonic()
-        while time.monotonic() < began + (_QUIET if tiles else _PATIENCE):
+        until = time.monotonic() + _PATIENCE
+        while time.monotonic() < until:
             for sample, withdrawn, _, _ in reader.take():
                 tile = cast(v1.GridTile, sample)
-                tiles.pop((tile.column, tile.row), None)
-                if not withdrawn:
+                if not tiles:
+                    until = time.monotonic() + _QUIET
+                if withdrawn:
+                    tiles.pop((tile.column, tile.row), None)
+                else:
                     tiles[tile.column, tile.row] = tile
-                    began = max(began, time.monotonic()) if len(tiles) == 1 else began
             self._poll()
             await self._waiter.news(_QUIET)
         if not tiles:

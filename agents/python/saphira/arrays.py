@@ -13,33 +13,30 @@ _NEVER_SEEN = 255
 _CERTAIN = 200.0
 
 
+def _placed(points: Array, pose: v1.Pose2) -> Array:
+    """Points of the frame that has this pose, in the frame of the pose."""
+    cos, sin = np.cos(pose.th), np.sin(pose.th)
+    turn = np.array([(cos, -sin), (sin, cos)], dtype=np.float64)
+    placed: Array = points @ turn.T + (pose.x, pose.y)
+    return placed
+
+
 def echoes(sonars: v1.SonarBuckets) -> Array:
     """The points of the newest echoes in odom: a row (x, y) for each sonar that has one."""
-    points = [(each.x, each.y) for each in sonars.buckets if each.reading.echo]
-    return np.array(points, dtype=np.float64).reshape(-1, 2)
+    heard = [each for each in sonars.buckets if each.reading.echo]
+    rows = [_placed(np.array([(each.x, each.y)]), each.pose_in_odom)[0] for each in heard]
+    return np.array(rows, dtype=np.float64).reshape(-1, 2)
 
 
 def outline(artifact: v1.MapArtifact) -> Array:
     """Its corners on the map, the first one again at the end: rows (x, y), ready to be plotted."""
-    pose = artifact.pose_in_map
     sides = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)], dtype=np.float64)
-    corners = sides * (artifact.length / 2, artifact.width / 2)
-    turn = np.array(
-        [(np.cos(pose.th), -np.sin(pose.th)), (np.sin(pose.th), np.cos(pose.th))], dtype=np.float64
-    )
-    placed: Array = corners @ turn.T + (pose.x, pose.y)
-    return placed
+    return _placed(sides * (artifact.length / 2, artifact.width / 2), artifact.pose_in_map)
 
 
 def in_map(points: Array, registration: v1.Registration) -> Array:
     """Points of odom, rows (x, y), on the map."""
-    origin = registration.odom_in_map
-    turn = np.array(
-        [(np.cos(origin.th), -np.sin(origin.th)), (np.sin(origin.th), np.cos(origin.th))],
-        dtype=np.float64,
-    )
-    placed: Array = points @ turn.T + (origin.x, origin.y)
-    return placed
+    return _placed(points, registration.odom_in_map)
 
 
 @dataclass(frozen=True)

@@ -57,9 +57,8 @@ int main(int argc, char** argv) {
     return *code;
   return exit_code_of("saphira-relay", [&] {
     if (certificate.given()) {
-      const std::string trouble =
-          security::check_pair(options.place.certificate, options.place.certificate_key,
-                               static_cast<std::int64_t>(unix_time()));
+      const std::string trouble = security::check_pair(
+          options.place.certificate, options.place.certificate_key, unix_seconds());
       if (!trouble.empty())
         std::fprintf(stderr, "saphira-relay: %s\n", trouble.c_str());
     }

@@ -1,6 +1,5 @@
 #include "foxglove_server.hpp"
 
-#include <openssl/crypto.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -9,7 +8,6 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 namespace saphira::viewer {
@@ -23,8 +21,12 @@ constexpr std::size_t kMostWaiting = std::size_t{4} * 1024 * 1024;  // [bytes] f
 constexpr int kTick = 100'000;                                      // [us]
 constexpr int kSendBuffer = 128 * 1024;  // the kernel's, of a slow client
 
-bool is_same(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+/// The key in the address; empty: none.
+std::string key_of(lws* wsi) {
+  std::array<char, 200> given{};
+  const char* const key =
+      lws_get_urlarg_by_name(wsi, "key=", given.data(), static_cast<int>(given.size()));
+  return key == nullptr ? "" : key;
 }
 
 }  // namespace
@@ -33,6 +35,7 @@ struct Server::Impl {
   struct Open {
     lws* wsi = nullptr;
     Client client;
+    std::string key;
     std::string incoming;  // the pieces of one message
   };
   struct Socket {
@@ -58,10 +61,7 @@ struct Server::Impl {
 
 /// 0: the client may connect.
 int Server::Impl::filter(lws* wsi) const {
-  std::array<char, 200> given{};
-  const char* const key =
-      lws_get_urlarg_by_name(wsi, "key=", given.data(), static_cast<int>(given.size()));
-  if (key == nullptr || !is_same(key, options.key)) {
+  if (!options.admits(key_of(wsi))) {
     lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN,
                            "the address has to end with the key that saphira foxglove prints");
     return -1;
@@ -122,8 +122,9 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
     case LWS_CALLBACK_ESTABLISHED:
       setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);
       socket->id = ++impl.last;
-      impl.open.emplace(socket->id,
-                        Open{wsi, Client(impl.options.name, impl.channels, kMostWaiting), {}});
+      impl.open.emplace(
+          socket->id,
+          Open{wsi, Client(impl.options.name, impl.channels, kMostWaiting), key_of(wsi), {}});
       lws_callback_on_writable(wsi);
       return 0;
     case LWS_CALLBACK_RECEIVE:
@@ -193,7 +194,12 @@ void Server::watch(int fd) {
 }
 
 void Server::run(int stop) {
-  impl_->loop->every(kTick, [this] { impl_->events.tick(); });
+  impl_->loop->every(kTick, [this] {
+    impl_->events.tick();
+    for (const auto& [id, each] : impl_->open)
+      if (!impl_->options.admits(each.key))
+        lws_set_timeout(each.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+  });
   impl_->loop->run(impl_->vhost, stop);
 }
 

@@ -11,14 +11,15 @@
 
 namespace saphira::viewer {
 
-/// The Foxglove WebSocket protocol at a network address (libwebsockets), in one thread. Clients
-/// have to have the key: ws://HOST:PORT/?key=KEY.
+/// The Foxglove WebSocket protocol at a network address (libwebsockets), in one thread. Each client
+/// needs a key, ws://HOST:PORT/?key=KEY, and is dropped when it holds no more.
 class Server {
  public:
   struct Options {
     web::Place place{"127.0.0.1", 8765, {}, {}};
     std::string name;  ///< of the robot, for people
-    std::string key;
+    /// True while the key lets its client watch.
+    std::function<bool(const std::string& key)> admits;
   };
   struct Events {
     std::function<void(std::size_t channel)> subscribed;

@@ -21,12 +21,12 @@ class Live {
   explicit Live(bus::Node& node);
 
   const std::vector<Channel>& channels() const { return channels_; }
-  /// Somebody has subscribed to a channel: what is kept for newcomers comes again. In words, why
-  /// the topic cannot be read; empty: it can.
+  /// For a new subscription: the topic is read anew, so that its kept samples come again. Returns
+  /// the reason why it cannot be read, in words; empty: it can.
   std::string subscribe(std::size_t channel);
   using Wants = std::function<bool(std::size_t channel)>;
   using Put = std::function<void(std::size_t channel, const std::string& json)>;
-  /// Takes what has come for the channels that somebody wants; the others are read no more.
+  /// Takes the new samples of the channels that a client wants, and ends reading the others.
   void poll(std::int64_t now_ns, const Wants& wants, const Put& put);
 
  private:

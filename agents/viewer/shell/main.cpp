@@ -9,6 +9,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/console/access.hpp"
 
 namespace {
 
@@ -16,11 +17,21 @@ using namespace saphira;
 
 int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
           const std::string& key_file, const bus::Stop& stop) {
-  options.key = console::keep(key_file).key;
+  const console::AccessSettings access{console::keep(key_file).key, {}, 0, true};
+  security::DoorKeysFile persons;
+  options.admits = [&](const std::string& key) {
+    return console::visitor_of(access, persons.keys(), key, unix_seconds())
+        .may(security::DoorRight::watch);
+  };
   options.name = "saphira: robot " + node_options.robot;
   bus::Node node(node_options);
   viewer::Live live(node);
   std::optional<viewer::Server> server;
+  const auto look_at_keys = [&] {
+    if (const std::string trouble = persons.look(unix_seconds()); !trouble.empty())
+      node.error(trouble);
+  };
+  look_at_keys();
   const auto poll = [&] {
     live.poll(
         static_cast<std::int64_t>(unix_time() * 1e9),
@@ -41,6 +52,7 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
                                         },
                                         [&] {
                                           poll();
+                                          look_at_keys();
                                           node.publish_status();
                                         }});
   server->watch(node.wake_fd());
@@ -48,7 +60,7 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
       "open %s://%s:%d/?key=%s in Foxglove or Lichtblick, as a Foxglove WebSocket; Ctrl-C "
       "ends it\n",
       options.place.certificate.empty() ? "ws" : "wss", web::name_of(options.place).c_str(),
-      server->port(), options.key.c_str());
+      server->port(), access.key.c_str());
   std::fflush(stdout);
   node.status().state = v1::SERVICE_RUNNING;
   server->run(stop.fd());

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "geometry/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/maps/line_map.hpp"
@@ -207,15 +208,9 @@ Scene::Messages Scene::take(const v1::RobotState& state, std::int64_t time_ns) {
   if (on_map)
     transforms.push_back(transform_of("map", "odom", registration_->odom_in_map, time_ns));
   transforms.push_back(transform_of("odom", "base_link", state.pose_in_odom, time_ns));
-  v1::Pose2 pose = state.pose_in_odom;
-  if (on_map) {
-    const v1::Pose2& odom = registration_->odom_in_map;
-    const double c = std::cos(odom.th);
-    const double s = std::sin(odom.th);
-    pose = {odom.x + c * state.pose_in_odom.x - s * state.pose_in_odom.y,
-            odom.y + s * state.pose_in_odom.x + c * state.pose_in_odom.y,
-            norm2_angle(odom.th + state.pose_in_odom.th)};
-  }
+  const v1::Pose2 pose =
+      on_map ? to_bus(compose(from_bus(registration_->odom_in_map), from_bus(state.pose_in_odom)))
+             : state.pose_in_odom;
   return {message(kTransforms, {{"transforms", std::move(transforms)}}),
           message(kPose, {{"timestamp", time_of(time_ns)},
                           {"frame_id", on_map ? "map" : "odom"},
@@ -234,11 +229,8 @@ Scene::Messages Scene::take(const v1::SonarBuckets& sonars, std::int64_t time_ns
   for (const v1::SonarBucket& bucket : sonars.buckets) {
     if (!bucket.reading.echo)
       continue;
-    const v1::Pose2& robot = bucket.pose_in_odom;
-    const double c = std::cos(robot.th);
-    const double s = std::sin(robot.th);
-    for (const double value : {robot.x + c * bucket.x - s * bucket.y,
-                               robot.y + s * bucket.x + c * bucket.y, kSonarHeight}) {
+    const Vec2 point = transform(from_bus(bucket.pose_in_odom), Vec2(bucket.x, bucket.y));
+    for (const double value : {point.x(), point.y(), kSonarHeight}) {
       const auto small = static_cast<float>(value);
       std::array<char, sizeof small> bytes{};
       std::memcpy(bytes.data(), &small, sizeof small);  // little-endian, as this machine

@@ -178,12 +178,12 @@ void Core::keep_latches(double now) {
   const authority::Latches& latches = arbiter_.latches();
   if (latches == kept_)
     return;
-  if (latches.estopped && !kept_.estopped)
+  if (latches.estopped && !kept_.estopped) {
     put(AuditEntry{AuditEntry::Act::stopped, latches.estop_source, "the emergency stop"});
-  if (latches.estopped && !kept_.estopped)
     warn("emergency stop, pressed by " + latches.estop_source +
          ": the robot stands until saphira estop reset" +
          (settings_.keeps_latches ? "" : " (without --state a restart forgets it)"));
+  }
   const bool estop = latches.estopped != kept_.estopped;
   kept_ = latches;
   put(KeepLatches{latches});

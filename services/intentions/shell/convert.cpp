@@ -69,7 +69,6 @@ v1::IntentionNode to_bus(const IntentionNode& node) {
           .blocking = node.blocking,
           .label = node.label,
           .step = node.step,
-          .since = static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)),
           .priority = node.priority,
           .goal = node.goal};
 }
@@ -161,10 +160,7 @@ v1::ActivitySchema to_bus(const Schema& schema) {
 }
 
 v1::Belief to_bus(const Belief& belief) {
-  return {.name = belief.name,
-          .value = to_text(belief.value),
-          .said_by = belief.said_by,
-          .since = static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0))};
+  return {.name = belief.name, .value = to_text(belief.value), .said_by = belief.said_by};
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {

@@ -21,6 +21,7 @@ namespace saphira::intentions {
 Goal from_bus(const v1::Goal& goal);
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior);
+/// `since` is the caller's: Executor::cycle_of().
 v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
@@ -32,7 +33,7 @@ std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors)
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
 
 v1::ActivitySchema to_bus(const Schema& schema);
-v1::Belief to_bus(const Belief& belief);
+v1::Belief to_bus(const Belief& belief);  // likewise
 /// FileError for a value that is not of the activity language; also of a withdrawn claim, whose
 /// value does not count.
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind);

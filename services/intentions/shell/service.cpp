@@ -35,6 +35,15 @@ Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
   return {built_in(), memory.memory(), memory.keeps(), ports.lockstep(), std::move(functions)};
 }
 
+/// Nodes and beliefs as on the bus.
+auto dated(const Executor& executor) {
+  return [&executor](const auto& each) {
+    auto sample = to_bus(each);
+    sample.since = executor.cycle_of(each.since);
+    return sample;
+  };
+}
+
 }  // namespace
 
 Service::Service(runtime::Ports& ports, const Options& options)
@@ -319,9 +328,9 @@ void Service::publish(const Core::Outputs& said) {
                         .speed_limit = std::max(0.0, limit.speed),
                         .limit_reason = limit.reason,
                         .heeds = {core_.executor().heeds().asker, core_.executor().heeds().number}};
-  const auto carried = [](const auto& each) { return to_bus(each); };
-  sample.behaviors = converted(outputs.behaviors, carried);
-  sample.nodes = converted(outputs.nodes, carried, kMostNodes);
+  sample.behaviors =
+      converted(outputs.behaviors, [](const IntendedBehavior& each) { return to_bus(each); });
+  sample.nodes = converted(outputs.nodes, dated(core_.executor()), kMostNodes);
   sample.edges = converted(said.edges, [](const Edge& edge) {
     return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
   });
@@ -350,8 +359,7 @@ void Service::draw_way(const std::vector<Vec2>& way) {
 }
 
 void Service::publish(const std::vector<Belief>& beliefs) {
-  beliefs_.write({.beliefs = converted(
-                      beliefs, [](const Belief& belief) { return to_bus(belief); }, kMostBeliefs)});
+  beliefs_.write({.beliefs = converted(beliefs, dated(core_.executor()), kMostBeliefs)});
 }
 
 namespace {

@@ -234,6 +234,19 @@ TEST(GoTo, GivesUpWhenItComesNoNearer) {
       << bench.status(1).reason;
 }
 
+TEST(GoTo, TimesAreToldAsCyclesOfTheRobot) {
+  Bench bench;
+  bench.cycle = 700;
+  bench.step(20);
+  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0})});
+  bench.step();
+  const std::uint64_t begun = bench.cycle - 1;  // with the end of the cycle before
+  ASSERT_FALSE(bench.out.nodes.empty());
+  EXPECT_EQ(bench.executor.cycle_of(bench.out.nodes[0].since), begun);
+  bench.step(5);
+  EXPECT_EQ(bench.executor.cycle_of(bench.out.nodes[0].since), begun);
+}
+
 TEST(GoTo, SleepOfTheServiceDoesNotCountAgainstItsPatience) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});

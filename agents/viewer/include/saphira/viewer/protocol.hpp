@@ -34,8 +34,8 @@ class Client {
   Client(const std::string& name, const std::vector<Channel>& channels, std::size_t most);
 
   /// A message of the client. The channels that it has subscribed to by it. Nothing: it is no
-  /// message of the protocol, and the connection is to be closed. What a reader may not do, such as
-  /// publishing, gets a status.
+  /// message of the protocol, and the connection is to be closed. A message that asks for more
+  /// than reading, such as publishing, gets a status.
   std::optional<std::vector<std::size_t>> take(const std::string& text);
   /// A sample of a channel: it waits for next() where the client has subscribed.
   void offer(std::size_t channel, std::int64_t time_ns, const std::string& json);

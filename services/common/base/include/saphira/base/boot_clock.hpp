@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <ctime>
 
 namespace saphira {
@@ -28,6 +29,11 @@ struct BootClock {
 /// [s] since 1970, by the machine's clock.
 inline double unix_time() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// The same in whole seconds, for dates.
+inline std::int64_t unix_seconds() {
+  return static_cast<std::int64_t>(unix_time());
 }
 
 }  // namespace saphira

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -121,6 +122,12 @@ class Executor {
   void know_places(std::shared_ptr<const maps::Topology> places) { places_ = std::move(places); }
   const Registry& registry() const { return *registry_; }
   const Beliefs& beliefs() const { return *beliefs_; }
+  /// The robot's cycle at a time of nodes and beliefs, whose clock began with the service and does
+  /// not count its sleep. 0: before the epoch.
+  std::uint64_t cycle_of(Ticks time) const {
+    return static_cast<std::uint64_t>(
+        std::max<Ticks>(static_cast<Ticks>(cycle_) - awake_ + time, 0));
+  }
 
   /// Interrupts an intention with its descendants, or resumes it, by the number of its node (manual
   /// 6.5, sfInterruptProcess). False: no such intention.
