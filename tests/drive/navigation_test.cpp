@@ -763,7 +763,7 @@ const char* const kAnnInTheCorridor =
 // She is around the corner before the robot can follow.
 const char* const kQuickAnn =
     "person ann 17500 10500\n"
-    "  wait 20  walk 17500 7500 900  walk 17500 7000 300  walk 20000 7000 900  wait 100\n";
+    "  wait 20  walk 17500 7000 1600  walk 25600 7000 1600  walk 25600 10650 1600  wait 100\n";
 
 TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
   Whole blind(office());
