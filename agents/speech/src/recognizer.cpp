@@ -4,19 +4,24 @@
 #include <sphinxbase/err.h>
 #include <sphinxbase/fsg_model.h>
 
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/speech/agreement.hpp"
+
 namespace saphira::speech {
 namespace {
 
 // Phones after the keyword that are no word: breath, or room noise.
 constexpr int kBreath = 4;
-constexpr double kAddressed = 0.5;    // confidence of a keyword alone
-constexpr const char* kPhone = "p_";  // begins the token of a phone; words are w0, w1, ...
+constexpr double kAddressed = 0.5;        // confidence of a keyword alone
+constexpr const char* kFree = "free";     // the search of the second decoder without a grammar
+constexpr double kMostDifference = 0.45;  // README.md, "Measured"
+constexpr const char* kPhone = "p_";      // begins the token of a phone; words are w0, w1, ...
 
 Phones in_dictionary(ps_decoder_t* decoder, const std::string& word) {
   Phones out;
@@ -29,6 +34,11 @@ Phones in_dictionary(ps_decoder_t* decoder, const std::string& word) {
     ckd_free(found);
   }
   return out;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream parts(text);
+  return {std::istream_iterator<std::string>(parts), std::istream_iterator<std::string>()};
 }
 
 struct FreeDecoder {
@@ -66,7 +76,11 @@ struct Recognizer::Self {
   void take(const agent_interface::WordGraph& graph, bool continued);
   void search(bool continued);
   Heard result(ps_decoder_t* from) const;
+  /// The second decoder hears the utterance once more.
+  bool hears_again() const;
   bool is_sure(const Heard& heard) const;
+  /// A decoder without a grammar, which knows every English word, hears something else.
+  bool is_doubted(const std::string& command) const;
   void finish(std::vector<Event>& events);
   void give_up_attention(std::vector<Event>& events);
 };
@@ -88,7 +102,8 @@ Recognizer::Recognizer(RecognizerSettings settings, std::string_view text, const
   };
   self_->decoder.reset(decoder_with("yes"));
   self_->second.reset(decoder_with("no"));
-  if (!self_->decoder || !self_->second)
+  if (!self_->decoder || !self_->second ||
+      ps_set_lm_file(self_->second.get(), kFree, (model + "/en-us.lm.bin").c_str()) < 0)
     throw std::runtime_error("the model of speech in " + model +
                              " cannot be read: install the Debian package pocketsphinx-en-us");
   ps_decoder_t* const decoder = self_->decoder.get();
@@ -231,15 +246,47 @@ Heard Recognizer::Self::result(ps_decoder_t* from) const {
   return heard;
 }
 
-/// The second decoder hears the same command.
-bool Recognizer::Self::is_sure(const Heard& heard) const {
+bool Recognizer::Self::hears_again() const {
   ps_decoder_t* const from = second.get();
   if (ps_start_utt(from) < 0)
     return false;
   ps_process_raw(from, recent.data(), recent.size(), FALSE, TRUE);
   ps_end_utt(from);
-  const Heard again = result(from);
-  return again.outcome == heard.outcome && again.text == heard.text;
+  return true;
+}
+
+/// The second decoder hears the same command.
+bool Recognizer::Self::is_sure(const Heard& heard) const {
+  if (!hears_again())
+    return false;
+  const Heard again = result(second.get());
+  return again.outcome == heard.outcome && again.text == heard.text && !is_doubted(heard.text);
+}
+
+bool Recognizer::Self::is_doubted(const std::string& command) const {
+  ps_decoder_t* const from = second.get();
+  const std::string before = ps_get_search(from);
+  ps_set_search(from, kFree);
+  const bool heard = hears_again();
+  const char* const hypothesis = heard ? ps_get_hyp(from, nullptr) : nullptr;
+  const std::vector<std::string> freely = words_of(hypothesis == nullptr ? "" : hypothesis);
+  ps_set_search(from, before.c_str());
+  std::vector<std::string> said = words_of(command);
+  if (!said.empty() && keywords.contains(said.front()))
+    said.erase(said.begin());
+  const auto sounds = [](const std::vector<std::string>& spoken, const auto& pronounced) {
+    std::vector<std::string> all;
+    for (const std::string& word : spoken)
+      if (const Phones phones = pronounced(word); !phones.empty())
+        for (std::string& sound : words_of(phones.front()))
+          all.push_back(std::move(sound));
+    return all;
+  };
+  return is_turned(freely, said) ||
+         difference(
+             sounds(freely, [&](const std::string& word) { return in_dictionary(from, word); }),
+             sounds(said, [&](const std::string& word) { return pronunciations->of(word); })) >
+             kMostDifference;
 }
 
 /// The utterance has ended. A keyword alone waits for further words.

@@ -159,7 +159,7 @@ struct Tally {
   int asked_back = 0;   ///< a command that is not certain
   int asked_wrong = 0;  ///< of them, another command than the one that was said
   int near_misses = 0;  ///< with the keyword, and meaningless words
-  int taken = 0;        ///< of them, accepted as a command
+  int taken = 0;        ///< of them, accepted as a command, and certain
   int keyless = 0;
   int keyless_taken = 0;
 };
@@ -196,7 +196,7 @@ class Bench {
       const std::string heard = hear(phrase.text);
       if (phrase.meaning.empty()) {
         ++tally.near_misses;
-        tally.taken += heard.empty() ? 0 : 1;
+        tally.taken += !heard.empty() && heard != kStop && certain_ ? 1 : 0;
         continue;
       }
       ++tally.commands;
