@@ -18,7 +18,7 @@ struct ForeignTopic {
   bool reliable = true;
   bool transient_local = false;
   int depth = 10;
-  std::string user_data;  ///< of the endpoint
+  std::string user_data{};  ///< of the endpoint
 };
 
 /// A sample among those of all writers; an answer names that of its request.
@@ -38,9 +38,9 @@ class Foreign {
  public:
   struct Options {
     std::uint32_t domain = 0;
-    std::string name;
-    std::string interface;  ///< address of the one interface to use [empty: all]
-    std::string user_data;
+    std::string name{};
+    std::string interface {};  ///< address of the one interface to use [empty: all]
+    std::string user_data{};
   };
   /// `wake` is called, from any thread, when a sample has come. std::runtime_error names the cause.
   Foreign(const Options& options, std::function<void()> wake);
