@@ -1,5 +1,4 @@
 // The robot as one of ROS 2's. README.md.
-#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -13,6 +12,9 @@ using namespace saphira;
 int serve(const bus::NodeOptions& node_options, ros2::Options options, const bus::Stop& stop) {
   bus::Node node(node_options);
   options.ros.name = "saphira_" + node_options.robot;
+  for (char& letter : options.ros.name)
+    if (letter == '-' || letter == '.')
+      letter = '_';  // ROS 2 has no others
   ros2::RosRobot robot(node, options);
   node.status().state = v1::SERVICE_RUNNING;
   node.info("domain " + std::to_string(options.ros.domain) + " of ROS 2");

@@ -64,7 +64,7 @@ class RosRobot {
                      ticket.head.empty() ? &ticket.request : nullptr);
     }
   };
-  /// What ROS 2 may say to the robot.
+  /// The readers of all that ROS 2 may say to the robot, and its actions.
   struct Inward {
     explicit Inward(RosRobot& robot);
     cli::DirectDriver driver;

@@ -12,6 +12,7 @@
 #include "bytes.hpp"
 #include "process.hpp"
 #include "ros2_cyclone.h"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::ros2 {
 namespace {
@@ -246,12 +247,18 @@ TEST_F(CycloneTest, CmdVelIsObeyedAndGuarded) {
   EXPECT_TRUE(drives_at([&] { return velocity == 0.0; }));
   EXPECT_TRUE(drive(0.3, [&] { return velocity > 0.2; }));
   // The guard stops it before the wall, though messages go on.
-  double stood_at = 1e9;
+  const dds_entity_t diagnostics =
+      client.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
+  std::string guard;
   EXPECT_TRUE(drive(0.3, [&] {
-    const bool stands = velocity == 0.0 && x == stood_at;
-    stood_at = x;
-    return stands;
-  }));
+    take<diagnostic_msgs_msg_dds__DiagnosticArray_>(diagnostics, [&](const auto& message) {
+      for (std::uint32_t i = 0; i < message.status._length; ++i)
+        if (message.status._buffer[i].name == std::string("saphira: drive"))
+          guard = message.status._buffer[i].values._buffer[2].value;
+      return true;
+    });
+    return velocity == 0.0 && guard == situation::name_of(v1::GUARD_STOP);
+  })) << guard;
 }
 
 TEST_F(CycloneTest, AnActionIsAcceptedFedBackCanceledAndSucceeds) {

@@ -18,7 +18,7 @@ class Wheels {
 
   /// False where its numbers cannot be: as if it had not come.
   bool heard(const Twist& twist, double now);
-  /// Whoever was stopped begins anew: with a message of no motion, or after a silence.
+  /// Takes a grant. After a stop it begins anew: with a message of no motion, or after a silence.
   void heard(const v1::Grant& grant);
 
   /// The command to send now, ten times a second or more; none: there is nothing to say.

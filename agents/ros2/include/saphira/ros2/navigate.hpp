@@ -25,7 +25,7 @@ class Navigate {
     kAborted = 6
   };
 
-  /// What becomes of a request. `goal`: to be asked for, and told to asked().
+  /// The fate of a request. `goal`: to be asked for, and told to asked().
   struct Sent {
     SendResponse response;
     std::optional<v1::Goal> goal;

@@ -13,7 +13,7 @@
 #include "saphira/idl/perception.hpp"
 #include "saphira/idl/robot.hpp"
 
-/// What viewers of every kind are shown of the robot, as plain values.
+/// The parts of a picture of the robot, for viewers of every kind.
 namespace saphira::viewer {
 
 struct Line {

@@ -62,7 +62,7 @@ class Foreign {
   class Reader {
    public:
     virtual ~Reader() = default;
-    /// What has come since the last call, oldest first.
+    /// The samples since the last call, oldest first.
     virtual std::vector<ForeignSample> take() = 0;
     virtual std::size_t matched() const = 0;
     virtual WriterId id() const = 0;
