@@ -545,9 +545,9 @@ class Topic(Generic[T]):
           name_of("name_of_" + found->first, found->first, found->second);
         names = "name_of_" + found->first;
       }
-      visits << "  visit(saphira::Member{\"" << member.name << "\", " << (member.key ? "true" : "false")
-             << ", " << (is_sequence ? member.type.bound : "0") << ", " << names << "}, sample."
-             << member.name << ");\n";
+      visits << "  visit(saphira::Member{\"" << member.name << "\", "
+             << (member.key ? "true" : "false") << ", " << (is_sequence ? member.type.bound : "0")
+             << ", " << names << "}, sample." << member.name << ");\n";
       const std::size_t size = is_sequence ? kVaries : size_of(member.type.name);
       whole = end(whole, size);
       if (member.key)

@@ -85,13 +85,13 @@ RosRobot::Out<T>::Out(RosRobot& robot, const Topic<T>& topic)
 template <class Request, class Response>
 RosRobot::Served<Request, Response>::Served(RosRobot& robot,
                                             const Service<Request, Response>& service)
-    : requests(robot.foreign_.reader(
+    : requests_(robot.foreign_.reader(
           part("rq/" + std::string(service.name) + "Request", service.request_type))),
-      answers(robot.foreign_.writer(
+      answers_(robot.foreign_.writer(
           part("rr/" + std::string(service.name) + "Reply", service.response_type))),
-      distribution(robot.distribution()) {
-  robot.reader_ids_.push_back(requests->id());
-  robot.writer_ids_.push_back(answers->id());
+      distribution_(robot.distribution()) {
+  robot.reader_ids_.push_back(requests_->id());
+  robot.writer_ids_.push_back(answers_->id());
 }
 
 template <class T>
@@ -302,6 +302,9 @@ void RosRobot::serve() {
       in.get_result.answer(*result, asked.second);
     return result.has_value();
   });
+  in.send_goal.flush();
+  in.cancel_goal.flush();
+  in.get_result.flush();
 }
 
 void RosRobot::tell_slowly() {

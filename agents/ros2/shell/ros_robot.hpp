@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,23 +47,43 @@ class RosRobot {
     Distribution distribution_;
   };
   template <class Request, class Response>
-  struct Served {
+  class Served {
+   public:
     Served(RosRobot& robot, const Service<Request, Response>& service);
-    std::unique_ptr<bus::Foreign::Reader> requests;
-    std::unique_ptr<bus::Foreign::Writer> answers;
-    Distribution distribution;
     /// Calls each(request, ticket).
     template <class Each>
     void take(Each&& each) {
-      for (const bus::ForeignSample& sample : requests->take())
+      for (const bus::ForeignSample& sample : requests_->take())
         if (const auto ticket = ticket_of(sample))
           if (const auto request = read<Request>(plain(sample, *ticket)))
             each(*request, *ticket);
     }
     void answer(const Response& response, const Ticket& ticket) {
-      answers->write(ros2::answer(bytes_of(response, distribution), ticket),
-                     ticket.head.empty() ? &ticket.request : nullptr);
+      due_.push_back({ros2::answer(bytes_of(response, distribution_), ticket), ticket,
+                      cli::Clock::now() + kLongestMatch});
     }
+    /// Writes the answers, as soon as each client that asks is there to hear them: discovery may
+    /// find its request's writer before its answer's reader.
+    void flush() {
+      while (!due_.empty() && (answers_->matched() >= requests_->matched() ||
+                               cli::Clock::now() > due_.front().latest)) {
+        answers_->write(due_.front().bytes,
+                        due_.front().ticket.head.empty() ? &due_.front().ticket.request : nullptr);
+        due_.pop_front();
+      }
+    }
+
+   private:
+    static constexpr std::chrono::seconds kLongestMatch{1};
+    struct Due {
+      std::string bytes;
+      Ticket ticket;
+      cli::Clock::time_point latest;
+    };
+    std::unique_ptr<bus::Foreign::Reader> requests_;
+    std::unique_ptr<bus::Foreign::Writer> answers_;
+    Distribution distribution_;
+    std::deque<Due> due_;
   };
   /// The readers of all that ROS 2 may say to the robot, and its actions.
   struct Inward {

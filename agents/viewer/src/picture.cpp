@@ -77,8 +77,8 @@ void Placing::take(const v1::Registration& registration) {
 Place Placing::of(const v1::RobotState& state) const {
   if (!registration_ || registration_->odom != state.odom)
     return {{}, state.pose_in_odom};
-  return {registration_->odom_in_map, to_bus(compose(from_bus(registration_->odom_in_map),
-                                                     from_bus(state.pose_in_odom)))};
+  return {registration_->odom_in_map,
+          to_bus(compose(from_bus(registration_->odom_in_map), from_bus(state.pose_in_odom)))};
 }
 
 Tiles::Tiles(double period) : period_ns_(static_cast<std::int64_t>(period * 1e9)) {}

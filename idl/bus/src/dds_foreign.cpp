@@ -222,8 +222,7 @@ Foreign::Foreign(const Options& options, std::function<void()> wake)
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.discovery_config.leaseDuration_announcementperiod =
-      internal::milliseconds(kAnnouncement);
+  builtin.discovery_config.leaseDuration_announcementperiod = internal::milliseconds(kAnnouncement);
   for (const char* const place : {"239.255.0.1", "127.0.0.1"}) {
     rtps::Locator_t peer;
     peer.kind = LOCATOR_KIND_UDPv4;
@@ -233,8 +232,7 @@ Foreign::Foreign(const Options& options, std::function<void()> wake)
   }
   auto* const factory = fdds::DomainParticipantFactory::get_instance();
   impl_->participant = factory->create_participant(options.domain, qos);
-  if (impl_->participant != nullptr &&
-      impl_->participant->enable() == ReturnCode_t::RETCODE_OK) {
+  if (impl_->participant != nullptr && impl_->participant->enable() == ReturnCode_t::RETCODE_OK) {
     impl_->publisher = impl_->participant->create_publisher(fdds::PUBLISHER_QOS_DEFAULT);
     impl_->subscriber = impl_->participant->create_subscriber(fdds::SUBSCRIBER_QOS_DEFAULT);
   }
@@ -255,8 +253,7 @@ std::unique_ptr<Foreign::Writer> Foreign::writer(const ForeignTopic& topic) {
 }
 
 std::unique_ptr<Foreign::Reader> Foreign::reader(const ForeignTopic& topic) {
-  return std::make_unique<FastReader>(*impl_->subscriber, impl_->topic(topic), topic,
-                                      impl_->wake);
+  return std::make_unique<FastReader>(*impl_->subscriber, impl_->topic(topic), topic, impl_->wake);
 }
 
 }  // namespace saphira::bus
