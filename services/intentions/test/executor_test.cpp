@@ -29,12 +29,12 @@ TEST(Executor, RefusesWithAReason) {
   EXPECT_EQ(bench.state(1), v1::GOAL_REFUSED);
   EXPECT_EQ(bench.status(1).code, v1::CODE_UNKNOWN_FUNCTOR);
   EXPECT_EQ(bench.status(1).reason,
-            "there is no activity \"fly\": saphira goal activities lists the 5 that there are");
+            "there is no activity \"fly\": saphira goal activities lists the 6 that there are");
   bench.ask(4, "go_too", {});
   bench.step();
   EXPECT_EQ(bench.status(4).reason,
             "there is no activity \"go_too\": did you mean go_to? saphira goal activities lists "
-            "the 5 that there are");
+            "the 6 that there are");
   EXPECT_EQ(bench.status(2).code, v1::CODE_BAD_ARGUMENT);
   EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
   EXPECT_TRUE(bench.out.behaviors.empty());

@@ -35,7 +35,7 @@ TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
   EXPECT_EQ(complaint("drive", {text("speed", "fast")}),
             "argument \"speed\": expected a number from -0.2 to 2 m/s, got the text \"fast\"");
   EXPECT_EQ(complaint("drive", {number("sped", 0.1)}),
-            "drive has no argument \"sped\": it takes speed, patience");
+            "drive has no argument \"sped\": it takes speed, distance, patience");
   EXPECT_EQ(complaint("stop", {number("now", 1)}),
             "stop has no argument \"now\": it takes no arguments");
   EXPECT_EQ(complaint("drive", {number("speed", 0.1), number("speed", 0.2)}),
@@ -114,7 +114,7 @@ TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
   registry.add(schema);
   EXPECT_EQ(registry.find("stop")->summary, "another");
   EXPECT_EQ(registry.instead_of("stpo"),
-            "did you mean stop? saphira goal activities lists the 5 that there are");
+            "did you mean stop? saphira goal activities lists the 6 that there are");
 }
 
 }  // namespace
