@@ -1,6 +1,7 @@
 // Generates the contract's C++ from its IDL files.
 //
 //   saphira-idl-generate FOLDER FILE.idl... [topics.def]
+//   saphira-idl-generate FOLDER --foreign NAME FILE.idl...
 //
 // FOLDER/saphira/idl/ gets a header with plain structs and enums for each file; types.hpp, which
 // includes them all; members.hpp, which visits the members of each struct with their names, keys
@@ -10,6 +11,10 @@
 //
 // The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
 // with their constants, bounded sequences, strings. Anything else is an error that names the place.
+//
+// --foreign: messages of another system, such as ROS 2. The headers go to FOLDER/saphira/NAME/, and
+// there is neither JSON nor Python. Sequences without a bound, arrays and qualified names of types
+// are accepted as well.
 
 #include <algorithm>
 #include <cctype>
@@ -35,6 +40,7 @@ struct Token {
 struct Type {
   std::string name;   // in IDL, or of a definition; of a sequence: of its elements
   std::string bound;  // of a sequence [empty: it is none]
+  std::string array;  // how many it has [empty: it is none]
 };
 
 struct Member {
@@ -72,6 +78,7 @@ struct Base {
 
 const std::map<std::string, Base> bases{
     {"boolean", {"bool", 1, R"("type": "boolean")", "bool"}},
+    {"int8", {"std::int8_t", 1, R"("type": "integer", "minimum": -128, "maximum": 127)", "int"}},
     {"octet", {"std::uint8_t", 1, R"("type": "integer", "minimum": 0, "maximum": 255)", "int"}},
     {"short",
      {"std::int16_t", 2, R"("type": "integer", "minimum": -32768, "maximum": 32767)", "int"}},
@@ -87,7 +94,8 @@ const std::map<std::string, Base> bases{
 
 class Parser {
  public:
-  explicit Parser(const std::filesystem::path& path) : path_(path.string()) {
+  Parser(const std::filesystem::path& path, bool foreign)
+      : path_(path.string()), foreign_(foreign) {
     file_.stem = path.stem().string();
     split();
   }
@@ -205,8 +213,12 @@ class Parser {
       expect("{");
       while (!take("}")) {
         const bool key = take("@key");
-        const Type of = type();
+        Type of = type();
         const std::string name = word();
+        if (foreign_ && take("[")) {
+          of.array = word();
+          expect("]");
+        }
         expect(";");
         item.members.push_back({of, name, comment_behind(), key});
       }
@@ -235,6 +247,10 @@ class Parser {
       result = type();
       if (!result.bound.empty())
         fail("no sequence in a sequence");
+      if (foreign_ && take(">")) {
+        result.bound = "0xFFFFFFFF";
+        return result;
+      }
       expect(",");
       result.bound = word();
       expect(">");
@@ -244,10 +260,15 @@ class Parser {
     if (result.name == "unsigned" || result.name == "long")
       while (at("long") || at("short"))
         result.name += " " + word();
+    while (foreign_ && take(":")) {
+      expect(":");
+      result.name += "::" + word();
+    }
     return result;
   }
 
   std::string path_;
+  bool foreign_;
   File file_;
   std::vector<Token> tokens_;
   std::size_t next_ = 0;
@@ -277,12 +298,16 @@ std::string trimmed(const std::string& text) {
 /// The texts that are made of the files.
 class Generator {
  public:
+  /// Headers are in saphira/`place`; `foreign`: see above.
+  Generator(std::string place, bool foreign) : place_(std::move(place)), foreign_(foreign) {}
+
   void add(const File& file) {
     stem_ = file.stem;
     std::ostringstream out;
-    out << top << "#include <cstdint>\n#include <string>\n#include <vector>\n\n";
+    out << top << (foreign_ ? "#include <array>\n" : "")
+        << "#include <cstdint>\n#include <string>\n#include <vector>\n\n";
     for (const std::string& include : file.includes)
-      out << "#include \"saphira/idl/" << include << ".hpp\"\n";
+      out << "#include \"saphira/" << place_ << "/" << include << ".hpp\"\n";
     for (const Definition& item : file.definitions)
       write(item, out);
     headers_[file.stem + ".hpp"] = out.str();
@@ -313,11 +338,14 @@ class Generator {
     std::map<std::string, std::string> all = headers_;
     std::string includes;
     for (const auto& [name, text] : headers_)
-      includes += "#include \"saphira/idl/" + name + "\"\n";
+      includes += "#include \"saphira/" + place_ + "/" + name + "\"\n";
     all["types.hpp"] = top + includes;
-    all["members.hpp"] =
-        top + std::string("#include <type_traits>\n\n#include \"saphira/idl/types.hpp\"\n") +
-        visitor + members_.str();
+    all["members.hpp"] = top + std::string("#include <type_traits>\n\n") +
+                         (foreign_ ? "#include \"saphira/idl/members.hpp\"\n" : "") +
+                         "#include \"saphira/" + place_ + "/types.hpp\"\n" +
+                         (foreign_ ? "\n" : visitor) + members_.str();
+    if (foreign_)
+      return all;
     all["schema.json"] =
         "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"$defs\": {" +
         schemas_.str() + "\n  }\n}\n";
@@ -388,15 +416,18 @@ class Topic(Generic[T]):
 )";
 
   void write(const Definition& item, std::ostream& out) {
-    python(item);
+    if (!foreign_)
+      python(item);
     const std::string comment = item.comment.empty() ? "" : "///" + item.comment + "\n";
     switch (item.kind) {
       case Kind::open:
         out << "\nnamespace " << item.name << " {\n";
+        scope_.push_back(item.name);
         members_ << "namespace " << item.name << " {\n";
         break;
       case Kind::close:
         out << "\n}\n";
+        scope_.pop_back();
         members_ << "}\n";
         break;
       case Kind::alias:
@@ -489,7 +520,7 @@ class Topic(Generic[T]):
     }
     out << "};\n";
     name_of("name_of", item.name, names);
-    sizes_[item.name] = 4;
+    sizes_[qualified(item.name)] = 4;
     schema(item, "\"enum\": [" + listed(names) + "]");
   }
 
@@ -502,28 +533,33 @@ class Topic(Generic[T]):
     for (const Member& member : item.members) {
       const bool is_sequence = !member.type.bound.empty();
       const std::string type = cpp(member.type.name);
-      out << "  " << (is_sequence ? "std::vector<" + type + ">" : type) << " " << member.name
-          << "{};" << behind(member.comment);
+      const bool is_array = !member.type.array.empty();
+      out << "  "
+          << (is_sequence ? "std::vector<" + type + ">"
+              : is_array  ? "std::array<" + type + ", " + member.type.array + ">"
+                          : type)
+          << " " << member.name << "{};" << behind(member.comment);
       std::string names = "nullptr";
       if (const auto found = constants_.find(member.type.name); found != constants_.end()) {
         if (named_.insert(found->first).second)
           name_of("name_of_" + found->first, found->first, found->second);
         names = "name_of_" + found->first;
       }
-      visits << "  visit(Member{\"" << member.name << "\", " << (member.key ? "true" : "false")
-             << ", " << (is_sequence ? member.type.bound : "0") << ", " << names << "}, sample."
-             << member.name << ");\n";
+      visits << "  visit(saphira::Member{\"" << member.name << "\", "
+             << (member.key ? "true" : "false") << ", " << (is_sequence ? member.type.bound : "0")
+             << ", " << names << "}, sample." << member.name << ");\n";
       const std::size_t size = is_sequence ? kVaries : size_of(member.type.name);
       whole = end(whole, size);
       if (member.key)
         keys = end(keys, size);
-      properties += std::string(properties.empty() ? "" : ",") + "\n        " +
-                    quoted(member.name) + ": {" + property(member) + "}";
+      if (!foreign_)
+        properties += std::string(properties.empty() ? "" : ",") + "\n        " +
+                      quoted(member.name) + ": {" + property(member) + "}";
     }
     // Other vendors do not hear the withdrawal of a longer one.
     if (keys > 16)
       throw std::runtime_error(stem_ + ".idl: the key of " + item.name + " has more than 16 bytes");
-    sizes_[item.name] = whole;
+    sizes_[qualified(item.name)] = whole;
     out << "  bool operator==(const " << item.name << "&) const = default;\n};\n";
     members_
         << "template <class Sample, class Visit>\nconstexpr void visit_members(std::type_identity<"
@@ -545,10 +581,19 @@ class Topic(Generic[T]):
       return base->second.size;
     if (const auto alias = aliases_.find(type); alias != aliases_.end())
       return size_of(alias->second);
-    const auto found = sizes_.find(type);
+    auto found = sizes_.find(qualified(type));
+    if (found == sizes_.end())
+      found = sizes_.find(type);
     if (found == sizes_.end())
       throw std::runtime_error(stem_ + ".idl: no type " + type);
     return found->second;
+  }
+
+  std::string qualified(const std::string& type) const {
+    std::string all;
+    for (const std::string& name : scope_)
+      all += name + "::";
+    return all + type;
   }
 
   static std::string listed(const std::vector<std::string>& names) {
@@ -580,7 +625,10 @@ class Topic(Generic[T]):
     schemas_ << "      " << text << "\n    }";
   }
 
-  std::string stem_;  // of the present file
+  std::string place_;
+  bool foreign_;
+  std::vector<std::string> scope_;  // the modules of the present definition
+  std::string stem_;                // of the present file
   std::map<std::string, std::string> headers_;
   std::ostringstream members_;
   std::ostringstream schemas_;
@@ -599,14 +647,16 @@ int main(int argc, char** argv) {
   try {
     if (argc < 3)
       throw std::runtime_error("usage: saphira-idl-generate FOLDER FILE.idl... [topics.def]");
+    const bool foreign = std::string(argv[2]) == "--foreign" && argc > 4;
+    const std::string place = foreign ? argv[3] : "idl";
     std::map<std::string, File> files;
-    Generator generator;
-    for (int i = 2; i < argc; ++i) {
+    Generator generator(place, foreign);
+    for (int i = foreign ? 4 : 2; i < argc; ++i) {
       if (std::filesystem::path(argv[i]).extension() == ".def") {
         generator.add_topics(argv[i]);
         continue;
       }
-      File file = Parser(argv[i]).parse();
+      File file = Parser(argv[i], foreign).parse();
       files[file.stem] = std::move(file);
     }
     std::set<std::string> added;
@@ -622,7 +672,7 @@ int main(int argc, char** argv) {
     };
     for (const auto& [stem, file] : files)
       add(stem);
-    const std::filesystem::path folder = std::filesystem::path(argv[1]) / "saphira" / "idl";
+    const std::filesystem::path folder = std::filesystem::path(argv[1]) / "saphira" / place;
     std::filesystem::create_directories(folder);
     for (const auto& [name, text] : generator.texts()) {
       // A header that stays the same is left as it is, so its users are not compiled again.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "installed.hpp"
 #include "process.hpp"
@@ -12,12 +13,15 @@ namespace saphira {
 namespace {
 
 /// Its error, without the folder; empty: there is none.
-std::string error_of(const std::string& members) {
+std::string error_of(const std::string& members, bool foreign = false) {
   const test::TempDir folder;
   std::ofstream(folder.path("a.idl")) << "module saphira { module v1 {\n" << members << "\n}; };\n";
-  test::Process generator({test::Installed::build_folder() + "/idl/saphira-idl-generate",
-                           folder.path("out"), folder.path("a.idl")},
-                          folder.path("log"));
+  std::vector<std::string> words{test::Installed::build_folder() + "/idl/saphira-idl-generate",
+                                 folder.path("out")};
+  if (foreign)
+    words.insert(words.end(), {"--foreign", "idl"});
+  words.push_back(folder.path("a.idl"));
+  test::Process generator(words, folder.path("log"));
   const bool good = generator.wait() == 0;
   EXPECT_EQ(good, std::ifstream(folder.path("out/saphira/idl/a.hpp")).good());
   const std::string said = generator.output();
@@ -42,6 +46,16 @@ TEST(Generator, RefusesWhatOthersReadInAnotherWay) {
   EXPECT_EQ(error_of(final + "A { @key long a; @key long long b; @key long c; };"),
             "a.idl: the key of A has more than 16 bytes\n");
   EXPECT_EQ(error_of(final + "A { Stranger a; };"), "a.idl: no type Stranger\n");
+}
+
+TEST(Generator, MessagesOfAnotherSystemMayHaveNoBounds) {
+  const std::string final = "@extensibility(FINAL) struct ";
+  for (const std::string member : {"sequence<long> a;", "double a[36];", "saphira::v1::B_ a;"}) {
+    const std::string members = final + "B_ { int8 b; }; " + final + "A { " + member + " };";
+    EXPECT_EQ(error_of(members, true), "");
+    EXPECT_NE(error_of(members), "");
+  }
+  EXPECT_EQ(error_of(final + "A { other::B_ a; };", true), "a.idl: no type other::B_\n");
 }
 
 }  // namespace

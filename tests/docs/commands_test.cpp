@@ -132,7 +132,7 @@ TEST(ShownCommands, AreThere) {
 /// What a program, or a command of `saphira`, says of its options.
 std::string help_of(const Shown& one) {
   static std::map<std::vector<std::string>, std::string> said;
-  const std::regex plain("[a-z][a-z-]*");
+  const std::regex plain("[a-z][a-z0-9-]*");
   std::vector<std::string> argv{one.program};
   if (one.program == "saphira")
     for (std::size_t i = 0; i < 2 && i < one.words.size(); ++i) {

@@ -56,4 +56,8 @@ void add_foxglove(CLI::App& app, Chosen& chosen) {
   add_program(app, chosen, "foxglove", "See the robot in Foxglove or Lichtblick");
 }
 
+void add_ros2(CLI::App& app, Chosen& chosen) {
+  add_program(app, chosen, "ros2", "Show the robot to ROS 2, and let ROS 2 drive it");
+}
+
 }  // namespace saphira::cli

@@ -2,16 +2,9 @@
 
 #include <openssl/evp.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
-
-#include "geometry/shell/convert.hpp"
-#include "maps/shell/convert.hpp"
-#include "saphira/geometry/pose.hpp"
-#include "saphira/maps/line_map.hpp"
 
 namespace saphira::viewer {
 
@@ -33,9 +26,7 @@ constexpr int kUint8 = 1;
 constexpr int kFloat32 = 7;
 constexpr int kLineList = 2;
 
-constexpr double kSonarHeight = 0.2;           // [m] of drawn echoes
-constexpr double kLetters = 0.4;               // [m] of drawn names
-constexpr std::size_t kMostCells = 4'000'000;  // of a drawn grid
+constexpr double kLetters = 0.4;  // [m] of drawn names
 
 std::string base64(const std::string& bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
@@ -119,17 +110,12 @@ json arrow_of(double length) {
           {"head_diameter", 0.12},    {"color", color_of(0.1, 0.1, 0.1)}};
 }
 
-void add_line(json& points, const Vec2& from, const Vec2& to) {
-  points.push_back(vector_of(from.x(), from.y()));
-  points.push_back(vector_of(to.x(), to.y()));
-}
-
-/// A line of that length along a pose; `across`: at right angles to it.
-void add_line(json& points, const v1::Pose2& pose, double length, bool across) {
-  const double th = pose.th + (across ? kPi / 2 : 0.0);
-  const Vec2 half = Vec2(std::cos(th), std::sin(th)) * (length / 2);
-  const Vec2 middle(pose.x, pose.y);
-  add_line(points, middle - half, middle + half);
+json points_of(const std::vector<Line>& lines) {
+  json points = json::array();
+  for (const Line& line : lines)
+    for (const Vec2& end : {line.from, line.to})
+      points.push_back(vector_of(end.x(), end.y()));
+  return points;
 }
 
 DrawnMessage message(Which channel, const json& content) {
@@ -200,21 +186,18 @@ std::string drawn_schema(const std::string& type) {
   return schema.dump();
 }
 
-Scene::Scene(double grid_period) : grid_period_ns_(static_cast<std::int64_t>(grid_period * 1e9)) {}
+Scene::Scene(double grid_period) : tiles_(grid_period) {}
 
 Scene::Messages Scene::take(const v1::RobotState& state, std::int64_t time_ns) {
   json transforms = json::array();
-  const bool on_map = registration_ && registration_->odom == state.odom;
-  if (on_map)
-    transforms.push_back(transform_of("map", "odom", registration_->odom_in_map, time_ns));
+  const Place place = placing_.of(state);
+  if (place.odom_in_map)
+    transforms.push_back(transform_of("map", "odom", *place.odom_in_map, time_ns));
   transforms.push_back(transform_of("odom", "base_link", state.pose_in_odom, time_ns));
-  const v1::Pose2 pose =
-      on_map ? to_bus(compose(from_bus(registration_->odom_in_map), from_bus(state.pose_in_odom)))
-             : state.pose_in_odom;
   return {message(kTransforms, {{"transforms", std::move(transforms)}}),
           message(kPose, {{"timestamp", time_of(time_ns)},
-                          {"frame_id", on_map ? "map" : "odom"},
-                          {"pose", pose_of(pose)}})};
+                          {"frame_id", place.odom_in_map ? "map" : "odom"},
+                          {"pose", pose_of(place.pose)}})};
 }
 
 Scene::Messages Scene::take(const v1::RobotDescription& description, std::int64_t time_ns) {
@@ -225,112 +208,47 @@ Scene::Messages Scene::take(const v1::RobotDescription& description, std::int64_
 }
 
 Scene::Messages Scene::take(const v1::SonarBuckets& sonars, std::int64_t time_ns) {
-  std::string points;
-  for (const v1::SonarBucket& bucket : sonars.buckets) {
-    if (!bucket.reading.echo)
-      continue;
-    const Vec2 point = transform(from_bus(bucket.pose_in_odom), Vec2(bucket.x, bucket.y));
-    for (const double value : {point.x(), point.y(), kSonarHeight}) {
-      const auto small = static_cast<float>(value);
-      std::array<char, sizeof small> bytes{};
-      std::memcpy(bytes.data(), &small, sizeof small);  // little-endian, as this machine
-      points.append(bytes.data(), bytes.size());
-    }
-  }
   return {message(kSonars, {{"timestamp", time_of(time_ns)},
                             {"frame_id", "odom"},
                             {"pose", pose_of({})},
-                            {"point_stride", 3 * sizeof(float)},
+                            {"point_stride", kEchoBytes},
                             {"fields", json::array({field_of("x", 0, kFloat32),
                                                     field_of("y", sizeof(float), kFloat32),
                                                     field_of("z", 2 * sizeof(float), kFloat32)})},
-                            {"data", base64(points)}})};
+                            {"data", base64(echoes_of(sonars))}})};
 }
 
 Scene::Messages Scene::take(const v1::Perception& perception, std::int64_t time_ns) {
-  json walls = json::array();
-  json openings = json::array();
-  for (const v1::Percept& percept : perception.percepts) {
-    if (percept.type == v1::ARTIFACT_WALL)
-      add_line(walls, percept.pose_in_odom, percept.length, false);
-    else if (percept.type == v1::ARTIFACT_DOOR || percept.type == v1::ARTIFACT_JUNCTION)
-      add_line(openings, percept.pose_in_odom, percept.width, true);
-  }
+  const Plan plan = plan_of(perception);
   json entity = entity_of("percepts", "odom", false, time_ns);
-  entity["lines"] = {lines_of(std::move(walls), 0.05, color_of(0.1, 0.3, 0.9)),
-                     lines_of(std::move(openings), 0.05, color_of(0.9, 0.5, 0.0))};
+  entity["lines"] = {lines_of(points_of(plan.walls), 0.05, color_of(0.1, 0.3, 0.9)),
+                     lines_of(points_of(plan.openings), 0.05, color_of(0.9, 0.5, 0.0))};
   return {scene(entity)};
 }
 
 Scene::Messages Scene::take(const v1::GridTile& tile, bool disposed, std::int64_t time_ns) {
-  const auto differs = [&tile](const auto& entry) {
-    const v1::GridTile& other = entry.second;
-    return other.odom != tile.odom || other.side != tile.side ||
-           other.resolution != tile.resolution;
-  };
-  if (disposed) {
-    tiles_.erase({tile.row, tile.column});
-  } else {
-    std::erase_if(tiles_, differs);
-    tiles_[{tile.row, tile.column}] = tile;
-  }
-  if (tiles_.empty() || time_ns - grid_sent_ns_ < grid_period_ns_)
+  const std::optional<Cells> grid = tiles_.take(tile, disposed, time_ns);
+  if (!grid)
     return {};
-  const v1::GridTile& first = tiles_.begin()->second;
-  const auto [west, east] = std::minmax_element(
-      tiles_.begin(), tiles_.end(),
-      [](const auto& a, const auto& b) { return a.first.second < b.first.second; });
-  const std::int64_t left = west->first.second;
-  const std::int64_t bottom = tiles_.begin()->first.first;
-  const std::size_t side = first.side;
-  const std::size_t columns = side * static_cast<std::size_t>(east->first.second - left + 1);
-  const std::size_t rows =
-      side * static_cast<std::size_t>(tiles_.rbegin()->first.first - bottom + 1);
-  if (rows > kMostCells || columns > kMostCells || rows * columns > kMostCells)
-    return {};
-  grid_sent_ns_ = time_ns;
-  std::string cells(rows * columns, '\xFF');
-  for (const auto& [place, each] : tiles_)
-    for (std::size_t row = 0; row < side && (row + 1) * side <= each.cells.size(); ++row)
-      std::memcpy(&cells[(static_cast<std::size_t>(place.first - bottom) * side + row) * columns +
-                         static_cast<std::size_t>(place.second - left) * side],
-                  &each.cells[row * side], side);
-  const double edge = static_cast<double>(side) * first.resolution;
   return {message(kGrid, {{"timestamp", time_of(time_ns)},
                           {"frame_id", "odom"},
-                          {"pose", pose_of({static_cast<double>(left) * edge,
-                                            static_cast<double>(bottom) * edge, 0.0})},
-                          {"column_count", columns},
-                          {"cell_size", {{"x", first.resolution}, {"y", first.resolution}}},
-                          {"row_stride", columns},
+                          {"pose", pose_of({grid->x, grid->y, 0.0})},
+                          {"column_count", grid->columns},
+                          {"cell_size", {{"x", grid->resolution}, {"y", grid->resolution}}},
+                          {"row_stride", grid->columns},
                           {"cell_stride", 1},
                           {"fields", json::array({field_of("occupied", 0, kUint8)})},
-                          {"data", base64(cells)}})};
+                          {"data", base64(grid->cells)}})};
 }
 
 Scene::Messages Scene::take(const v1::FloorMap& map, std::int64_t time_ns) {
-  const maps::Map known = maps::from_bus(map);
-  const maps::LineMap lines(known);
-  json walls = json::array();
-  for (const maps::Surface& surface : lines.surfaces())
-    add_line(walls, surface.from, surface.to);
-  json doors = json::array();
+  const Plan plan = plan_of(map);
   json entity = entity_of("map", "map", false, time_ns);
-  for (const v1::MapArtifact& artifact : map.artifacts) {
-    if (artifact.type == v1::ARTIFACT_DOOR || artifact.type == v1::ARTIFACT_BREAK)
-      add_line(doors, artifact.pose_in_map, artifact.width, true);
-    else if (!artifact.name.empty())
-      entity["texts"].push_back(text_of(artifact.name, artifact.pose_in_map));
-  }
-  entity["lines"] = {lines_of(std::move(walls), 0.05, color_of(0.3, 0.3, 0.3)),
-                     lines_of(std::move(doors), 0.04, color_of(0.1, 0.6, 0.2))};
+  for (const Label& name : plan.names)
+    entity["texts"].push_back(text_of(name.text, name.at));
+  entity["lines"] = {lines_of(points_of(plan.walls), 0.05, color_of(0.3, 0.3, 0.3)),
+                     lines_of(points_of(plan.openings), 0.04, color_of(0.1, 0.6, 0.2))};
   return {scene(entity)};
-}
-
-void Scene::take(const v1::Registration& registration) {
-  registration_.reset();
-  if (registration.state == v1::REGISTRATION_TRACKING)
-    registration_ = registration;
 }
 
 Scene::Messages Scene::take(const v1::LogRecord& record) {

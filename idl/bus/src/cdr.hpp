@@ -41,15 +41,20 @@ class CdrWriter {
     for (const T& value : values)
       (*this)(member, value);
   }
+  template <class T, std::size_t N>
+  void operator()(const Member& member, const std::array<T, N>& values) {
+    for (const T& value : values)
+      (*this)(member, value);
+  }
 
  private:
   eprosima::fastcdr::Cdr& cdr_;
 };
 
-/// std::length_error as above.
+/// std::length_error as above, or where a sequence has more elements than `size`, the bytes of all.
 class CdrReader {
  public:
-  explicit CdrReader(eprosima::fastcdr::Cdr& cdr) : cdr_(cdr) {}
+  CdrReader(eprosima::fastcdr::Cdr& cdr, std::size_t size) : cdr_(cdr), size_(size) {}
 
   template <class T>
   void operator()([[maybe_unused]] const Member& member, T& value) {
@@ -67,15 +72,21 @@ class CdrReader {
   void operator()(const Member& member, std::vector<T>& values) {
     std::uint32_t count = 0;
     cdr_ >> count;
-    if (count > member.bound)
+    if (count > member.bound || count > size_)
       throw std::length_error(member.name);
     values.resize(count);
+    for (T& value : values)
+      (*this)(member, value);
+  }
+  template <class T, std::size_t N>
+  void operator()(const Member& member, std::array<T, N>& values) {
     for (T& value : values)
       (*this)(member, value);
   }
 
  private:
   eprosima::fastcdr::Cdr& cdr_;
+  std::size_t size_;
 };
 
 /// How many bytes a sample has.
@@ -95,6 +106,11 @@ class CdrSize {
   template <class T>
   void operator()(const Member& member, const std::vector<T>& values) {
     (*this)(member, std::uint32_t{});
+    for (const T& value : values)
+      (*this)(member, value);
+  }
+  template <class T, std::size_t N>
+  void operator()(const Member& member, const std::array<T, N>& values) {
     for (const T& value : values)
       (*this)(member, value);
   }
@@ -152,7 +168,7 @@ void read_cdr(char* data, std::size_t size, T& sample) {
   eprosima::fastcdr::FastBuffer buffer(data, size);
   Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
   cdr.read_encapsulation();
-  CdrReader reader(cdr);
+  CdrReader reader(cdr, size);
   visit_members(sample, reader);
 }
 

@@ -2,17 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "saphira/idl/map.hpp"
-#include "saphira/idl/perception.hpp"
-#include "saphira/idl/robot.hpp"
 #include "saphira/idl/system.hpp"
+#include "saphira/viewer/picture.hpp"
 
 namespace saphira::viewer {
 
@@ -55,14 +50,12 @@ class Scene {
   /// The lines and names of the map.
   static Messages take(const v1::FloorMap& map, std::int64_t time_ns);
   /// No message: it places the next RobotState.
-  void take(const v1::Registration& registration);
+  void take(const v1::Registration& registration) { placing_.take(registration); }
   static Messages take(const v1::LogRecord& record);
 
  private:
-  std::int64_t grid_period_ns_;
-  std::int64_t grid_sent_ns_ = 0;
-  std::map<std::pair<std::int32_t, std::int32_t>, v1::GridTile> tiles_;  // by row and column
-  std::optional<v1::Registration> registration_;                         // tracking
+  Tiles tiles_;
+  Placing placing_;
 };
 
 }  // namespace saphira::viewer

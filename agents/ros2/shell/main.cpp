@@ -1,0 +1,68 @@
+// The robot as one of ROS 2's. README.md.
+#include <map>
+#include <string>
+
+#include "ros_robot.hpp"
+#include "saphira/bus/program.hpp"
+
+namespace {
+
+using namespace saphira;
+
+int serve(const bus::NodeOptions& node_options, ros2::Options options, const bus::Stop& stop) {
+  bus::Node node(node_options);
+  options.ros.name = "saphira_" + node_options.robot;
+  for (char& letter : options.ros.name)
+    if (letter == '-' || letter == '.')
+      letter = '_';  // ROS 2 has no others
+  ros2::RosRobot robot(node, options);
+  node.status().state = v1::SERVICE_RUNNING;
+  node.info("domain " + std::to_string(options.ros.domain) + " of ROS 2");
+  while (!stop.requested()) {
+    node.wait(cli::kDrivePeriod, &stop);
+    robot.poll();
+  }
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros2::Options options;
+  unsigned domain = 0;
+  std::string cmd_vel = "twist";
+  std::string role = "direct";
+  std::string distribution;
+  bool without_map = false;
+  return bus::run_program(
+      argc, argv, "ros2", "Shows the robot to ROS 2, and lets ROS 2 drive it.",
+      [&](CommandLine& app) {
+        app.add_option("--ros-domain", domain, "domain of ROS 2")
+            .environment("ROS_DOMAIN_ID")
+            .in_range(0, 231);
+        app.add_option("--ros-interface", options.ros.interface,
+                       "address of the one interface for ROS 2")
+            .ipv4();
+        app.add_option("--cmd-vel", cmd_vel, "type of cmd_vel").one_of({"twist", "stamped"});
+        app.add_option("--role", role, "role in which cmd_vel drives").one_of({"direct", "teleop"});
+        app.add_option("--distribution", distribution,
+                       "a node for `ros2 node list`, and messages as they are there")
+            .one_of({"humble", "iron", "jazzy"});
+        app.add_flag("--read-only", options.reads_only, "take no commands and goals of ROS 2");
+        app.add_flag("--without-map", without_map,
+                     "another program gives the map, and where odom is on it");
+      },
+      [&](const bus::NodeOptions& node, const bus::Stop& stop) {
+        static const std::map<std::string, ros2::Distribution> distributions{
+            {"humble", ros2::Distribution::humble},
+            {"iron", ros2::Distribution::iron},
+            {"jazzy", ros2::Distribution::jazzy}};
+        options.ros.domain = domain;
+        options.stamped = cmd_vel == "stamped";
+        options.teleop = role == "teleop";
+        options.with_map = !without_map;
+        if (!distribution.empty())
+          options.distribution = distributions.at(distribution);
+        return node.dry_run ? static_cast<int>(bus::kExitOk) : serve(node, options, stop);
+      });
+}
