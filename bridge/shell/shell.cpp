@@ -360,6 +360,10 @@ void Shell::perform(const KeepOdometry& keep, double) {
 }
 
 void Shell::perform(const StatusReport& report, double) {
+  if (node_.options().files() == Files::kChange)
+    latch_file_.tend();
+  if (audit_file_)
+    tell_audit(audit_file_->tend(unix_time()));
   v1::ServiceStatus& status = node_.status();
   status.state = to_bus(report.condition.health);
   status.reason = report.condition.reason;
@@ -392,9 +396,13 @@ void Shell::take_audit(double now) {
 }
 
 void Shell::perform(const AuditEntry& entry, double) {
-  const std::string trouble = audit_file_ ? audit_file_->write(entry, unix_time()) : "";
+  if (audit_file_)
+    tell_audit(audit_file_->write(entry, unix_time()));
+}
+
+void Shell::tell_audit(const std::string& trouble) {
   if (trouble != audit_trouble_ && !trouble.empty())
-    node_.error("the audit has a gap: " + trouble);
+    node_.error("the audit cannot be written: " + trouble);
   audit_trouble_ = trouble;
 }
 

@@ -103,6 +103,7 @@ class Shell {
   void perform(const Note& note, double now);
   void perform(const AuditEntry& entry, double now);
   void take_audit(double now);
+  void tell_audit(const std::string& trouble);
   Surroundings surroundings() const;
   bool link_is_open() const { return link_.state() == transport::Link::State::open; }
 

@@ -21,6 +21,7 @@
 
 #include "listener.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/sim/line_check.hpp"
 #include "saphira/sim/simulation.hpp"
@@ -72,7 +73,7 @@ class TraceFile {
       return;
     file_.reset(std::fopen(path.c_str(), "we"));
     if (!file_)
-      throw UnusableFile(cannot_be("trace " + path, "written"));
+      fail_to_be("trace " + path, "written");
   }
   void write(const std::vector<TraceRow>& rows) {
     if (!file_)

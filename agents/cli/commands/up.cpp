@@ -37,7 +37,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr const char* kAreStarted = " started; Ctrl-C stops them";
 constexpr double kStarted = 20.0;                    ///< [s]
 constexpr double kStopped = 20.0;                    ///< [s]
 constexpr const char* kLogVariable = "SAPHIRA_LOG";  ///< of a detached one: its log file
@@ -208,7 +207,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
        const bus::NodeOptions& options, const bus::Stop& stop) {
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
-  const RunFolder folder = folder_of(deployment, options);
+  RunFolder folder = folder_of(deployment, options);
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<std::string> left_out;
@@ -235,6 +234,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   if (const char* const file = std::getenv(kLogVariable))
     log.emplace(file, std::vector{STDOUT_FILENO, STDERR_FILENO}, kLongestLog);
   unsetenv(kLogVariable);
+  out().outlast_full_disk();
   const ServiceManager manager;
   const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);
@@ -245,7 +245,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   const FoundBus found(bus_of(deployment, options));
   const std::string started =
       counted(supervisor.children().size(), "program") + " of " + deployment.file;
-  print({}, started + kAreStarted);
+  print({}, started + " started; Ctrl-C stops them");
   manager.ready(started);
   const auto period = std::min(milliseconds(10000), manager.period().value_or(milliseconds(10000)));
   while (!stop.requested() && !supervisor.finished() && !supervisor.misused()) {
@@ -253,6 +253,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
     if (renew.came())
       supervisor.renew(other_contract);
     manager.alive();
+    folder.tell();
     if (log)
       log->keep_bounded();
   }
@@ -292,6 +293,14 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
   _exit(bus::kExitBroken);
 }
 
+/// True once its programs are started.
+bool is_found(const RunningBus& bus) {
+  const std::vector<RunningBus> all = running_buses();
+  return std::any_of(all.begin(), all.end(), [&](const RunningBus& one) {
+    return one.what == bus.what && one.robot == bus.robot && one.domain == bus.domain;
+  });
+}
+
 /// Starts it in the background, and reports the result of the start.
 int detach(const std::string& name, const std::vector<std::string>& set,
            const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -323,8 +332,7 @@ int detach(const std::string& name, const std::vector<std::string>& set,
       return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
     }
     for (const Running& one : running_deployments())
-      if (one.name == running && one.pid == child &&
-          read_bytes(log).find(kAreStarted) != std::string::npos) {
+      if (one.name == running && one.pid == child && is_found(bus_of(deployment, options))) {
         std::cout << running << " runs (process " << child << "); its output: " << log
                   << "; saphira stop ends it\n";
         return bus::kExitOk;
