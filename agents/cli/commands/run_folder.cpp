@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -106,16 +107,49 @@ std::set<std::string> all_folders() {
   return folders;
 }
 
+/// The locks of this process, and those of the version before it.
+std::set<int>& held() {
+  static std::set<int> all;
+  return all;
+}
+std::set<int>& inherited() {
+  static std::set<int> all;
+  return all;
+}
+
+/// Locks an open file, or takes the descriptor over by which this process holds it already. -1: it
+/// is held by another process.
+int lock_open(int file) {
+  struct stat info {};
+  fstat(file, &info);
+  for (const int kept : inherited()) {
+    struct stat other {};
+    if (fstat(kept, &other) != 0 || other.st_ino != info.st_ino || other.st_dev != info.st_dev)
+      continue;
+    close(file);
+    inherited().erase(kept);
+    held().insert(kept);
+    return kept;
+  }
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) {
+    held().insert(file);
+    return file;
+  }
+  close(file);
+  return -1;
+}
+void unlock(int file) {
+  held().erase(file);
+  close(file);
+}
+
 /// Opens and locks it; -1 when another process holds the lock. std::runtime_error where it cannot
 /// be opened.
 int lock(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file < 0)
     throw std::runtime_error(cannot_be(path, "written") + kElsewhere);
-  if (flock(file, LOCK_EX | LOCK_NB) == 0)
-    return file;
-  close(file);
-  return -1;
+  return lock_open(file);
 }
 
 /// The whole content of a locked file. It takes the place of the former one, which has room on a
@@ -158,7 +192,7 @@ void RunFolder::tell() {
 
 RunFolder::~RunFolder() {
   if (lock_ >= 0) {
-    close(lock_);
+    unlock(lock_);
   } else {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -176,7 +210,7 @@ std::vector<Running> running_deployments() {
       // A free lock means that no process runs it.
       const int file = lock(path);
       if (file >= 0) {
-        close(file);
+        unlock(file);
         continue;
       }
       Running running{entry.path().filename(), 0, {}, 0};
@@ -201,7 +235,9 @@ FoundBus::FoundBus(const RunningBus& bus) {
     path_ = folder + "/buses/" + bus.robot + "-" + std::to_string(bus.domain) + "-" +
             std::to_string(getpid());
     lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (lock_ >= 0 && flock(lock_, LOCK_EX) == 0 && fill(lock_, text))
+    if (lock_ >= 0)
+      lock_ = lock_open(lock_);
+    if (lock_ >= 0 && fill(lock_, text))
       return;
     end();
   }
@@ -215,7 +251,7 @@ void FoundBus::end() {
   if (lock_ < 0)
     return;
   unlink(path_.c_str());
-  close(std::exchange(lock_, -1));
+  unlock(std::exchange(lock_, -1));
 }
 
 std::vector<RunningBus> running_buses() {
@@ -268,13 +304,30 @@ std::vector<std::string> audit_files() {
   return files;
 }
 
+std::string keep_held() {
+  std::string text;
+  for (const int file : held()) {
+    fcntl(file, F_SETFD, 0);
+    text += std::to_string(file) + " ";
+  }
+  return text;
+}
+
+void take_held(const std::string& descriptors) {
+  std::istringstream in(descriptors);
+  for (int file = -1; in >> file;) {
+    fcntl(file, F_SETFD, FD_CLOEXEC);
+    inherited().insert(file);
+  }
+}
+
 std::string log_of(const std::string& name) {
   return own_folder() + "/" + name + ".log";
 }
 
 ProgramLocks::~ProgramLocks() {
   for (const int file : locks_)
-    close(file);
+    unlock(file);
 }
 
 void ProgramLocks::hold(const std::string& program, const std::string& robot, unsigned domain,

@@ -62,6 +62,12 @@ class FoundBus {
   int lock_ = -1;
 };
 
+/// For a new version of this program, which takes the place of this process (exec): keeps what the
+/// objects above hold, so that nobody else takes it meanwhile. Returns the descriptors, in words.
+std::string keep_held();
+/// The objects that are made from now on take over what keep_held() has kept.
+void take_held(const std::string& descriptors);
+
 /// The buses of this machine, newest first: of this user, and of the system's service.
 std::vector<RunningBus> running_buses();
 
