@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/reflector/sweep.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
@@ -106,7 +108,7 @@ class Drive {
  private:
   void reckon();
   void obey(const behaviors::Output& output);
-  double guard(double speed);
+  void guard(reflector::Setpoints& wanted);
   std::vector<Edge> edges() const;
 
   protocol::RobotParameters parameters_;
@@ -122,6 +124,8 @@ class Drive {
   std::optional<Pose> knows_walls_;
   authority::Body body_;
   authority::EchoMap echoes_;
+  authority::Coverage coverage_;
+  reflector::Sweep sweep_;
   authority::Guarded guarded_;
   bool by_hand_ = false;
   double speed_ = 0.0;
