@@ -58,11 +58,10 @@ std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   text.resize(kSize, ' ');
   text.back() = '\n';
   const ssize_t written = open() ? ::pwrite(fd_, text.data(), text.size(), 0) : -1;
-  const std::string why = written == static_cast<ssize_t>(text.size())
-                              ? ""
-                              : path_ + ": " +
-                                    (written < 0 ? std::strerror(errno)
-                                                 : "only a part of it was written");
+  const std::string why =
+      written == static_cast<ssize_t>(text.size())
+          ? ""
+          : path_ + ": " + (written < 0 ? std::strerror(errno) : "only a part of it was written");
   return why == std::exchange(told_, why) ? "" : why;
 }
 

@@ -20,9 +20,9 @@
 #include <utility>
 
 #include "listener.hpp"
-#include "saphira/base/places.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/sim/line_check.hpp"
 #include "saphira/sim/resume.hpp"

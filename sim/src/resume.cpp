@@ -75,9 +75,9 @@ std::string resume(Scene& scene, const std::string& text, const std::string& fil
       const Pose counted = pose_in(words);
       const double charge = words.number("the battery's charge", 0.0, 1.0);
       const auto number = number_in<RobotNumber>(name);
-      expect(number && *number < scene.robots() &&
-                 scene.robot(*number).resume({at, counted, charge}),
-             thing);
+      expect(
+          number && *number < scene.robots() && scene.robot(*number).resume({at, counted, charge}),
+          thing);
     } else if (kind == "person") {
       const double x = words.number("x");
       expect(scene.set_person(name, {x, words.number("y")}), thing);

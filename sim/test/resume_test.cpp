@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/parameters.hpp"
-#include "process.hpp"
 
 namespace saphira::sim {
 namespace {

@@ -112,8 +112,7 @@ int audit(const AuditWords& words) {
   }
   if (words.check)
     std::cout
-        << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries")
-        << ", whole"
+        << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries") << ", whole"
         << (record.vouched_from > 1 ? " from number " + std::to_string(record.vouched_from) + " on"
                                     : "")
         << "; the newest is number " << record.number << ", hash " << record.hash

@@ -47,7 +47,7 @@ constexpr double kStopped = 20.0;                    ///< [s]
 constexpr const char* kLogVariable = "SAPHIRA_LOG";  ///< of a detached one: its log file
 constexpr double kTried = 20.0;                      ///< [s]
 constexpr const char* kHandedVariable = "SAPHIRA_HANDED_OVER";
-constexpr std::int64_t kLongestLog = 8 << 20;        ///< [bytes] of each of two parts
+constexpr std::int64_t kLongestLog = 8 << 20;  ///< [bytes] of each of two parts
 
 /// Prints each line with the child's name before it, in a color of its own on a terminal.
 Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {

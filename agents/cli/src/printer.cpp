@@ -97,9 +97,8 @@ void Printer::run(const std::shared_ptr<Shared>& shared) {
       return;
     std::string text = std::exchange(shared->lines, {});
     if (shared->left_out > 0)
-      text +=
-          "(left out, as nobody read or the disk was full: " + counted(std::exchange(shared->left_out, 0), "message") +
-          ")\n";
+      text += "(left out, as nobody read or the disk was full: " +
+              counted(std::exchange(shared->left_out, 0), "message") + ")\n";
     text += std::exchange(shared->picture, {});
     shared->printing = true;
     lock.unlock();

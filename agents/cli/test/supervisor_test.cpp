@@ -165,7 +165,8 @@ TEST_F(SupervisorTest, HandsItsChildrenOver) {
   const std::string waits =
       "echo one; while [ ! -e " + go_on + " ]; do sleep 0.02; done; echo two; exec sleep 1000";
   // Never destroyed, as its process would have got another program.
-  auto* const before = new Supervisor({shell("a", waits), shell("gone", "exec sleep 1000")}, keep());
+  auto* const before =
+      new Supervisor({shell("a", waits), shell("gone", "exec sleep 1000")}, keep());
   before->start();
   ASSERT_TRUE(run_until(*before, [&] { return said("a|one"); })) << all();
   const pid_t a = before->children()[0].pid;

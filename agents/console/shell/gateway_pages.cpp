@@ -148,7 +148,7 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   page.greeted = page.visitor.may(DoorRight::watch) || may_watch(access_, page.caller);
   page.name = page.visitor.person ? page.visitor.person->name : hello.name;
   if (!hello.key.empty() && !page.visitor.may(DoorRight::watch))
-    audit_.wrong_key("the console", now());
+    audit_.wrong_key("the console", now(), keys_.keys().ended(hello.key, unix_seconds()));
   if (page.greeted && page.channel == Channel::telemetry)
     ++viewers_;
   if (page.visitor.may(DoorRight::drive) && page.channel == Channel::commands)
@@ -175,7 +175,7 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
     page.operator_id = connection;
     name(connection, page, page.name);
     if (page.visitor.person)
-      audit_.write({AuditEntry::Act::let_in, page.name + " at the console",
+      audit_.write({v1::AUDIT_LET_IN, page.name + " at the console",
                     std::string("to ") + security::name_of(page.visitor.right)});
     return;
   }

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr double kRepeats = 10.0;  // [s]
 constexpr std::size_t kRecent = 32;
-constexpr std::size_t kLongest = 500;  // [bytes] of who, and of what
+constexpr std::size_t kLongest = 500;    // [bytes] of who, and of what
 constexpr const char* kEnded = "ended";  // the act of the audit itself
 constexpr off_t kRoom = 1 << 15;         // [bytes]
 
@@ -67,10 +67,11 @@ bool is_there(const std::string& path) {
 
 }  // namespace
 
-const char* name_of(AuditEntry::Act act) {
+const char* name_of(v1::AuditAct act) {
   constexpr std::array names{"drove",   "stopped",  "reset",   "asked",
                              "changed", "canceled", "refused", "let in"};
-  return names[static_cast<std::size_t>(act)];
+  const auto number = static_cast<std::size_t>(act);
+  return number < names.size() ? names[number] : "did something unknown";
 }
 
 AuditFile::AuditFile(std::string path, std::size_t most) : path_(std::move(path)), most_(most) {
@@ -106,9 +107,9 @@ std::string AuditFile::rotate(double time) {
     text.resize(text.size() - (text.ends_with('\n') ? 1 : 0));
     const auto last = entry_of(std::string_view(text).substr(text.rfind('\n') + 1));
     if (last)
-      if (std::string trouble = append(kEnded, "the audit",
-                                       std::to_string(last->number) + " " + std::string(last->hash),
-                                       time);
+      if (std::string trouble =
+              append(kEnded, "the audit",
+                     std::to_string(last->number) + " " + std::string(last->hash), time);
           !trouble.empty())
         return trouble;
   }
@@ -154,7 +155,7 @@ std::string AuditFile::write_waiting(double time) {
     if (std::string trouble = put(waiting_.front().entry, waiting_.front().time); !trouble.empty())
       return trouble;
   if (lost_ > 0) {
-    const AuditEntry gap{AuditEntry::Act::refused, "the audit",
+    const AuditEntry gap{v1::AUDIT_REFUSED, "the audit",
                          std::to_string(lost_) + " later entries had no room on the disk"};
     if (std::string trouble = put(gap, time); !trouble.empty())
       return trouble;
@@ -171,9 +172,9 @@ bool AuditFile::keep_head() {
     // In the place of the former one, which has room on a full disk.
     const int why = errno;
     const int file = open((path_ + ".head").c_str(), O_WRONLY | O_CLOEXEC);
-    const bool written =
-        file >= 0 && pwrite(file, head.data(), head.size(), 0) == std::ssize(head) &&
-        ftruncate(file, std::ssize(head)) == 0;
+    const bool written = file >= 0 &&
+                         pwrite(file, head.data(), head.size(), 0) == std::ssize(head) &&
+                         ftruncate(file, std::ssize(head)) == 0;
     close(file);
     errno = why;
     if (!written)

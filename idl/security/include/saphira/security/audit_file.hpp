@@ -11,7 +11,7 @@
 
 namespace saphira::security {
 
-const char* name_of(AuditEntry::Act act);
+const char* name_of(v1::AuditAct act);
 
 /// The audit of a robot, a line an entry: NUMBER TIME ACT WHO TEXT HASH, with tabs between. The
 /// hash is the SHA-256 of the line before it and of the hash of the entry before. The file PATH
@@ -33,7 +33,8 @@ class AuditFile {
   /// Writes what waits, and keeps room for the next entries. Now and then.
   std::string tend(double time);
 
-  static constexpr std::size_t kMostWaiting = 1000;  ///< entries; the others are counted in an entry
+  static constexpr std::size_t kMostWaiting =
+      1000;  ///< entries; the others are counted in an entry
 
  private:
   std::string rotate(double time);

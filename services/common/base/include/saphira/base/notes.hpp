@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/idl/system.hpp"
+
 namespace saphira {
 
 /// One line of a program's log, from a core: the shell adds time and name.
@@ -17,8 +19,7 @@ struct Note {
 
 /// One entry of the audit (docs/security.md), from who decided it.
 struct AuditEntry {
-  enum class Act { drove, stopped, reset, asked, changed, canceled, refused, let_in };
-  Act act = Act::drove;
+  v1::AuditAct act = v1::AUDIT_DROVE;
   std::string who;   ///< as named() in identity.hpp: the checked identity, and the door
   std::string text;  ///< what was asked, or why it was refused
 
