@@ -402,7 +402,7 @@ void Shell::take_audit(double now) {
               reports_.take(bus::from_bus(sample.data), bus::asker_of(sample.info), now))
         perform(*entry, now);
   for (const std::string& text : node_.take_refused())
-    perform(AuditEntry{v1::AUDIT_REFUSED, "somebody on the bus", text}, now);
+    perform(AuditEntry{AuditEntry::Act::refused, "somebody on the bus", text}, now);
 }
 
 void Shell::perform(const AuditEntry& entry, double) {

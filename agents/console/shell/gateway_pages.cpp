@@ -175,7 +175,7 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
     page.operator_id = connection;
     name(connection, page, page.name);
     if (page.visitor.person)
-      audit_.write({v1::AUDIT_LET_IN, page.name + " at the console",
+      audit_.write({AuditEntry::Act::let_in, page.name + " at the console",
                     std::string("to ") + security::name_of(page.visitor.right)});
     return;
   }

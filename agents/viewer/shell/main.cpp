@@ -35,7 +35,7 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
   };
   options.came = [&](const std::string& key) {
     if (const auto person = visitor_of(key).person)
-      audit.write({v1::AUDIT_LET_IN, person->name + " at the Foxglove door", "to watch"});
+      audit.write({AuditEntry::Act::let_in, person->name + " at the Foxglove door", "to watch"});
   };
   viewer::Live live(node);
   std::optional<viewer::Server> server;

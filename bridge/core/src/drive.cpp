@@ -96,14 +96,14 @@ void Core::writer_lost(Role role, const authority::WriterId& writer, double now)
 std::optional<AuditEntry> Reports::take(AuditEntry entry, const Checked& writer, double now) {
   if (!writer || writer->role == "services" || writer->role == "robot")
     return entry;
-  if (entry.act != v1::AUDIT_LET_IN && entry.act != v1::AUDIT_REFUSED)
+  if (entry.act != AuditEntry::Act::let_in && entry.act != AuditEntry::Act::refused)
     return std::nullopt;
   std::erase_if(minutes_, [&](const auto& one) { return now - one.second.began >= kMinute; });
   const auto [minute, is_first] = minutes_.try_emplace(writer->text(), Minute{now, 0});
   if (minute->second.entries > kMost)
     return std::nullopt;
   if (++minute->second.entries > kMost)
-    return AuditEntry{v1::AUDIT_REFUSED, writer->text(),
+    return AuditEntry{AuditEntry::Act::refused, writer->text(),
                       "more than " + std::to_string(kMost) + " reports a minute"};
   entry.who = named(entry.who, writer);
   return entry;
@@ -119,7 +119,7 @@ Answer Core::stop(const Request& request, double now) {
     stopped += (stopped.empty() ? "" : ", ") + driver;
   stopped = stopped.empty() ? "nobody drove" : "stopped: " + stopped;
   info("stop by " + source + ": " + stopped);
-  put(AuditEntry{v1::AUDIT_STOPPED, source, stopped});
+  put(AuditEntry{AuditEntry::Act::stopped, source, stopped});
   grant_changed_ = true;
   if (!in_session()) {
     grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
@@ -162,8 +162,9 @@ Answer Core::reset_estop(const std::string& source, double now) {
   const std::string why = arbiter_.reset(source, time(now));
   info(why.empty() ? "emergency stop reset by " + source
                    : "emergency stop not reset by " + source + ": " + why);
-  put(why.empty() ? AuditEntry{v1::AUDIT_RESET, source, "the emergency stop"}
-                  : AuditEntry{v1::AUDIT_REFUSED, source, "to reset the emergency stop: " + why});
+  put(why.empty()
+          ? AuditEntry{AuditEntry::Act::reset, source, "the emergency stop"}
+          : AuditEntry{AuditEntry::Act::refused, source, "to reset the emergency stop: " + why});
   return why.empty() ? Answer{} : Answer{AnswerCode::refused, why};
 }
 
@@ -185,7 +186,7 @@ void Core::keep_latches(double now) {
   if (latches == kept_)
     return;
   if (latches.estopped && !kept_.estopped) {
-    put(AuditEntry{v1::AUDIT_STOPPED, latches.estop_source, "the emergency stop"});
+    put(AuditEntry{AuditEntry::Act::stopped, latches.estop_source, "the emergency stop"});
     warn("emergency stop, pressed by " + latches.estop_source +
          ": the robot stands until saphira estop reset" +
          (settings_.keeps_latches ? "" : " (without --state a restart forgets it)"));
@@ -228,7 +229,7 @@ void Core::decide(double now) {
                     ? "nobody drives: " + grant_.reason
                     : grant_.source + " drives (" + authority::name(grant_.role) + ")");
     if (drives(grant_.role))
-      words_.audit({v1::AUDIT_DROVE, grant_.source, authority::name(grant_.role)});
+      words_.audit({AuditEntry::Act::drove, grant_.source, authority::name(grant_.role)});
     refused_drivers_.clear();
   }
   grant_changed_ = grant_changed_ || changed;
@@ -326,7 +327,7 @@ void Core::publish_grant() {
     if (const std::string what = std::string("to drive (") + authority::name(one.role) + ")";
         refused_drivers_.size() < kMostRefusedDrivers &&
         refused_drivers_.insert(one.source + what).second)
-      entries.push_back({v1::AUDIT_REFUSED, one.source, what + ": " + one.reason});
+      entries.push_back({AuditEntry::Act::refused, one.source, what + ": " + one.reason});
   put(GrantDecided{grant_, told_, guarded_, std::move(refused), session_.stamp});
   for (AuditEntry& entry : entries)
     put(std::move(entry));

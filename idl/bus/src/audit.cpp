@@ -4,10 +4,24 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/enum_pairs.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus {
 namespace {
+
+using Act = AuditEntry::Act;
+
+constexpr EnumPairs<Act, v1::AuditAct, 8> kActs{{{
+    {Act::drove, v1::AUDIT_DROVE},
+    {Act::stopped, v1::AUDIT_STOPPED},
+    {Act::reset, v1::AUDIT_RESET},
+    {Act::asked, v1::AUDIT_ASKED},
+    {Act::changed, v1::AUDIT_CHANGED},
+    {Act::canceled, v1::AUDIT_CANCELED},
+    {Act::refused, v1::AUDIT_REFUSED},
+    {Act::let_in, v1::AUDIT_LET_IN},
+}}};
 
 constexpr double kMinute = 60.0;  // [s]
 
@@ -18,14 +32,14 @@ v1::AuditEntry to_bus(const AuditEntry& entry) {
   result.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
                        std::chrono::system_clock::now().time_since_epoch())
                        .count();
-  result.act = entry.act;
+  result.act = kActs.theirs(entry.act);
   result.who = entry.who;
   result.text = entry.text;
   return result;
 }
 
 AuditEntry from_bus(const v1::AuditEntry& entry) {
-  return {entry.act, entry.who, entry.text};
+  return {kActs.ours(entry.act, Act::refused), entry.who, entry.text};
 }
 
 Audit::Audit(Node& node) {
@@ -54,7 +68,7 @@ void Audit::tend(double now) {
     return;
   told_ = now;
   const std::string ended = std::exchange(ended_, {});
-  write({v1::AUDIT_REFUSED, "somebody at " + door_,
+  write({Act::refused, "somebody at " + door_,
          counted(std::exchange(wrong_keys_, 0), "wrong key") +
              (ended.empty() ? "" : ", with that of " + ended + ", which has ended")});
 }

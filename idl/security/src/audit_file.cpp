@@ -67,7 +67,7 @@ bool is_there(const std::string& path) {
 
 }  // namespace
 
-const char* name_of(v1::AuditAct act) {
+const char* name_of(AuditEntry::Act act) {
   constexpr std::array names{"drove",   "stopped",  "reset",   "asked",
                              "changed", "canceled", "refused", "let in"};
   const auto number = static_cast<std::size_t>(act);
@@ -155,7 +155,7 @@ std::string AuditFile::write_waiting(double time) {
     if (std::string trouble = put(waiting_.front().entry, waiting_.front().time); !trouble.empty())
       return trouble;
   if (lost_ > 0) {
-    const AuditEntry gap{v1::AUDIT_REFUSED, "the audit",
+    const AuditEntry gap{AuditEntry::Act::refused, "the audit",
                          std::to_string(lost_) + " later entries had no room on the disk"};
     if (std::string trouble = put(gap, time); !trouble.empty())
       return trouble;

@@ -19,9 +19,9 @@ class AuditFileTest : public testing::Test {
   /// Entries of different texts.
   void write(int count) {
     for (int i = 0; i < count; ++i)
-      EXPECT_EQ(audit->write(
-                    {v1::AUDIT_ASKED, "karen (operator), saphira goal", std::to_string(++number)},
-                    1'800'000'000.0),
+      EXPECT_EQ(audit->write({AuditEntry::Act::asked, "karen (operator), saphira goal",
+                              std::to_string(++number)},
+                             1'800'000'000.0),
                 "");
   }
   void change(const std::string& file, const std::function<std::string(std::string)>& how) const {
@@ -42,7 +42,7 @@ class AuditFileTest : public testing::Test {
 
 TEST_F(AuditFileTest, SaysWhoDidWhatAndWhen) {
   EXPECT_THROW(read_audit(path), UnusableFile);
-  audit->write({v1::AUDIT_STOPPED, "john (observer), the console", "nobody drove"},
+  audit->write({AuditEntry::Act::stopped, "john (observer), the console", "nobody drove"},
                1'800'000'000.0);
   const AuditRecord record = read_audit(path);
   EXPECT_EQ(record.lines, std::vector<std::string>{
@@ -181,7 +181,8 @@ TEST_F(AuditFileTest, WhatAFullDiskDoesNotTakeWaitsAndIsCounted) {
   std::filesystem::rename(path, kept);
   std::filesystem::create_symlink("/dev/full", path);
   for (std::size_t i = 0; i < AuditFile::kMostWaiting + 2; ++i)
-    EXPECT_NE(audit->write({v1::AUDIT_ASKED, "karen (operator)", std::to_string(i)}, 100.0), "");
+    EXPECT_NE(audit->write({AuditEntry::Act::asked, "karen (operator)", std::to_string(i)}, 100.0),
+              "");
   EXPECT_NE(audit->tend(100.0), "");
   std::filesystem::rename(kept, path);
   EXPECT_EQ(audit->tend(200.0), "");
@@ -223,14 +224,15 @@ TEST_F(AuditFileTest, APowerCutLeavesAWholeChain) {
 }
 
 TEST_F(AuditFileTest, ARepetitionWithinTenSecondsIsLeftOut) {
-  const AuditEntry entry{v1::AUDIT_DROVE, "karen (operator), saphira drive", ""};
+  const AuditEntry entry{AuditEntry::Act::drove, "karen (operator), saphira drive", ""};
   for (const double time : {100.0, 101.0, 109.9, 110.0})
     audit->write(entry, time);
   EXPECT_EQ(read_audit(path).lines.size(), 2U);
 }
 
 TEST_F(AuditFileTest, ATextOfSomebodyElseIsNoSecondEntry) {
-  audit->write({v1::AUDIT_ASKED, "a\tb\n2\t", "\x1b[2J" + std::string(2000, 'x')}, 1'800'000'000.0);
+  audit->write({AuditEntry::Act::asked, "a\tb\n2\t", "\x1b[2J" + std::string(2000, 'x')},
+               1'800'000'000.0);
   const AuditRecord record = read_audit(path);
   ASSERT_EQ(record.lines.size(), 1U);
   EXPECT_EQ(record.lines[0].find('\x1b'), std::string::npos);

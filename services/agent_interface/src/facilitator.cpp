@@ -274,7 +274,7 @@ bool Facilitator::may_change(const Id& trigger, const Checked& who) {
 
 void Facilitator::deny(const std::string& who, const std::string& what) {
   out_.warnings.push_back(who + " is refused " + what + "; who asked for it may, or an operator");
-  out_.audit.push_back({v1::AUDIT_REFUSED, who, what});
+  out_.audit.push_back({AuditEntry::Act::refused, who, what});
 }
 
 void Facilitator::list_triggers(const Request& request) {
@@ -494,7 +494,7 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   const bool acts = begun(id) || (can != nullptr && can->acts);
   open.asked.push_back({agent, acts, now + kAgain});
   if (acts && !open.acts)
-    out_.audit.push_back({v1::AUDIT_ASKED, open.request.source, describe(open.request)});
+    out_.audit.push_back({AuditEntry::Act::asked, open.request.source, describe(open.request)});
   open.acts = open.acts || acts;
   // Requests of triggers and for parts are of one run of this program. So its agent does not know
   // the action of a conjunction again after a restart: agent 0, which is none, was asked.

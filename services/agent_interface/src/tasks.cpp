@@ -97,7 +97,7 @@ Tasks::Outputs Tasks::left(const ProgramId& program) {
 Tasks::Outputs Tasks::deny(const Task& task, const Utterance& utterance) const {
   Outputs out;
   const std::string ends = named_task(task, utterance.speaker);
-  out.denied = {v1::AUDIT_REFUSED,
+  out.denied = {AuditEntry::Act::refused,
                 named(named_person(utterance.speaker) + " (by words)", utterance.person),
                 "to end " + ends + ": " + quoted(utterance.text)};
   out.said.push_back({utterance.id, utterance.speaker,

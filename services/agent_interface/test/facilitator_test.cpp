@@ -899,14 +899,14 @@ TEST_F(Facilitation, ARequestIsWithdrawnByItsAskerAndByOperators) {
   const auto asked = ask(request);
   EXPECT_EQ(asked.requests.at(0).person, request.person);
   ASSERT_EQ(asked.audit.size(), 1U);
-  EXPECT_EQ(asked.audit[0].act, v1::AUDIT_ASKED);
+  EXPECT_EQ(asked.audit[0].act, AuditEntry::Act::asked);
   Request other = withdrawal(5);
   other.person = Identity{"planner", "agent"};
   const auto refused = ask(other);
   EXPECT_TRUE(refused.requests.empty() && refused.solved.empty());
   EXPECT_EQ(refused.warnings.size(), 1U);
   ASSERT_EQ(refused.audit.size(), 1U);
-  EXPECT_EQ(refused.audit[0].act, v1::AUDIT_REFUSED);
+  EXPECT_EQ(refused.audit[0].act, AuditEntry::Act::refused);
   other.person = Identity{"karen", "operator"};
   EXPECT_EQ(ask(other).requests.at(0).functor, kWithdraw);
 }

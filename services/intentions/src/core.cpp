@@ -344,7 +344,7 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
   const std::string who = named(event.goal.requester, goal.person);
   event.goal.requester = who;
-  const auto note = [&](v1::AuditAct act, const std::string& text) {
+  const auto note = [&](AuditEntry::Act act, const std::string& text) {
     if (!is_old)
       notes.audit({act, who, "goal " + describe(id) + (text.empty() ? "" : ", " + text)});
   };
@@ -352,7 +352,7 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
   if (found == owners_.end()) {
     if (writes) {
       owners_[id] = {goal.person, event.goal};
-      note(v1::AUDIT_ASKED, describe(Request{event.goal.functor, event.goal.arguments}));
+      note(AuditEntry::Act::asked, describe(Request{event.goal.functor, event.goal.arguments}));
     }
     return true;
   }
@@ -367,7 +367,7 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
                             " it; its owner may, or an operator";
     if (!std::exchange(owner.told, true)) {
       notes.warn(why);
-      note(v1::AUDIT_REFUSED, std::string("to ") + (writes ? "change" : "cancel") + " it");
+      note(AuditEntry::Act::refused, std::string("to ") + (writes ? "change" : "cancel") + " it");
     }
     return false;
   }
@@ -376,9 +376,9 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
     event.goal.requester = owner.goal.requester;
   }
   if (!writes)
-    note(v1::AUDIT_CANCELED, event.why);
+    note(AuditEntry::Act::canceled, event.why);
   else if (event.goal != owner.goal)
-    note(v1::AUDIT_CHANGED, describe(Request{event.goal.functor, event.goal.arguments}));
+    note(AuditEntry::Act::changed, describe(Request{event.goal.functor, event.goal.arguments}));
   if (writes)
     owner.goal = event.goal;
   return true;

@@ -75,7 +75,7 @@ void Desk::handle(const Counter& counter, Request request) {
   const bool is_own =
       request.person && (request.person->role == "services" || request.person->role == "robot");
   if (audit_ && !is_own)
-    audit_->write({refuses ? v1::AUDIT_REFUSED : v1::AUDIT_ASKED, request.source,
+    audit_->write({refuses ? AuditEntry::Act::refused : AuditEntry::Act::asked, request.source,
                    describe(request) + (refuses ? ": " + done->text : "")});
   if (refuses) {
     ++refused_;

@@ -11,7 +11,7 @@
 
 namespace saphira::security {
 
-const char* name_of(v1::AuditAct act);
+const char* name_of(AuditEntry::Act act);
 
 /// The audit of a robot, a line an entry: NUMBER TIME ACT WHO TEXT HASH, with tabs between. The
 /// hash is the SHA-256 of the line before it and of the hash of the entry before. The file PATH

@@ -4,8 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "saphira/idl/system.hpp"
-
 namespace saphira {
 
 /// One line of a program's log, from a core: the shell adds time and name.
@@ -19,7 +17,8 @@ struct Note {
 
 /// One entry of the audit (docs/security.md), from who decided it.
 struct AuditEntry {
-  v1::AuditAct act = v1::AUDIT_DROVE;
+  enum class Act { drove, stopped, reset, asked, changed, canceled, refused, let_in };
+  Act act = Act::drove;
   std::string who;   ///< as named() in identity.hpp: the checked identity, and the door
   std::string text;  ///< what was asked, or why it was refused
 
