@@ -18,13 +18,13 @@ namespace {
 
 // [bytes]
 constexpr std::size_t kRtpsHeader = 20;
-constexpr std::size_t kHeader = 4;  // of a submessage
+constexpr std::size_t kSubmessageHeader = 4;
 constexpr std::size_t kTime = 8;
 constexpr std::size_t kMark = 4;
 constexpr std::size_t kCode = 16;
 constexpr std::size_t kKeyBytes = 32;
 // A submessage that the standard leaves to vendors.
-constexpr std::uint8_t kSeal = 0x9f;
+constexpr std::uint8_t kSealKind = 0x9f;
 constexpr std::uint8_t kLittleEndian = 1;
 
 using Code = std::array<std::uint8_t, EVP_MAX_MD_SIZE>;
@@ -41,7 +41,7 @@ std::string mark_of(const std::string& key) {
 }
 
 std::size_t size_of(std::size_t keys) {
-  return kHeader + kTime + keys * (kMark + kCode);
+  return kSubmessageHeader + kTime + keys * (kMark + kCode);
 }
 
 }  // namespace
@@ -49,8 +49,8 @@ std::size_t size_of(std::size_t keys) {
 void Seal::close(std::vector<std::uint8_t>& message, std::int64_t time) const {
   if (keys_.empty())
     return;
-  const std::size_t body = size_of(keys_.size()) - kHeader;
-  message.insert(message.end(), {kSeal, kLittleEndian, static_cast<std::uint8_t>(body), 0});
+  const std::size_t body = size_of(keys_.size()) - kSubmessageHeader;
+  message.insert(message.end(), {kSealKind, kLittleEndian, static_cast<std::uint8_t>(body), 0});
   for (std::size_t i = 0; i < kTime; ++i)
     message.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(time) >> 8U * i));
   const std::size_t covered = message.size();
@@ -68,10 +68,11 @@ Seal::Opened Seal::open(const std::uint8_t* message, std::size_t size) const {
     if (size < kRtpsHeader + length)
       break;
     const std::uint8_t* const seal = message + size - length;
-    if (seal[0] != kSeal || seal[1] != kLittleEndian || seal[2] != length - kHeader || seal[3] != 0)
+    if (seal[0] != kSealKind || seal[1] != kLittleEndian || seal[2] != length - kSubmessageHeader ||
+        seal[3] != 0)
       continue;
     Opened opened{size - length, std::nullopt};
-    const std::uint8_t* part = seal + kHeader + kTime;
+    const std::uint8_t* part = seal + kSubmessageHeader + kTime;
     const auto covered = static_cast<std::size_t>(part - message);
     for (; part != message + size; part += kMark + kCode)
       for (const std::string& key : keys_) {
@@ -84,7 +85,7 @@ Seal::Opened Seal::open(const std::uint8_t* message, std::size_t size) const {
           continue;
         std::uint64_t time = 0;
         for (std::size_t i = 0; i < kTime; ++i)
-          time |= std::uint64_t{seal[kHeader + i]} << 8U * i;
+          time |= std::uint64_t{seal[kSubmessageHeader + i]} << 8U * i;
         opened.sealed = static_cast<std::int64_t>(time);
         return opened;
       }
@@ -98,7 +99,7 @@ std::string new_site_key() {
 }
 
 std::string site_keys_text(const std::vector<std::string>& keys) {
-  return joined(keys, "\n") + "\n";
+  return saphira::joined(keys, "\n") + "\n";
 }
 
 std::vector<std::string> parse_site_keys(const std::string& text) {
