@@ -1,6 +1,10 @@
 #include "latch_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -8,8 +12,15 @@
 #include <system_error>
 
 #include "saphira/base/durable.hpp"
+#include "saphira/base/full_disk.hpp"
 
 namespace saphira::bridge {
+namespace {
+
+constexpr const char* kRoomFile = ".room";
+constexpr std::size_t kRoom = 1024;  // [bytes] more than any latches
+
+}  // namespace
 
 authority::Latches LatchFile::read() const {
   std::error_code error;
@@ -22,16 +33,46 @@ authority::Latches LatchFile::read() const {
   return authority::latches_from_text(whole ? line + "\n" : "?");
 }
 
-std::string LatchFile::write(const authority::Latches& latches) const {
+std::string LatchFile::write(const authority::Latches& latches) {
   if (path_.empty())
     return {};
-  const std::string text = authority::to_text(latches);
+  unkept_ = authority::to_text(latches);
+  if (!keep(*unkept_))
+    return path_ + ": " + std::strerror(errno);
+  unkept_.reset();
+  return {};
+}
+
+void LatchFile::tend() {
+  if (path_.empty())
+    return;
+  if (unkept_ && keep(*unkept_))
+    unkept_.reset();
   std::error_code error;
-  if (text.empty()) {
-    std::filesystem::remove(path_, error);
-    return error ? path_ + ": " + error.message() : "";
-  }
-  return replace_file(path_, text) ? "" : path_ + ": " + std::strerror(errno);
+  if (!std::filesystem::exists(path_ + kRoomFile, error))
+    replace_file(path_ + kRoomFile, std::string(kRoom, ' '));
+}
+
+bool LatchFile::keep(const std::string& text) const {
+  if (text.empty())
+    return std::remove(path_.c_str()) == 0 || errno == ENOENT;
+  if (replace_file(path_, text))
+    return true;
+  const int why = errno;
+  const bool kept = is_full(why) && (fill(path_ + kRoomFile, text) || fill(path_, text));
+  errno = why;
+  return kept;
+}
+
+bool LatchFile::fill(const std::string& file, const std::string& text) const {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (fd < 0)
+    return false;
+  const bool written =
+      ::pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
+      ::ftruncate(fd, static_cast<off_t>(text.size())) == 0;
+  ::close(fd);
+  return written && (file == path_ || std::rename(file.c_str(), path_.c_str()) == 0);
 }
 
 }  // namespace saphira::bridge

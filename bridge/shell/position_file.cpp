@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "saphira/base/full_disk.hpp"
+
 namespace saphira::bridge {
 namespace {
 
@@ -16,7 +18,8 @@ constexpr std::size_t kSize = 256;
 
 }  // namespace
 
-PositionFile::PositionFile(std::string path, Files files) : path_(std::move(path)) {
+PositionFile::PositionFile(std::string path, Files files)
+    : path_(std::move(path)), changes_(!path_.empty() && files == Files::kChange) {
   if (path_.empty())
     return;
   trouble_ = read_or_set_aside(
@@ -30,24 +33,23 @@ PositionFile::PositionFile(std::string path, Files files) : path_(std::move(path
           throw std::runtime_error("it holds no position of the robot");
       },
       files);
-  if (files == Files::kStay)
-    return;
-  fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd_ < 0)
+  if (changes_ && !open() && !is_full(errno))
     throw std::invalid_argument("--state " + path_ + ": " + std::strerror(errno));
 }
 
 PositionFile::~PositionFile() {
-  close();
+  if (fd_ >= 0)
+    ::close(fd_);
 }
 
-void PositionFile::close() {
-  if (fd_ >= 0)
-    ::close(std::exchange(fd_, -1));
+bool PositionFile::open() {
+  if (fd_ < 0)
+    fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  return fd_ >= 0;
 }
 
 std::string PositionFile::write(const reflector::OdometryMemory& memory) {
-  if (fd_ < 0)
+  if (!changes_)
     return {};
   // One write of one size: a kill leaves the old line or the new one.
   std::string text = reflector::to_text(memory);
@@ -55,13 +57,12 @@ std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   text = sealed_line(text);
   text.resize(kSize, ' ');
   text.back() = '\n';
-  const ssize_t written = ::pwrite(fd_, text.data(), text.size(), 0);
-  if (written == static_cast<ssize_t>(text.size()))
-    return {};
-  std::string why =
-      path_ + ": " + (written < 0 ? std::strerror(errno) : "only a part of it was written");
-  close();
-  return why;
+  const ssize_t written = open() ? ::pwrite(fd_, text.data(), text.size(), 0) : -1;
+  const std::string why =
+      written == static_cast<ssize_t>(text.size())
+          ? ""
+          : path_ + ": " + (written < 0 ? std::strerror(errno) : "only a part of it was written");
+  return why == std::exchange(told_, why) ? "" : why;
 }
 
 }  // namespace saphira::bridge

@@ -11,8 +11,8 @@ namespace saphira::bridge {
 /// The file that keeps the odom frame over a restart of the bridge (--state).
 class PositionFile {
  public:
-  /// An empty path: nothing is saved. std::invalid_argument where it cannot be opened, or is
-  /// another file.
+  /// An empty path: nothing is saved. std::invalid_argument where it is another file, or cannot be
+  /// opened for another reason than a full disk.
   explicit PositionFile(std::string path, Files files = Files::kChange);
   ~PositionFile();
   PositionFile(const PositionFile&) = delete;
@@ -22,16 +22,17 @@ class PositionFile {
   const std::optional<reflector::OdometryMemory>& found() const { return found_; }
   /// Its damage, and the consequence; empty: none.
   const std::string& trouble() const { return trouble_; }
-  /// The reason why it could not be saved, in words; empty where it was. After a failure it stops
-  /// saving.
+  /// The reason why it could not be saved, in words; empty where it was, and where that was said.
   std::string write(const reflector::OdometryMemory& memory);
 
  private:
-  void close();
+  bool open();
 
   std::string path_;
+  bool changes_;
   std::optional<reflector::OdometryMemory> found_;
   std::string trouble_;
+  std::string told_;
   int fd_ = -1;
 };
 

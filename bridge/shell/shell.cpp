@@ -25,6 +25,7 @@ using authority::Role;
 
 constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
+constexpr double kTend = 1.0;          // [s]
 constexpr double kMostContact = 0.15;  // [m/s] that a robot may touch with
 
 // [s] from the start to the first contact with the robot. By then programs that may stop the robot,
@@ -359,7 +360,19 @@ void Shell::perform(const KeepOdometry& keep, double) {
     node_.error(trouble);
 }
 
-void Shell::perform(const StatusReport& report, double) {
+/// Keeps what a full disk has not taken.
+void Shell::tend_files(double now) {
+  if (now - tended_ < kTend)
+    return;
+  tended_ = now;
+  if (node_.options().files() == Files::kChange)
+    latch_file_.tend();
+  if (audit_file_)
+    tell_audit(audit_file_->tend(unix_time()));
+}
+
+void Shell::perform(const StatusReport& report, double now) {
+  tend_files(now);
   v1::ServiceStatus& status = node_.status();
   status.state = to_bus(report.condition.health);
   status.reason = report.condition.reason;
@@ -385,16 +398,21 @@ void Shell::take_audit(double now) {
   // The bus repeats older entries to a new reader: they were taken before a restart.
   for (const auto& sample : audit_reader_.take())
     if (!sample.info.disposed && sample.info.age <= now - begun_)
-      if (const auto entry = reported(bus::from_bus(sample.data), bus::asker_of(sample.info)))
+      if (const auto entry =
+              reports_.take(bus::from_bus(sample.data), bus::asker_of(sample.info), now))
         perform(*entry, now);
   for (const std::string& text : node_.take_refused())
     perform(AuditEntry{AuditEntry::Act::refused, "somebody on the bus", text}, now);
 }
 
 void Shell::perform(const AuditEntry& entry, double) {
-  const std::string trouble = audit_file_ ? audit_file_->write(entry, unix_time()) : "";
+  if (audit_file_)
+    tell_audit(audit_file_->write(entry, unix_time()));
+}
+
+void Shell::tell_audit(const std::string& trouble) {
   if (trouble != audit_trouble_ && !trouble.empty())
-    node_.error("the audit has a gap: " + trouble);
+    node_.error("the audit cannot be written: " + trouble);
   audit_trouble_ = trouble;
 }
 

@@ -103,6 +103,8 @@ class Shell {
   void perform(const Note& note, double now);
   void perform(const AuditEntry& entry, double now);
   void take_audit(double now);
+  void tell_audit(const std::string& trouble);
+  void tend_files(double now);
   Surroundings surroundings() const;
   bool link_is_open() const { return link_.state() == transport::Link::State::open; }
 
@@ -135,12 +137,14 @@ class Shell {
   bus::Reader<v1::AuditEntry> audit_reader_ = node_.reader(bus::topics::kAudit);
   std::optional<security::AuditFile> audit_file_;
   std::string audit_trouble_;
+  Reports reports_;
 
   v1::RobotState newest_state_;
   v1::Stamp recalled_;  ///< of the newest state in recall
   std::vector<std::uint8_t> input_;
   double last_beat_ = 0.0;  ///< [s] of the keeper
   double begun_ = 0.0;      ///< [s]
+  double tended_ = 0.0;     ///< [s]
 };
 
 }  // namespace saphira::bridge

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "process.hpp"
+#include "small_disk.hpp"
 
 namespace saphira::bridge {
 namespace {
@@ -66,6 +67,29 @@ TEST(LatchFile, SaysWhereItCannotBeWritten) {
   EXPECT_EQ(LatchFile("").write({true, "a button", Wait::none}), "");
   const std::string trouble = LatchFile("/nowhere/at/all").write({true, "a button", Wait::none});
   EXPECT_NE(trouble.find("/nowhere/at/all: No such file"), std::string::npos) << trouble;
+}
+
+TEST(LatchFile, AFullDiskKeepsAnEmergencyStop) {
+  const test::TempDir folder;
+  const test::SmallDisk disk(folder.path());
+  if (!disk.works())
+    GTEST_SKIP() << "no disk can be made here";
+  const Latches latches{true, "a button", Wait::driven};
+  LatchFile file(disk.path("latched"));
+  file.tend();
+  disk.fill();
+  EXPECT_EQ(file.write(latches), "") << "its room was kept";
+  EXPECT_EQ(LatchFile(disk.path("latched")).read(), latches);
+  const Latches other{true, "another button", Wait::none};
+  EXPECT_EQ(file.write(other), "") << "in its place";
+  EXPECT_EQ(LatchFile(disk.path("latched")).read(), other);
+  EXPECT_EQ(file.write({}), "");
+  EXPECT_EQ(LatchFile(disk.path("latched")).read(), Latches{});
+  disk.fill();
+  EXPECT_NE(file.write(latches), "") << "there is no room";
+  disk.make_room();
+  file.tend();
+  EXPECT_EQ(LatchFile(disk.path("latched")).read(), latches);
 }
 
 }  // namespace

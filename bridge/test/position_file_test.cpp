@@ -9,6 +9,7 @@
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "small_disk.hpp"
 #include "trouble.hpp"
 
 namespace saphira::bridge {
@@ -91,6 +92,20 @@ TEST(PositionFile, SaysOnceWhyNothingCanBeKept) {
   PositionFile file("/dev/full");
   EXPECT_EQ(file.write({}), "/dev/full: No space left on device");
   EXPECT_EQ(file.write({}), "");
+}
+
+TEST(PositionFile, BeginsWhenAFullDiskHasRoom) {
+  const test::TempDir folder;
+  const test::SmallDisk disk(folder.path());
+  if (!disk.works())
+    GTEST_SKIP() << "no disk can be made here";
+  disk.fill();
+  PositionFile file(disk.path("state"));
+  EXPECT_NE(file.write({}), "");
+  EXPECT_EQ(file.write({}), "") << "said already";
+  disk.make_room();
+  EXPECT_EQ(file.write({}), "");
+  EXPECT_TRUE(PositionFile(disk.path("state")).found());
 }
 
 }  // namespace

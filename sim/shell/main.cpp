@@ -124,6 +124,9 @@ int main(int argc, char** argv) {
   app.add_option(
       "--view-socket", options.view_socket,
       "Local socket of the simulator's own view: what is true, and what people do to it");
+  app.add_option("--state", options.state,
+                 "File for the places of all that moves: a simulator that is ended, and started "
+                 "again with it, goes on there");
   app.add_option("--position", positions,
                  "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's; again "
                  "for each further robot")

@@ -20,9 +20,12 @@
 #include <utility>
 
 #include "listener.hpp"
+#include "saphira/base/durable.hpp"
+#include "saphira/base/full_disk.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/sim/line_check.hpp"
+#include "saphira/sim/resume.hpp"
 #include "saphira/sim/simulation.hpp"
 #include "saphira/sim/view.hpp"
 #include "stereo_feed.hpp"
@@ -72,7 +75,7 @@ class TraceFile {
       return;
     file_.reset(std::fopen(path.c_str(), "we"));
     if (!file_)
-      throw UnusableFile(cannot_be("trace " + path, "written"));
+      fail_to_be("trace " + path, "written");
   }
   void write(const std::vector<TraceRow>& rows) {
     if (!file_)
@@ -688,10 +691,19 @@ void Host::Parts::add_robots(const HostOptions& options) {
   }
 }
 
+namespace {
+
+std::string world_of(const HostOptions& options) {
+  return options.world + "+" + options.things + "+" + options.robot;
+}
+
+}  // namespace
+
 Host::Host(const HostOptions& options) : options_(options) {
   if (options_.view_socket)
     view_ = std::make_unique<ViewFeed>(*options_.view_socket);
   parts_ = std::make_unique<Parts>(options_, view_.get());
+  take_state();
 }
 Host::~Host() = default;
 
@@ -733,6 +745,28 @@ void Host::change(const std::string& world, const std::string& robot) {
 
 void Host::end() {
   parts_->serving->end();
+  if (options_.state.empty())
+    return;
+  const std::string text = places_text(parts_->simulation.scene(), world_of(options_));
+  if (!replace_file(options_.state, sealed(text)) && options_.log)
+    options_.log("error", cannot_be(options_.state, "written"));
+}
+
+void Host::take_state() {
+  const std::string& file = options_.state;
+  if (file.empty())
+    return;
+  const std::string damaged = read_or_set_aside(file, [&](const std::string& content) {
+    const std::string without_place = resume(
+        parts_->simulation.scene(), std::string(unsealed(content, file)), file, world_of(options_));
+    if (!without_place.empty() && options_.log)
+      options_.log("warning", file + ": these begin at their start: " + without_place);
+  });
+  if (!damaged.empty() && options_.log)
+    options_.log("warning", damaged);
+  // It is of one end: a simulator that is killed begins anew.
+  std::error_code none;
+  std::filesystem::remove(file, none);
 }
 
 void check(const HostOptions& options) {

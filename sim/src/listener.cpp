@@ -16,6 +16,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::sim {
@@ -85,7 +86,7 @@ Listener Listener::local(const std::string& path) {
   out.fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!out.fd_ || ::bind(out.fd_.get(), where, sizeof address) != 0 ||
       ::listen(out.fd_.get(), 8) != 0)
-    throw UnusableFile(cannot_be("socket " + path, "made"));
+    fail_to_be("socket " + path, "made");
   out.path_ = path;
   if (::stat(path.c_str(), &there) == 0)
     out.inode_ = there.st_ino;
@@ -137,7 +138,7 @@ Terminal::Terminal(std::string link) : link_(std::move(link)) {
     ::unlink(link_.c_str());
   }
   if (::symlink(device_.c_str(), link_.c_str()) != 0)
-    throw UnusableFile(cannot_be("terminal " + link_, "made"));
+    fail_to_be("terminal " + link_, "made");
 }
 
 Terminal::~Terminal() {

@@ -189,6 +189,14 @@ bool Robot::place(const Pose& pose_in_world) {
   return true;
 }
 
+bool Robot::resume(const Memory& memory) {
+  if (!place(memory.pose_in_world))
+    return false;
+  pose_in_odom_ = memory.pose_in_odom;
+  charge_ = std::clamp(memory.charge, 0.0, 1.0);
+  return true;
+}
+
 double Robot::wheel_share(double turn) const {
   return turn / rotation_per_difference_;
 }

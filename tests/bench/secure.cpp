@@ -1,6 +1,5 @@
 // The cost of security: the round trip over a secured bus compared with an open one, and the CPU
-// time of the secured demo while its robot stands. And its worth: members that forge their
-// permissions, and a flood of announcements.
+// time of the secured demo while its robot stands. And its worth: what intruders get.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -8,17 +7,16 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bench.hpp"
-#include "forged.hpp"
+#include "intruders.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
@@ -122,62 +120,56 @@ security::Authority site_in(const std::string& folder) {
   return security::Authority::make(folder, "bench", read_file(roles), roles, now());
 }
 
-/// The topics on which altered programs with forged permissions are heard by the bridge, or hear
-/// others: of an observer, and of an operator of another robot.
-std::size_t member_escapes(security::Authority& site, const std::string& folder) {
-  const std::string bridges = site.add("escapes", {"bridge"}, "", 1, now());
-  bus::NodeOptions options = options_of("bridge", bridges);
-  bus::Node bridge(options);
-  std::vector<std::function<void()>> turns;
-  std::set<std::string> escapes;
-  bus::for_each_topic([&]<class T>(const bus::Topic<T>& topic) {
-    if (site.roles().may_write("bridge", topic.name))
-      turns.push_back([writer = std::make_shared<bus::Writer<T>>(bridge.writer(topic))] {
-        writer->write(T());
-      });
-    else if (site.roles().may_read("bridge", topic.name))  // nobody else is there to write it
-      turns.push_back(
-          [&escapes, reader = std::make_shared<bus::Reader<T>>(bridge.reader(topic)), topic] {
-            if (!reader->take().empty())
-              escapes.insert(topic.name);
-          });
-  });
-  for (const auto& [role, robot] : {std::pair("observer", ""), std::pair("operator", "other")}) {
-    const std::string name = std::string("liar-") + role;
-    const std::string forged = folder + "/" + name;
-    std::filesystem::copy(site.add(name, {role}, robot, 1, now()), forged,
-                          std::filesystem::copy_options::recursive);
-    security::test::forge(forged, {{name, 1, role, "bench"}, "", now() - 60, now() + 3600},
-                          site.roles(), security::test::pair_of(forged, role));
-    test::Process liar({"saphira-bus-altered", "--name", name}, folder + "/said",
-                       {{"SAPHIRA_DOMAIN", std::to_string(kDomain)},
-                        {"SAPHIRA_ROBOT", options.robot},
-                        {"SAPHIRA_SECURITY", forged}});
-    for (const auto end = Clock::now() + std::chrono::seconds(5); Clock::now() < end;) {
-      for (const auto& turn : turns)
-        turn();
-      bridge.wait(milliseconds(50));
-    }
-    if (!liar.running())
-      throw std::runtime_error("the altered program has ended: " + liar.output());
-    if (liar.output().find("hears ") != std::string::npos)
-      escapes.insert(liar.output());
-  }
-  return escapes.size();
-}
-
-/// 10,000 forged announcements within 10 s, then a member who joins.
+/// 10,000 forged announcements within 10 s, and then a member who joins. `programs`: so many that
+/// repeat themselves, and go on to while it joins.
 nlohmann::json flood(const std::string& self, const std::string& credentials,
-                     const std::string& folder) {
+                     const std::string& folder, int programs = 0) {
   test::Process victim({self, "--echo", credentials}, folder + "/victim");
   test::Strangers strangers(kDomain);
-  strangers.announce(10000, 1000);
+  strangers.announce(10000, 1000, programs);
+  const std::jthread go_on([&](const std::stop_token& stop) {
+    while (programs > 0 && !stop.stop_requested())
+      strangers.announce(programs, 1000, programs);
+  });
   const auto began = Clock::now();
   const RoundTrip joiner(credentials);
   const double joined = std::chrono::duration<double>(Clock::now() - began).count();
   return {{"aborts", victim.running() ? 0 : 1},
           {"joined_s", joined},
           {"flooded_mb", bench::resident_mb(victim.pid())}};
+}
+
+nlohmann::json to_json(const bench::Intrusion& one) {
+  return {{"who", one.who},       {"got", one.got},   {"named", one.named},
+          {"cycles", one.cycles}, {"late", one.late}, {"aborted", one.aborted}};
+}
+
+/// All intruders; `result` gets the sums.
+void attack(security::Authority& site, const std::string& self, const std::string& credentials,
+            const std::string& folder, nlohmann::json& result) {
+  std::size_t escapes = 0;
+  int aborts = 0;
+  for (const bench::Intrusion& one : bench::intrude(site, folder, self, kDomain, now())) {
+    result["intruders"].push_back(to_json(one));
+    escapes += one.got.size();
+    aborts += one.aborted ? 1 : 0;
+    std::printf("%-36s got %s; %zu of %zu cycles late; %s\n", one.who.c_str(),
+                one.got.empty() ? "nothing" : joined(one.got).c_str(), one.late, one.cycles,
+                one.named.empty() ? "not named" : one.named.c_str());
+    std::fflush(stdout);
+  }
+  result["member_escapes"] = escapes;
+  const nlohmann::json once = flood(self, credentials, folder);
+  const nlohmann::json repeated = flood(self, credentials, folder, 300);
+  result["aborts"] = aborts + once["aborts"].get<int>() + repeated["aborts"].get<int>();
+  result["joined_s"] = once["joined_s"];
+  result["joined_while_repeated_s"] = repeated["joined_s"];
+  result["flooded_mb"] = once["flooded_mb"];
+  std::printf(
+      "10,000 forged announcements: a member joined in %.2f s, %.0f MB; while 300 are repeated: in "
+      "%.2f s; %d programs ended\n",
+      once["joined_s"].get<double>(), once["flooded_mb"].get<double>(),
+      repeated["joined_s"].get<double>(), result["aborts"].get<int>());
 }
 
 double idle_cpu_percent(const std::string& security, unsigned seconds) {
@@ -207,17 +199,21 @@ int main(int argc, char** argv) {
   bool json = false;
   int pings = 500;
   unsigned seconds = 20;
-  bool attack = true;
+  bool attacked = true;
   std::string answering;
+  std::string guarded;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--pings", pings, "round trips on each bus").in_range(10, 100000);
   app.add_option("--seconds", seconds, "how long to watch the idle demo; 0: not").in_range(0, 3600);
-  app.add_flag("!--no-attack", attack, "without forged permissions and the flood");
+  app.add_flag("!--no-attack", attacked, "without intruders");
   app.add_option("--echo", answering, "be the other process").hidden();
+  app.add_option("--watched", guarded, "be the bridge that is attacked").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
   if (!answering.empty())
     echo(answering);
+  if (!guarded.empty())
+    return bench::watched(guarded, kDomain);
 
   const test::TempDir folder;
   security::Authority site = site_in(folder.path("site"));
@@ -246,14 +242,8 @@ int main(int argc, char** argv) {
               {"ratio_p50", secured.quantile(0.5) / open.quantile(0.5)}};
     std::printf("ratio    p50 %6.2f\n", secured.quantile(0.5) / open.quantile(0.5));
   }
-  if (attack) {
-    result["member_escapes"] = member_escapes(site, folder.path());
-    result.update(flood(self, credentials, folder.path()));
-    std::printf(
-        "forged permissions: %zu topics written or read\n"
-        "10,000 forged announcements: %d programs ended, a member joined in %.2f s, %.0f MB\n",
-        result["member_escapes"].get<std::size_t>(), result["aborts"].get<int>(),
-        result["joined_s"].get<double>(), result["flooded_mb"].get<double>());
+  if (attacked) {
+    attack(site, self, credentials, folder.path(), result);
   }
   if (seconds > 0) {
     const double idle = idle_cpu_percent(credentials, seconds);
@@ -262,5 +252,5 @@ int main(int argc, char** argv) {
   }
   if (json)
     std::printf("%s\n", result.dump().c_str());
-  return 0;
+  return result.value("member_escapes", 0) == 0 && result.value("aborts", 0) == 0 ? 0 : 1;
 }

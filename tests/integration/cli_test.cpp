@@ -12,7 +12,9 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -25,6 +27,7 @@
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
+#include "small_disk.hpp"
 
 namespace saphira {
 namespace {
@@ -612,6 +615,84 @@ TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
   up.signal(SIGTERM);
   EXPECT_EQ(up.wait(), 0);
   EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
+}
+
+TEST_F(CliTest, AnEmergencyStopNeedsNoRoomOnTheDisk) {
+  const test::TempDir folder;
+  const test::SmallDisk disk(folder.path());
+  if (!disk.works())
+    GTEST_SKIP() << "no disk can be made here";
+  const std::map<std::string, std::string> environment{{"SAPHIRA_RUN", disk.path("run")}};
+  const auto ask = [&](const std::vector<std::string>& words) {
+    return test::run(command(words), environment);
+  };
+  std::filesystem::create_directory(disk.path("run"));
+  disk.fill();
+  test::Process up(command({"up", "demo", "--set", "port=0"}), folder_.path("up"), environment);
+  EXPECT_EQ(ask({"estop"}).code, 0) << up.output();
+  EXPECT_TRUE(has(ask({"status"}).text, "EMERGENCY STOP"));
+  EXPECT_FALSE(has(ask({"status"}).text, "intentions      running")) << "its memory has no room";
+  disk.make_room();
+  EXPECT_TRUE(test::wait_until([&] {
+    return has(ask({"status"}).text, "intentions      running");
+  })) << up.output();
+  EXPECT_EQ(ask({"estop", "reset"}).code, 0);
+  const Outcome audit = ask({"audit"});
+  EXPECT_EQ(audit.code, 0) << audit.text;
+  EXPECT_TRUE(has(audit.text, "\tstopped\t") && has(audit.text, "\treset\t")) << audit.text;
+  EXPECT_EQ(ask({"stop"}).code, 0);
+  EXPECT_EQ(up.wait(), 0) << up.output();
+}
+
+TEST_F(CliTest, RenewTakesInTheSupervisorAndTheSimulatorToo) {
+  namespace fs = std::filesystem;
+  const std::string bin = folder_.path("bin");
+  fs::create_directory(bin);
+  const auto install = [&] {
+    for (const char* name : {"saphira", "saphira-sim"}) {
+      fs::copy_file(test::program(name), bin + "/new");
+      fs::rename(bin + "/new", bin + "/" + name);
+    }
+  };
+  install();
+  const std::string file =
+      write("two.yaml",
+            "programs:\n"
+            "  - {name: sim, program: saphira-sim, bus: false,\n"
+            "     arguments: [--socket, \"${run}/robot\", --state, \"${run}/sim.state\"]}\n"
+            "  - {name: b, program: sh, bus: false,\n"
+            "     arguments: [-c, \"echo pid $$; while sleep 0.1; do echo beat; done\"]}\n");
+  const std::map<std::string, std::string> environment{{"SAPHIRA_RUN", folder_.path("run")}};
+  const auto words = [&](std::vector<std::string> given) {
+    std::vector<std::string> all = command(given);
+    all[0] = bin + "/saphira";
+    return all;
+  };
+  test::Process up(words({"up", file}), folder_.path("up"), environment);
+  ASSERT_TRUE(test::wait_until([&] {
+    return has(up.output(), "listening on ") && has(up.output(), "| pid ");
+  })) << up.output();
+  const auto program_of = [](pid_t process) {
+    return fs::read_symlink("/proc/" + std::to_string(process) + "/exe").string();
+  };
+  const std::string before = up.output();
+  const int other = std::stoi(before.substr(before.find("| pid ") + 6));
+  install();
+  EXPECT_NE(program_of(up.pid()), bin + "/saphira") << "it is an old version now";
+  EXPECT_EQ(test::run(words({"renew"}), environment).code, 0);
+  ASSERT_TRUE(test::wait_until([&] {
+    return has(up.output(), "the supervisor is the new version");
+  })) << up.output();
+  EXPECT_EQ(program_of(up.pid()), bin + "/saphira");
+  EXPECT_TRUE(has(up.output(), "sim started again")) << up.output();
+  EXPECT_TRUE(has(up.output(), "b stays as it is")) << up.output();
+  const std::size_t then = up.output().size();
+  EXPECT_TRUE(test::wait_until([&] { return has(up.output().substr(then), "| beat"); }));
+  EXPECT_EQ(kill(other, 0), 0);
+  EXPECT_TRUE(has(test::run(words({"up", file}), environment).text, "running already"));
+  EXPECT_EQ(test::run(words({"stop"}), environment).code, 0);
+  EXPECT_EQ(up.wait(), 0) << up.output();
+  EXPECT_NE(kill(other, 0), 0);
 }
 
 TEST_F(CliTest, AClosedTerminalEndsTheDemoInGoodOrder) {

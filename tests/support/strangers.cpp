@@ -66,11 +66,13 @@ Strangers::~Strangers() {
   close(sender_);
 }
 
-void Strangers::announce(int count, int per_second) {
+void Strangers::announce(int count, int per_second, int programs) {
   const std::string genuine = heard_.substr(kPrefixAt, kPrefix);
   const sockaddr_in to = place(kGroup, port_);
   auto due = std::chrono::steady_clock::now();
   for (int i = 0; i < count; ++i) {
+    if (programs > 0)
+      random_.seed(static_cast<std::uint64_t>(i % programs));
     std::string prefix(kPrefix, '\0');
     for (char& byte : prefix)
       byte = static_cast<char>(random_());

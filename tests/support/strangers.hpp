@@ -17,8 +17,9 @@ class Strangers {
   Strangers(const Strangers&) = delete;
   Strangers& operator=(const Strangers&) = delete;
 
-  /// Announces so many, at so many a second.
-  void announce(int count, int per_second);
+  /// Announces so many, at so many a second. `programs`: these again and again [0: each is another
+  /// one].
+  void announce(int count, int per_second, int programs = 0);
 
  private:
   int sender_;

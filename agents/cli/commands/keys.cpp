@@ -112,8 +112,10 @@ int audit(const AuditWords& words) {
   }
   if (words.check)
     std::cout
-        << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries")
-        << ", whole; the newest is number " << record.number << ", hash " << record.hash
+        << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries") << ", whole"
+        << (record.vouched_from > 1 ? " from number " + std::to_string(record.vouched_from) + " on"
+                                    : "")
+        << "; the newest is number " << record.number << ", hash " << record.hash
         << "\nNote the hash elsewhere: saphira audit --check --known HASH finds an audit that "
            "was written anew.\n";
   return bus::kExitOk;

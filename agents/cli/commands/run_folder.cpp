@@ -1,6 +1,7 @@
 #include "run_folder.hpp"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,7 +12,9 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "saphira/base/text.hpp"
 
@@ -19,7 +22,9 @@ namespace saphira::cli {
 
 namespace {
 
-constexpr const char* kServiceFolder = "/var/lib/saphira";  ///< of saphira@.service
+// Of saphira@.service.
+constexpr const char* kServiceFolder = "/var/lib/saphira";
+constexpr const char* kServiceUser = "saphira";
 
 /// Advice for a folder that cannot be used.
 constexpr const char* kElsewhere =
@@ -27,18 +32,27 @@ constexpr const char* kElsewhere =
     "~/.local/state/saphira/HOST)";
 constexpr std::size_t kLongestFolder = 60;  ///< of a socket in it at most 107
 
+bool is_folder_of(uid_t user, const std::string& path) {
+  struct stat info {};
+  return lstat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == user;
+}
+
 /// Makes a private folder; one of another owner is refused.
 void make_own(const std::string& path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
     throw std::runtime_error(cannot_be(path, "made") + kElsewhere);
-  struct stat info {};
-  if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid())
+  if (!is_folder_of(getuid(), path))
     throw std::runtime_error(path + ": expected a folder of this user" + kElsewhere);
 }
 
 /// For a user without a home. A cleaner of /tmp may remove it while its programs run.
 std::string temporary_folder() {
   return "/tmp/saphira-" + std::to_string(getuid());
+}
+
+/// In memory, for what has to be found while the disk is full.
+std::string memory_folder(uid_t user) {
+  return "/dev/shm/saphira-" + std::to_string(user);
 }
 
 /// In the user's home, which several machines may share; empty: there is none to write to.
@@ -63,14 +77,70 @@ std::string folder_in_home() {
              : std::string();
 }
 
-/// The folder of this user, for all deployments. It has to outlast what runs.
-std::string own_folder() {
+std::string chosen_folder() {
   const char* const given = std::getenv("SAPHIRA_RUN");
   std::string ours = given != nullptr && *given != '\0' ? std::string(given) : folder_in_home();
-  if (ours.empty())
-    ours = temporary_folder();
+  return ours.empty() ? temporary_folder() : ours;
+}
+
+/// The folder of this user, for all deployments. It has to outlast what runs.
+std::string own_folder() {
+  const std::string ours = chosen_folder();
   make_own(ours);
   return ours;
+}
+
+/// Where deployments of this user may be. One that was started without a home is in the second
+/// folder. Nothing is made, so that a stop needs no room on the disk.
+std::set<std::string> own_folders() {
+  return {chosen_folder(), temporary_folder()};
+}
+
+/// Those, and where others on this machine may be, with what they keep in memory.
+std::set<std::string> all_folders() {
+  std::set<std::string> folders = own_folders();
+  folders.insert(kServiceFolder);
+  const passwd* const service = getpwnam(kServiceUser);
+  for (const uid_t user : {getuid(), service == nullptr ? getuid() : service->pw_uid})
+    if (is_folder_of(user, memory_folder(user)))
+      folders.insert(memory_folder(user));
+  return folders;
+}
+
+/// The locks of this process, and those of the version before it.
+std::set<int>& held() {
+  static std::set<int> all;
+  return all;
+}
+std::set<int>& inherited() {
+  static std::set<int> all;
+  return all;
+}
+
+/// Locks an open file, or takes the descriptor over by which this process holds it already. -1: it
+/// is held by another process.
+int lock_open(int file) {
+  struct stat info {};
+  fstat(file, &info);
+  for (const int kept : inherited()) {
+    struct stat other {};
+    if (fstat(kept, &other) != 0 || other.st_ino != info.st_ino || other.st_dev != info.st_dev)
+      continue;
+    close(file);
+    inherited().erase(kept);
+    held().insert(kept);
+    return kept;
+  }
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) {
+    held().insert(file);
+    return file;
+  }
+  close(file);
+  return -1;
+}
+void unlock(int file) {
+  held().erase(file);
+  close(file);
 }
 
 /// Opens and locks it; -1 when another process holds the lock. std::runtime_error where it cannot
@@ -79,24 +149,29 @@ int lock(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file < 0)
     throw std::runtime_error(cannot_be(path, "written") + kElsewhere);
-  if (flock(file, LOCK_EX | LOCK_NB) == 0)
-    return file;
-  close(file);
-  return -1;
+  return lock_open(file);
 }
 
-/// The whole content of a locked file.
-void fill(int file, const std::string& path, const std::string& text) {
-  if (ftruncate(file, 0) != 0 || ::write(file, text.data(), text.size()) < 0)
-    throw std::runtime_error(cannot_be(path, "written") + kElsewhere);
+/// The whole content of a locked file. It takes the place of the former one, which has room on a
+/// full disk. False where there is none.
+bool fill(int file, const std::string& text) {
+  return pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
+         ftruncate(file, static_cast<off_t>(text.size())) == 0;
 }
 
 }  // namespace
 
 RunFolder::RunFolder() {
-  path_ = own_folder() + "/temporary-XXXXXX";
-  if (mkdtemp(path_.data()) == nullptr)
-    throw std::runtime_error(cannot_be(path_, "made") + kElsewhere);
+  const auto made = [this](const std::string& folder) {
+    path_ = folder + "/temporary-XXXXXX";
+    return mkdtemp(path_.data()) != nullptr;
+  };
+  if (made(chosen_folder()) || (make_own(chosen_folder()), made(chosen_folder())))
+    return;
+  const std::string trouble = cannot_be(path_, "made") + kElsewhere;
+  make_own(memory_folder(getuid()));
+  if (!made(memory_folder(getuid())))
+    throw std::runtime_error(trouble);
 }
 
 RunFolder::RunFolder(const std::string& name, const std::string& robot, unsigned domain) {
@@ -106,13 +181,18 @@ RunFolder::RunFolder(const std::string& name, const std::string& robot, unsigned
   if (lock_ < 0)
     throw std::runtime_error("this deployment is running already: " + path_ +
                              "/lock is held; saphira stop ends it");
-  fill(lock_, path_ + "/lock",
-       std::to_string(getpid()) + " " + std::to_string(domain) + " " + robot);
+  text_ = std::to_string(getpid()) + " " + std::to_string(domain) + " " + robot;
+  tell();
+}
+
+void RunFolder::tell() {
+  if (!text_.empty() && fill(lock_, text_))
+    text_.clear();
 }
 
 RunFolder::~RunFolder() {
   if (lock_ >= 0) {
-    close(lock_);
+    unlock(lock_);
   } else {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -122,8 +202,7 @@ RunFolder::~RunFolder() {
 std::vector<Running> running_deployments() {
   std::vector<Running> all;
   std::error_code none;
-  // One that was started without a home is there, too.
-  for (const std::string& folder : std::set<std::string>{own_folder(), temporary_folder()})
+  for (const std::string& folder : own_folders())
     for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
       const std::string path = entry.path() / "lock";
       if (!std::filesystem::exists(path, none))
@@ -131,7 +210,7 @@ std::vector<Running> running_deployments() {
       // A free lock means that no process runs it.
       const int file = lock(path);
       if (file >= 0) {
-        close(file);
+        unlock(file);
         continue;
       }
       Running running{entry.path().filename(), 0, {}, 0};
@@ -145,21 +224,34 @@ std::vector<Running> running_deployments() {
 }
 
 FoundBus::FoundBus(const RunningBus& bus) {
-  const std::string folder = own_folder() + "/buses";
-  // Readable for others on this machine: a service has another user than the people who command it.
-  mkdir(folder.c_str(), 0755);
-  path_ =
-      folder + "/" + bus.robot + "-" + std::to_string(bus.domain) + "-" + std::to_string(getpid());
-  lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   const std::string text = to_text(bus);
-  if (lock_ < 0 || flock(lock_, LOCK_EX) != 0)
-    throw std::runtime_error(cannot_be(path_, "written") + kElsewhere);
-  fill(lock_, path_, text);
+  for (const std::string& folder : {chosen_folder(), memory_folder(getuid())}) {
+    // Readable for others on this machine: a service has another user than the people who command
+    // it.
+    mkdir(folder.c_str(), 0755);
+    if (!is_folder_of(getuid(), folder))
+      continue;
+    mkdir((folder + "/buses").c_str(), 0755);
+    path_ = folder + "/buses/" + bus.robot + "-" + std::to_string(bus.domain) + "-" +
+            std::to_string(getpid());
+    lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (lock_ >= 0)
+      lock_ = lock_open(lock_);
+    if (lock_ >= 0 && fill(lock_, text))
+      return;
+    end();
+  }
 }
 
 FoundBus::~FoundBus() {
+  end();
+}
+
+void FoundBus::end() {
+  if (lock_ < 0)
+    return;
   unlink(path_.c_str());
-  close(lock_);
+  unlock(std::exchange(lock_, -1));
 }
 
 std::vector<RunningBus> running_buses() {
@@ -169,8 +261,7 @@ std::vector<RunningBus> running_buses() {
   };
   std::vector<Found> found;
   std::error_code none;
-  for (const std::string& folder :
-       std::set<std::string>{own_folder(), temporary_folder(), kServiceFolder})
+  for (const std::string& folder : all_folders())
     for (const auto& entry : std::filesystem::directory_iterator(folder + "/buses", none)) {
       const std::string path = entry.path();
       const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -199,8 +290,7 @@ std::vector<RunningBus> running_buses() {
 std::vector<std::string> audit_files() {
   std::vector<std::filesystem::directory_entry> found;
   std::error_code none;
-  for (const std::string& folder :
-       std::set<std::string>{own_folder(), temporary_folder(), kServiceFolder})
+  for (const std::string& folder : all_folders())
     for (const auto& run : std::filesystem::directory_iterator(folder, none))
       for (const auto& file : std::filesystem::directory_iterator(run.path(), none))
         if (file.path().extension() == ".audit")
@@ -214,13 +304,30 @@ std::vector<std::string> audit_files() {
   return files;
 }
 
+std::string keep_held() {
+  std::string text;
+  for (const int file : held()) {
+    fcntl(file, F_SETFD, 0);
+    text += std::to_string(file) + " ";
+  }
+  return text;
+}
+
+void take_held(const std::string& descriptors) {
+  std::istringstream in(descriptors);
+  for (int file = -1; in >> file;) {
+    fcntl(file, F_SETFD, FD_CLOEXEC);
+    inherited().insert(file);
+  }
+}
+
 std::string log_of(const std::string& name) {
   return own_folder() + "/" + name + ".log";
 }
 
 ProgramLocks::~ProgramLocks() {
   for (const int file : locks_)
-    close(file);
+    unlock(file);
 }
 
 void ProgramLocks::hold(const std::string& program, const std::string& robot, unsigned domain,
@@ -238,7 +345,7 @@ void ProgramLocks::hold(const std::string& program, const std::string& robot, un
                              ": stop that one, or take another --robot or --domain");
   }
   locks_.push_back(file);
-  fill(file, path, holder);
+  fill(file, holder);  // without room the refusal of a second one names none
 }
 
 }  // namespace saphira::cli

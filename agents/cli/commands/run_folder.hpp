@@ -14,18 +14,21 @@ class RunFolder {
  public:
   /// A temporary folder, removed with the object.
   RunFolder();
-  /// The folder of that name, /tmp/saphira-<uid>/<name>, which stays. std::runtime_error when
-  /// another process holds it. robot, domain: of its deployment, for running_deployments.
+  /// The folder of that name, which stays. std::runtime_error when another process holds it.
+  /// robot, domain: of its deployment, for running_deployments.
   RunFolder(const std::string& name, const std::string& robot, unsigned domain);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
   const std::string& path() const { return path_; }
+  /// Tells running_deployments of it, where the disk had no room for that before.
+  void tell();
 
  private:
   std::string path_;
   int lock_ = -1;
+  std::string text_;  ///< still to be told
 };
 
 /// A running deployment of this user on this machine.
@@ -43,7 +46,8 @@ std::string log_of(const std::string& name);
 /// service.
 std::vector<std::string> audit_files();
 
-/// Lets other commands find this bus, as long as the object lives (running_buses).
+/// Lets other commands find this bus, as long as the object lives (running_buses); with a full disk
+/// by a file in memory.
 class FoundBus {
  public:
   explicit FoundBus(const RunningBus& bus);
@@ -52,9 +56,17 @@ class FoundBus {
   FoundBus& operator=(const FoundBus&) = delete;
 
  private:
+  void end();
+
   std::string path_;
   int lock_ = -1;
 };
+
+/// For a new version of this program, which takes the place of this process (exec): keeps what the
+/// objects above hold, so that nobody else takes it meanwhile. Returns the descriptors, in words.
+std::string keep_held();
+/// The objects that are made from now on take over what keep_held() has kept.
+void take_held(const std::string& descriptors);
 
 /// The buses of this machine, newest first: of this user, and of the system's service.
 std::vector<RunningBus> running_buses();

@@ -2,6 +2,7 @@
 #include <poll.h>
 #include <pwd.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,15 +14,19 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "check.hpp"
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/bounded_log.hpp"
 #include "saphira/cli/deployment.hpp"
@@ -37,11 +42,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr const char* kAreStarted = " started; Ctrl-C stops them";
 constexpr double kStarted = 20.0;                    ///< [s]
 constexpr double kStopped = 20.0;                    ///< [s]
 constexpr const char* kLogVariable = "SAPHIRA_LOG";  ///< of a detached one: its log file
-constexpr std::int64_t kLongestLog = 8 << 20;        ///< [bytes] of each of two parts
+constexpr double kTried = 20.0;                      ///< [s]
+constexpr const char* kHandedVariable = "SAPHIRA_HANDED_OVER";
+constexpr std::int64_t kLongestLog = 8 << 20;  ///< [bytes] of each of two parts
 
 /// Prints each line with the child's name before it, in a color of its own on a terminal.
 Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
@@ -143,6 +149,110 @@ std::string other_contract(const std::string& program) {
          ", and what runs has " + ours + ": saphira stop, and up again, takes in all of it";
 }
 
+/// The reason why a child stays in its old version; empty: it is renewed.
+std::string objection(const ChildSpec& child) {
+  if (!child.robot.empty())
+    return other_contract(child.argv[0]);
+  return std::find(child.argv.begin(), child.argv.end(), "--state") != child.argv.end()
+             ? ""
+             : "it is not on the bus, and would begin anew (it has no --state)";
+}
+
+/// The words of this process.
+std::vector<std::string> own_words() {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : read_bytes("/proc/self/cmdline")) {
+    if (c != '\0')
+      word += c;
+    else
+      words.push_back(std::exchange(word, {}));
+  }
+  return words;
+}
+
+/// Takes over from the version before, which was in this process. The children's line; nothing
+/// where there was none.
+std::optional<std::string> take_handed_over() {
+  const char* const descriptor = std::getenv(kHandedVariable);
+  if (descriptor == nullptr)
+    return std::nullopt;
+  const std::string text = read_bytes(std::string("/proc/self/fd/") + descriptor);
+  close(std::atoi(descriptor));
+  unsetenv(kHandedVariable);
+  const std::size_t line = std::min(text.find('\n'), text.size() - 1);
+  take_held(text.substr(0, line));
+  return text.substr(line + 1);
+}
+
+/// This program's own file, and its replacement by another version while the children run.
+class OwnVersion {
+ public:
+  explicit OwnVersion(const bus::NodeOptions& options)
+      : environment_(as_environment(options)), program_(program_folder() + "/saphira") {
+    if (const char* const log = std::getenv(kLogVariable))
+      environment_[kLogVariable] = log;
+    unsetenv(kLogVariable);
+  }
+
+  /// The reason why this version stays, in words. Otherwise it does not return.
+  std::string replace(const Supervisor& supervisor, const ServiceManager& manager) const {
+    if (file_of(program_) == file_)
+      return {};
+    if (std::string why = other_contract(program_); !why.empty())
+      return "the supervisor stays as it is: " + why;
+    std::vector<std::string> words = own_words();
+    words.emplace_back("--try");
+    if (start_and_wait(words) != bus::kExitOk)
+      return "the supervisor stays as it is: the new one does not take this deployment";
+    words.pop_back();
+    const std::string text = keep_held() + "\n" + supervisor.hand_over();
+    const int handed = memfd_create("saphira", 0);
+    if (handed < 0 || ::write(handed, text.data(), text.size()) != std::ssize(text))
+      return "the supervisor stays as it is: no memory for what it hands over";
+    flush_output();
+    manager.restore();
+    for (const auto& [name, value] : environment_)
+      setenv(name.c_str(), value.c_str(), 1);
+    setenv(kHandedVariable, std::to_string(handed).c_str(), 1);
+    std::vector<char*> argv = pointers_to(words);
+    execv(program_.c_str(), argv.data());
+    return "the supervisor stays as it is: " + cannot_be(program_, "run");
+  }
+
+ private:
+  static std::vector<char*> pointers_to(std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (std::string& word : words)
+      argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return argv;
+  }
+
+  int start_and_wait(std::vector<std::string>& words) const {
+    std::vector<char*> argv = pointers_to(words);
+    const pid_t child = fork();
+    if (child == 0) {
+      for (const auto& [name, value] : environment_)
+        setenv(name.c_str(), value.c_str(), 1);
+      execv(program_.c_str(), argv.data());
+      _exit(bus::kExitBroken);
+    }
+    int status = 0;
+    const auto began = Clock::now();
+    while (child > 0 && waitpid(child, &status, WNOHANG) == 0) {
+      if (seconds_since(began) > kTried)
+        kill(child, SIGKILL);
+      poll(nullptr, 0, 20);
+    }
+    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
+  }
+
+  std::map<std::string, std::string> environment_;
+  std::string program_;
+  std::string file_ = file_of(program_);
+};
+
 /// A deployment's robot that has its programs already.
 struct Taken {
   std::string program;  ///< in words
@@ -206,9 +316,10 @@ std::string take_robot(const std::string& name, bool named, bus::NodeOptions& op
 
 int up(const std::string& name, const std::vector<std::string>& set,
        const bus::NodeOptions& options, const bus::Stop& stop) {
+  const std::optional<std::string> handed_over = take_handed_over();
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
-  const RunFolder folder = folder_of(deployment, options);
+  RunFolder folder = folder_of(deployment, options);
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<std::string> left_out;
@@ -221,38 +332,54 @@ int up(const std::string& name, const std::vector<std::string>& set,
                  deployment.file + " (process " + std::to_string(getpid()) + ")");
   }
 
-  if (const std::string why = refusal(deployment, places, set, options); !why.empty()) {
-    std::cerr << "saphira: " << why;
-    return bus::kExitUsage;
-  }
-
-  for (const std::string& file : deployment.forget) {
-    std::error_code gone;
-    std::filesystem::remove(std::filesystem::path(folder.path()) / file, gone);
+  if (!handed_over) {
+    if (const std::string why = refusal(deployment, places, set, options); !why.empty()) {
+      std::cerr << "saphira: " << why;
+      return bus::kExitUsage;
+    }
+    for (const std::string& file : deployment.forget) {
+      std::error_code gone;
+      std::filesystem::remove(std::filesystem::path(folder.path()) / file, gone);
+    }
   }
 
   std::optional<BoundedLog> log;
   if (const char* const file = std::getenv(kLogVariable))
     log.emplace(file, std::vector{STDOUT_FILENO, STDERR_FILENO}, kLongestLog);
-  unsetenv(kLogVariable);
+  const OwnVersion own(options);
+  out().outlast_full_disk();
   const ServiceManager manager;
   const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);
   for (const std::string& text : left_out)
     print({}, text);
   Supervisor supervisor(std::move(children), print);
-  supervisor.start();
+  if (handed_over)
+    supervisor.take_over(*handed_over);
+  else
+    supervisor.start();
   const FoundBus found(bus_of(deployment, options));
   const std::string started =
       counted(supervisor.children().size(), "program") + " of " + deployment.file;
-  print({}, started + kAreStarted);
+  print({}, handed_over ? std::string("the supervisor is the new version, ") + bus::version() +
+                              "; the programs go on"
+                        : started + " started; Ctrl-C stops them");
   manager.ready(started);
   const auto period = std::min(milliseconds(10000), manager.period().value_or(milliseconds(10000)));
+  bool own_is_due = false;
   while (!stop.requested() && !supervisor.finished() && !supervisor.misused()) {
     supervisor.step(period, {stop.fd(), renew.fd()});
-    if (renew.came())
-      supervisor.renew(other_contract);
+    if (renew.came()) {
+      supervisor.renew(objection);
+      own_is_due = true;
+    }
+    if (own_is_due && !supervisor.renews()) {
+      own_is_due = false;
+      if (const std::string stays = own.replace(supervisor, manager); !stays.empty())
+        print({}, stays);
+    }
     manager.alive();
+    folder.tell();
     if (log)
       log->keep_bounded();
   }
@@ -265,6 +392,16 @@ int up(const std::string& name, const std::vector<std::string>& set,
   }
   print({}, "all stopped");
   return bus::kExitOk;
+}
+
+/// Of a new version, before it takes the place of a running one.
+int try_up(const std::string& name, const std::vector<std::string>& set,
+           const bus::NodeOptions& options) {
+  Places places = find_places();
+  const Deployment deployment = load_deployment(find_deployment(name, places));
+  const std::string why = refusal(deployment, places, set, options);
+  std::cerr << why;
+  return why.empty() ? bus::kExitOk : bus::kExitUsage;
 }
 
 /// Starts this program again, without a terminal: its output goes to the log.
@@ -290,6 +427,14 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
     _exit(bus::kExitBroken);
   execv("/proc/self/exe", argv.data());
   _exit(bus::kExitBroken);
+}
+
+/// True once its programs are started.
+bool is_found(const RunningBus& bus) {
+  const std::vector<RunningBus> all = running_buses();
+  return std::any_of(all.begin(), all.end(), [&](const RunningBus& one) {
+    return one.what == bus.what && one.robot == bus.robot && one.domain == bus.domain;
+  });
 }
 
 /// Starts it in the background, and reports the result of the start.
@@ -323,8 +468,7 @@ int detach(const std::string& name, const std::vector<std::string>& set,
       return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
     }
     for (const Running& one : running_deployments())
-      if (one.name == running && one.pid == child &&
-          read_bytes(log).find(kAreStarted) != std::string::npos) {
+      if (one.name == running && one.pid == child && is_found(bus_of(deployment, options))) {
         std::cout << running << " runs (process " << child << "); its output: " << log
                   << "; saphira stop ends it\n";
         return bus::kExitOk;
@@ -448,6 +592,7 @@ void add_up(CLI::App& app, Chosen& chosen) {
     std::string deployment;
     std::vector<std::string> set;
     bool detached = false;
+    bool tried = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("up", "Start and supervise what a deployment file lists");
@@ -457,7 +602,12 @@ void add_up(CLI::App& app, Chosen& chosen) {
       ->take_all()
       ->type_size(1);
   command->add_flag("--detach,-d", options->detached, "in the background; saphira stop ends it");
+  command->add_flag("--try", options->tried, "starts nothing")->group("");
   chosen.when(command, [options, &app](bus::NodeOptions node, const bus::Stop& stop) -> int {
+    if (options->tried)
+      return try_up(options->deployment, options->set, node);
+    if (std::getenv(kHandedVariable) != nullptr)
+      return up(options->deployment, options->set, node, stop);
     const bool named = app.get_option("--robot")->count() > 0;
     if (const std::string why = take_robot(options->deployment, named, node, stop); !why.empty()) {
       complain("saphira: %s\n", why.c_str());

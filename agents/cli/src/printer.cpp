@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <condition_variable>
 #include <csignal>
@@ -62,6 +63,7 @@ struct Printer::Shared {
   std::string lines;
   std::string picture;
   std::size_t left_out = 0;  ///< texts
+  bool outlasts = false;
   bool printing = false;
   bool closed = false;
   std::string trouble;
@@ -95,16 +97,17 @@ void Printer::run(const std::shared_ptr<Shared>& shared) {
       return;
     std::string text = std::exchange(shared->lines, {});
     if (shared->left_out > 0)
-      text +=
-          "(left out, as nobody read: " + counted(std::exchange(shared->left_out, 0), "message") +
-          ")\n";
+      text += "(left out, as nobody read or the disk was full: " +
+              counted(std::exchange(shared->left_out, 0), "message") + ")\n";
     text += std::exchange(shared->picture, {});
     shared->printing = true;
     lock.unlock();
     const int why = write_all(shared->fd, text);
     lock.lock();
     shared->printing = false;
-    if (why != 0) {
+    if ((why == ENOSPC || why == EDQUOT) && shared->outlasts) {
+      shared->left_out += static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    } else if (why != 0) {
       shared->closed = true;
       shared->trouble = output_trouble(shared->fd, why);
     }
@@ -121,6 +124,11 @@ void Printer::print(std::string_view text) {
   else
     shared_->lines += text;
   shared_->changed.notify_all();
+}
+
+void Printer::outlast_full_disk() {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->outlasts = true;
 }
 
 void Printer::show(std::string_view picture) {

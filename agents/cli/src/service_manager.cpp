@@ -22,13 +22,20 @@ std::string take_variable(const char* name) {
 
 }  // namespace
 
-ServiceManager::ServiceManager() : socket_(take_variable("NOTIFY_SOCKET")) {
-  const std::string microseconds = take_variable("WATCHDOG_USEC");
+ServiceManager::ServiceManager()
+    : socket_(take_variable("NOTIFY_SOCKET")), microseconds_(take_variable("WATCHDOG_USEC")) {
   const std::string process = take_variable("WATCHDOG_PID");
-  const long long period = std::strtoll(microseconds.c_str(), nullptr, 10);
+  const long long period = std::strtoll(microseconds_.c_str(), nullptr, 10);
   const bool ours = process.empty() || process == std::to_string(getpid());
   if (!socket_.empty() && ours && period > 0)
     period_ = std::chrono::milliseconds(std::max(1LL, period / 2000));
+}
+
+void ServiceManager::restore() const {
+  if (!socket_.empty())
+    setenv("NOTIFY_SOCKET", socket_.c_str(), 1);
+  if (period_)
+    setenv("WATCHDOG_USEC", microseconds_.c_str(), 1);
 }
 
 void ServiceManager::ready(const std::string& status) const {

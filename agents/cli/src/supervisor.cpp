@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -34,6 +35,7 @@ constexpr milliseconds kLastBackoff{5000};
 /// Between two checks for hanging children.
 constexpr milliseconds kWatch{1000};
 constexpr std::size_t kLongestLine = 4096;  ///< longer ones are broken up
+constexpr const char* kHandedOver = "children 1";
 
 bool is_crash(int status) {
   if (!WIFSIGNALED(status))
@@ -111,7 +113,8 @@ class Pipe {
   int ends_[2] = {-1, -1};
 };
 
-/// The identity of a file, which differs from that of a later file with the same path.
+}  // namespace
+
 std::string file_of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0)
@@ -119,8 +122,6 @@ std::string file_of(const std::string& path) {
   return std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino) + ":" +
          std::to_string(info.st_mtim.tv_sec) + "." + std::to_string(info.st_mtim.tv_nsec);
 }
-
-}  // namespace
 
 Supervisor::Supervisor(std::vector<ChildSpec> children, Print print, milliseconds proven)
     : print_(std::move(print)), proven_(proven), watchdog_(robots_of(children)) {
@@ -203,6 +204,61 @@ void Supervisor::launch(std::size_t index) {
     say(slot.spec.name + " started again (pid " + std::to_string(pid) + ")");
 }
 
+std::string Supervisor::hand_over() const {
+  std::string text = kHandedOver;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const Slot& slot = slots_[i];
+    if (slot.pid == 0)
+      continue;
+    fcntl(slot.beats, F_SETFD, 0);
+    int output = -1;
+    for (const Stream& stream : streams_)
+      if (stream.slot == i) {
+        output = stream.fd;  // the newest one
+        fcntl(output, F_SETFD, 0);
+      }
+    text += "\n" + slot.spec.name + " " + std::to_string(slot.pid) + " " +
+            std::to_string(slot.starts) + " " + std::to_string(output) + " " +
+            std::to_string(slot.beats) + " " + slot.file;
+  }
+  return text + "\n";
+}
+
+void Supervisor::take_over(const std::string& children) {
+  std::istringstream in(children);
+  std::string line;
+  if (!std::getline(in, line) || line != kHandedOver)
+    throw std::invalid_argument("what the version before has handed over is of another form");
+  std::string name;
+  Slot taken;
+  int output = -1;
+  while (in >> name >> taken.pid >> taken.starts >> output >> taken.beats >> taken.file) {
+    const auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& one) {
+      return one.spec.name == name && one.pid == 0;
+    });
+    for (const int fd : {output, taken.beats})
+      if (fd >= 0)
+        fcntl(fd, F_SETFD, FD_CLOEXEC);
+    if (slot == slots_.end()) {
+      say(name + " is no more part of it");
+      kill(taken.pid, SIGTERM);
+      kill(taken.pid, SIGCONT);
+      for (const int fd : {output, taken.beats})
+        close(fd);
+      continue;
+    }
+    taken.spec = std::move(slot->spec);
+    taken.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, taken.pid, 0));
+    taken.started = Clock::now();
+    *slot = taken;
+    if (output >= 0)
+      streams_.push_back({output, static_cast<std::size_t>(slot - slots_.begin()), {}});
+  }
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (slots_[i].pid == 0)
+      launch(i);
+}
+
 void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds) {
   for (const Slot& slot : slots_)
     if (slot.due)
@@ -217,15 +273,14 @@ void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds)
   renew_next();
 }
 
-void Supervisor::renew(const std::function<std::string(const std::string& program)>& objection) {
+void Supervisor::renew(const std::function<std::string(const ChildSpec& child)>& objection) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     const Slot& slot = slots_[i];
     const std::string& program = slot.spec.argv[0];
     if (slot.pid == 0 || file_of(program) == slot.file ||
         std::find(to_renew_.begin(), to_renew_.end(), i) != to_renew_.end())
       continue;
-    const std::string why_not =
-        slot.spec.robot.empty() ? "it is not on the bus" : objection(program);
+    const std::string why_not = objection(slot.spec);
     if (why_not.empty())
       to_renew_.push_back(i);
     else

@@ -138,11 +138,13 @@ TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
   const pid_t sim = pid(4);
   for (const char* name : {"a", "b", "odd", "sim"})
     write(name, "new");
-  supervisor.renew([&](const std::string& program) {
-    return program == folder.path("odd") ? std::string("it speaks otherwise") : std::string();
+  supervisor.renew([&](const ChildSpec& child) {
+    return child.name == "odd" || child.robot.empty() ? std::string("it speaks otherwise")
+                                                      : std::string();
   });
+  EXPECT_TRUE(supervisor.renews());
   EXPECT_TRUE(said("|odd stays as it is: it speaks otherwise")) << all();
-  EXPECT_TRUE(said("|sim stays as it is: it is not on the bus")) << all();
+  EXPECT_TRUE(said("|sim stays as it is: it speaks otherwise")) << all();
   const pid_t b = pid(1);
   EXPECT_TRUE(run_until(supervisor, [&] { return said("a|new"); })) << all();
   EXPECT_EQ(pid(1), b) << "one after the other";
@@ -152,8 +154,41 @@ TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
   EXPECT_FALSE(said("odd|new"));
   EXPECT_EQ(pid(3), same);
   EXPECT_EQ(pid(4), sim);
-  supervisor.renew([](const std::string&) { return std::string("no"); });
+  EXPECT_FALSE(supervisor.renews());
+  supervisor.renew([](const ChildSpec&) { return std::string("no"); });
   EXPECT_EQ(supervisor.children()[0].starts, 2);
+}
+
+TEST_F(SupervisorTest, HandsItsChildrenOver) {
+  const test::TempDir folder;
+  const std::string go_on = folder.path("go-on");
+  const std::string waits =
+      "echo one; while [ ! -e " + go_on + " ]; do sleep 0.02; done; echo two; exec sleep 1000";
+  // Never destroyed, as its process would have got another program.
+  auto* const before =
+      new Supervisor({shell("a", waits), shell("gone", "exec sleep 1000")}, keep());
+  before->start();
+  ASSERT_TRUE(run_until(*before, [&] { return said("a|one"); })) << all();
+  const pid_t a = before->children()[0].pid;
+  const pid_t gone = before->children()[1].pid;
+  const std::string children = before->hand_over();
+  lines_.clear();
+  {
+    Supervisor after({shell("new", "echo new; exec sleep 1000"), shell("a", waits)}, keep());
+    after.take_over(children);
+    EXPECT_EQ(after.children()[1].pid, a);
+    EXPECT_EQ(after.children()[1].starts, 1);
+    std::ofstream(go_on).close();
+    EXPECT_TRUE(run_until(after, [&] { return said("a|two") && said("new|new"); })) << all();
+    EXPECT_FALSE(said("a|one"));
+    EXPECT_TRUE(said("|gone is no more part of it"));
+    EXPECT_EQ(waitpid(gone, nullptr, 0), gone);
+    kill(a, SIGKILL);
+    EXPECT_TRUE(run_until(after, [&] { return after.children()[1].starts == 2; })) << all();
+  }
+  EXPECT_NE(kill(a, 0), 0);
+  Supervisor odd({shell("a", "exec sleep 1000")}, keep());
+  EXPECT_THROW(odd.take_over("children 2\n"), std::invalid_argument);
 }
 
 TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {

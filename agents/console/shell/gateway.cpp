@@ -211,6 +211,7 @@ void Gateway::look_at_simulator() {
 void Gateway::tick() {
   poll();
   look_at_keys();
+  audit_.tend(now());
   look_at_simulator();
   drive();
   press_estop();

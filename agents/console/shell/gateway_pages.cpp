@@ -148,7 +148,7 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   page.greeted = page.visitor.may(DoorRight::watch) || may_watch(access_, page.caller);
   page.name = page.visitor.person ? page.visitor.person->name : hello.name;
   if (!hello.key.empty() && !page.visitor.may(DoorRight::watch))
-    audit_.wrong_key("the console", now());
+    audit_.wrong_key("the console", now(), keys_.keys().ended(hello.key, unix_seconds()));
   if (page.greeted && page.channel == Channel::telemetry)
     ++viewers_;
   if (page.visitor.may(DoorRight::drive) && page.channel == Channel::commands)

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
 
 #include "saphira/base/format.hpp"
+#include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::console {
@@ -21,8 +23,9 @@ constexpr std::size_t kBytes = 12;
 bool write_all(int fd, const Kept& kept) {
   const std::string text =
       kept.key + "\n" + (kept.port == 0 ? "" : std::to_string(kept.port) + "\n");
-  return ftruncate(fd, 0) == 0 &&
-         pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  // In the place of the former one, which has room on a full disk.
+  return pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
+         ftruncate(fd, static_cast<off_t>(text.size())) == 0;
 }
 
 }  // namespace
@@ -36,7 +39,7 @@ Kept keep(const std::string& file) {
     return {new_key(), 0};
   const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0)
-    throw UnusableFile(cannot_be(file, "opened") + "; it is for the console's key");
+    fail_to_be(file, "opened", "; it is for the console's key");
   struct stat state {};
   std::array<char, 100> text{};
   const ssize_t size = read(fd, text.data(), text.size());
@@ -45,17 +48,18 @@ Kept keep(const std::string& file) {
   Kept kept;
   content >> kept.key >> kept.port;
   const bool open_to_others = fstat(fd, &state) != 0 || (state.st_mode & 077U) != 0;
-  std::string trouble;
+  bool written = true;
   if (!open_to_others && kept.key.size() < 2 * kBytes) {
     kept = {new_key(), 0};
-    if (!write_all(fd, kept))
-      trouble = cannot_be(file, "written");
+    written = write_all(fd, kept);
   }
+  const int why = errno;
   close(fd);
   if (open_to_others)
     throw UnusableFile(file + ": others may read the console's key; chmod 600 it, or remove it");
-  if (!trouble.empty())
-    throw UnusableFile(trouble + "; it is for the console's key");
+  errno = why;
+  if (!written)
+    fail_to_be(file, "written", "; it is for the console's key");
   return kept;
 }
 
@@ -75,10 +79,11 @@ void keep_port(const std::string& file, const Kept& kept, int port) {
     return;
   const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
   const bool written = fd >= 0 && write_all(fd, {kept.key, port});
-  const std::string trouble = written ? "" : cannot_be(file, "written");
+  const int why = errno;
   close(fd);
+  errno = why;
   if (!written)
-    throw UnusableFile(trouble + "; it is for the console's port");
+    fail_to_be(file, "written", "; it is for the console's port");
 }
 
 }  // namespace saphira::console

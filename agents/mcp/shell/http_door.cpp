@@ -17,6 +17,13 @@ double now() {
   return BootClock::seconds();
 }
 
+/// Empty: none.
+std::string_view key_of(const HttpRequest& request) {
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view given = request.authorization;
+  return given.starts_with(kBearer) ? given.substr(kBearer.size()) : std::string_view();
+}
+
 bool is_of(const console::Visitor& one, const console::Visitor& other) {
   return one.person.has_value() == other.person.has_value() &&
          (!one.person || one.person->name == other.person->name);
@@ -117,12 +124,7 @@ std::map<std::string, std::unique_ptr<HttpDoor::Client>>::iterator HttpDoor::end
 }
 
 console::Visitor HttpDoor::visitor_of(const HttpRequest& request) const {
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string_view given = request.authorization;
-  return given.starts_with(kBearer)
-             ? console::visitor_of(access_, keys_.keys(), given.substr(kBearer.size()),
-                                   unix_seconds())
-             : console::Visitor{};
+  return console::visitor_of(access_, keys_.keys(), key_of(request), unix_seconds());
 }
 
 void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
@@ -133,7 +135,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   const console::Visitor visitor = visitor_of(request);
   if (!visitor.may(security::DoorRight::watch)) {
     if (!request.authorization.empty())
-      audit_.wrong_key("MCP by HTTP", now());
+      audit_.wrong_key("MCP by HTTP", now(), keys_.keys().ended(key_of(request), unix_seconds()));
     return refuse(exchange, 401,
                   "expected the header Authorization: Bearer TOKEN, with the first line of " +
                       options_.token_file + ", or a person's key (saphira keys), as TOKEN");
@@ -231,6 +233,7 @@ void HttpDoor::see(const std::string& id, Client& client) {
 
 void HttpDoor::tick() {
   turn();
+  audit_.tend(now());
   if (const std::string trouble = keys_.look(unix_seconds()); !trouble.empty())
     node_.error(trouble);
   for (auto each = clients_.begin(); each != clients_.end();) {

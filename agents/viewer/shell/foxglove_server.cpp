@@ -61,7 +61,9 @@ struct Server::Impl {
 
 /// 0: the client may connect.
 int Server::Impl::filter(lws* wsi) const {
-  if (!options.admits(key_of(wsi))) {
+  if (const std::string key = key_of(wsi); !options.admits(key)) {
+    if (!key.empty())
+      options.refused(key);
     lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN,
                            "the address has to end with the key that saphira foxglove prints");
     return -1;
@@ -125,6 +127,7 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
       impl.open.emplace(
           socket->id,
           Open{wsi, Client(impl.options.name, impl.channels, kMostWaiting), key_of(wsi), {}});
+      impl.options.came(key_of(wsi));
       lws_callback_on_writable(wsi);
       return 0;
     case LWS_CALLBACK_RECEIVE:

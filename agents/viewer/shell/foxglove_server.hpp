@@ -20,6 +20,8 @@ class Server {
     std::string name;  ///< of the robot, for people
     /// True while the key lets its client watch.
     std::function<bool(const std::string& key)> admits;
+    std::function<void(const std::string& key)> refused;  ///< of a client with a key
+    std::function<void(const std::string& key)> came;
   };
   struct Events {
     std::function<void(std::size_t channel)> subscribed;

@@ -8,6 +8,7 @@
 #include "live.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/audit.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/console/access.hpp"
 
@@ -19,12 +20,23 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
           const std::string& key_file, const bus::Stop& stop) {
   const console::AccessSettings access{console::keep(key_file).key, {}, 0, true};
   security::DoorKeysFile persons;
+  const auto visitor_of = [&](const std::string& key) {
+    return console::visitor_of(access, persons.keys(), key, unix_seconds());
+  };
   options.admits = [&](const std::string& key) {
-    return console::visitor_of(access, persons.keys(), key, unix_seconds())
-        .may(security::DoorRight::watch);
+    return visitor_of(key).may(security::DoorRight::watch);
   };
   options.name = "saphira: robot " + node_options.robot;
   bus::Node node(node_options);
+  bus::Audit audit(node);
+  options.refused = [&](const std::string& key) {
+    audit.wrong_key("the Foxglove door", BootClock::seconds(),
+                    persons.keys().ended(key, unix_seconds()));
+  };
+  options.came = [&](const std::string& key) {
+    if (const auto person = visitor_of(key).person)
+      audit.write({AuditEntry::Act::let_in, person->name + " at the Foxglove door", "to watch"});
+  };
   viewer::Live live(node);
   std::optional<viewer::Server> server;
   const auto look_at_keys = [&] {
@@ -53,6 +65,7 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
                                         [&] {
                                           poll();
                                           look_at_keys();
+                                          audit.tend(BootClock::seconds());
                                           node.publish_status();
                                         }});
   server->watch(node.wake_fd());

@@ -93,11 +93,18 @@ void Core::writer_lost(Role role, const authority::WriterId& writer, double now)
   arbiter_.lost(role, writer, time(now));
 }
 
-std::optional<AuditEntry> reported(AuditEntry entry, const Checked& writer) {
+std::optional<AuditEntry> Reports::take(AuditEntry entry, const Checked& writer, double now) {
   if (!writer || writer->role == "services" || writer->role == "robot")
     return entry;
   if (entry.act != AuditEntry::Act::let_in && entry.act != AuditEntry::Act::refused)
     return std::nullopt;
+  std::erase_if(minutes_, [&](const auto& one) { return now - one.second.began >= kMinute; });
+  const auto [minute, is_first] = minutes_.try_emplace(writer->text(), Minute{now, 0});
+  if (minute->second.entries > kMost)
+    return std::nullopt;
+  if (++minute->second.entries > kMost)
+    return AuditEntry{AuditEntry::Act::refused, writer->text(),
+                      "more than " + std::to_string(kMost) + " reports a minute"};
   entry.who = named(entry.who, writer);
   return entry;
 }

@@ -7,6 +7,7 @@ inline constexpr double kSilent =
     0.5;                              // [s] without a packet: the link is silent, the robot stands
 inline constexpr double kDead = 2.0;  // [s] then the link is closed
 inline constexpr double kDeadStep = 10;  // [s] for the simulator to make a step
+inline constexpr double kMinute = 60.0;  // [s]
 inline constexpr double kForEver = 1e300;
 inline constexpr double kGap = 0.25;    // [s] pause of the bridge's own loop that counts as a gap
 inline constexpr double kSettle = 0.1;  // [s] after a gap: inputs of this time waited in a queue

@@ -141,19 +141,17 @@ struct Audited : StopScene {
 };
 
 TEST(Audit, NamesEachDriverOnceAndWhoStops) {
-  using Act = AuditEntry::Act;
   Audited scene;
   scene.cycles(3, Role::direct, 0.1);
   EXPECT_EQ(scene.acts(), std::vector<std::string>{}) << "it drove before";
   scene.drive(Role::teleop, 0.1);
   scene.cycles(3, Role::teleop, 0.1);
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::drove, "teleop")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::drove, "teleop")});
   scene.stop();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::stopped, "a person")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::stopped, "a person")});
 }
 
 TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
-  using Act = AuditEntry::Act;
   Audited scene;
   scene.drive(Role::teleop, 0.1);
   for (int i = 0; i < 5; ++i) {
@@ -163,36 +161,53 @@ TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
   const std::vector<AuditEntry> entries = scene.all<AuditEntry>();
   EXPECT_EQ(std::count_if(entries.begin(), entries.end(),
                           [](const AuditEntry& entry) {
-                            return entry.act == Act::refused && entry.who == "direct";
+                            return entry.act == AuditEntry::Act::refused && entry.who == "direct";
                           }),
             1);
 }
 
 TEST(Audit, NamesWhoPressesAndResetsTheEmergencyStop) {
-  using Act = AuditEntry::Act;
   Audited scene;
   scene.estop(true);
   EXPECT_EQ(scene.acts(),
-            std::vector{Audited::act(Act::stopped, scene.core.latches().estop_source)});
+            std::vector{Audited::act(AuditEntry::Act::stopped, scene.core.latches().estop_source)});
   scene.core.reset_estop("karen", scene.now);
   scene.deliver();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::refused, "karen")})
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::refused, "karen")})
       << "it is still pressed";
   scene.estop(false);
   scene.core.reset_estop("karen", scene.now);
   scene.deliver();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(Act::reset, "karen")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::reset, "karen")});
 }
 
 TEST(Audit, AProgramSpeaksForItselfUnlessItIsAService) {
   const AuditEntry drove{AuditEntry::Act::drove, "karen (operator)", ""};
   const AuditEntry wrong{AuditEntry::Act::refused, "somebody", "1 wrong key"};
-  EXPECT_EQ(reported(drove, Identity{"flakey", "services"}), drove);
-  EXPECT_EQ(reported(drove, std::nullopt), drove) << "an open bus";
-  EXPECT_EQ(reported(drove, Identity{"planner", "agent"}), std::nullopt);
-  const auto said = reported(wrong, Identity{"flakey", "operator"});
+  Reports reports;
+  EXPECT_EQ(reports.take(drove, Identity{"flakey", "services"}, 0.0), drove);
+  EXPECT_EQ(reports.take(drove, std::nullopt, 0.0), drove) << "an open bus";
+  EXPECT_EQ(reports.take(drove, Identity{"planner", "agent"}, 0.0), std::nullopt);
+  const auto said = reports.take(wrong, Identity{"flakey", "operator"}, 0.0);
   ASSERT_TRUE(said);
   EXPECT_EQ(said->who, "flakey (operator), somebody");
+}
+
+TEST(Audit, NobodyFillsItWithReports) {
+  Reports reports;
+  const auto taken = [&](const Identity& writer, double now) {
+    std::size_t entries = 0;
+    for (int i = 0; i < 1000; ++i)
+      if (reports.take({AuditEntry::Act::refused, std::to_string(i), ""}, writer, now))
+        ++entries;
+    return entries;
+  };
+  const Identity liar{"liar", "observer"};
+  EXPECT_EQ(taken(liar, 0.0), Reports::kMost + 1) << "and one that says so";
+  EXPECT_EQ(taken(liar, 59.0), 0U);
+  EXPECT_EQ(taken({"flakey", "operator"}, 59.0), Reports::kMost + 1);
+  EXPECT_EQ(taken({"flakey", "services"}, 59.0), 1000U);
+  EXPECT_EQ(taken(liar, 60.0), Reports::kMost + 1);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "saphira/bus/audit.hpp"
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "saphira/base/enum_pairs.hpp"
@@ -11,7 +12,6 @@ namespace {
 
 using Act = AuditEntry::Act;
 
-constexpr double kMinute = 60.0;  // [s]
 constexpr EnumPairs<Act, v1::AuditAct, 8> kActs{{{
     {Act::drove, v1::AUDIT_DROVE},
     {Act::stopped, v1::AUDIT_STOPPED},
@@ -22,6 +22,8 @@ constexpr EnumPairs<Act, v1::AuditAct, 8> kActs{{{
     {Act::refused, v1::AUDIT_REFUSED},
     {Act::let_in, v1::AUDIT_LET_IN},
 }}};
+
+constexpr double kMinute = 60.0;  // [s]
 
 }  // namespace
 
@@ -40,12 +42,35 @@ AuditEntry from_bus(const v1::AuditEntry& entry) {
   return {kActs.ours(entry.act, Act::refused), entry.who, entry.text};
 }
 
-void Audit::wrong_key(const std::string& door, double now) {
+Audit::Audit(Node& node) {
+  try {
+    writer_.emplace(node.writer(topics::kAudit));
+  } catch (const std::invalid_argument& refusal) {
+    node.warn(std::string("the audit has nothing of this program: ") + refusal.what());
+  }
+}
+
+void Audit::write(const AuditEntry& entry) {
+  if (writer_)
+    writer_->write(to_bus(entry));
+}
+
+void Audit::wrong_key(const std::string& door, double now, const std::string& ended) {
+  door_ = door;
+  if (!ended.empty())
+    ended_ = ended;
   ++wrong_keys_;
-  if (told_ && now - *told_ < kMinute)
+  tend(now);
+}
+
+void Audit::tend(double now) {
+  if (wrong_keys_ == 0 || (told_ && now - *told_ < kMinute))
     return;
   told_ = now;
-  write({Act::refused, "somebody at " + door, counted(std::exchange(wrong_keys_, 0), "wrong key")});
+  const std::string ended = std::exchange(ended_, {});
+  write({Act::refused, "somebody at " + door_,
+         counted(std::exchange(wrong_keys_, 0), "wrong key") +
+             (ended.empty() ? "" : ", with that of " + ended + ", which has ended")});
 }
 
 }  // namespace saphira::bus

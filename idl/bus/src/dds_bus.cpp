@@ -70,7 +70,12 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
                  const std::shared_ptr<Guard>& guard)
     : side(the_side),
       // Strangers must not know the seed: it decides which of them displace each other.
-      entrance(guard ? std::make_shared<Entrance>(std::random_device{}()) : nullptr),
+      entrance(
+          guard ? std::make_shared<Entrance>(std::random_device{}(),
+                                             !guard->seal().has_keys() ? Entrance::Seal::unknown
+                                             : guard->seal_required()  ? Entrance::Seal::required
+                                                                       : Entrance::Seal::preferred)
+                : nullptr),
       // Each side hears of its own programs; those of this machine are heard on loopback.
       discovery(wake, peers, side == Side::network ? machines : nullptr, guard, entrance,
                 side == Side::local && options.profile == Profile::wan ? kProgramsPerPeer : 0) {

@@ -49,6 +49,7 @@ Guard::Guard(std::string folder, security::Credentials credentials)
     : folder_(std::move(folder)),
       credentials_(std::move(credentials)),
       own_{credentials_.subject.name, credentials_.subject.role},
+      seal_(credentials_.site_keys),
       looked_(BootClock::now()) {
   security::only_authorities_sign();
   take(security::load_revoked(folder_, credentials_.authority));

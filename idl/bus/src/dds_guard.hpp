@@ -14,6 +14,7 @@
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/security/credentials.hpp"
+#include "saphira/security/seal.hpp"
 
 namespace saphira::bus::internal {
 
@@ -40,6 +41,10 @@ class Guard {
   const Identity& own() const { return own_; }
   const std::string& site() const { return credentials_.subject.site; }
 
+  /// Of the site, for announcements.
+  const security::Seal& seal() const { return seal_; }
+  bool seal_required() const { return credentials_.roles.seal_required; }
+
   /// True where the certificate of a packet's sender is revoked. From any thread.
   bool revoked(const std::uint8_t* prefix) const;
 
@@ -55,6 +60,7 @@ class Guard {
   const std::string folder_;
   const security::Credentials credentials_;
   const Identity own_;
+  const security::Seal seal_;
   BootClock::time_point looked_;
   std::string trouble_;
   std::uint64_t number_ = 0;

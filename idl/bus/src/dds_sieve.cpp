@@ -9,6 +9,7 @@
 #include <exception>
 #include <fastdds/rtps/common/LocatorList.hpp>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -38,16 +39,25 @@ class Sieve : public transport::ChainingTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     if (*descriptor_.mute)
       return true;
-    const bool sent = low->send(buffer, size, begin, end, timeout);
-    if (descriptor_.machines && is_announcement(buffer, size))
-      announce(low, buffer, size, timeout);
+    if (!is_announcement(buffer, size))
+      return low->send(buffer, size, begin, end, timeout);
+    std::vector<rtps::octet> sealed(buffer, buffer + size);
+    if (descriptor_.guard)
+      descriptor_.guard->seal().close(sealed, unix_seconds());
+    const auto length = static_cast<std::uint32_t>(sealed.size());
+    const bool sent = low->send(sealed.data(), length, begin, end, timeout);
+    if (descriptor_.machines)
+      announce(low, sealed.data(), length, timeout);
     return sent;
   }
 
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* buffer,
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
-    const auto sound = static_cast<std::uint32_t>(sound_length(buffer, size));
+    security::Seal::Opened opened{size, std::nullopt};
+    if (descriptor_.guard)
+      opened = descriptor_.guard->seal().open(buffer, size);
+    const auto sound = static_cast<std::uint32_t>(sound_length(buffer, opened.size));
     if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)) ||
         !plausible(buffer, sound))
       return;
@@ -69,7 +79,7 @@ class Sieve : public transport::ChainingTransport {
           descriptor_.entrance->forged(address_of(remote), BootClock::now());
         return;
       }
-      const auto fate = fate_of(sender, announces, introduces, remote);
+      const auto fate = fate_of(sender, announces, introduces, opened.sealed, remote);
       if (fate == Entrance::Fate::drops)
         return;
       if (announces && fate == Entrance::Fate::waits) {
@@ -91,9 +101,12 @@ class Sieve : public transport::ChainingTransport {
   }
 
   Entrance::Fate fate_of(const Entrance::Prefix& sender, bool announces, bool introduces,
-                         const rtps::Locator_t& from) const {
+                         std::optional<std::int64_t> sealed, const rtps::Locator_t& from) const {
     const auto now = BootClock::now();
-    return announces    ? descriptor_.entrance->announced(sender, address_of(from), now)
+    std::optional<std::chrono::seconds> age;
+    if (sealed)
+      age = std::chrono::seconds(unix_seconds() - *sealed);
+    return announces    ? descriptor_.entrance->announced(sender, address_of(from), now, age)
            : introduces ? descriptor_.entrance->shakes_hands(sender, now)
                         : descriptor_.entrance->sends(sender, now);
   }

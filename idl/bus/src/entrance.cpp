@@ -9,10 +9,12 @@
 
 namespace saphira::bus::internal {
 
-Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& address, Time now) {
+Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& address, Time now,
+                                   std::optional<std::chrono::seconds> sealed) {
   const std::scoped_lock lock(mutex_);
   if (const auto known = known_.find(prefix); known != known_.end()) {
-    const Fate found = fate(known->second, now);
+    // Who has sealed its announcements goes on to do so.
+    const Fate found = known->second.sealed && !sealed ? Fate::drops : fate(known->second, now);
     return found == Fate::drops ? dropped(address, now) : found;
   }
   if (const auto refused = refused_.find(prefix); refused != refused_.end()) {
@@ -20,18 +22,43 @@ Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& addr
       return dropped(address, now);
     refused_.erase(refused);
   }
-  if (waiting_ >= kCrowd && !heard_twice(prefix, now))
+  if (!has_place(prefix, now, sealed))
     return dropped(address, now);
-  // Fast DDS did not take these, and will not tell their end.
-  if (waiting_ >= kMost)
-    waiting_ -= std::erase_if(known_, [&](const auto& one) {
-      return one.second.found == 0 && !one.second.in && now - one.second.since > kPatience;
-    });
-  if (waiting_ >= kMost)
-    return dropped(address, now);
-  known_[prefix] = {.since = now, .address = address};
+  known_[prefix] = {.since = now, .address = address, .sealed = sealed.has_value()};
   ++waiting_;
+  if (sealed)
+    ++sealed_waiting_;
   return Fate::waits;
+}
+
+bool Entrance::has_place(const Prefix& prefix, Time now,
+                         std::optional<std::chrono::seconds> sealed) {
+  if (!sealed && seal_ == Seal::required)
+    return false;
+  if (sealed && sealed_waiting_ >= kRepeated && (*sealed > kFresh || *sealed < -kFresh))
+    return false;
+  if (!sealed && waiting_ >= kCrowd && !heard_twice(prefix, now))
+    return false;
+  const auto is_full = [&] {
+    return waiting_ >= kMost ||
+           (!sealed && seal_ != Seal::unknown && waiting_ - sealed_waiting_ >= kMostUnsealed);
+  };
+  // Fast DDS did not take these, and will not tell their end.
+  if (is_full())
+    std::erase_if(known_, [&](const auto& one) {
+      const bool ends =
+          one.second.found == 0 && !one.second.in && now - one.second.since > kPatience;
+      if (ends)
+        leave(one.second);
+      return ends;
+    });
+  return !is_full();
+}
+
+void Entrance::leave(const Known& known) {
+  --waiting_;
+  if (known.sealed)
+    --sealed_waiting_;
 }
 
 Entrance::Fate Entrance::shakes_hands(const Prefix& prefix, Time now) {
@@ -43,7 +70,9 @@ Entrance::Fate Entrance::shakes_hands(const Prefix& prefix, Time now) {
 Entrance::Fate Entrance::sends(const Prefix& prefix, Time now) {
   const std::scoped_lock lock(mutex_);
   const auto known = known_.find(prefix);
-  return known == known_.end() ? Fate::passes : fate(known->second, now);
+  if (known == known_.end())
+    return seal_ == Seal::required ? Fate::drops : Fate::passes;
+  return fate(known->second, now);
 }
 
 void Entrance::found(const Prefix& prefix) {
@@ -56,7 +85,7 @@ void Entrance::let_in(const Prefix& prefix) {
   const std::scoped_lock lock(mutex_);
   const auto [known, is_new] = known_.try_emplace(prefix);
   if (!std::exchange(known->second.in, true) && !is_new)
-    --waiting_;
+    leave(known->second);
 }
 
 void Entrance::refuse(const Prefix& prefix) {
@@ -76,7 +105,7 @@ void Entrance::forget(const Prefix& prefix, Time now) {
     refused_[prefix] = now;
   }
   if (!known->second.in)
-    --waiting_;
+    leave(known->second);
   known_.erase(known);
 }
 
@@ -140,7 +169,7 @@ Entrance::Fate Entrance::dropped(const std::string& address, Time now) {
 Entrance::Fate Entrance::fate(const Known& known, Time now) const {
   if (known.in)
     return Fate::passes;
-  return known.refused || now - known.since > patience() ? Fate::drops : Fate::waits;
+  return known.refused || now - known.since > patience(known) ? Fate::drops : Fate::waits;
 }
 
 bool Entrance::heard_twice(const Prefix& prefix, Time now) {

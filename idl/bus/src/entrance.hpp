@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,12 @@ class Entrance {
     return prefix;
   }
 
+  /// The seal of the site on announcements. Preferred: strangers without it take none of the places
+  /// that are kept for those with it, so that these get in whatever the strangers do.
+  enum class Seal { unknown, preferred, required };
+
   /// `seed`: a stranger does not know it.
-  explicit Entrance(std::uint64_t seed) : seed_(seed) {}
+  explicit Entrance(std::uint64_t seed, Seal seal = Seal::unknown) : seed_(seed), seal_(seal) {}
 
   /// The treatment of a packet.
   enum class Fate {
@@ -37,8 +42,10 @@ class Entrance {
     waits,  ///< passes; an announcement is good for kLease alone
     drops,
   };
-  /// `address`: where it comes from.
-  Fate announced(const Prefix& prefix, const std::string& address, Time now);
+  /// `address`: where it comes from. `sealed`: how long ago it was sealed, by the clocks of two
+  /// machines; none: it has no good seal.
+  Fate announced(const Prefix& prefix, const std::string& address, Time now,
+                 std::optional<std::chrono::seconds> sealed = std::nullopt);
   /// Of a message of a handshake: of one that was not announced nothing passes.
   Fate shakes_hands(const Prefix& prefix, Time now);
   /// Of any other packet.
@@ -67,6 +74,11 @@ class Entrance {
   /// From this number on, as in an attack, one is admitted when it is heard twice, and waits for
   /// kPatience. Otherwise a program on a busy machine has time for its handshake.
   static constexpr std::size_t kCrowd = 16;
+  /// Those without a seal that wait at most where seals are preferred. Strangers who repeat what
+  /// others have sealed: from this number of sealed ones that wait on, a seal has to be fresh.
+  static constexpr std::size_t kMostUnsealed = 16;
+  static constexpr std::size_t kRepeated = 5;
+  static constexpr std::chrono::seconds kFresh{600};
   static constexpr std::chrono::seconds kPatience{3};
   static constexpr std::chrono::seconds kPatienceInPeace{20};
   static constexpr std::chrono::seconds kLease{3};
@@ -89,6 +101,7 @@ class Entrance {
     int found = 0;  ///< by Fast DDS, which tells when it forgets it; may be found again before
     bool in = false;
     bool refused = false;
+    bool sealed = false;
   };
   struct Stranger {
     Time first;
@@ -104,14 +117,18 @@ class Entrance {
   Fate fate(const Known& known, Time now) const;
   Fate dropped(const std::string& address, Time now);
   bool heard_twice(const Prefix& prefix, Time now);
-  std::chrono::seconds patience() const {
-    return waiting_ >= kCrowd ? kPatience : kPatienceInPeace;
+  bool has_place(const Prefix& prefix, Time now, std::optional<std::chrono::seconds> sealed);
+  void leave(const Known& known);
+  std::chrono::seconds patience(const Known& known) const {
+    return waiting_ >= kCrowd && !known.sealed ? kPatience : kPatienceInPeace;
   }
 
   const std::uint64_t seed_;
+  const Seal seal_;
   mutable std::mutex mutex_;
   std::map<Prefix, Known> known_;
   std::size_t waiting_ = 0;         ///< of them, with those that Fast DDS refused and still keeps
+  std::size_t sealed_waiting_ = 0;  ///< of these
   std::map<Prefix, Time> refused_;  ///< and forgotten since
   std::map<std::string, Stranger> strangers_;  ///< by address; "" for all others
   std::vector<Heard> heard_ = std::vector<Heard>(8192);

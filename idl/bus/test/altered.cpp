@@ -1,11 +1,13 @@
 // A program that a member has altered: it takes every document as signed, its own permissions too.
 // It writes and reads whatever these let it, and says which topics it hears. With --as it announces
-// another member's name and identifier, and authenticates with its own certificate.
+// another member's name and identifier, and authenticates with its own certificate. With
+// --days-back its own clock is behind, so that its certificate has not expired.
 #include <dlfcn.h>
 #include <openssl/evp.h>
 #include <openssl/pkcs7.h>
 #include <openssl/x509.h>
 #include <sys/socket.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -33,6 +35,7 @@ struct Names {
   security::PrefixHead head{};
 };
 Names own, pretended;
+time_t behind = 0;  // [s]
 
 Names names_of(const std::string& text) {
   const auto subject = security::parse_subject(text).value();
@@ -103,6 +106,22 @@ extern "C" int EVP_Digest(const void* data, std::size_t count, unsigned char* ha
                                                    engine);
 }
 
+extern "C" int clock_gettime(clockid_t clock, timespec* time) {
+  static const auto real = next<decltype(&clock_gettime)>("clock_gettime");
+  const int good = real(clock, time);
+  if (clock == CLOCK_REALTIME)
+    time->tv_sec -= behind;
+  return good;
+}
+
+extern "C" time_t time(time_t* where) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (where != nullptr)
+    *where = now.tv_sec;
+  return now.tv_sec;
+}
+
 extern "C" ssize_t sendto(int socket, const void* data, std::size_t count, int flags,
                           const sockaddr* to, socklen_t size) {
   std::string packet(static_cast<const char*>(data), count);
@@ -152,13 +171,17 @@ int run(const NodeOptions& options, const Stop& stop) {
 int main(int argc, char** argv) {
   std::string self;
   std::string other;
+  int days_back = 0;
   return run_program(
       argc, argv, "altered", "A program that a member has altered",
       [&](CommandLine& app) {
         app.add_option("--own", self, "its subject, as in \"CN=john.1,OU=observer,O=office\"");
         app.add_option("--as", other, "the announced subject, of equal length");
+        app.add_option("--days-back", days_back, "its clock is so many days behind");
       },
       [&](const NodeOptions& options, const Stop& stop) {
+        constexpr time_t kDay = 86400;
+        behind = days_back * kDay;
         if (!other.empty()) {
           const Names mine = names_of(self);
           pretended = names_of(other);

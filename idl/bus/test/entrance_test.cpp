@@ -150,6 +150,57 @@ TEST_F(EntranceTest, OneThatIsFoundAgainBeforeItsEndIsToldStaysIn) {
   EXPECT_FALSE(entrance_.is_in(program(1)));
 }
 
+TEST(Entrance, StrangersWithoutASealKeepNobodyOutWhoHasIt) {
+  Entrance entrance(1, Entrance::Seal::preferred);
+  Entrance::Time now{seconds(1000)};
+  const auto program = [](std::uint8_t number) { return Entrance::Prefix{number}; };
+  // Some hundred prefixes again and again, for a minute, of which Fast DDS forgets none in time.
+  std::size_t waiting = 0;
+  for (int round = 0; round < 200; ++round) {
+    for (std::uint8_t stranger = 0; stranger < 200; ++stranger)
+      if (entrance.announced(program(stranger), "", now) == Fate::waits && round < 4)
+        entrance.found(program(stranger));
+    now += milliseconds(300);
+  }
+  for (std::uint8_t stranger = 0; stranger < 200; ++stranger)
+    waiting += entrance.shakes_hands(program(stranger), now) == Fate::drops ? 0U : 1U;
+  EXPECT_LE(waiting, Entrance::kMostUnsealed);
+  for (std::uint8_t member = 200; member < 220; ++member) {
+    EXPECT_EQ(entrance.announced(program(member), "", now, seconds(0)), Fate::waits);
+    entrance.found(program(member));
+  }
+  now += Entrance::kPatience + seconds(1);
+  EXPECT_EQ(entrance.shakes_hands(program(200), now), Fate::waits) << "it has time";
+  entrance.let_in(program(200));
+  EXPECT_EQ(entrance.announced(program(200), "", now, seconds(0)), Fate::passes);
+  EXPECT_EQ(entrance.announced(program(200), "", now), Fate::drops) << "forged in its name";
+}
+
+TEST(Entrance, WhatOthersHaveSealedIsNotRepeatedForLong) {
+  Entrance entrance(1, Entrance::Seal::preferred);
+  const Entrance::Time now{seconds(1000)};
+  const auto announced = [&](std::uint8_t number, std::chrono::seconds age) {
+    return entrance.announced({number}, "", now, age);
+  };
+  for (std::uint8_t i = 0; i < Entrance::kRepeated; ++i)
+    EXPECT_EQ(announced(i, seconds(100000)), Fate::waits) << "clocks may be wrong";
+  EXPECT_EQ(announced(50, Entrance::kFresh + seconds(1)), Fate::drops);
+  EXPECT_EQ(announced(50, -Entrance::kFresh - seconds(1)), Fate::drops);
+  EXPECT_EQ(announced(50, seconds(1)), Fate::waits);
+  for (std::uint8_t i = 0; i < Entrance::kRepeated; ++i)
+    entrance.let_in({i});
+  EXPECT_EQ(announced(51, seconds(100000)), Fate::waits);
+}
+
+TEST(Entrance, WhereTheSealIsRequiredNothingElsePasses) {
+  Entrance entrance(1, Entrance::Seal::required);
+  const Entrance::Time now{seconds(1000)};
+  EXPECT_EQ(entrance.announced({1}, "", now), Fate::drops);
+  EXPECT_EQ(entrance.sends({1}, now), Fate::drops);
+  EXPECT_EQ(entrance.announced({1}, "", now, seconds(0)), Fate::waits);
+  EXPECT_EQ(entrance.sends({1}, now), Fate::waits);
+}
+
 TEST_F(EntranceTest, StrangersAreCountedAndNamed) {
   crowd();
   for (std::uint64_t i = 0; i + 1 < Entrance::kStranger; ++i)

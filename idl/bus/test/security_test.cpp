@@ -37,10 +37,10 @@ std::int64_t now() {
 /// A site with a member for each role, named as the role.
 class Site {
  public:
-  explicit Site(const std::string& name) {
+  explicit Site(const std::string& name, const std::string& more_of_roles = {}) {
     const std::string file = config_folder() + "/security/roles.yaml";
-    authority_.emplace(
-        security::Authority::make(folder_.path("authority"), name, read_file(file), file, now()));
+    authority_.emplace(security::Authority::make(folder_.path("authority"), name,
+                                                 read_file(file) + more_of_roles, file, now()));
     for (const security::Role& role : authority_->roles().roles)
       add(role.name, role.name);
   }
@@ -451,6 +451,42 @@ TEST(Security, AFloodOfStrangersKeepsNobodyOut) {
   const auto notices = internal::transport_of(*bridge).notices();
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_TRUE(saphira::test::has(notices[0], "strangers are kept out: 127.0.0.1 ("));
+}
+
+TEST(Security, StrangersWhoRepeatThemselvesKeepNobodyOut) {
+  const Site site("repeated");
+  const auto bridge = site.node("bridge");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  saphira::test::Strangers strangers(static_cast<unsigned>(std::stoul(saphira::test::domain())));
+  const std::jthread flood([&](const std::stop_token& stop) {
+    while (!stop.stop_requested())
+      strangers.announce(300, 1000, 300);
+  });
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(eventually(*bridge, [&] {
+      return !internal::transport_of(*bridge).notices().empty();
+    })) << "all places of strangers are taken";
+    const auto operating = site.node("operator");
+    auto driver = operating->writer(topics::kDriveTeleop);
+    EXPECT_TRUE(eventually(*bridge, [&] {
+      driver.write(command_of("operator"));
+      return !commands.take().empty();
+    }));
+  }
+}
+
+TEST(Security, WhereTheSealIsRequiredAMemberWithoutItStaysOut) {
+  const Site site("sealed", "\nseal: required\n");
+  const auto bridge = site.node("bridge");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  const auto operating = site.node("operator");
+  auto driver = operating->writer(topics::kDriveTeleop);
+  EXPECT_TRUE(eventually(*bridge, [&] {
+    driver.write(command_of("operator"));
+    return !commands.take().empty();
+  }));
+  fs::remove(site.authority().folder_of("operator") + "/site.key");
+  EXPECT_THROW(site.node("operator"), std::invalid_argument);
 }
 
 TEST(Security, AMemberOfAnotherSiteIsAStranger) {

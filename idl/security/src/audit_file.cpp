@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -25,7 +28,9 @@ namespace fs = std::filesystem;
 
 constexpr double kRepeats = 10.0;  // [s]
 constexpr std::size_t kRecent = 32;
-constexpr std::size_t kLongest = 500;  // [bytes] of who, and of what
+constexpr std::size_t kLongest = 500;    // [bytes] of who, and of what
+constexpr const char* kEnded = "ended";  // the act of the audit itself
+constexpr off_t kRoom = 1 << 15;         // [bytes]
 
 /// A whole line.
 struct WholeLine {
@@ -65,7 +70,8 @@ bool is_there(const std::string& path) {
 const char* name_of(AuditEntry::Act act) {
   constexpr std::array names{"drove",   "stopped",  "reset",   "asked",
                              "changed", "canceled", "refused", "let in"};
-  return names[static_cast<std::size_t>(act)];
+  const auto number = static_cast<std::size_t>(act);
+  return number < names.size() ? names[number] : "did something unknown";
 }
 
 AuditFile::AuditFile(std::string path, std::size_t most) : path_(std::move(path)), most_(most) {
@@ -82,23 +88,37 @@ AuditFile::AuditFile(std::string path, std::size_t most) : path_(std::move(path)
   size_ = text.rfind('\n') == text.npos ? 0 : text.rfind('\n') + 1;
   if (size_ < text.size())
     fs::resize_file(path_, size_);
-  // A line may have come before a crash, and its head not.
-  const std::string_view whole(text.data(), size_);
-  const std::size_t begin = size_ < 2 ? 0 : whole.rfind('\n', size_ - 2) + 1;
-  if (const auto last = entry_of(whole.substr(begin, whole.size() - std::min(begin + 1, size_)));
-      last && last->number == number_ + 1 && last->hash == chained(last->text, hash_)) {
-    number_ = last->number;
-    hash_ = last->hash;
+  // Lines may have come before a crash or on a full disk, and their head not.
+  for (std::string_view rest = std::string_view(text).substr(0, size_); !rest.empty();) {
+    const std::size_t length = rest.find('\n');
+    const auto entry = entry_of(rest.substr(0, length));
+    rest.remove_prefix(length + 1);
+    if (entry && entry->number == number_ + 1 && entry->hash == chained(entry->text, hash_)) {
+      number_ = entry->number;
+      hash_ = entry->hash;
+    }
   }
 }
 
-bool AuditFile::rotate() {
+std::string AuditFile::rotate(double time) {
+  const std::string oldest = part(path_, kParts);
+  if (is_there(oldest)) {
+    std::string text = read_bytes(oldest);
+    text.resize(text.size() - (text.ends_with('\n') ? 1 : 0));
+    const auto last = entry_of(std::string_view(text).substr(text.rfind('\n') + 1));
+    if (last)
+      if (std::string trouble =
+              append(kEnded, "the audit",
+                     std::to_string(last->number) + " " + std::string(last->hash), time);
+          !trouble.empty())
+        return trouble;
+  }
   for (int number = kParts; number > 0; --number)
     if (is_there(part(path_, number - 1)) &&
         std::rename(part(path_, number - 1).c_str(), part(path_, number).c_str()) != 0)
-      return false;
+      return cannot_be(path_, "renamed");
   size_ = 0;
-  return true;
+  return {};
 }
 
 std::string AuditFile::write(const AuditEntry& entry, double time) {
@@ -106,16 +126,74 @@ std::string AuditFile::write(const AuditEntry& entry, double time) {
   if (std::any_of(recent_.begin(), recent_.end(),
                   [&](const Recent& one) { return one.entry == entry; }))
     return {};
-  const auto field = [](const std::string& text) {
-    return printable(first_letters(text, kLongest));
+  if (recent_.size() >= kRecent)
+    recent_.erase(recent_.begin());
+  recent_.push_back({entry, time});
+  if (waiting_.size() < kMostWaiting)
+    waiting_.push_back({entry, time});
+  else
+    ++lost_;
+  return write_waiting(time);
+}
+
+std::string AuditFile::tend(double time) {
+  // Room for the next lines on a disk that is full by then. Not every file system has that.
+  const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (file >= 0) {
+    fallocate(file, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(size_), kRoom);
+    close(file);
+  }
+  return write_waiting(time);
+}
+
+std::string AuditFile::write_waiting(double time) {
+  const auto put = [&](const AuditEntry& entry, double then) {
+    std::string trouble = size_ > most_ ? rotate(then) : "";
+    return trouble.empty() ? append(name_of(entry.act), entry.who, entry.text, then) : trouble;
+  };
+  for (; !waiting_.empty(); waiting_.pop_front())
+    if (std::string trouble = put(waiting_.front().entry, waiting_.front().time); !trouble.empty())
+      return trouble;
+  if (lost_ > 0) {
+    const AuditEntry gap{AuditEntry::Act::refused, "the audit",
+                         std::to_string(lost_) + " later entries had no room on the disk"};
+    if (std::string trouble = put(gap, time); !trouble.empty())
+      return trouble;
+    lost_ = 0;
+  }
+  return keep_head() ? "" : cannot_be(path_ + ".head", "written");
+}
+
+bool AuditFile::keep_head() {
+  const std::string head = head_of(number_, hash_);
+  if (head == head_)
+    return true;
+  if (!replace_file(path_ + ".head", head)) {
+    // In the place of the former one, which has room on a full disk.
+    const int why = errno;
+    const int file = open((path_ + ".head").c_str(), O_WRONLY | O_CLOEXEC);
+    const bool written = file >= 0 &&
+                         pwrite(file, head.data(), head.size(), 0) == std::ssize(head) &&
+                         ftruncate(file, std::ssize(head)) == 0;
+    close(file);
+    errno = why;
+    if (!written)
+      return false;
+  }
+  head_ = head;
+  return true;
+}
+
+std::string AuditFile::append(const std::string& act, const std::string& who,
+                              const std::string& what, double time) {
+  const auto field = [](const std::string& part) {
+    return printable(first_letters(part, kLongest));
   };
   const std::string text = std::to_string(number_ + 1) + "\t" +
                            utc_text(static_cast<std::int64_t>(time), "%Y-%m-%dT%H:%M:%SZ") + "\t" +
-                           name_of(entry.act) + "\t" + field(entry.who) + "\t" + field(entry.text);
+                           act + "\t" + field(who) + "\t" + field(what);
   std::string hash = chained(text, hash_);
   const std::string line = text + "\t" + hash + "\n";
-  if (size_ > 0 && size_ + line.size() > most_ && !rotate())
-    return cannot_be(path_, "renamed");
   const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (file < 0)
     return cannot_be(path_, "opened");
@@ -123,20 +201,59 @@ std::string AuditFile::write(const AuditEntry& entry, double time) {
   const bool whole = written == static_cast<ssize_t>(line.size());
   const std::string trouble = whole ? "" : cannot_be(path_, "written");
   if (!whole && written > 0 && ftruncate(file, static_cast<off_t>(size_)) != 0)
-    size_ = most_;  // half a line stays: the next one begins a part
+    size_ = most_ + 1;  // half a line stays: the next one begins a part
   close(file);
   if (!whole)
     return trouble;
   size_ += line.size();
   ++number_;
   hash_ = std::move(hash);
-  if (recent_.size() >= kRecent)
-    recent_.erase(recent_.begin());
-  recent_.push_back({entry, time});
-  return replace_file(path_ + ".head", head_of(number_, hash_))
-             ? ""
-             : cannot_be(path_ + ".head", "written");
+  return {};
 }
+
+namespace {
+
+/// The first entry that is there.
+struct Begin {
+  std::string place;
+  std::uint64_t number = 0;
+  std::string text;
+  std::string hash;
+};
+
+/// The number and hash in an entry of the audit itself about a part that ends.
+std::optional<std::pair<std::uint64_t, std::string>> ended_in(std::string_view text) {
+  const std::string begin = std::string("\t") + kEnded + "\tthe audit\t";
+  const std::size_t at = text.find('\t', text.find('\t') + 1);  // behind the time
+  if (at == text.npos || !text.substr(at).starts_with(begin))
+    return std::nullopt;
+  const std::string_view last = text.substr(at + begin.size());
+  const std::size_t blank = std::min(last.find(' '), last.size());
+  const auto number = number_in<std::uint64_t>(last.substr(0, blank));
+  if (!number || blank == last.size())
+    return std::nullopt;
+  return std::pair(*number, std::string(last.substr(blank + 1)));
+}
+
+/// A sign that entries before it were cut off, or that it was changed.
+std::string trouble_of(const Begin& begin, const std::map<std::uint64_t, std::string>& ended,
+                       bool cut, std::uint64_t& vouched_from) {
+  const std::string entry = begin.place + ": entry " + std::to_string(begin.number);
+  const auto before = ended.find(begin.number - 1);
+  vouched_from = begin.number;
+  if (begin.number == 1 || before != ended.end())
+    return begin.hash == chained(begin.text, begin.number == 1 ? "" : before->second)
+               ? ""
+               : entry + " was changed";
+  // An earlier version ended parts without a word.
+  if (cut && (ended.empty() || begin.number <= ended.begin()->first)) {
+    ++vouched_from;
+    return {};
+  }
+  return entry + " is the first: those before were cut off";
+}
+
+}  // namespace
 
 AuditRecord read_audit(const std::string& path, const std::string& known) {
   AuditRecord record;
@@ -154,7 +271,8 @@ AuditRecord read_audit(const std::string& path, const std::string& known) {
     head = read_bytes(path + ".head");
   bool has_head = false;
   bool has_known = known.empty();
-  bool first = true;
+  std::optional<Begin> begin;
+  std::map<std::uint64_t, std::string> ended;  // the last entries of ended parts, with their hashes
   for (int number = oldest; number >= 0; --number) {
     const std::string file = part(path, number);
     if (!is_there(file)) {
@@ -174,18 +292,16 @@ AuditRecord read_audit(const std::string& path, const std::string& known) {
         note(place + ": this is no whole entry");
         continue;
       }
-      // The entries before the oldest part have ended with it, and no other way.
-      const bool begins = first && oldest == AuditFile::kParts;
-      if (first && !begins && entry->number != 1)
-        note(place + ": entry " + std::to_string(entry->number) + " is the first: those before " +
-             "were cut off");
-      else if (!first && entry->number != record.number + 1)
+      if (!begin)
+        begin = Begin{place, entry->number, std::string(entry->text), std::string(entry->hash)};
+      else if (entry->number != record.number + 1)
         note(place + ": entry " + std::to_string(entry->number) + " follows entry " +
              std::to_string(record.number));
-      else if (!begins && entry->hash != chained(entry->text, record.hash))
+      else if (entry->hash != chained(entry->text, record.hash))
         note(place + ": entry " + std::to_string(entry->number) +
              " or the one before it was changed");
-      first = false;
+      if (const auto last = ended_in(entry->text))
+        ended.insert(*last);
       record.number = entry->number;
       record.hash = entry->hash;
       record.lines.emplace_back(entry->text);
@@ -193,7 +309,10 @@ AuditRecord read_audit(const std::string& path, const std::string& known) {
       has_known = has_known || record.hash == known;
     }
   }
-  if (!has_head)
+  if (begin)
+    note(trouble_of(*begin, ended, oldest == AuditFile::kParts, record.vouched_from));
+  const bool empty = record.number == 0 && (head.empty() || head == head_of(0, {}));
+  if (!has_head && !empty)
     note(path + ".head names an entry that is not there: the end was cut off or changed");
   if (!has_known)
     note("no entry has the hash " + known +

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/documents.hpp"
+#include "saphira/security/seal.hpp"
 
 namespace saphira::security {
 
@@ -88,6 +90,7 @@ Authority Authority::make(const std::string& folder, const std::string& site,
   write(folder + "/" + kMembersFile, "site " + site + "\nrevocations 0\n");
   write(folder + "/" + kAuthority, pair.certificate);
   write(folder + "/" + kRevoked, sign(to_text(Revoked{}), pair));
+  write(folder + "/" + kSiteKey, site_keys_text({new_site_key()}));
   write(folder + "/" + kAuthorityKey, pair.key);
   return Authority(folder);
 }
@@ -232,11 +235,32 @@ std::string Authority::revoke(const std::string& name) {
   ++revoked_.number;
   write(revoked_list(), sign(to_text(revoked_), key_pair(key_, certificate_)));
   save_members();
+  const Private mode;
+  write(folder_ + "/" + kSiteKey, site_keys_text({new_site_key(), site_keys().front()}));
   const std::string list = read_bytes(revoked_list());
   for (const auto& [other, its] : members_)
     if (fs::is_directory(folder_of(other)))
       write(folder_of(other) + "/" + kRevoked, list);
   return revoked_list();
+}
+
+/// The newest first. Since a revoked member knows the keys of before, a revocation makes a new one;
+/// the one before holds until all members have the new one.
+std::vector<std::string> Authority::site_keys() const {
+  const std::string file = folder_ + "/" + kSiteKey;
+  std::vector<std::string> keys;
+  if (fs::exists(file))
+    keys = checked(file, kRestore, [&] { return parse_site_keys(read_bytes(file)); });
+  else  // of an earlier version
+    keys = {new_site_key()};
+  const bool all_have_it = std::all_of(members_.begin(), members_.end(), [&](const auto& one) {
+    const std::string its = folder_of(one.first) + "/" + kSiteKey;
+    return one.second.revoked ||
+           (fs::exists(its) && read_bytes(its).starts_with(keys.front() + "\n"));
+  });
+  if (all_have_it)
+    keys.resize(1);
+  return keys;
 }
 
 void Authority::write_shared(const std::string& folder) const {
@@ -245,6 +269,9 @@ void Authority::write_shared(const std::string& folder) const {
   write(folder + "/" + kRoles, sign(roles_.text, pair));
   write(folder + "/" + kGovernance, sign(governance(), pair));
   write(folder + "/" + kRevoked, read_bytes(revoked_list()));
+  const std::string keys = site_keys_text(site_keys());
+  write(folder_ + "/" + kSiteKey, keys);
+  write(folder + "/" + kSiteKey, keys);
 }
 
 void Authority::issue(const std::string& name, const Member& member, std::int64_t now) const {

@@ -12,6 +12,7 @@
 #include "files.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/documents.hpp"
+#include "saphira/security/seal.hpp"
 
 namespace saphira::security {
 
@@ -131,6 +132,14 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
     throw NotYet(found.files.certificate + ": it holds from " + day_text(from) +
                  " on; the clock of this machine says " + day_text(now) +
                  ": is that right? A board without a clock gets the time from the network");
+  if (const std::string file = folder + "/" + kSiteKey; fs::exists(file)) {
+    found.files.site_key = file;
+    const std::string text = read(file);
+    found.site_keys = checked(file, kCopy, [&] { return parse_site_keys(text); });
+  } else if (found.roles.seal_required) {
+    fail(file, "there is no key of the site, which its roles require",
+         "`saphira security renew " + found.subject.name + "` makes one");
+  }
   const std::string key = read(found.files.key);
   checked(found.files.key, kCopy, [&] { check_key(key, certificate); });
   const auto document = [&](const std::string& file) {
@@ -156,12 +165,19 @@ Credentials load_role(const std::string& folder, const std::string& role, std::i
 }
 
 std::string trouble_of_key(const Credentials& credentials) {
-  struct stat file {};
-  if (::stat(credentials.files.key.c_str(), &file) != 0 ||
-      (file.st_mode & (S_IRWXG | S_IRWXO)) == 0)
-    return {};
-  return credentials.files.key + ": other users of this machine may read it, and be " +
-         credentials.subject.name + " then; chmod 600 " + credentials.files.key;
+  const auto is_open = [](const std::string& path) {
+    struct stat file {};
+    return !path.empty() && ::stat(path.c_str(), &file) == 0 &&
+           (file.st_mode & (S_IRWXG | S_IRWXO)) != 0;
+  };
+  const CredentialFiles& files = credentials.files;
+  if (is_open(files.key))
+    return files.key + ": other users of this machine may read it, and be " +
+           credentials.subject.name + " then; chmod 600 " + files.key;
+  if (is_open(files.site_key))
+    return files.site_key + ": other users of this machine may read it, and announce programs in " +
+           "the name of the site then; chmod 600 " + files.site_key;
+  return {};
 }
 
 std::string to_text(const Revoked& revoked) {

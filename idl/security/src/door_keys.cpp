@@ -104,6 +104,11 @@ const DoorKey* DoorKeys::find(std::string_view key, std::int64_t now) const {
   return found == keys_.end() ? nullptr : &*found;
 }
 
+std::string DoorKeys::ended(std::string_view key, std::int64_t now) const {
+  const DoorKey* const owner = find(key, 0);
+  return owner == nullptr || now < owner->until ? "" : owner->name;
+}
+
 bool DoorKeys::holds(const DoorKey& key, std::int64_t now) const {
   return std::any_of(keys_.begin(), keys_.end(), [&](const DoorKey& one) {
     return one.name == key.name && one.hash == key.hash && one.right == key.right &&

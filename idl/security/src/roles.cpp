@@ -41,7 +41,12 @@ class Parser {
     }
     const YAML::Node roles = member(root, root, "roles", "roles: and topics:");
     const YAML::Node topics = member(root, root, "topics", "roles: and topics:");
-    only(root, {"roles", "topics"});
+    only(root, {"roles", "topics", "seal"});
+    if (root["seal"]) {
+      if (word(root["seal"], "required") != "required")
+        fail(root["seal"].Mark(), "expected seal: required, or no such line");
+      roles_.seal_required = true;
+    }
     for (const auto& entry : map(roles, "roles"))
       role(entry.first, entry.second);
     for (const auto& entry : map(topics, "topics"))

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 
 #include "site.hpp"
 
@@ -31,7 +32,7 @@ TEST(AuthorityTest, KeysAreForTheirUserAlone) {
       EXPECT_EQ(entry.status().permissions(), fs::perms::owner_read | fs::perms::owner_write)
           << entry.path();
     }
-  EXPECT_EQ(keys, 2);
+  EXPECT_EQ(keys, 4) << "of the authority, the site (in both) and the member";
   EXPECT_EQ(fs::status(made).permissions(), fs::perms::owner_all);
 }
 
@@ -102,6 +103,48 @@ TEST(AuthorityTest, WhatIsRevokedDoesNotStartAgain) {
   authority.add("karen", {"observer"}, "", 365, kNow);
   const Credentials again = load_credentials(karen, "cli", kNow);
   EXPECT_EQ(again.subject, (Subject{"karen", 3, "observer", "office"}));
+}
+
+TEST(AuthorityTest, ARevocationMakesANewKeyOfTheSite) {
+  const Folder folder;
+  Authority authority = folder.authority();
+  std::map<std::string, std::string> made;
+  for (const char* const name : {"karen", "john", "gone"})
+    made[name] = authority.add(name, {"operator"}, "", 365, kNow);
+  const auto keys = [&](const char* name) {
+    return load_credentials(made[name], "cli", kNow).site_keys;
+  };
+  const std::vector<std::string> old = keys("karen");
+  ASSERT_EQ(old.size(), 1U);
+  EXPECT_EQ(keys("john"), old);
+  authority.revoke("gone");
+  EXPECT_EQ(keys("karen"), old) << "until it is renewed";
+  authority.renew("karen", 365, kNow);
+  const std::vector<std::string> both = keys("karen");
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_NE(both[0], old[0]);
+  EXPECT_EQ(both[1], old[0]) << "john has no other one yet";
+  authority.renew("john", 365, kNow);
+  EXPECT_EQ(keys("john"), both);
+  Authority again(folder.path());
+  again.renew("karen", 365, kNow);
+  EXPECT_EQ(keys("karen"), std::vector<std::string>{both[0]}) << "all have the new one";
+}
+
+TEST(AuthorityTest, ASiteFromBeforeTheSealGetsAKey) {
+  const Folder folder;
+  Authority authority = folder.authority();
+  const std::string karen = authority.add("karen", {"operator"}, "", 365, kNow);
+  const std::string john = authority.add("john", {"operator"}, "", 365, kNow);
+  for (const std::string& file :
+       {folder.path() + "/site.key", karen + "/site.key", john + "/site.key"})
+    fs::remove(file);
+  EXPECT_TRUE(load_credentials(karen, "cli", kNow).site_keys.empty());
+  authority.renew("karen", 365, kNow);
+  authority.renew("john", 365, kNow);
+  EXPECT_EQ(load_credentials(karen, "cli", kNow).site_keys.size(), 1U);
+  EXPECT_EQ(load_credentials(karen, "cli", kNow).site_keys,
+            load_credentials(john, "cli", kNow).site_keys);
 }
 
 }  // namespace

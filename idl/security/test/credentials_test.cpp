@@ -40,7 +40,7 @@ TEST_F(CredentialsTest, TimesAreTold) {
 TEST_F(CredentialsTest, EachMissingFileIsNamed) {
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(made_))
-    if (entry.is_regular_file())
+    if (entry.is_regular_file() && entry.path().filename() != "site.key")
       files.push_back(entry.path().string());
   ASSERT_EQ(files.size(), 7U);
   for (const std::string& file : files) {
@@ -51,6 +51,17 @@ TEST_F(CredentialsTest, EachMissingFileIsNamed) {
     fs::rename(file + ".away", file);
   }
   EXPECT_EQ(loading(), "");
+}
+
+TEST_F(CredentialsTest, TheKeyOfTheSiteIsCheckedAndForItsUserAlone) {
+  const std::string file = made_ + "/site.key";
+  EXPECT_EQ(trouble_of_key(load_credentials(made_, "cli", kNow)), "");
+  fs::permissions(file, fs::perms::group_read, fs::perm_options::add);
+  EXPECT_TRUE(says(trouble_of_key(load_credentials(made_, "cli", kNow)), file));
+  ASSERT_TRUE(replace_file(file, "no key\n"));
+  EXPECT_TRUE(says(loading(), file));
+  fs::remove(file);
+  EXPECT_EQ(loading(), "") << "of a site from before";
 }
 
 TEST_F(CredentialsTest, ChangedDocumentsAreTold) {

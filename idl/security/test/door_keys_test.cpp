@@ -28,6 +28,9 @@ TEST(DoorKeys, AKeyIsFoundUntilItsLastDayIsOver) {
   EXPECT_EQ(keys.find(bob, kNow)->right, DoorRight::watch);
   EXPECT_NE(keys.find(anna, kNow + kDay), nullptr);
   EXPECT_EQ(keys.find(anna, kNow + 2 * kDay), nullptr);
+  EXPECT_EQ(keys.ended(anna, kNow + 2 * kDay), "anna");
+  EXPECT_EQ(keys.ended(anna, kNow), "");
+  EXPECT_EQ(keys.ended("nobody's", kNow + 2 * kDay), "");
   for (const std::string& wrong : {std::string(), anna.substr(1), anna + "0", std::string(32, 'f')})
     EXPECT_EQ(keys.find(wrong, kNow), nullptr) << wrong;
   EXPECT_EQ(keys.find(keys.all()[0].hash, kNow), nullptr) << "the file gives nobody a key";

@@ -42,6 +42,15 @@ TEST(Roles, SayWhichMayWriteAndRead) {
   EXPECT_EQ(roles.of_program("cli"), nullptr);
 }
 
+TEST(Roles, ASealMayBeRequired) {
+  const auto parsed = [](const std::string& more) {
+    return parse_roles(std::string(kGood) + more, "roles.yaml", kTopics);
+  };
+  EXPECT_FALSE(parsed("").seal_required);
+  EXPECT_TRUE(parsed("seal: required\n").seal_required);
+  EXPECT_THROW(parsed("seal: preferred\n"), FileError);
+}
+
 TEST(Roles, WhatIsNotWrittenIsRefused) {
   const Roles roles = parse_roles(kGood, "roles.yaml", kTopics);
   EXPECT_FALSE(roles.may_read("bridge", "other"));
@@ -90,7 +99,9 @@ TEST(Roles, TheShippedFileCoversTheContract) {
     EXPECT_FALSE(rule.writers.empty()) << rule.topic;
     EXPECT_FALSE(rule.readers.empty()) << rule.topic;
     const bool own = rule.topic.starts_with("system/");
-    EXPECT_EQ(rule.writers.contains("observer"), own || rule.topic == "drive/stop") << rule.topic;
+    EXPECT_EQ(rule.writers.contains("observer"),
+              own || rule.topic == "drive/stop" || rule.topic == "audit")
+        << rule.topic;
     EXPECT_EQ(rule.writers.contains("recorder"), own) << rule.topic;
     EXPECT_TRUE(rule.readers.contains("recorder")) << rule.topic;
     for (const auto* const roles_of_it : {&rule.writers, &rule.readers}) {

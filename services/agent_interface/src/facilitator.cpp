@@ -126,6 +126,10 @@ std::vector<Arguments> rows_of(const Arguments& part, const Arguments& bound,
   return rows;
 }
 
+// In the memory.
+constexpr const char* kAsker = "asker";
+constexpr const char* kNoRole = "-";
+
 /// Nothing was done: another agent may get the same request.
 bool untouched(AnswerCode code) {
   return code == AnswerCode::refused || code == AnswerCode::unknown_functor ||
@@ -260,6 +264,10 @@ void Facilitator::ask(const Request& request, double now) {
     }
   if (request.functor == kLiveTriggers)
     return list_triggers(request);
+  // An action of before a restart is its asker's, whoever asks for it again or withdraws it.
+  if (const Checked asker = asker_of_begun(id); !may_end(request.person, asker))
+    return deny(request.source, "to " + std::string(withdraws ? "withdraw" : "take over") +
+                                    " a request of " + asker->text());
   if (!withdraws || begun(id))
     begin(request, std::nullopt, now);
 }
@@ -829,18 +837,28 @@ void Facilitator::note_begun(const Id& id, std::uint64_t agent) {
     return;
   forget_begun(id);
   begun_.emplace_back(id, agent);
+  if (const auto open = open_.find(id); open != open_.end() && open->second.request.person)
+    askers_[id] = *open->second.request.person;
   out_.changed = true;
   if (begun_.size() <= kBegun)
     return;
   const auto over = std::find_if(begun_.begin(), begun_.end(),
                                  [this](const auto& one) { return !open_.contains(one.first); });
-  if (over != begun_.end())
-    begun_.erase(over);
+  if (over == begun_.end())
+    return;
+  askers_.erase(over->first);
+  begun_.erase(over);
 }
 
 void Facilitator::forget_begun(const Id& id) {
+  askers_.erase(id);
   if (std::erase_if(begun_, [&](const auto& one) { return one.first == id; }) > 0)
     out_.changed = true;
+}
+
+Checked Facilitator::asker_of_begun(const Id& id) const {
+  const auto found = askers_.find(id);
+  return found == askers_.end() ? std::nullopt : Checked(found->second);
 }
 
 std::string Facilitator::save() const {
@@ -849,18 +867,33 @@ std::string Facilitator::save() const {
     text << "fired " << trigger.first << ' ' << trigger.second << ' ' << times << '\n';
   for (const auto& [request, agent] : begun_)
     text << "begun " << request.first << ' ' << request.second << ' ' << agent << '\n';
+  // At the end: an earlier version reads up to here.
+  for (const auto& [request, asker] : askers_)
+    text << kAsker << ' ' << request.first << ' ' << request.second << ' '
+         << (asker.role.empty() ? kNoRole : asker.role) << ' ' << asker.name << '\n';
   return text.str();
 }
 
 void Facilitator::restore(const std::string& text) {
   std::istringstream lines(text);
-  std::string word;
-  Id id;
-  for (std::uint64_t value = 0; lines >> word >> id.first >> id.second >> value;)
-    if (word == "fired")
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word;
+    Id id;
+    std::uint64_t value = 0;
+    if (!(words >> word >> id.first >> id.second))
+      continue;
+    if (Identity asker; word == kAsker && words >> asker.role >> std::ws) {
+      std::getline(words, asker.name);
+      if (asker.role == kNoRole)
+        asker.role.clear();
+      askers_[id] = asker;
+    } else if (words >> value && word == "fired") {
       fired_[id] = value;
-    else
+    } else if (word == "begun") {
       begun_.emplace_back(id, value);
+    }
+  }
 }
 
 }  // namespace saphira::agent_interface

@@ -911,6 +911,38 @@ TEST_F(Facilitation, ARequestIsWithdrawnByItsAskerAndByOperators) {
   EXPECT_EQ(ask(other).requests.at(0).functor, kWithdraw);
 }
 
+TEST_F(Facilitation, AnActionIsItsAskersOverARestart) {
+  facilitator.announce(agent(2, "sweeper", true));
+  Request request = place_of(5);
+  request.person = Identity{"anna at flakey", "agent"};
+  ask(request);
+  const std::string kept = facilitator.save();
+  const auto back = [&] {
+    facilitator = Facilitator(kSelf + 1, now + 2.0);
+    facilitator.restore(kept);
+    facilitator.announce(agent(2, "sweeper", true));
+    EXPECT_EQ(facilitator.save(), kept);
+  };
+  const Identity planner{"planner", "agent"};
+  for (Request other : {withdrawal(5), request}) {
+    back();
+    other.person = planner;
+    const auto refused = ask(other);
+    EXPECT_TRUE(refused.requests.empty() && refused.solved.empty()) << other.functor;
+    ASSERT_EQ(refused.audit.size(), 1U);
+    EXPECT_EQ(refused.audit[0].act, AuditEntry::Act::refused);
+    EXPECT_EQ(facilitator.open(), 0U);
+  }
+  for (const Identity& who : {*request.person, Identity{"karen", "operator"}}) {
+    back();
+    Request ends = withdrawal(5);
+    ends.person = who;
+    const auto told = ask(ends).requests;
+    ASSERT_EQ(told.size(), 1U) << who.name;
+    EXPECT_EQ(told[0].functor, kWithdraw);
+  }
+}
+
 TEST_F(Facilitation, ATriggerIsItsRequestersAndActsForThem) {
   const Identity anna{"anna", "agent"};
   facilitator.announce(agent(1, "a", true));

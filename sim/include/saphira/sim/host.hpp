@@ -60,6 +60,9 @@ struct HostOptions {
   std::optional<std::string> stereo_socket;
   /// Local socket of the simulator's own view (view.hpp): the true state, and people's actions.
   std::optional<std::string> view_socket;
+  /// File with the places of all that moves, written at the end and taken at the start, so that a
+  /// new version goes on where this one ends; empty: none.
+  std::string state;
   /// The names of the files that the view may load, looked for anew each time; absent: none.
   std::function<std::vector<std::string>()> worlds;
   std::function<std::vector<std::string>()> robots;
@@ -104,6 +107,7 @@ class Host {
  private:
   /// Loads another world or robot, by its name; where that fails everything stays as it is.
   void change(const std::string& world, const std::string& robot);
+  void take_state();
 
   friend void check(const HostOptions& options);
 

@@ -89,6 +89,16 @@ class Robot {
   /// there.
   bool place(const Pose& pose_in_world);
 
+  /// What outlasts the simulator (HostOptions::state).
+  struct Memory {
+    Pose pose_in_world;
+    Pose pose_in_odom;
+    double charge = 1.0;  ///< of the battery
+  };
+  Memory memory() const { return {pose_in_world_, pose_in_odom_, charge_}; }
+  /// Stands there, as after memory(). False without room there.
+  bool resume(const Memory& memory);
+
   // ---- State.
 
   const Pose& pose_in_world() const { return pose_in_world_; }     ///< true

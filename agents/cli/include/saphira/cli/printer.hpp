@@ -24,6 +24,8 @@ class Printer {
   void print(std::string_view text);
   /// A picture over the last one: only the newest queued one is printed.
   void show(std::string_view picture);
+  /// For a program that runs for long: what a full disk does not take is left out, and counted.
+  void outlast_full_disk();
   /// Waits until everything is printed; false at the time limit.
   bool flush(std::chrono::milliseconds limit);
   /// True where nothing can be printed any more: the pipe or the terminal is closed, or the disk

@@ -14,6 +14,8 @@ class ServiceManager {
   /// Takes the two variables out of the environment, so that children do not use them.
   ServiceManager();
 
+  /// Puts the variables back, for another program in this process.
+  void restore() const;
   /// Everything has been started.
   void ready(const std::string& status) const;
   void stopping() const;
@@ -26,6 +28,7 @@ class ServiceManager {
   void send(const std::string& lines) const;
 
   std::string socket_;  ///< empty: no manager
+  std::string microseconds_;
   std::optional<std::chrono::milliseconds> period_;
 };
 

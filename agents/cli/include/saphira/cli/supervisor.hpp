@@ -26,6 +26,9 @@ struct ChildSpec {
   std::string robot = {};  ///< the robot of its node; empty: it is not on the bus
 };
 
+/// The identity of a file, which differs from that of a later file with the same path.
+std::string file_of(const std::string& path);
+
 /// Runs programs: starts them in order, prints their lines, restarts ended ones (after 100 ms, then
 /// twice as long each time up to 5 s; back to 100 ms after a run of 10 s), kills hanging or deaf
 /// ones, by the watchdog, so that they are restarted, and stops all in the reverse order. The
@@ -64,10 +67,18 @@ class Supervisor {
   void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
 
   /// Takes new versions: each child whose program file was replaced is ended and restarted, the
-  /// next one after it has run for two seconds. Children stay if `objection` (of the program's
-  /// path) gives a reason, or if they are not on the bus, such as a simulator. step() does the
-  /// work.
-  void renew(const std::function<std::string(const std::string& program)>& objection);
+  /// next one after it has run for two seconds. Children stay if `objection` gives a reason.
+  /// step() does the work.
+  void renew(const std::function<std::string(const ChildSpec& child)>& objection);
+  /// True while new versions are taken in.
+  bool renews() const { return renewing_ || !to_renew_.empty(); }
+
+  /// For a new version of this program, which takes the place of this process (exec): the running
+  /// children, in words. Their descriptors stay open over it.
+  std::string hand_over() const;
+  /// In place of start(): goes on with the children of hand_over(), and starts the others. Ends
+  /// those that it has no use for. std::invalid_argument where the text is of another version.
+  void take_over(const std::string& children);
 
   std::vector<Child> children() const;
   /// A child that ended with a usage error (exit code 2) right after its first start, before it had

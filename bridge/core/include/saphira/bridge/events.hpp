@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -47,10 +48,23 @@ struct Surroundings {
   int keeper_restarts = 0;
 };
 
-/// An entry for the audit from another program, as far as its word counts: the robot's services
-/// have checked whom they name. Others say by themselves only who came in with which key, or was
-/// refused; nothing where it is more.
-std::optional<AuditEntry> reported(AuditEntry entry, const Checked& writer);
+/// The entries of other programs. A service speaks for others; any other member for itself alone,
+/// of those that it let in or refused, and no more than kMost a minute, since the audit ends where
+/// it begins.
+class Reports {
+ public:
+  static constexpr std::size_t kMost = 30;
+
+  /// The entry to keep; nothing where it is dropped. now: [s]
+  std::optional<AuditEntry> take(AuditEntry entry, const Checked& writer, double now);
+
+ private:
+  struct Minute {
+    double began = 0.0;
+    std::size_t entries = 0;
+  };
+  std::map<std::string, Minute> minutes_;  ///< by member
+};
 
 // ---- Outputs of the core. The order counts.
 

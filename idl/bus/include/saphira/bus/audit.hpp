@@ -11,18 +11,23 @@ namespace saphira::bus {
 v1::AuditEntry to_bus(const AuditEntry& entry);
 AuditEntry from_bus(const v1::AuditEntry& entry);
 
-/// A program's side of the audit, which the bridge keeps.
+/// A program's side of the audit, which the bridge keeps. Without the right to write it a warning
+/// says so, and nothing is written.
 class Audit {
  public:
-  explicit Audit(Node& node) : writer_(node.writer(topics::kAudit)) {}
+  explicit Audit(Node& node);
 
-  void write(const AuditEntry& entry) { writer_.write(to_bus(entry)); }
-  /// Somebody came with a key that nobody has. One entry a minute at most, with their number.
-  /// now: [s] of a clock that never goes back.
-  void wrong_key(const std::string& door, double now);
+  void write(const AuditEntry& entry);
+  /// Somebody came with a key that nobody has; `ended`: the person whose key it was [empty: none].
+  /// One entry a minute at most, with their number. now: [s] of a clock that never goes back.
+  void wrong_key(const std::string& door, double now, const std::string& ended = {});
+  /// Tells of the wrong keys that came within that minute. Now and then.
+  void tend(double now);
 
  private:
-  Writer<v1::AuditEntry> writer_;
+  std::optional<Writer<v1::AuditEntry>> writer_;
+  std::string door_;  ///< of the wrong keys
+  std::string ended_;
   std::size_t wrong_keys_ = 0;
   std::optional<double> told_;  ///< [s] of wrong keys
 };

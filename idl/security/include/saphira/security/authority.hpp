@@ -48,6 +48,7 @@ class Authority {
 
  private:
   void issue(const std::string& name, const Member& member, std::int64_t now) const;
+  std::vector<std::string> site_keys() const;
   void write_shared(const std::string& folder) const;
   void save_members() const;
   void load_members();

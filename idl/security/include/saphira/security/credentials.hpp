@@ -24,6 +24,7 @@ struct CredentialFiles {
   std::string certificate;
   std::string key;
   std::string permissions;
+  std::string site_key;  ///< empty: there is none
 };
 
 /// The credentials of a program, checked: the files are there, belong together, hold now and are
@@ -35,6 +36,8 @@ struct Credentials {
   std::string robot;       ///< the only one that it may have to do with [empty: any]
   Roles roles;             ///< of the site
   std::string authority;   ///< its certificate, PEM
+  /// Of the site, for its seal (seal.hpp); none in a folder that an earlier version made.
+  std::vector<std::string> site_keys;
 };
 
 /// Credentials that will hold, or a clock that is behind: no mistake of a person, so a program that
@@ -54,8 +57,8 @@ Credentials load_credentials(const std::string& folder, const std::string& progr
 /// Those of one role of the folder.
 Credentials load_role(const std::string& folder, const std::string& role, std::int64_t now);
 
-/// The fault and the remedy where other users of this machine may read the private key; empty
-/// otherwise.
+/// The fault and the remedy where other users of this machine may read the private key or that of
+/// the site; empty otherwise.
 std::string trouble_of_key(const Credentials& credentials);
 
 /// The roles that a folder has credentials of.

@@ -37,6 +37,8 @@ class DoorKeys {
 
   /// The person who has that key, while it holds; nullptr: nobody.
   const DoorKey* find(std::string_view key, std::int64_t now) const;
+  /// The person whose key that was, until its end; empty: nobody.
+  std::string ended(std::string_view key, std::int64_t now) const;
   /// True while that very key holds, with the same right.
   bool holds(const DoorKey& key, std::int64_t now) const;
   /// Returns the new key. std::invalid_argument for a bad or known name, or a number of days that

@@ -26,6 +26,7 @@ struct Roles {
   std::string text;  ///< the file
   std::vector<Role> roles;
   std::vector<TopicRule> topics;
+  bool seal_required = false;  ///< announcements without the site's seal are dropped
 
   const Role* find(std::string_view role) const;
   /// The role that a program has by its name. None where the file does not name it.

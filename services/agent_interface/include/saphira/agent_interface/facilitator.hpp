@@ -198,6 +198,7 @@ class Facilitator {
   void fire(Armed& armed, const Arguments& found, double now);
   bool is_spent(const Trigger& trigger) const;
   std::optional<std::uint64_t> begun(const Id& id) const;
+  Checked asker_of_begun(const Id& id) const;
   void note_begun(const Id& id, std::uint64_t agent);
   void forget_begun(const Id& id);
   const Capability* capability(std::uint64_t agent, const std::string& functor) const;
@@ -213,6 +214,7 @@ class Facilitator {
   std::map<Id, std::uint64_t> fired_;  ///< how often, of triggers with `times`
   std::set<std::string> strangers_{};  ///< in the address of answers that no agent has
   std::vector<std::pair<Id, std::uint64_t>> begun_{};  ///< actions and their agents, oldest first
+  std::map<Id, Identity> askers_{};                    ///< of these, where the bus checks them
   Outputs out_;
 };
 
