@@ -23,7 +23,6 @@ namespace saphira::test {
 namespace {
 
 constexpr std::uint64_t kEpoch = 1;
-constexpr std::uint64_t kOdom = 1;  // number of the odom frame
 
 protocol::RobotParameters parameters_of(const DriveOptions& options) {
   auto parameters =

@@ -69,6 +69,9 @@ struct Seen {
 /// AvoidCollision, KeepOff and GoToPos, as the functor go_to does.
 class Drive {
  public:
+  /// The number of the odom frame; the bridge makes it from the time.
+  static constexpr std::uint64_t kOdom = 1795260425632;
+
   explicit Drive(const DriveOptions& options);
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
@@ -99,6 +102,7 @@ class Drive {
   const registration::Core& registration() const { return *registration_; }
   /// Another program on their bus.
   bus::Node& node() { return node_; }
+  const std::shared_ptr<bus::MemoryBus>& bus() const { return memory_; }
   Pose truth() const { return seen_.true_pose_in_world; }
   /// By dead reckoning alone, from the true start.
   Pose reckoned() const { return compose(start_, seen_.pose_in_odom); }
@@ -157,7 +161,7 @@ class Drive {
   std::vector<lps::Percept> percepts_;
   std::vector<lps::SeenThing> things_;
   v1::Intentions intended_;
-  v1::Registration registered_;
+  v1::Registration registered_{.state = v1::REGISTRATION_UNPLACED};
   const registration::Core* registration_ = nullptr;
   runtime::Composition services_;
 };

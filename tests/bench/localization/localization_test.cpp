@@ -217,8 +217,8 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   }
   const Seen& seen = robot.seen();
   again.processes().step(seen.cycle);
-  const Output output = again.step(
-      {seen.cycle, &robot.mounts(), 1, seen.pose_in_odom, robot.percepts(), seen.readings});
+  const Output output = again.step({seen.cycle, &robot.mounts(), Drive::kOdom, seen.pose_in_odom,
+                                    robot.percepts(), seen.readings});
   EXPECT_EQ(output.state, v1::REGISTRATION_TRACKING);
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
