@@ -103,6 +103,7 @@ Drive::Drive(const DriveOptions& options)
       knows_walls_(options.knows_walls),
       body_(authority::body_of(parameters_)),
       echoes_(body_.sonar_range),
+      coverage_(body_.radius, body_.sonar_range),
       node_(named("bridge"), memory_),
       services_(named(""), memory_) {
   seen_.pose_in_odom = robot_in_odom_;
@@ -210,9 +211,11 @@ void Drive::obey() {
                          : commanded_.active ? commanded_.heading
                                              : seen_.pose_in_odom.th;
   // Whole millimetres and degrees, as in the robot's commands.
-  robot_->set_velocity(std::round(guard(speed) * 1000.0) / 1000.0);
+  reflector::Setpoints wanted{speed, true, heading, 0.0};
+  guard(wanted);
+  robot_->set_velocity(std::round(wanted.velocity * 1000.0) / 1000.0);
   const double bent = norm2_angle(seen_.pose_in_odom.th - robot_in_odom_.th);
-  robot_->set_heading(radians(std::round(degrees(norm2_angle(heading - bent)))));
+  robot_->set_heading(radians(std::round(degrees(norm2_angle(wanted.heading_in_odom - bent)))));
 }
 
 /// The walls near the robot, in odom, as its driver knows them.
@@ -234,21 +237,26 @@ std::vector<Edge> Drive::edges() const {
   return edges;
 }
 
-double Drive::guard(double speed) {
+void Drive::guard(reflector::Setpoints& wanted) {
+  const double speed = wanted.velocity;
   std::vector<protocol::Sonar> sonars;
   for (const lps::SonarReading& reading : seen_.readings)
     sonars.push_back({static_cast<std::uint8_t>(reading.sonar), reading.range, reading.echo});
   const std::vector<Edge> edges = this->edges();
-  echoes_.update(seen_.cycle, seen_.pose_in_odom, authority::readings_of(sonars, parameters_),
-                 edges);
+  const std::vector<authority::Reading> readings = authority::readings_of(sonars, parameters_);
+  authority::GuardSettings settings;
+  settings.enabled = has_guard_;
+  echoes_.update(seen_.cycle, seen_.pose_in_odom, readings, edges);
   body_.knows_edges = !edges.empty();
   body_.sees_ahead = echoes_.sees(seen_.cycle, true);
   body_.sees_behind = echoes_.sees(seen_.cycle, false);
-  authority::GuardSettings settings;
-  settings.enabled = has_guard_;
+  coverage_.update(seen_.cycle, seen_.pose_in_odom, readings);
+  body_.covered = coverage_.way(speed >= 0.0);
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
                               by_hand_ ? 0.0 : commanded_.contact_speed, echoes_.edges());
-  return guarded_.velocity;
+  wanted.velocity = guarded_.velocity;
+  sweep_.step(seen_.cycle, guarded_.sweep,
+              wanted.velocity < 0.0 ? body_.sweep_behind : body_.sweep_ahead, wanted);
 }
 
 void Drive::intend(std::vector<v1::IntendedBehavior> intended) {

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/behaviors/behavior.hpp"
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/reflector/sweep.hpp"
 #include "saphira/registration/core.hpp"
 #include "saphira/runtime/composition.hpp"
 #include "saphira/sim/robot.hpp"
@@ -122,7 +124,7 @@ class Drive {
   void reckon();
   void step_services();
   void obey();
-  double guard(double speed);
+  void guard(reflector::Setpoints& wanted);
   std::vector<Edge> edges() const;
 
   protocol::RobotParameters parameters_;
@@ -138,6 +140,8 @@ class Drive {
   std::optional<Pose> knows_walls_;
   authority::Body body_;
   authority::EchoMap echoes_;
+  authority::Coverage coverage_;
+  reflector::Sweep sweep_;
   authority::Guarded guarded_;
   bool by_hand_ = false;
   double speed_ = 0.0;

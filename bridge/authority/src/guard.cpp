@@ -17,6 +17,7 @@ constexpr double kSameWay = radians(3.0);
 constexpr double kReach = 1.0;
 // An approaching obstacle takes at most this share of the range until the robot brakes.
 constexpr double kShareOfWay = 0.1;
+constexpr double kSweeps = 1.5;  // [s] before it has to brake, the robot sweeps its sonars
 
 double limit_of(double setting, double robot) {
   if (setting <= 0.0)
@@ -168,6 +169,11 @@ class Cut {
           format(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
                            : "%.2f m/s cut to %.2f: no sonar looks behind",
                  wanted_, blind));
+    const double covered = blind > 0.0 ? body_.covered - margin_ : body_.sonar_range;
+    sweep_ = stops_within(covered - kSweeps * speed_, blind) < speed_;
+    cut(stops_within(covered, blind), GuardAction::limit,
+        format("%.2f m/s cut to %.2f: the sonars have covered no more than %.2f m ahead", wanted_,
+               stops_within(covered, blind), body_.covered));
     const double unheard = stops_within(reach_ - margin_, 0.0);
     cut(unheard, GuardAction::limit,
         format("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));
@@ -218,7 +224,7 @@ class Cut {
             clearance.least * scale_};
   }
   Guarded result() const {
-    return {forward() ? speed_ : -speed_, turning_, action_, reason_, obstacle_};
+    return {forward() ? speed_ : -speed_, turning_, action_, reason_, obstacle_, sweep_};
   }
 
  private:
@@ -252,6 +258,7 @@ class Cut {
   GuardAction action_ = GuardAction::none;
   std::string reason_;
   std::optional<Vec2> obstacle_;
+  bool sweep_ = false;
 };
 
 }  // namespace

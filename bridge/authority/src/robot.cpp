@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/authority/coverage.hpp"
+
 namespace saphira::authority {
 
 namespace {
@@ -21,6 +23,10 @@ Body body_of(const protocol::RobotParameters& parameters) {
   const double round = parameters.sonar_period * static_cast<double>(parameters.sonars.size()) /
                        std::max(parameters.sonar_arrays, 1);
   body.reaction = 0.5 * round + kLinkAndServer;
+  if (body.sonar_range >= 1.0) {
+    body.sweep_ahead = swing(parameters.sonars, true);
+    body.sweep_behind = swing(parameters.sonars, false);
+  }
   return body;
 }
 

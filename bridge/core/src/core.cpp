@@ -134,6 +134,7 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   session_.stamp = {last_epoch_, 0};
   session_.body = authority::body_of(reflector_.parameters());
   session_.echoes = authority::EchoMap(session_.body.sonar_range);
+  session_.coverage = authority::Coverage(session_.body.radius, session_.body.sonar_range);
   session_.bad_before = parser_.counters().bad_packets();
   line_.begin();
   // Until the robot reports its configuration: it may not accept the values that it is given.
@@ -361,13 +362,15 @@ void Core::finish_cycle(double now) {
     warn("the robot's position jumped: a new odom frame begins");
     arbiter_.forget(session_.stamp.cycle - 1, time(now));  // targets were in the old frame
     session_.echoes.clear();
+    session_.coverage.clear();
     session_.edges.clear();
   }
   if (session_.stamp.cycle > session_.edges_cycle + kEdgesKept)
     session_.edges.clear();
-  session_.echoes.update(session_.stamp.cycle, state.pose_in_odom,
-                         authority::readings_of(state.information.sonars, reflector_.parameters()),
-                         session_.edges);
+  const std::vector<authority::Reading> readings =
+      authority::readings_of(state.information.sonars, reflector_.parameters());
+  session_.echoes.update(session_.stamp.cycle, state.pose_in_odom, readings, session_.edges);
+  session_.coverage.update(session_.stamp.cycle, state.pose_in_odom, readings);
   session_.body.knows_edges = !session_.edges.empty();
   session_.body.sees_ahead = session_.echoes.sees(session_.stamp.cycle, true);
   session_.body.sees_behind = session_.echoes.sees(session_.stamp.cycle, false);

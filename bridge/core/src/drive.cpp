@@ -233,10 +233,12 @@ void Core::guard(reflector::Setpoints& wanted) {
   const authority::GuardAction before = guarded_.action;
   guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
   if (drives(grant_.role)) {
-    guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant_.role)], session_.body,
-                                session_.echoes.spots(), wanted.velocity, wanted.rotation_velocity,
-                                reflector_.state().information.rotation_velocity,
-                                driver(grant_.role).contact_speed, session_.echoes.edges());
+    const authority::GuardSettings& settings = guards_[static_cast<std::size_t>(grant_.role)];
+    session_.body.covered = session_.coverage.way(wanted.velocity >= 0.0);
+    guarded_ =
+        authority::guard(settings, session_.body, session_.echoes.spots(), wanted.velocity,
+                         wanted.rotation_velocity, reflector_.state().information.rotation_velocity,
+                         driver(grant_.role).contact_speed, session_.echoes.edges());
     if (guarded_.obstacle)
       if (const auto echo = session_.echoes.heard(*guarded_.obstacle))
         guarded_.reason += format("; sonar %d ", echo->sonar) +
@@ -249,6 +251,9 @@ void Core::guard(reflector::Setpoints& wanted) {
   session_.moved = session_.moved || moves();
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;
+  session_.sweep.step(
+      session_.stamp.cycle, guarded_.sweep,
+      wanted.velocity < 0.0 ? session_.body.sweep_behind : session_.body.sweep_ahead, wanted);
   if (guarded_.action == authority::GuardAction::stop && guarded_.action != before)
     words_.info("guard: " + guarded_.reason);
 }

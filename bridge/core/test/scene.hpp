@@ -17,11 +17,14 @@ struct Scene {
   explicit Scene(CoreSettings settings = {}) : core(settings) {
     robot.protocol = protocol::Protocol::kP2os;
     robot.file = "p3dx.p";
-    for (std::uint8_t i = 0; i < 8; ++i)
-      robot.sonars.push_back({i, {0.15, 0.0, radians(45.0 * i)}});
+    // The first one looks straight ahead.
+    for (const double bearing : {0.0, 45.0, 30.0, 15.0, -15.0, -30.0, -45.0, 180.0}) {
+      const auto unit = static_cast<std::uint8_t>(robot.sonars.size());
+      robot.sonars.push_back({unit, {0.15, 0.0, radians(bearing)}});
+      shown.sonars.push_back({unit, 28835});  // no echo
+    }
     shown.motors = protocol::Motors::kMoving;
     shown.x = 1000;
-    shown.sonars = {{0, 28835}};  // no echo
   }
 
   // ---- The shell's part.

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
 
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
@@ -45,6 +47,36 @@ TEST_P(PeopleOnTheWay, AreHardlyTouched) {
   EXPECT_EQ(standing, 0);
   EXPECT_LE(stuck, 1);
   EXPECT_EQ(walking, 0);
+}
+
+// A thin post straight ahead stands in the gap between the sonars of some robots.
+TEST(PostsStraightAhead, AreHeardAndNotTouched) {
+  for (const char* const robot : {"pioneer", "p3dx", "amigo"})
+    for (const char* const radius : {"50", "100"})
+      for (const bool by_hand : {true, false}) {
+        int touched = 0;
+        for (int seed = 1; seed <= 10; ++seed) {
+          const std::string start = std::to_string(2000 + 50 * seed);
+          DriveOptions options;
+          options.made_world = std::make_shared<const sim::World>(
+              sim::parse_world("width 10000\nheight 6000\nposition " + start +
+                                   " 3000 0\npost p 5000 3000 " + radius + "\n",
+                               "hall.wld"));
+          options.robot = robot;
+          options.seed = static_cast<std::uint64_t>(seed);
+          options.guard = true;
+          Drive drive(options);
+          for (int cycle = 0; cycle < 150; ++cycle) {
+            if (by_hand)
+              drive.drive(0.3, 0.0);
+            else
+              drive.go_to({5.0, 0.0});
+            drive.advance();
+          }
+          touched += drive.contacts() > 0 ? 1 : 0;
+        }
+        EXPECT_EQ(touched, 0) << robot << ", " << radius << " mm" << (by_hand ? ", by hand" : "");
+      }
 }
 
 INSTANTIATE_TEST_SUITE_P(Offices, PeopleOnTheWay,

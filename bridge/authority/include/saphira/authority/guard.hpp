@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@ struct Body {
   double sonar_range = 5.0;  ///< [m] no echo beyond
   bool sees_behind = false;  ///< some sonar within 60 degrees of straight back fires
   bool sees_ahead = true;    ///< the same of straight ahead
+  double sweep_ahead = 0.0;  ///< [rad] by which it swings to cover the gap between its sonars ahead
+  double sweep_behind = 0.0;  ///< [rad] the same of those behind
+  /// [m] of the hull's path that its sonars have covered lately.
+  double covered = std::numeric_limits<double>::infinity();
   bool knows_edges = false;  ///< the driver's map tells walls and door posts from people
 };
 
@@ -37,7 +42,7 @@ struct Clearance {
 struct GuardSettings {
   bool enabled = true;
   double max_velocity = 0.0;           ///< [m/s]; 0: the robot's own
-  double max_blind_velocity = 0.15;    ///< [m/s] where no sonar looks; 0: the robot's own
+  double max_blind_velocity = 0.15;    ///< [m/s] where no sonar has looked; 0: the robot's own
   double max_rotation_velocity = 0.0;  ///< [rad/s]; 0: the robot's own
   /// [m] The way counts as free no farther than this, even without echoes: a standing person is
   /// heard dependably up to 1.5 m.
@@ -66,6 +71,7 @@ struct Guarded {
   std::string reason;
   /// The echo that is the reason, in the robot's frame; none: it is another one.
   std::optional<Vec2> obstacle = std::nullopt;
+  bool sweep = false;  ///< the sonars have to cover more of the path, or the robot becomes slow
 };
 
 /// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saphira/authority/arbiter.hpp"
+#include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/bridge/doubts.hpp"
@@ -18,6 +19,7 @@
 #include "saphira/protocol/packet.hpp"
 #include "saphira/reflector/connection.hpp"
 #include "saphira/reflector/reflector.hpp"
+#include "saphira/reflector/sweep.hpp"
 
 namespace saphira::bridge {
 
@@ -129,6 +131,8 @@ class Core {
     Stamp stamp;
     authority::Body body;
     authority::EchoMap echoes;
+    authority::Coverage coverage;
+    reflector::Sweep sweep;
     Doubts doubts;
     std::uint64_t bad_before = 0;  ///< the parser's count at the start of the session
     double delay = 0.0;            ///< [s] round trip of a slow line; 0: the line is not slow
