@@ -31,7 +31,7 @@ TEST_P(Story, EndsAsItsCastSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Casts, Story,
-                         testing::Values("report", "early", "away", "leak", "knowers"),
+                         testing::Values("report", "early", "away", "leak", "knowers", "passers"),
                          [](const auto& cast) { return std::string(cast.param); });
 
 TEST(Scenario, IsTheSameEachTime) {

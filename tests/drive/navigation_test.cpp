@@ -207,6 +207,24 @@ TEST(Ways, AreDrivenToATenthOfThemselves) {
   }
 }
 
+TEST(Ways, AreDrivenAtASpeedToATenthOfThemselves) {
+  for (const auto& [speed, way] :
+       {std::pair{-0.1, 0.1}, {-0.1, 0.254}, {-0.15, 1.0}, {0.3, 0.2}, {0.4, 1.0}}) {
+    Whole whole(office());
+    whole.advance();
+    const Pose before = whole.drive().seen().pose_in_odom;
+    const GoalStatus status =
+        whole.achieve("drive", {number("speed", speed), number("distance", way)}, 600);
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+    for (int cycle = 0; cycle < 10; ++cycle)
+      whole.advance();
+    const Pose after = whole.drive().seen().pose_in_odom;
+    EXPECT_NEAR(to_frame(before, after.position()).x(), std::copysign(way, speed),
+                std::max(0.02, 0.1 * way))
+        << speed;
+  }
+}
+
 TEST(Mapping, AFloorThatTheRobotDoesNotUnderstandIsNotBuilt) {
   for (const char* const world : {"cluttered", "visitors"}) {
     WholeOptions options;

@@ -184,6 +184,29 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
   }
 }
 
+// A Pioneer 1 drives at 0.4 m/s at most. Ann walks away from it, around a corner, and waits.
+TEST(VisionEyes, APersonWhoWalksAwayAroundACornerIsFollowed) {
+  for (const char* const robot : {"pioneer", "p3dx"}) {
+    WholeOptions options;
+    options.drive.world = office_with(
+        "corner", "person ann 17500 12000 wait 4 walk 17500 7000 600 walk 24000 7000 600 wait 99");
+    options.drive.robot = robot;
+    options.drive.start_in_world = Pose{17.5, 14.0, radians(-90.0)};
+    options.drive.guard = true;
+    options.map = "office-floor";
+    options.sees = vision_eyes(Stereo::pictures);
+    Whole whole(options);
+    const auto goal = whole.ask("follow-person");
+    const auto distance = [&] {
+      return (whole.drive().scene().persons()[0].at - whole.truth().position()).norm();
+    };
+    const auto with_ann = [&] { return whole.truth().x > 22.0 && distance() < 1.3; };
+    whole.advance_until([&] { return whole.ended(goal) || with_ann(); }, 900);
+    EXPECT_TRUE(with_ann()) << robot << ": " << whole.status(goal).reason;
+    EXPECT_EQ(whole.drive().contacts(), 0);
+  }
+}
+
 // Manual 9.3, search_and_go_blob: behind its back at first.
 TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   WholeOptions options;

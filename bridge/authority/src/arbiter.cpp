@@ -73,8 +73,10 @@ void Arbiter::refuse(Role role, const std::string& source, const std::string& re
 }
 
 void Arbiter::press(const Command& command) {
-  if (!latches_.estopped)
+  if (!latches_.estopped) {
     latches_ = {true, command.source, latches_.wait};
+    last_stopper_ = command.source;
+  }
   if (pressed_.size() >= kMaxPressed && !pressed_.contains(command.writer))
     pressed_.erase(std::min_element(pressed_.begin(), pressed_.end(), [](auto& a, auto& b) {
       return a.second.received < b.second.received;
@@ -225,6 +227,7 @@ void Arbiter::must_heed(Numbers& said) const {
 std::vector<std::string> Arbiter::stop(const StopId& id, const std::string& source, double now,
                                        std::uint64_t cycle) {
   stop_ = {id, source};
+  last_stopper_ = source;
   stop_cycle_ = cycle;
   std::vector<std::string> stopped;
   for (const Role role : kDriving) {
@@ -373,7 +376,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   grant.estopped = latches_.estopped;
   grant.estop_source = latches_.estop_source;
   grant.stop = stop_.id;
-  grant.stop_source = stop_.source;
+  grant.stop_source = last_stopper_;
   const std::string why = why_to_stand(role);
   if (role != Role::none && !why.empty()) {
     for (const Role other : kDriving) {

@@ -45,17 +45,21 @@ double Coverage::way(bool forward) const {
     return std::numeric_limits<double>::infinity();
   const double side = forward ? 1.0 : -1.0;
   const int across = static_cast<int>(std::ceil(radius_ / kAcross));
-  for (double free = kFrom; free < range_; free += kStep)
+  const int steps = static_cast<int>(std::ceil((range_ - kFrom) / kStep));
+  for (int step = 0; step < steps; ++step) {
+    const double free = kFrom + kStep * step;
     for (int i = -across; i <= across; ++i) {
       const Vec2 spot(side * (radius_ + free), radius_ * i / across);
       if (!is_covered(transform(robot_in_odom_, spot)))
         return free;
     }
+  }
   return range_;
 }
 
 double swing(const std::vector<protocol::SonarUnit>& sonars, bool forward) {
   std::vector<double> axes;  // from the right to the left of the way
+  axes.reserve(sonars.size());
   for (const protocol::SonarUnit& sonar : sonars)
     axes.push_back(norm2_angle(sonar.pose_in_robot.th - (forward ? 0.0 : kPi)));
   std::sort(axes.begin(), axes.end());

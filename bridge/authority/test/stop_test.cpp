@@ -150,6 +150,18 @@ TEST(Stop, ARefusedCommandHeedsNothing) {
   EXPECT_EQ(s.driver(), Role::none);
 }
 
+TEST(Stop, TheLastToStopIsWhoeverDidByEitherMeans) {
+  StopScene s;
+  s.stop(1);
+  const std::string first = s.grant().stop_source;
+  s.offer(Role::estop, 4);
+  s.offer(Role::estop, 4, false);
+  s.arbiter.reset("somebody", s.now);
+  EXPECT_EQ(s.grant().stop_source, "estop4");
+  s.stop(1);
+  EXPECT_EQ(s.grant().stop_source, first);
+}
+
 TEST(Stop, LeavesTheEmergencyStopLatched) {
   StopScene s;
   s.offer(Role::estop, 1);

@@ -76,13 +76,13 @@ void Dialogue::refuse(const Utterance& utterance, const std::string& text, Outpu
 }
 
 void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
-                    Arguments arguments, double deadline) {
+                    Arguments arguments) {
   const auto is_in = [&](const auto& functors) {
     return std::find(functors.begin(), functors.end(), functor) != functors.end();
   };
   Task task;
   const bool lasts = is_in(kLasting) && utterance.program == ProgramId{};
-  task.goal = {0, functor, std::move(arguments), deadline, lasts, utterance.speaker};
+  task.goal = {0, functor, std::move(arguments), 0.0, lasts, utterance.speaker};
   task.brief = is_in(kBrief);
   task.what = grammar_.paraphrase(meaning);
   task.doing = grammar_.paraphrase(meaning, Grammar::Form::doing);
@@ -110,7 +110,8 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
     }
     if (slot(meaning, "direction") == "back") {
       constexpr double kBackSpeed = 0.1;  // [m/s]
-      want(meaning, utterance, "drive", {number("speed", -kBackSpeed)}, distance / kBackSpeed);
+      want(meaning, utterance, "drive",
+           {number("speed", -kBackSpeed), number("distance", distance)});
     } else {
       want(meaning, utterance, "go_to", {point_ahead(distance, 0.0)});
     }

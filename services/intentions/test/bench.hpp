@@ -3,8 +3,10 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "saphira/intentions/functors.hpp"
+#include "saphira/lps/seen_thing.hpp"
 #include "scripted_robot.hpp"
 
 namespace saphira::intentions {
@@ -55,6 +57,8 @@ class Bench {
     inputs.confirms_stops = confirms_stops;
     inputs.around.registration = registration;
     inputs.around.robot_radius = radius;
+    inputs.around.cycle = cycle;
+    inputs.around.things = &things;
     out = executor.step(inputs);
     note(out.news);
   }
@@ -88,6 +92,7 @@ class Bench {
   std::vector<GoalEvent> events;
   std::vector<BehaviorTrouble> troubles;  ///< of the next step
   Registered registration;                ///< the registration's output
+  std::vector<lps::SeenThing> things;     ///< that the cameras see
   double radius = 0.0;                    ///< [m] of the robot; 0: unknown
   std::string estop;                      ///< program that pressed the emergency stop; empty: none
   StopId stop;                            ///< the newest stop of the bridge

@@ -277,6 +277,35 @@ TEST(GoTo, HasMorePatienceWhileItGetsOn) {
   }
 }
 
+TEST(FollowTrail, GoesAroundTheSameCornerAndToItsEnd) {
+  Bench bench;
+  bench.things.resize(1);
+  bench.things[0].id = 7;
+  // Ahead to (3, 0), then to the left; out of sight from (3, 2) on.
+  const auto person = [&](std::uint64_t cycle) {
+    const double way = 1.2 + 0.05 * static_cast<double>(cycle);
+    return way < 3.0 ? Pose{way, 0.0, 0.0} : Pose{3.0, std::min(way - 3.0, 2.0), 0.0};
+  };
+  bench.ask(1, "follow-trail", {number("distance", 1.0), number("speed", 0.3)});
+  for (int i = 0; i < 300; ++i) {
+    const Pose place = person(bench.cycle + 1);
+    bench.things[0].pose_in_odom = place;
+    if (place.y < 2.0)
+      bench.things[0].seen = bench.cycle + 1;
+    bench.step();
+    ASSERT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"AttendAtPos/2"});
+    const Vec2 goal = find(bench.out.behaviors[0].parameters, "goal")->point.position();
+    EXPECT_TRUE(std::abs(goal.y()) < 0.2 || goal.x() > 2.8) << goal.transpose();
+    bench.world.robot.pose_in_odom.x = std::min(goal.x(), bench.world.robot.pose_in_odom.x + 0.03);
+    if (bench.world.robot.pose_in_odom.x > 2.8)
+      bench.world.robot.pose_in_odom.y =
+          std::min(goal.y(), bench.world.robot.pose_in_odom.y + 0.03);
+  }
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(bench.status(1).step, "going where it saw a person last");
+  EXPECT_NEAR(find(bench.out.behaviors[0].parameters, "goal")->point.y, 1.95, 0.1);
+}
+
 TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   Bench bench;
   Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});
@@ -289,6 +318,16 @@ TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(bench.status(1).elapsed, 3.0);
   EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
+}
+
+TEST(Drive, ADistanceThatIsNotDrivenByTheDeadlineHasFailed) {
+  Bench bench;
+  Goal goal = bench.goal(1, "drive", {number("speed", 0.2), number("distance", 5.0)});
+  goal.deadline = 3.0;
+  bench.write(goal);
+  bench.run(1, 100);
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_DEADLINE);
 }
 
 TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {

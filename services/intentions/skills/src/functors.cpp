@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "driving.hpp"
+#include "following.hpp"
 #include "mapping.hpp"
 #include "zones.hpp"
 
@@ -313,7 +314,7 @@ class GoTo : public Activity {
   int checks_ = 0;
 };
 
-/// Drives at a speed around obstacles. It has no end of its own: its deadline is its success.
+/// Drives at a speed around obstacles, for a distance. Without one its deadline is its success.
 class Drive : public Activity {
  public:
   explicit Drive(const Arguments& arguments) { take(arguments); }
@@ -338,9 +339,17 @@ class Drive : public Activity {
     }
     last_ = pose;
     self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
-    self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask, {number("speed", speed_)});
+    const double left = distance_ - path_;
+    if (distance_ > 0.0 && left <= kRollOut * std::abs(self.robot().velocity))
+      return self.succeed(format("drove %.2f m", path_));
+    const double speed =
+        distance_ > 0.0
+            ? std::copysign(std::min(std::abs(speed_), std::max(kSlowest, kSlowing * left)), speed_)
+            : speed_;
+    self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask, {number("speed", speed)});
     self.intend_behavior("Stop", "Stop", kRest, {});
-    self.say(format("driving at %.2f m/s", speed_));
+    self.say(distance_ > 0.0 ? format("driving %.2f m on", left)
+                             : format("driving at %.2f m/s", speed_));
     if (distance(anchor_, pose) >= kGround) {
       anchor_ = pose;
       anchored_ = self.now();
@@ -355,17 +364,24 @@ class Drive : public Activity {
 
   std::string at_deadline(const Robot& robot) override {
     static_cast<void>(robot);
-    return format("drove %.2f m until the deadline", path_);
+    return distance_ > 0.0 ? std::string() : format("drove %.2f m until the deadline", path_);
   }
 
  private:
   void take(const Arguments& arguments) {
     speed_ = value_of(arguments, "speed");
+    distance_ = value_of(arguments, "distance");
     patience_ = value_of(arguments, "patience");
     restart_ = true;
+    path_ = 0.0;
   }
 
+  static constexpr double kSlowest = 0.05;  // [m/s] at the end of a distance...
+  static constexpr double kSlowing = 1.0;   // [1/s] ...and for each meter that is left
+  static constexpr double kRollOut = 0.2;   // [s] from the end of the task to the robot's brakes
+
   double speed_ = 0.0;
+  double distance_ = 0.0;  ///< [m] 0: until the deadline
   double patience_ = kPatience;
   bool restart_ = true;
   KeepOut keep_out_;
@@ -522,14 +538,17 @@ Registry built_in() {
 
   Schema drive;
   drive.name = "drive";
-  drive.summary = "drives on at a speed until the deadline, around what is in the way";
+  drive.summary =
+      "drives on at a speed, for a distance or until the deadline, around what is in the way";
   // Backwards, where few robots have sonars, at a walking pace.
   Parameter speed = quantity("speed", "m/s", -0.2, 2.0, 0.0);
   speed.usual.reset();
   speed.required = true;
-  drive.parameters = {speed, patience()};
+  drive.parameters = {speed, quantity("distance", "m", 0.0, 100.0, 0.0), patience()};
   drive.make = make<Drive>;
   registry.add(std::move(drive));
+
+  registry.add(follow_trail());
 
   Schema turn_to;
   turn_to.name = "turn_to";

@@ -71,7 +71,7 @@ struct Grant {
   std::string estop_source;          ///< which program pressed it
   bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
   StopId stop;                       ///< the newest stop
-  std::string stop_source;           ///< the person or program that asked for it
+  std::string stop_source;           ///< who stopped the robot last, also by an emergency stop
   Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
   std::uint64_t number = 0;  ///< of that command
 
@@ -189,6 +189,7 @@ class Arbiter {
     StopId id;
     std::string source;
   } stop_;                        ///< the newest
+  std::string last_stopper_;      ///< of these stops and emergency stops
   std::uint64_t stop_cycle_ = 0;  ///< of this epoch; a command that answers it was before the stop
 
   Latches latches_;

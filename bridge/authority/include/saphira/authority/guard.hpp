@@ -48,7 +48,7 @@ struct GuardSettings {
   /// heard dependably up to 1.5 m.
   double dependable_range = 1.5;
   double margin = 0.25;  ///< [m] distance at which the hull stops before an obstacle ahead
-  Clearance person{0.10, 0.25, 0.01, 0.22};     ///< from an echo that is of no edge of the map
+  Clearance person{0.10, 0.25, 0.005, 0.22};    ///< from an echo that is of no edge of the map
   Clearance anything{0.10, 0.15, 0.035, 0.10};  ///< from any echo, without a map
   Clearance edge{0.08, 0.15, 0.035, 0.0};       ///< from an edge of the map
   /// [m/s] An obstacle ahead may approach at this speed, so the robot slows early...

@@ -250,7 +250,7 @@ class Dialogue {
   /// Asks which of several meanings a sentence has.
   void choices(const Grammar::Understood& understood, const Utterance& utterance, Outputs& out);
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
-            Arguments arguments, double deadline = 0.0);
+            Arguments arguments);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
   /// The answer to an utterance that changes nothing: asks back, or says why not. Ends it.
   void refuse(const Utterance& utterance, const std::string& text, Outputs& out) const;

@@ -1,0 +1,130 @@
+#include "following.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "driving.hpp"
+#include "saphira/intentions/activity.hpp"
+#include "seeing.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr double kStride = 0.2;   // [m] between places of a trail
+constexpr double kLook = 0.8;     // [m] to the place of the trail that the robot heads for
+constexpr double kAtEnd = 0.3;    // [m]
+constexpr double kPlaced = 0.3;  // [s] since the person was seen: a place, not a guess
+constexpr double kKeeps = 0.8;    // of the distance to the person: there AttendAtPos stands
+
+class Follow : public Activity {
+ public:
+  explicit Follow(const Arguments& arguments) { change(arguments); }
+
+  bool change(const Arguments& arguments) override {
+    distance_ = find(arguments, "distance")->number;
+    speed_ = find(arguments, "speed")->number;
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const World& world = self.world();
+    if (!who_)
+      if (const std::optional<Value> found = nearest_seen(world, "person"))
+        if (const Reference* const person = found->reference())
+          who_ = person->id;
+    const lps::SeenThing* const thing = who_ ? seen_thing(world, *who_) : nullptr;
+    const bool in_sight =
+        thing != nullptr &&
+        static_cast<double>(world.around.cycle - std::min(thing->seen, world.around.cycle)) *
+                kTick <=
+            kPlaced;
+    if (in_sight)
+      trail_.add(thing->pose_in_odom.position());
+    trail_.reach(self.robot().pose_in_odom.position());
+    const double left = trail_.length();
+    const double near = in_sight ? distance_ : kAtEnd;
+    const bool there = left <= near;
+    const Vec2 goal = trail_.at(there ? left : std::min(left, kLook));
+    self.intend_behavior(
+        "track", "AttendAtPos", kTask,
+        {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
+         number("radius", there ? near : kAtEnd),
+         number("speed", std::min(speed_, kSlow + std::max(0.0, left - kKeeps * near)))});
+    self.level(there && in_sight ? 1.0 : 0.0);
+    self.say(in_sight ? "following a person" : "going where it saw a person last");
+  }
+
+ private:
+  static constexpr double kSlow = 0.05;  // [m/s]
+
+  double distance_ = 0.0;
+  double speed_ = 0.0;
+  std::optional<std::uint64_t> who_;
+  Trail trail_;
+};
+
+}  // namespace
+
+void Trail::add(const Vec2& place) {
+  // The last place goes with the person until it is a stride away from the one before.
+  if (places_.size() >= 2 && (places_.back() - places_[places_.size() - 2]).norm() < kStride)
+    places_.back() = place;
+  else
+    places_.push_back(place);
+}
+
+void Trail::reach(const Vec2& robot) {
+  robot_ = robot;
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (const double off = (places_[i] - robot).norm(); off < least) {
+      least = off;
+      nearest = i;
+    }
+  if (places_.size() > 1)
+    places_.erase(places_.begin(),
+                  places_.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                        nearest + (least < kLook ? 1 : 0), places_.size() - 1)));
+}
+
+double Trail::length() const {
+  double sum = 0.0;
+  Vec2 from = robot_;
+  for (const Vec2& place : places_) {
+    sum += (place - from).norm();
+    from = place;
+  }
+  return sum;
+}
+
+Vec2 Trail::at(double distance) const {
+  Vec2 from = robot_;
+  for (const Vec2& place : places_) {
+    const double step = (place - from).norm();
+    if (step >= distance)
+      return step > 0.0 ? Vec2(from + distance / step * (place - from)) : place;
+    distance -= step;
+    from = place;
+  }
+  return from;
+}
+
+Schema follow_trail() {
+  Schema follow;
+  follow.name = "follow-trail";
+  follow.summary = "walks behind the nearest visible person, around the same corners";
+  follow.parameters = {quantity("distance", "m", 0.5, 5.0, 1.2),
+                       quantity("speed", "m/s", 0.05, 1.0, 0.8)};
+  follow.make = [](const Arguments& arguments) -> std::unique_ptr<Activity> {
+    return std::make_unique<Follow>(arguments);
+  };
+  return follow;
+}
+
+}  // namespace saphira::intentions
