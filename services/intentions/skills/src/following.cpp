@@ -13,11 +13,11 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kStride = 0.2;   // [m] between places of a trail
-constexpr double kLook = 0.8;     // [m] to the place of the trail that the robot heads for
-constexpr double kAtEnd = 0.3;    // [m]
+constexpr double kStride = 0.2;  // [m] between places of a trail
+constexpr double kLook = 0.8;    // [m] to the place of the trail that the robot heads for
+constexpr double kAtEnd = 0.3;   // [m]
 constexpr double kPlaced = 0.3;  // [s] since the person was seen: a place, not a guess
-constexpr double kKeeps = 0.8;    // of the distance to the person: there AttendAtPos stands
+constexpr double kKeeps = 0.8;   // of the distance to the person: there AttendAtPos stands
 
 class Follow : public Activity {
  public:
