@@ -29,6 +29,7 @@
 #include "saphira/bus/gateway.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/runtime/composition.hpp"
 #include "saphira/sim/host.hpp"
 #include "story/shell/story.hpp"
 #include "system/system.hpp"
@@ -163,19 +164,12 @@ class Talkers {
 void run_in_turn(const Programs& programs, const bus::NodeOptions& options, const bus::Stop& stop) {
   using std::chrono::milliseconds;
   constexpr milliseconds kMostRest{20};
-  struct Part {
-    std::unique_ptr<bus::Node> node;
-    std::unique_ptr<runtime::Shell> shell;
-  };
   const auto memory = bus::make_memory_bus();
   sim::Host robot(programs.robot);
   bridge::Shell bridge(named(options, "bridge"), programs.link, memory);
-  std::vector<Part> parts;
-  for (const runtime::Component& service : programs.services) {
-    auto node = std::make_unique<bus::Node>(named(options, service.name), memory);
-    auto shell = std::make_unique<runtime::Shell>(*node, service.make);
-    parts.push_back({std::move(node), std::move(shell)});
-  }
+  runtime::Composition services(options, memory);
+  for (const runtime::Component& service : programs.services)
+    services.add(service.name, service.make);
   Talkers talkers(programs.talk, options, memory);
   bus::Node outside(options);
   bus::Gateway gateway(outside, memory);
@@ -183,9 +177,7 @@ void run_in_turn(const Programs& programs, const bus::NodeOptions& options, cons
   milliseconds rest{1};
   while (robot.serve(stop.fd(), 0)) {
     bridge.advance({true, true});
-    bool stepped = false;
-    for (const Part& part : parts)
-      stepped = part.shell->advance() || stepped;
+    const bool stepped = services.advance();
     gateway.carry();
     if (stepped) {
       if (talkers.step()) {
@@ -196,8 +188,7 @@ void run_in_turn(const Programs& programs, const bus::NodeOptions& options, cons
       rest = milliseconds(1);
       continue;
     }
-    for (const Part& part : parts)
-      part.shell->idle();
+    services.idle();
     gateway.wait(rest, stop);
     rest = std::min(2 * rest, kMostRest);
   }

@@ -36,7 +36,7 @@ void Building::run(std::uint64_t limit) {
 
 void Building::note() {
   odom_and_truth_.emplace_back(whole.drive().seen().pose_in_odom, whole.truth().position());
-  const registration::MapBuilder* const builder = whole.drive().cores().registration().builder();
+  const registration::MapBuilder* const builder = whole.drive().registration().builder();
   if (builder == nullptr)
     return;
   worst = std::max(worst, (whole.truth().position() - whole.believed().position()).norm());

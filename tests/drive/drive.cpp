@@ -8,12 +8,21 @@
 #include <stdexcept>
 #include <utility>
 
+#include "behaviors/shell/service.hpp"
+#include "bridge/shell/convert.hpp"
+#include "intentions/shell/service.hpp"
+#include "interpretation/shell/service.hpp"
+#include "lps/shell/convert.hpp"
+#include "registration/shell/service.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/authority/robot.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::test {
 namespace {
+
+constexpr std::uint64_t kEpoch = 1;
 
 protocol::RobotParameters parameters_of(const DriveOptions& options) {
   auto parameters =
@@ -26,19 +35,19 @@ protocol::RobotParameters parameters_of(const DriveOptions& options) {
   return parameters;
 }
 
-system::Cores::Settings services_of(const DriveOptions& options,
-                                    const protocol::RobotParameters& parameters,
-                                    const Pose& start) {
-  system::Cores::Settings settings;
-  settings.robot = behaviors::model_of(parameters);
-  settings.behaviors = options.behaviors.value_or(behaviors::predefined());
-  settings.head_reach = parameters.head_reach;
-  settings.interpretation = options.interpretation;
-  settings.registration = options.registration;
-  if (settings.registration && options.knows_pose)
-    settings.registration->start = start;
-  settings.intentions = options.intentions;
-  return settings;
+bus::NodeOptions named(const char* name) {
+  bus::NodeOptions options;
+  options.name = name;
+  options.lockstep = true;
+  return options;
+}
+
+v1::IntendedBehavior behavior(const char* schema, int priority, const Arguments& parameters = {}) {
+  return {.name = schema,
+          .schema = schema,
+          .priority = priority,
+          .running = true,
+          .parameters = to_bus(parameters)};
 }
 
 /// Of this process alone: tests run side by side.
@@ -87,16 +96,50 @@ Drive::Drive(const DriveOptions& options)
                                options.seed)),
       sonars_(scene_, robot_->number(), parameters_, options.sonar, options.seed),
       start_(robot_->pose_in_world()),
-      cores_(services_of(options, parameters_, start_)),
+      mounts_(behaviors::model_of(parameters_).lps.sonars),
       bend_(options.bend),
       robot_in_odom_(robot_->pose_in_odom()),
       has_guard_(options.guard),
       knows_walls_(options.knows_walls),
       body_(authority::body_of(parameters_)),
       echoes_(body_.sonar_range),
-      coverage_(body_.radius, body_.sonar_range) {
+      coverage_(body_.radius, body_.sonar_range),
+      node_(named("bridge"), memory_),
+      services_(named(""), memory_) {
   seen_.pose_in_odom = robot_in_odom_;
   seen_.true_pose_in_world = start_;
+  begin(options);
+}
+
+void Drive::begin(const DriveOptions& options) {
+  v1::RobotDescription description = bridge::to_bus(parameters_, {}, {.epoch = kEpoch}, "", true);
+  description.instance = node_.instance();
+  descriptions_.write(description);
+  services_.add("behaviors", behaviors::component().make);
+  if (options.interpretation)
+    services_.add("interpretation", interpretation::component().make);
+  if (options.registration)
+    services_.add("registration", [&](runtime::Ports& ports) {
+      registration::Core::Settings settings = *options.registration;
+      if (options.knows_pose)
+        settings.start = start_;
+      auto service = std::make_unique<registration::Service>(ports, settings);
+      registration_ = &service->core();
+      return service;
+    });
+  if (options.vision)
+    sees_.emplace(node_.writer(bus::topics::kVision));
+  if (!options.intentions) {
+    intends_.emplace(node_.writer(bus::topics::kIntentions));
+    return;
+  }
+  services_.add("intentions", [&](runtime::Ports& ports) {
+    intentions::Options with;
+    with.registration = options.registration.has_value();
+    with.interpretation = options.interpretation;
+    with.vision = options.vision;
+    return std::make_unique<intentions::Service>(ports, with);
+  });
 }
 
 const Seen& Drive::advance() {
@@ -117,20 +160,42 @@ const Seen& Drive::advance() {
   seen_.right_stalled = robot_->right_stalled();
   robot_->clear_stalls();
 
-  system::RobotCycle now;
-  now.cycle = seen_.cycle;
-  now.pose_in_odom = seen_.pose_in_odom;
-  now.velocity = seen_.velocity;
-  now.rotation_velocity = seen_.rotation_velocity;
-  now.head = seen_.head;
-  now.left_stalled = seen_.left_stalled;
-  now.right_stalled = seen_.right_stalled;
-  now.readings = seen_.readings;
-  const system::Cores::Said& said = cores_.step(now);
-  obey(said.behaviors.output);
-  if (said.intentions.look)
-    look_ = *said.intentions.look;
+  step_services();
+  obey();
   return seen_;
+}
+
+void Drive::step_services() {
+  if (intends_) {
+    intended_.stamp = {kEpoch, seen_.cycle - 1};
+    intends_->write(intended_);
+  }
+  // Commands take effect at once here: the heading setpoint is not needed.
+  v1::RobotState state{.stamp = {kEpoch, seen_.cycle},
+                       .odom = kOdom,
+                       .pose_in_odom = to_bus(seen_.pose_in_odom),
+                       .velocity = seen_.velocity,
+                       .rotation_velocity = seen_.rotation_velocity,
+                       .target_heading_in_odom = seen_.pose_in_odom.th,
+                       .status = v1::MOTORS_MOVING,
+                       .left_stalled = seen_.left_stalled,
+                       .right_stalled = seen_.right_stalled,
+                       .head = seen_.head};
+  for (const lps::SonarReading& reading : seen_.readings)
+    state.sonars.push_back({.sonar = static_cast<std::uint8_t>(reading.sonar),
+                            .range = static_cast<float>(reading.range),
+                            .echo = reading.echo});
+  states_.write(state);
+  services_.advance();
+  commanded_ = commands_.take_newest().value();
+  if (auto perception = perceptions_.take_newest())
+    percepts_ = converted(perception->percepts, [](const auto& one) { return lps::from_bus(one); });
+  if (auto registration = registrations_.take_newest())
+    registered_ = std::move(*registration);
+  if (auto intentions = intentions_.take_newest())
+    intended_ = std::move(*intentions);
+  if (const auto look = looks_.take_newest())
+    look_ = number_of(from_bus(look->arguments), "angle");
 }
 
 void Drive::reckon() {
@@ -140,11 +205,11 @@ void Drive::reckon() {
   seen_.pose_in_odom = bend_ == 0.0 ? robot_in_odom_ : compose(seen_.pose_in_odom, moved);
 }
 
-void Drive::obey(const behaviors::Output& output) {
-  const double speed = by_hand_ ? speed_ : output.active ? output.speed : 0.0;
-  const double heading = by_hand_        ? heading_
-                         : output.active ? output.heading_in_odom
-                                         : seen_.pose_in_odom.th;
+void Drive::obey() {
+  const double speed = by_hand_ ? speed_ : commanded_.active ? commanded_.velocity : 0.0;
+  const double heading = by_hand_            ? heading_
+                         : commanded_.active ? commanded_.heading
+                                             : seen_.pose_in_odom.th;
   // Whole millimetres and degrees, as in the robot's commands.
   reflector::Setpoints wanted{speed, true, heading, 0.0};
   guard(wanted);
@@ -156,7 +221,9 @@ void Drive::obey(const behaviors::Output& output) {
 /// The walls near the robot, in odom, as its driver knows them.
 std::vector<Edge> Drive::edges() const {
   if (by_hand_ || !knows_walls_)
-    return cores_.said().intentions.edges;
+    return converted(intended_.edges, [](const v1::Edge& edge) {
+      return Edge{{edge.x1, edge.y1}, {edge.x2, edge.y2}};
+    });
   std::vector<Edge> edges;
   const ToFrame to_robot(compose(seen_.true_pose_in_world, *knows_walls_));
   const auto in_odom = [&](const Vec2& in_world) {
@@ -186,23 +253,39 @@ void Drive::guard(reflector::Setpoints& wanted) {
   coverage_.update(seen_.cycle, seen_.pose_in_odom, readings);
   body_.covered = coverage_.way(speed >= 0.0);
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
-                              by_hand_ ? 0.0 : output().contact_speed, echoes_.edges());
+                              by_hand_ ? 0.0 : commanded_.contact_speed, echoes_.edges());
   wanted.velocity = guarded_.velocity;
   sweep_.step(seen_.cycle, guarded_.sweep,
               wanted.velocity < 0.0 ? body_.sweep_behind : body_.sweep_ahead, wanted);
 }
 
-void Drive::intend(std::vector<behaviors::Intended> intended, bool control) {
+void Drive::intend(std::vector<v1::IntendedBehavior> intended) {
   by_hand_ = false;
-  cores_.intend(std::move(intended), control);
+  intended_.behavior_control = true;
+  intended_.behaviors = std::move(intended);
+}
+
+void Drive::see(std::vector<lps::SeenThing> things) {
+  things_ = std::move(things);
+  sees_->write({.stamp = {kEpoch, seen_.cycle},
+                .odom = kOdom,
+                .sees_people = true,
+                .things = converted(things_, [](const auto& one) { return lps::to_bus(one); })});
+}
+
+void Drive::ask(const Request& request) {
+  requests_.write(to_bus(request));
+}
+
+Pose Drive::believed() const {
+  return from_bus(registered_.pose_in_map);
 }
 
 void Drive::go_to(const Vec2& goal_in_odom, double speed, double radius) {
   const saphira::PlacedPoint goal{{goal_in_odom.x(), goal_in_odom.y(), 0.0}, saphira::Frame::odom};
-  intend({{"avoid", "AvoidCollision", 0, true, {}},
-          {"keep off", "KeepOff", 1, true, {}},
-          {"go", "GoToPos", 2, true, {{"goal", goal}, {"speed", speed}, {"radius", radius}}},
-          {"stop", "Stop", 3, true, {}}});
+  intend({behavior("AvoidCollision", 0), behavior("KeepOff", 1),
+          behavior("GoToPos", 2, {{"goal", goal}, {"speed", speed}, {"radius", radius}}),
+          behavior("Stop", 3)});
 }
 
 void Drive::turn_to(double heading_in_odom) {
@@ -210,12 +293,12 @@ void Drive::turn_to(double heading_in_odom) {
 }
 
 void Drive::stop() {
-  intend({{"stop", "Stop", 0, true, {}}});
+  intend({behavior("Stop", 0)});
 }
 
 void Drive::drive(double speed, double heading_in_odom) {
   by_hand_ = true;
-  cores_.set_control(false);
+  intended_.behavior_control = false;
   speed_ = speed;
   heading_ = heading_in_odom;
 }

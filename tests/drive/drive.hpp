@@ -9,13 +9,16 @@
 #include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
+#include "saphira/behaviors/behavior.hpp"
+#include "saphira/lps/seen_thing.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/reflector/sweep.hpp"
+#include "saphira/registration/core.hpp"
+#include "saphira/runtime/composition.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
 #include "saphira/sim/world.hpp"
-#include "system/cores.hpp"
 
 namespace saphira::test {
 
@@ -40,11 +43,11 @@ struct DriveOptions {
   double bend = 0.0;  ///< [rad/m] additional turn of dead reckoning
 
   // The services beside behaviors.
-  std::optional<behaviors::Registry> behaviors;  ///< else the predefined ones
   bool interpretation = false;
   std::optional<registration::Core::Settings> registration;
   bool knows_pose = false;  ///< registration gets the robot's start
-  std::optional<intentions::Core::Settings> intentions;
+  bool intentions = false;
+  bool vision = false;  ///< the caller sees instead of it, after each cycle
 };
 
 /// With interpretation and with registration on that map. `knows_pose`: as in DriveOptions.
@@ -63,11 +66,14 @@ struct Seen {
   bool right_stalled = false;
 };
 
-/// A simulated robot and the services' cores, without packets and without the bus; cycle by cycle,
-/// repeatable to the last bit. Without intentions it drives towards points with AvoidCollision,
-/// KeepOff and GoToPos, as the functor go_to does.
+/// A simulated robot, without packets, and the services on a bus in memory, in lockstep in one
+/// thread; repeatable to the last bit. Without intentions it drives towards points with
+/// AvoidCollision, KeepOff and GoToPos, as the functor go_to does.
 class Drive {
  public:
+  /// The number of the odom frame; the bridge makes it from the time.
+  static constexpr std::uint64_t kOdom = 1795260425632;
+
   explicit Drive(const DriveOptions& options);
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
@@ -82,15 +88,23 @@ class Drive {
   /// Manual driving, without behaviors: [m/s], and the heading in odom [rad].
   void drive(double speed, double heading_in_odom);
   /// These behaviors, as intentions would intend them.
-  void intend(std::vector<behaviors::Intended> intended, bool control = true);
+  void intend(std::vector<v1::IntendedBehavior> intended);
+  /// The vision service's output for the newest cycle.
+  void see(std::vector<lps::SeenThing> things);
+  /// A request to registration: carried out in the next cycle.
+  void ask(const Request& request);
 
-  /// The output of the behaviors in the newest cycle.
-  const behaviors::Output& output() const { return cores_.said().behaviors.output; }
-  system::Cores& cores() { return cores_; }
-  const system::Cores& cores() const { return cores_; }
-  /// The outputs of registration in the newest cycle.
-  const registration::Core::Outputs& registered() const { return cores_.said().registration; }
-  Pose believed() const { return registered().pose_in_map; }
+  // The outputs of the services in the newest cycle; empty without the service.
+  const v1::MotorCommand& commanded() const { return commanded_; }
+  const std::vector<lps::Percept>& percepts() const { return percepts_; }
+  const std::vector<lps::SeenThing>& things() const { return things_; }
+  const v1::Intentions& intended() const { return intended_; }
+  const v1::Registration& registered() const { return registered_; }
+  Pose believed() const;
+  const registration::Core& registration() const { return *registration_; }
+  /// Another program on their bus.
+  bus::Node& node() { return node_; }
+  const std::shared_ptr<bus::MemoryBus>& bus() const { return memory_; }
   Pose truth() const { return seen_.true_pose_in_world; }
   /// By dead reckoning alone, from the true start.
   Pose reckoned() const { return compose(start_, seen_.pose_in_odom); }
@@ -98,7 +112,7 @@ class Drive {
   const Seen& seen() const { return seen_; }
   const sim::World& world() const { return world_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
-  const std::vector<lps::SonarMount>& mounts() const { return cores_.robot().lps.sonars; }
+  const std::vector<lps::SonarMount>& mounts() const { return mounts_; }
   /// The result of the guard in the newest cycle.
   const authority::Guarded& guarded() const { return guarded_; }
   sim::Scene& scene() { return scene_; }
@@ -106,8 +120,10 @@ class Drive {
   int contacts() const;
 
  private:
+  void begin(const DriveOptions& options);
   void reckon();
-  void obey(const behaviors::Output& output);
+  void step_services();
+  void obey();
   void guard(reflector::Setpoints& wanted);
   std::vector<Edge> edges() const;
 
@@ -117,7 +133,7 @@ class Drive {
   sim::Robot* robot_;
   sim::Sonars sonars_;
   Pose start_;
-  system::Cores cores_;
+  std::vector<lps::SonarMount> mounts_;
   double bend_;
   Pose robot_in_odom_;  ///< by the robot's own odometry, without the bend
   bool has_guard_;
@@ -132,6 +148,26 @@ class Drive {
   double heading_ = 0.0;
   double look_ = 0.0;  ///< [rad] the direction that the cameras turn to
   Seen seen_;
+
+  std::shared_ptr<bus::MemoryBus> memory_ = bus::make_memory_bus();
+  bus::Node node_;  ///< as the bridge
+  bus::Writer<v1::RobotDescription> descriptions_{node_.writer(bus::topics::kRobotDescription)};
+  bus::Writer<v1::RobotState> states_{node_.writer(bus::topics::kRobotState)};
+  bus::Writer<v1::Request> requests_{node_.writer<v1::Request>(bus::topics::kRegistrationRequest)};
+  std::optional<bus::Writer<v1::Intentions>> intends_;  ///< instead of the services
+  std::optional<bus::Writer<v1::Vision>> sees_;
+  bus::Reader<v1::MotorCommand> commands_{node_.reader(bus::topics::kDriveBehaviors)};
+  bus::Reader<v1::Request> looks_{node_.reader<v1::Request>(bus::topics::kServo)};
+  bus::Reader<v1::Intentions> intentions_{node_.reader(bus::topics::kIntentions)};
+  bus::Reader<v1::Perception> perceptions_{node_.reader(bus::topics::kPerception)};
+  bus::Reader<v1::Registration> registrations_{node_.reader(bus::topics::kRegistration)};
+  v1::MotorCommand commanded_;
+  std::vector<lps::Percept> percepts_;
+  std::vector<lps::SeenThing> things_;
+  v1::Intentions intended_;
+  v1::Registration registered_{.state = v1::REGISTRATION_UNPLACED};
+  const registration::Core* registration_ = nullptr;
+  runtime::Composition services_;
 };
 
 /// Drives through points one after the other, repeatedly if `loop` is set: go_to each, the next one

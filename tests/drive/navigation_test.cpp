@@ -326,7 +326,7 @@ TEST(Zones, ASlowZoneCapsTheSpeed) {
         // The robot brakes behind the edge.
         if (at.y() < 12.1 && at.y() > 9.7) {
           fastest = std::max(fastest, velocity);
-          reason = whole.drive().cores().said().intentions.limit.reason;
+          reason = whole.intentions().limit_reason;
         } else {
           outside = std::max(outside, velocity);
         }
@@ -585,10 +585,9 @@ TEST(People, WhatNobodyTookIsOnItsBack) {
   whole.advance_until(
       [&] {
         people.listen(whole);
-        if (const auto& beliefs = whole.drive().cores().said().intentions.beliefs)
-          for (const intentions::Belief& one : *beliefs)
-            if (one.name == "carries-the report")
-              carried = to_text(one.value);
+        for (const v1::Belief& one : whole.beliefs())
+          if (one.name == "carries-the report")
+            carried = one.value;
         return whole.ended(goal);
       },
       6000);
@@ -699,24 +698,22 @@ TEST(People, ThoseWhoKnowOfEachOtherAloneAreNoHelp) {
 
 TEST(People, TheQuestionEndsWithTheActivityThatAsks) {
   Whole whole(office());
-  std::map<std::string, intentions::Value> asking;
+  std::map<std::string, std::string> asking;
   const auto advance_until = [&](const std::function<bool()>& done) {
     whole.advance_until(
         [&] {
-          if (const auto& beliefs = whole.drive().cores().said().intentions.beliefs) {
-            asking.clear();
-            for (const intentions::Belief& belief : *beliefs)
-              if (belief.name.starts_with("asking-"))
-                asking[belief.name] = belief.value;
-          }
+          asking.clear();
+          for (const v1::Belief& belief : whole.beliefs())
+            if (belief.name.starts_with("asking-"))
+              asking[belief.name] = belief.value;
           return done();
         },
         20);
   };
   const auto goal = whole.ask("ask", {text("question", "Is karen here?"), text("whom", "karen")});
   advance_until([&] { return asking.size() == 2; });
-  EXPECT_EQ(asking["asking-about"], intentions::Value("answer"));
-  EXPECT_EQ(asking["asking-for"], intentions::Value("karen"));
+  EXPECT_EQ(asking["asking-about"], "answer");
+  EXPECT_EQ(asking["asking-for"], "karen");
   whole.ask("stop");
   advance_until([&] { return whole.ended(goal) && asking.empty(); });
   EXPECT_TRUE(whole.ended(goal));
@@ -942,10 +939,13 @@ TEST(GoldenTraces, EveryActivityThatIsShippedIsInOne) {
   std::string all;
   for (const Scenario& scenario : scenarios())
     all += read_file(std::string(source) + "/tests/golden/" + scenario.name + ".txt");
-  const intentions::Registry registry = shipped_schemas(behaviors::predefined());
-  for (const intentions::Schema* const schema : registry.all())
-    if (!schema->source.empty()) {
-      EXPECT_NE(all.find(schema->name + " ("), std::string::npos) << schema->name;
+  Whole whole(office());
+  const auto known = whole.drive().node().reader(bus::topics::kActivitySchemas).take_newest();
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->trouble, "");
+  for (const v1::ActivitySchema& schema : known->schemas)
+    if (!schema.source.empty()) {
+      EXPECT_NE(all.find(schema.name + " ("), std::string::npos) << schema.name;
     }
 }
 

@@ -131,10 +131,9 @@ TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
   Whole whole(options);
   const auto goal = whole.ask("attend-person");
   const auto seen = [&] {
-    const auto& things = whole.drive().cores().said().things;
-    return things && std::any_of(things->begin(), things->end(), [](const lps::SeenThing& thing) {
-             return thing.kind == Kind::person;
-           });
+    const std::vector<lps::SeenThing>& things = whole.drive().things();
+    return std::any_of(things.begin(), things.end(),
+                       [](const lps::SeenThing& thing) { return thing.kind == Kind::person; });
   };
   whole.advance_until(seen, 100);
   ASSERT_TRUE(seen());

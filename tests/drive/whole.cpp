@@ -4,10 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/places.hpp"
-#include "saphira/intentions/activity_folders.hpp"
-#include "saphira/intentions/functors.hpp"
-#include "saphira/intentions/navigation.hpp"
 
 namespace saphira::test {
 namespace {
@@ -22,41 +21,28 @@ DriveOptions drive_options(const WholeOptions& options) {
                                  options.map.empty() ? options.drive.world : options.map, ".map"));
   DriveOptions drive = registered_on(std::move(map), options.drive, options.knows_pose);
   drive.registration->add_features = options.adds_objects;
-  drive.intentions.emplace();
-  drive.intentions->registry = options.schemas.value_or(
-      shipped_schemas(options.drive.behaviors.value_or(behaviors::predefined())));
-  drive.intentions->functions = intentions::all_functions();
+  drive.intentions = true;
+  drive.vision = options.sees != nullptr;
   return drive;
 }
 
 }  // namespace
 
-intentions::Registry shipped_schemas(const behaviors::Registry& behaviors) {
-  intentions::Registry registry = intentions::built_in();
-  registry.know_behaviors(system::signatures_of(behaviors));
-  const intentions::ActivityFolders::News news =
-      intentions::ActivityFolders({intentions::activities_folder()}, intentions::all_functions(),
-                                  registry)
-          .look();
-  if (!news.errors.empty())
-    throw std::runtime_error(news.errors.front());
-  for (const intentions::Schema& schema : news.taken)
-    registry.add(schema);
-  return registry;
-}
-
 Whole::Whole(const WholeOptions& options) : drive_(drive_options(options)), sees_(options.sees) {}
 
 void Whole::advance() {
   drive_.advance();
-  if (!drive_.output().trouble.empty())
-    trouble_ = drive_.output().trouble;
-  for (const intentions::GoalStatus& status : intentions().news.changed)
-    statuses_[status.id] = status;
-  for (const intentions::Said& each : intentions().said)
-    said_.push_back(each.text);
+  if (auto behaviors = behaviors_.take_newest(); behaviors && !behaviors->trouble.empty())
+    trouble_ = behaviors->trouble;
+  for (const auto& sample : goal_statuses_.take())
+    if (!sample.info.disposed)
+      statuses_[sample.data.id] = sample.data;
+  for (const auto& sample : messages_.take())
+    said_.push_back(sample.data.text);
+  if (auto beliefs = belief_sets_.take_newest())
+    beliefs_ = std::move(beliefs->beliefs);
   if (sees_)
-    drive_.cores().see(sees_(drive_));
+    drive_.see(sees_(drive_));
   note_transitions();
 }
 
@@ -69,41 +55,37 @@ bool Whole::advance_until(const std::function<bool()>& done, int cycles) {
   return done();
 }
 
-intentions::GoalId Whole::ask(std::string functor, saphira::Arguments arguments, int priority,
-                              double deadline) {
-  intentions::GoalEvent event;
-  event.goal.id = {1, next_goal_++};
-  event.goal.requester = "test";
-  event.goal.functor = std::move(functor);
-  event.goal.arguments = std::move(arguments);
-  event.goal.priority = priority;
-  event.goal.deadline = deadline;
-  drive_.cores().hear(event);
-  return event.goal.id;
+v1::GoalId Whole::ask(std::string functor, const Arguments& arguments, int priority,
+                      double deadline) {
+  const v1::GoalId id{1, next_goal_++};
+  goals_.write({.id = id,
+                .requester = "test",
+                .functor = std::move(functor),
+                .arguments = to_bus(arguments),
+                .priority = priority,
+                .deadline = deadline});
+  return id;
 }
 
 void Whole::claim(std::string name, intentions::Value value) {
-  intentions::ClaimEvent event;
-  event.id = {2, next_goal_++};
-  event.source = "test";
-  event.name = std::move(name);
-  event.value = std::move(value);
-  drive_.cores().hear(std::move(event));
+  claims_.write({.id = {2, next_goal_++},
+                 .source = "test",
+                 .name = std::move(name),
+                 .value = to_text(value)});
 }
 
-const intentions::GoalStatus& Whole::status(const intentions::GoalId& goal) const {
-  static const intentions::GoalStatus unheard;
+const v1::GoalStatus& Whole::status(const v1::GoalId& goal) const {
+  static const v1::GoalStatus unheard;
   const auto found = statuses_.find(goal);
   return found == statuses_.end() ? unheard : found->second;
 }
 
-bool Whole::ended(const intentions::GoalId& goal) const {
+bool Whole::ended(const v1::GoalId& goal) const {
   return intentions::ended(status(goal).state);
 }
 
-intentions::GoalStatus Whole::achieve(std::string functor, saphira::Arguments arguments,
-                                      int cycles) {
-  const intentions::GoalId goal = ask(std::move(functor), std::move(arguments));
+v1::GoalStatus Whole::achieve(std::string functor, const Arguments& arguments, int cycles) {
+  const v1::GoalId goal = ask(std::move(functor), arguments);
   advance_until([&] { return ended(goal); }, cycles);
   return status(goal);
 }
@@ -116,13 +98,12 @@ bool Whole::at_rest() const {
 /// The display of paper Figure 10, as it changes: new nodes, nodes with another state or label, and
 /// removed nodes. Names generated by the forest (I and a number) are in it, too.
 void Whole::note_transitions() {
-  using intentions::IntentionNode;
-  const auto line = [&](const IntentionNode& node, const std::string& what) {
+  const auto line = [&](const v1::IntentionNode& node, const std::string& what) {
     transitions_.push_back(std::to_string(cycle()) + " " + node.schema + " (" + node.name + ") " +
                            what);
   };
-  std::map<std::uint32_t, IntentionNode> now;
-  for (const IntentionNode& node : intentions().nodes)
+  std::map<std::uint32_t, v1::IntentionNode> now;
+  for (const v1::IntentionNode& node : intentions().nodes)
     now.emplace(node.id, node);
   for (const auto& [id, node] : nodes_)
     if (!now.contains(id))

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drive/drive.hpp"
+#include "saphira/intentions/value.hpp"
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/topology.hpp"
@@ -22,18 +23,12 @@ struct WholeOptions {
   std::shared_ptr<const maps::Map> made_map;  ///< instead of it
   bool knows_pose = true;                     ///< registration gets the robot's start
   bool adds_objects = false;                  ///< objects that are not on the map are added to it
-  /// Else the built-in schemas and the shipped activities.
-  std::optional<intentions::Registry> schemas;
   /// The things that a camera sees after a cycle. None: no camera.
   std::function<std::vector<lps::SeenThing>(Drive&)> sees;
 };
 
-/// The built-in schemas, and those of config/activities. std::runtime_error where a file has an
-/// error.
-intentions::Registry shipped_schemas(const behaviors::Registry& behaviors);
-
-/// The whole robot in one loop, without the bus: simulated robot and all services. Repeatable to
-/// the last bit, and thousands of times as fast as the robot.
+/// The whole robot in one loop: simulated robot and all services. Repeatable to the last bit, and
+/// hundreds of times as fast as the robot.
 class Whole {
  public:
   explicit Whole(const WholeOptions& options);
@@ -45,26 +40,25 @@ class Whole {
   bool advance_until(const std::function<bool()>& done, int cycles);
 
   /// Asks for a goal, which is taken in the next cycle.
-  intentions::GoalId ask(std::string functor, saphira::Arguments arguments = {}, int priority = 0,
-                         double deadline = 0.0);
+  v1::GoalId ask(std::string functor, const Arguments& arguments = {}, int priority = 0,
+                 double deadline = 0.0);
   /// Makes a claim, which is taken in the next cycle.
   void claim(std::string name, intentions::Value value);
   /// The newest status of a goal; kWaiting until there is one.
-  const intentions::GoalStatus& status(const intentions::GoalId& goal) const;
-  bool ended(const intentions::GoalId& goal) const;
+  const v1::GoalStatus& status(const v1::GoalId& goal) const;
+  bool ended(const v1::GoalId& goal) const;
   /// Asks, and advances until the goal has ended, for that number of cycles at most.
-  intentions::GoalStatus achieve(std::string functor, saphira::Arguments arguments, int cycles);
+  v1::GoalStatus achieve(std::string functor, const Arguments& arguments, int cycles);
 
   Drive& drive() { return drive_; }
   const Drive& drive() const { return drive_; }
-  const registration::Core::Outputs& registered() const { return drive_.registered(); }
+  const v1::Registration& registered() const { return drive_.registered(); }
   Pose believed() const { return drive_.believed(); }
-  const maps::Map& map() const { return drive_.cores().registration().map(); }
+  const maps::Map& map() const { return drive_.registration().map(); }
   /// Of the present map.
   maps::Topology topology() const { return maps::Topology(map()); }
-  const intentions::Outputs& intentions() const {
-    return drive_.cores().said().intentions.intended;
-  }
+  const v1::Intentions& intentions() const { return drive_.intended(); }
+  const std::vector<v1::Belief>& beliefs() const { return beliefs_; }
   Pose truth() const { return drive_.truth(); }
   std::uint64_t cycle() const { return drive_.seen().cycle; }
   bool at_rest() const;
@@ -81,11 +75,18 @@ class Whole {
 
   Drive drive_;
   std::function<std::vector<lps::SeenThing>(Drive&)> sees_;
+  bus::Writer<v1::Goal> goals_{drive_.node().writer(bus::topics::kGoals)};
+  bus::Writer<v1::BeliefClaim> claims_{drive_.node().writer(bus::topics::kBeliefClaims)};
+  bus::Reader<v1::BehaviorSet> behaviors_{drive_.node().reader(bus::topics::kBehaviors)};
+  bus::Reader<v1::GoalStatus> goal_statuses_{drive_.node().reader(bus::topics::kGoalStatus)};
+  bus::Reader<v1::Message> messages_{drive_.node().reader(bus::topics::kMessages)};
+  bus::Reader<v1::BeliefSet> belief_sets_{drive_.node().reader(bus::topics::kBeliefs)};
+  std::vector<v1::Belief> beliefs_;
   std::vector<std::string> said_;
   std::string trouble_;
-  std::map<intentions::GoalId, intentions::GoalStatus> statuses_;
+  std::map<v1::GoalId, v1::GoalStatus> statuses_;
   std::uint64_t next_goal_ = 1;
-  std::map<std::uint32_t, intentions::IntentionNode> nodes_;
+  std::map<std::uint32_t, v1::IntentionNode> nodes_;
   std::vector<std::string> transitions_;
 };
 

@@ -45,7 +45,8 @@ class DirectRobot final : public ServedRobot {
   DirectRobot(const std::string& address, Say say)
       : say_(std::move(say)),
         link_(transport::parse_address(address)),
-        core_(settings_of_environment()),
+        settings_(settings_of_environment()),
+        core_(settings_),
         wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     const std::string keeper = beside_library("bin/saphira-keeper");
     try {
@@ -202,7 +203,7 @@ class DirectRobot final : public ServedRobot {
     }
   }
   void perform(const bridge::SessionBegan& began) {
-    say_("the guard stops the robot " + format("%.2f m", settings_of_environment().guard_margin) +
+    say_("the guard stops the robot " + format("%.2f m", settings_.guard_margin) +
              " before what its sonars hear (" + kMargin + ")",
          false);
     const std::lock_guard lock(mutex_);
@@ -261,6 +262,7 @@ class DirectRobot final : public ServedRobot {
 
   Say say_;
   transport::Link link_;
+  bridge::CoreSettings settings_;
   bridge::Core core_;
   std::unique_ptr<transport::Keeper> keeper_;
   double last_beat_ = 0.0;

@@ -34,27 +34,29 @@ Core::Settings settings_of(const Options& options) {
 
 }  // namespace
 
-Service::Service(runtime::Ports& ports, Options options)
+Service::Service(runtime::Ports& ports, const Options& options)
+    : Service(ports, settings_of(options), options.memory_file) {}
+
+Service::Service(runtime::Ports& ports, const Core::Settings& settings, std::string memory_file)
     : ports_(ports),
-      options_(std::move(options)),
+      memory_file_(std::move(memory_file)),
       perception_(ports.cycle(bus::topics::kPerception)),
       registrations_(ports.each_cycle(bus::topics::kRegistration)),
       maps_(ports.changes(bus::topics::kMap)),
-      saver_(ports.files() == Files::kStay ? "" : options_.memory_file) {
+      saver_(ports.files() == Files::kStay ? "" : memory_file_) {
   ports.requests(bus::topics::kRegistrationRequest, Core::functors(),
                  [this](const Request& request) { return core_->act(request); });
-  const Core::Settings settings = settings_of(options_);
   try {
     core_.emplace(settings);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(settings.source + ": " + error.what());
   }
   std::optional<Remembered> remembered;
-  if (!options_.memory_file.empty()) {
+  if (!memory_file_.empty()) {
     const std::string trouble = read_or_set_aside(
-        options_.memory_file,
+        memory_file_,
         [&](const std::string& content) {
-          Remembered found = parse_remembered(content, options_.memory_file);
+          Remembered found = parse_remembered(content, memory_file_);
           Core(settings, found);  // throws where it is unusable
           remembered = std::move(found);
         },

@@ -24,7 +24,10 @@ runtime::Component component();
 class Service final : public runtime::Service {
  public:
   /// Throws FileError, std::runtime_error or std::invalid_argument for wrong options or files.
-  Service(runtime::Ports& ports, Options options);
+  Service(runtime::Ports& ports, const Options& options);
+  Service(runtime::Ports& ports, const Core::Settings& settings, std::string memory_file = "");
+
+  const Core& core() const { return *core_; }
 
   ProcessTable& processes() override { return core_->processes(); }
   void step(const runtime::Turn& turn) override;
@@ -35,7 +38,7 @@ class Service final : public runtime::Service {
   void remember();
 
   runtime::Ports& ports_;
-  Options options_;
+  std::string memory_file_;
   bus::Input<v1::Perception>& perception_;
   runtime::Output<v1::Registration> registrations_;
   runtime::Output<v1::FloorMap> maps_;

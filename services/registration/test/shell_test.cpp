@@ -1,5 +1,4 @@
-// Interpretation and registration as services, with a simulated robot that tours an office: on a
-// bus within the process, step by step.
+// Registration as a service, with a simulated robot that tours an office, step by step.
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -11,7 +10,6 @@
 #include <functional>
 
 #include "drive/drive.hpp"
-#include "interpretation/shell/service.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "node_options.hpp"
@@ -55,18 +53,10 @@ std::string map_path(const std::string& name) {
 
 class RegistrationShell : public testing::Test {
  protected:
-  RegistrationShell() {
-    drive.scene().set_door("n2", true);
-    v1::RobotDescription description{.stamp = {.epoch = 7}, .radius = 0.22};
-    for (const lps::SonarMount& mount : drive.mounts()) {
-      description.sonars.push_back({.sonar = static_cast<std::uint8_t>(mount.sonar),
-                                    .pose_in_robot = lps::to_bus(mount.in_robot)});
-    }
-    descriptions.write(description);
-  }
+  RegistrationShell() { drive.scene().set_door("n2", true); }
 
   void start(const Options& options) {
-    service.emplace(test::memory_options("registration", true), memory);
+    service.emplace(test::memory_options("registration", true), drive.bus());
     shell.emplace(*service, [options](runtime::Ports& ports) {
       return std::make_unique<Service>(ports, options);
     });
@@ -75,15 +65,6 @@ class RegistrationShell : public testing::Test {
   /// One cycle of robot and services.
   void cycle() {
     const test::Seen& seen = drive.advance();
-    v1::RobotState state{
-        .stamp = {7, seen.cycle}, .odom = odom, .pose_in_odom = lps::to_bus(seen.pose_in_odom)};
-    for (const lps::SonarReading& reading : seen.readings) {
-      state.sonars.push_back({.sonar = static_cast<std::uint8_t>(reading.sonar),
-                              .range = static_cast<float>(reading.range),
-                              .echo = reading.echo});
-    }
-    states.write(state);
-    ASSERT_TRUE(eyes_shell.step(stop));
     // A service that starts late steps the oldest available cycle first.
     do {
       ASSERT_TRUE(shell->step(stop));
@@ -160,6 +141,7 @@ class RegistrationShell : public testing::Test {
                               << "\ndoor n2 6500 8000 7400 8000 90\n"
                               << "box crate 20000 10000 0 400 400 50\n";
     made.errors = 2.0;
+    made.interpretation = true;
     return made;
   }
 
@@ -187,22 +169,16 @@ class RegistrationShell : public testing::Test {
 
   const test::TempDir folder;
   test::Drive drive{options()};
-  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Stop stop;
-  bus::Node bridge{test::memory_options("bridge", true), memory};
-  bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
-  bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
-  bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kRegistrationRequest)};
-  bus::Reader<v1::Registration> registrations{bridge.reader(bus::topics::kRegistration)};
-  bus::Reader<v1::Answer> answers{bridge.reader(bus::topics::kRegistrationAnswers)};
-  bus::Reader<v1::FloorMap> maps{bridge.reader(bus::topics::kMap)};
-  bus::Node eyes{test::memory_options("interpretation", true), memory};
-  runtime::Shell eyes_shell{eyes, interpretation::component().make};
+  bus::Node& node = drive.node();
+  bus::Writer<v1::Request> requests{node.writer<v1::Request>(bus::topics::kRegistrationRequest)};
+  bus::Reader<v1::Registration> registrations{node.reader(bus::topics::kRegistration)};
+  bus::Reader<v1::Answer> answers{node.reader(bus::topics::kRegistrationAnswers)};
+  bus::Reader<v1::FloorMap> maps{node.reader(bus::topics::kMap)};
   std::optional<bus::Node> service;
   std::optional<runtime::Shell> shell;
   v1::Registration registration;
   maps::Map newest_map;
-  std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
   std::uint64_t number = 0;
 };
 

@@ -134,7 +134,7 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
       robot.advance();
       recessed.look(robot);
       any.look(robot);
-      for (const registration::Core::Matched& match : robot.registered().matches)
+      for (const v1::Match& match : robot.registered().matches)
         if (match.accepted && maps::find(standing_back, match.artifact) != nullptr)
           matched.insert(match.artifact);
     }

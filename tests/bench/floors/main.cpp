@@ -107,11 +107,11 @@ Patrolled patrol(const Options& options, const Site& site) {
     score.look(robot);
     recessed.look(robot);
     any.look(robot);
-    const registration::Core::Outputs& told = robot.registered();
-    const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
+    const v1::Registration& told = robot.registered();
+    const double off = (robot.believed().position() - robot.truth().position()).norm();
     if (told.state == v1::REGISTRATION_TRACKING) {
       ++result.tracking;
-      result.offs.add(told.pose_in_map, robot.truth());
+      result.offs.add(robot.believed(), robot.truth());
     }
     if (told.confidence >= 0.9) {
       ++result.sure;

@@ -92,10 +92,9 @@ TEST(Localization, WithoutAPoseItFindsItAndSaysNothingBefore) {
     for (int i = 0; i < 3000; ++i) {
       tour.act(robot, robot.truth());
       robot.advance();
-      const Output& output = robot.registered();
-      if (output.state == v1::REGISTRATION_TRACKING) {
+      if (robot.registered().state == v1::REGISTRATION_TRACKING) {
         found = true;
-        ASSERT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.5)
+        ASSERT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.5)
             << "seed " << seed << " cycle " << i;
       }
     }
@@ -164,7 +163,7 @@ TEST(Localization, NothingIsMissedThatIsThereAndNothingPutWhereNothingStands) {
     for (const std::uint32_t door : robot.registered().closed_doors)
       ADD_FAILURE() << "door " << door << " is open, in cycle " << i;
   }
-  const maps::Map& map = robot.cores().registration().map();
+  const maps::Map& map = robot.registration().map();
   EXPECT_EQ(std::count_if(map.features.begin(), map.features.end(),
                           [](const maps::Feature& feature) { return !feature.learned; }),
             static_cast<std::ptrdiff_t>(office().features.size()))
@@ -208,7 +207,7 @@ TEST(Localization, AMapThatIsPartlyWrongDoesNotLoseIt) {
 TEST(Localization, ARestartGoesOnWithoutAJump) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 900);
-  const auto remembered = robot.cores().registration().remembered();
+  const auto remembered = robot.registration().remembered();
   Core again({office(), "", std::nullopt, false, true}, remembered);
   // Two seconds were missed; dead reckoning bridges the way of that time.
   Tour tour(office_tour(), true);
@@ -218,8 +217,8 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   }
   const Seen& seen = robot.seen();
   again.processes().step(seen.cycle);
-  const Output output = again.step({seen.cycle, &robot.mounts(), 1, seen.pose_in_odom,
-                                    robot.cores().said().percepts, seen.readings});
+  const Output output = again.step({seen.cycle, &robot.mounts(), Drive::kOdom, seen.pose_in_odom,
+                                    robot.percepts(), seen.readings});
   EXPECT_EQ(output.state, v1::REGISTRATION_TRACKING);
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
@@ -237,7 +236,7 @@ bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
   Output told;
   while (robot.seen().cycle < cycles) {
     tour.act(robot, robot.truth());
-    const std::vector<lps::Percept> before = robot.cores().said().percepts;
+    const std::vector<lps::Percept> before = robot.percepts();
     const Seen& seen = robot.advance();
     core.processes().step(seen.cycle);
     told = core.step({seen.cycle, seen.cycle == 1 ? &robot.mounts() : nullptr, 2, seen.pose_in_odom,
@@ -255,7 +254,7 @@ bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
 TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 900);
-  const auto remembered = robot.cores().registration().remembered();
+  const auto remembered = robot.registration().remembered();
   ASSERT_TRUE(remembered);
   ASSERT_GT((robot.truth().position() - kStart.position()).norm(), 5.0);
   EXPECT_TRUE(finds_itself(*remembered, kStart, {{17.5, 8.0}}, 400))
@@ -270,17 +269,16 @@ TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
 TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 300);
-  robot.cores().registration().act({"switch", {{"on", false}}});
+  robot.ask({"switch", {{"on", false}}});
   Tour tour(office_tour(), true);
   for (int i = 0; i < 100; ++i) {
     tour.act(robot, robot.believed());
     robot.advance();
-    const Output& output = robot.registered();
-    EXPECT_EQ(output.state, v1::REGISTRATION_OFF);
-    EXPECT_TRUE(output.matches.empty());
+    EXPECT_EQ(robot.registered().state, v1::REGISTRATION_OFF);
+    EXPECT_TRUE(robot.registered().matches.empty());
   }
   EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.6);
-  robot.cores().registration().act({"switch", {{"on", true}}});
+  robot.ask({"switch", {{"on", true}}});
   robot.advance();
   EXPECT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
 }

@@ -23,12 +23,11 @@ PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles) {
   for (int i = 0; i < cycles; ++i) {
     tour.act(robot, i == 0 ? robot.truth() : robot.believed());
     robot.advance();
-    const registration::Core::Outputs& told = robot.registered();
     result.way += (robot.truth().position() - last).norm();
     last = robot.truth().position();
     result.reckoned.add(robot.reckoned(), robot.truth());
-    if (told.state == v1::REGISTRATION_TRACKING)
-      result.registered.add(told.pose_in_map, robot.truth());
+    if (robot.registered().state == v1::REGISTRATION_TRACKING)
+      result.registered.add(robot.believed(), robot.truth());
     else
       ++result.not_tracking;
   }

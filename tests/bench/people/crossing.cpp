@@ -336,7 +336,7 @@ void tell(const sim::ContactWatch& watch, std::size_t& told, const Drive& drive,
         "%.3f m/s towards it, heard for %.1f of %.1f s; behaviors want %.2f m/s, guard %.2f %s\n",
         seconds, kBlames[static_cast<int>(contact.blame)],
         contact.name.empty() ? "a wall" : contact.name.c_str(), robot.x, robot.y, degrees(robot.th),
-        at.x(), at.y(), contact.towards, contact.heard, contact.needed, drive.output().speed,
+        at.x(), at.y(), contact.towards, contact.heard, contact.needed, drive.commanded().velocity,
         drive.guarded().velocity, drive.guarded().reason.c_str());
   }
 }

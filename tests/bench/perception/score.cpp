@@ -96,7 +96,7 @@ bool Score::is_real(const lps::Percept& percept, const Pose& at) const {
 
 void Score::look(const Drive& drive) {
   const Seen& seen = drive.seen();
-  const std::vector<lps::Percept>& percepts = drive.cores().said().percepts;
+  const std::vector<lps::Percept>& percepts = drive.percepts();
   odom_in_world_[seen.cycle] =
       compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}));
   for (const lps::Percept& percept : percepts) {
