@@ -11,7 +11,7 @@ namespace saphira::bench {
 /// Somebody who has no right to what they try, against a robot's bridge on a secured bus.
 struct Intrusion {
   std::string who;
-  /// What they wrote or read without the right to it, by its topic.
+  /// The topics that they wrote or read without the right to it.
   std::vector<std::string> got;
   std::string named;       ///< what the bridge said of them; empty: nothing
   std::size_t cycles = 0;  ///< of the bridge meanwhile

@@ -13,7 +13,7 @@ Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& addr
                                    std::optional<std::chrono::seconds> sealed) {
   const std::scoped_lock lock(mutex_);
   if (const auto known = known_.find(prefix); known != known_.end()) {
-    // Who has sealed its announcements goes on to do so.
+    // A sealed participant goes on to seal.
     const Fate found = known->second.sealed && !sealed ? Fate::drops : fate(known->second, now);
     return found == Fate::drops ? dropped(address, now) : found;
   }

@@ -89,7 +89,7 @@ class Robot {
   /// there.
   bool place(const Pose& pose_in_world);
 
-  /// What outlasts the simulator (HostOptions::state).
+  /// The state that outlasts the simulator (HostOptions::state).
   struct Memory {
     Pose pose_in_world;
     Pose pose_in_odom;
