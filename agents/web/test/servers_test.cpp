@@ -102,7 +102,7 @@ TEST(Servers, EachListensAtTheAddressThatWasSaidAndNowhereElse) {
       EXPECT_EQ(listening(), (Addresses{address, address, "127.0.0.1"})) << "relay";
     }
     {
-      const viewer::Server server({{address, 0, {}, {}}, {}, {}}, {}, {});
+      const viewer::Server server({{address, 0, {}, {}}, {}, {}, {}, {}}, {}, {});
       EXPECT_EQ(listening(), Addresses{address}) << "viewer";
     }
   }
