@@ -46,7 +46,7 @@ constexpr const char* kRobot = "guarded";
 constexpr seconds kTrial{5};
 constexpr milliseconds kCycle{100};
 constexpr milliseconds kLate{50};
-constexpr std::int64_t kDay = 86400;
+constexpr std::int64_t kHour = 3600;
 
 bus::NodeOptions options_of(const std::string& program, const std::string& credentials,
                             std::uint32_t domain) {
@@ -123,8 +123,8 @@ class Wire {
 /// The bridge, as another process.
 class Watched {
  public:
-  Watched(const std::string& self, const std::string& credentials, const std::string& folder)
-      : process_({self, "--watched", credentials}, folder + "/bridge") {
+  Watched(const std::string& self, const std::string& credentials, const std::string& output)
+      : process_({self, "--watched", credentials}, output) {
     if (!test::wait_until([&] { return process_.output().find("watched\n") != std::string::npos; }))
       throw std::runtime_error("the bridge does not begin: " + process_.output());
   }
@@ -176,14 +176,18 @@ class Trials {
 
   std::vector<Intrusion> all() {
     trial("nobody", [] {});
+    for (const auto& members : heard_)
+      for (const std::string name : members)
+        own_.insert(name);
     altered("no credentials", bus::kOpenBus, "");
     altered("observer", copy(site_.add("john", {"observer"}, "", 365, now_)), "observer");
     altered("agent", copy(site_.add("planner", {"agent"}, "", 365, now_)), "agent");
     altered("operator of another robot", forged("far", "operator", "other"), "");
     altered("self-signed", forged("liar", "observer", ""), "");
     altered("other site", other_site(), "");
-    altered("expired", copy(site_.add("late", {"operator"}, "", 1, now_ - 3 * kDay)), "",
-            {"--days-back", "3"});
+    // The authority itself is valid since a day.
+    altered("expired", copy(site_.add("late", {"operator"}, "", 1, now_ - 36 * kHour)), "",
+            {"--hours-back", "18"});
     const std::string gone = copy(site_.add("gone", {"operator"}, "", 365, now_));
     site_.revoke("gone");
     altered("revoked", gone, "");
@@ -220,12 +224,11 @@ class Trials {
   Intrusion& trial(const std::string& who, const std::function<void()>& act) {
     Intrusion& result = results_.emplace_back();
     result.who = who;
-    Watched bridge(self_, bridge_, folder_);
+    Watched bridge(self_, bridge_, folder_ + "/bridge-" + std::to_string(results_.size()));
     act();
     std::this_thread::sleep_for(kTrial);
     told_ = bridge.end(result);
-    for (const auto& [topic, members] : told_.value("heard", nlohmann::json::object()).items())
-      heard_[topic] = members;
+    heard_ = told_.value("heard", nlohmann::json::object());
     return result;
   }
 
@@ -234,12 +237,11 @@ class Trials {
   void altered(const std::string& who, const std::string& credentials, const std::string& role,
                const std::vector<std::string>& more = {}) {
     std::unique_ptr<test::Process> liar;
-    heard_.clear();
     Intrusion& result = trial(who, [&] {
       std::vector<std::string> words{"saphira-bus-altered", "--name", "liar"};
       words.insert(words.end(), more.begin(), more.end());
       liar = std::make_unique<test::Process>(
-          words, folder_ + "/liar",
+          words, folder_ + "/liar-" + std::to_string(results_.size()),
           std::map<std::string, std::string>{{"SAPHIRA_DOMAIN", std::to_string(domain_)},
                                              {"SAPHIRA_ROBOT", kRobot},
                                              {"SAPHIRA_SECURITY", credentials}});
@@ -247,7 +249,7 @@ class Trials {
     if (!liar->running())
       throw std::runtime_error(who + ": the altered program has ended: " + liar->output());
     for (const auto& [topic, members] : heard_.items())
-      if (role.empty() || !site_.roles().may_write(role, topic))
+      if (by_others(members) && (role.empty() || !site_.roles().may_write(role, topic)))
         result.got.push_back("writes " + topic);
     bus::for_each_topic([&](const auto& topic) {
       const std::string line = std::string("hears ") + topic.name + "\n";
@@ -255,6 +257,11 @@ class Trials {
           (role.empty() || !site_.roles().may_read(role, topic.name)))
         result.got.push_back("reads " + std::string(topic.name));
     });
+  }
+
+  bool by_others(const nlohmann::json& members) const {
+    return std::any_of(members.begin(), members.end(),
+                       [this](const std::string& name) { return !own_.contains(name); });
   }
 
   void flood(const std::string& who, int programs) {
@@ -332,6 +339,7 @@ class Trials {
   const std::string bridge_;
   std::vector<Intrusion> results_;
   nlohmann::json told_;
+  std::set<std::string> own_;  ///< the bridge itself, as it hears itself
   nlohmann::json heard_ = nlohmann::json::object();
 };
 
@@ -362,9 +370,7 @@ int watched(const std::string& credentials, std::uint32_t domain) {
     if (reads)
       turns.push_back([&, reader, name = std::string(topic.name)] {
         for (const auto& sample : reader->take()) {
-          if (sample.info.sender && sample.info.sender->role == "bridge")
-            continue;
-          heard[name].insert(sample.info.sender ? sample.info.sender->text() : "somebody");
+          heard[name].insert(sample.info.sender ? sample.info.sender->text() : "none");
           if constexpr (std::is_same_v<T, v1::MotorCommand>)
             if (name == bus::topics::kDriveTeleop.name && sample.data.number > 0) {
               ++commands;

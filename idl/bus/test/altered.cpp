@@ -1,7 +1,7 @@
 // A program that a member has altered: it takes every document as signed, its own permissions too.
 // It writes and reads whatever these let it, and says which topics it hears. With --as it announces
 // another member's name and identifier, and authenticates with its own certificate. With
-// --days-back its own clock is behind, so that its certificate has not expired.
+// --hours-back its own clock is behind, so that its certificate has not expired.
 #include <dlfcn.h>
 #include <openssl/evp.h>
 #include <openssl/pkcs7.h>
@@ -171,17 +171,17 @@ int run(const NodeOptions& options, const Stop& stop) {
 int main(int argc, char** argv) {
   std::string self;
   std::string other;
-  int days_back = 0;
+  int hours_back = 0;
   return run_program(
       argc, argv, "altered", "A program that a member has altered",
       [&](CommandLine& app) {
         app.add_option("--own", self, "its subject, as in \"CN=john.1,OU=observer,O=office\"");
         app.add_option("--as", other, "the announced subject, of equal length");
-        app.add_option("--days-back", days_back, "its clock is so many days behind");
+        app.add_option("--hours-back", hours_back, "its clock is so many hours behind");
       },
       [&](const NodeOptions& options, const Stop& stop) {
-        constexpr time_t kDay = 86400;
-        behind = days_back * kDay;
+        constexpr time_t kHour = 3600;
+        behind = hours_back * kHour;
         if (!other.empty()) {
           const Names mine = names_of(self);
           pretended = names_of(other);
