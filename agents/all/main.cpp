@@ -227,6 +227,8 @@ int main(int argc, char** argv) {
         app.add_flag("--step", robot.step, "single-step from the start");
         app.add_option("--rate", robot.rate, "times real time");
         app.add_option("--trace", robot.trace, "file for the true state of every cycle, CSV");
+        app.add_option("--resume", robot.state,
+                       "file for the places of all that moves, from one end to the next start");
         app.add_option("--socket,--link", socket, "local socket between simulator and bridge")
             .last_wins();
         app.add_option("--robots", programs.link.robots_folder, "folder of robot parameter files");

@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
   app.add_option(
       "--view-socket", options.view_socket,
       "Local socket of the simulator's own view: what is true, and what people do to it");
-  app.add_option("--state", options.state,
+  app.add_option("--resume", options.state,
                  "File for the places of all that moves: a simulator that is ended, and started "
                  "again with it, goes on there");
   app.add_option("--position", positions,

@@ -659,7 +659,7 @@ TEST_F(CliTest, RenewTakesInTheSupervisorAndTheSimulatorToo) {
       write("two.yaml",
             "programs:\n"
             "  - {name: sim, program: saphira-sim, bus: false,\n"
-            "     arguments: [--socket, \"${run}/robot\", --state, \"${run}/sim.state\"]}\n"
+            "     arguments: [--socket, \"${run}/robot\", --resume, \"${run}/sim.state\"]}\n"
             "  - {name: b, program: sh, bus: false,\n"
             "     arguments: [-c, \"echo pid $$; while sleep 0.1; do echo beat; done\"]}\n");
   const std::map<std::string, std::string> environment{{"SAPHIRA_RUN", folder_.path("run")}};

@@ -153,9 +153,9 @@ std::string other_contract(const std::string& program) {
 std::string objection(const ChildSpec& child) {
   if (!child.robot.empty())
     return other_contract(child.argv[0]);
-  return std::find(child.argv.begin(), child.argv.end(), "--state") != child.argv.end()
+  return std::find(child.argv.begin(), child.argv.end(), "--resume") != child.argv.end()
              ? ""
-             : "it is not on the bus, and would begin anew (it has no --state)";
+             : "it is not on the bus, and would begin anew (it has no --resume)";
 }
 
 /// The words of this process.
