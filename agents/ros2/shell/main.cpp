@@ -18,6 +18,8 @@ int serve(const bus::NodeOptions& node_options, ros2::Options options, const bus
   ros2::RosRobot robot(node, options);
   node.status().state = v1::SERVICE_RUNNING;
   node.info("domain " + std::to_string(options.ros.domain) + " of ROS 2");
+  if (options.reads_only)
+    node.info("nothing that ROS 2 says reaches the robot");
   while (!stop.requested()) {
     node.wait(cli::kDrivePeriod, &stop);
     robot.poll();
@@ -34,6 +36,7 @@ int main(int argc, char** argv) {
   std::string role = "direct";
   std::string distribution;
   bool without_map = false;
+  bool without_keys = false;
   return bus::run_program(
       argc, argv, "ros2", "Shows the robot to ROS 2, and lets ROS 2 drive it.",
       [&](CommandLine& app) {
@@ -49,6 +52,8 @@ int main(int argc, char** argv) {
                        "a node for `ros2 node list`, and messages as they are there")
             .one_of({"humble", "iron", "jazzy"});
         app.add_flag("--read-only", options.reads_only, "take no commands and goals of ROS 2");
+        app.add_flag("--without-keys", without_keys,
+                     "take them on a secured bus, too: ROS 2 has no keys");
         app.add_flag("--without-map", without_map,
                      "another program gives the map, and where odom is on it");
       },
@@ -61,6 +66,8 @@ int main(int argc, char** argv) {
         options.stamped = cmd_vel == "stamped";
         options.teleop = role == "teleop";
         options.with_map = !without_map;
+        const bool is_secured = !node.security.empty() && node.security != bus::kOpenBus;
+        options.reads_only = options.reads_only || (is_secured && !without_keys);
         if (!distribution.empty())
           options.distribution = distributions.at(distribution);
         return node.dry_run ? static_cast<int>(bus::kExitOk) : serve(node, options, stop);
