@@ -4,6 +4,8 @@
 #include <sphinxbase/err.h>
 #include <sphinxbase/fsg_model.h>
 
+#include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <set>
@@ -18,8 +20,9 @@ namespace {
 
 // Phones after the keyword that are no word: breath, or room noise.
 constexpr int kBreath = 4;
-constexpr double kAddressed = 0.5;        // confidence of a keyword alone
-constexpr const char* kFree = "free";     // the search of the second decoder without a grammar
+constexpr double kAddressed = 0.5;     // confidence of a keyword alone
+constexpr const char* kFree = "free";  // the search of the second decoder without a grammar
+constexpr std::array<std::string_view, 3> kAtOnce{"stop", "halt", "freeze"};
 constexpr double kMostDifference = 0.45;  // README.md, "Measured"
 constexpr const char* kPhone = "p_";      // begins the token of a phone; words are w0, w1, ...
 
@@ -39,6 +42,14 @@ Phones in_dictionary(ps_decoder_t* decoder, const std::string& word) {
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream parts(text);
   return {std::istream_iterator<std::string>(parts), std::istream_iterator<std::string>()};
+}
+
+/// A stop is not heard once more: nobody waits for that.
+bool is_at_once(const std::string& command) {
+  const std::vector<std::string> words = words_of(command);
+  return std::any_of(kAtOnce.begin(), kAtOnce.end(), [&](std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  });
 }
 
 struct FreeDecoder {
@@ -299,7 +310,7 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
     return;
   Heard heard = result(decoder.get());
   if (heard.outcome == Outcome::command)
-    heard.confidence = is_sure(heard) ? kCertain : kUncertain;
+    heard.confidence = is_at_once(heard.text) || is_sure(heard) ? kCertain : kUncertain;
   recent.clear();
   if (!keyword.empty()) {
     heard.text = std::exchange(keyword, {}) + (heard.text.empty() ? "" : " ") + heard.text;
