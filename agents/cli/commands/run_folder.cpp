@@ -50,7 +50,7 @@ std::string temporary_folder() {
   return "/tmp/saphira-" + std::to_string(getuid());
 }
 
-/// In memory, for what has to be found while the disk is full.
+/// A folder in memory, for files that others have to find while the disk is full.
 std::string memory_folder(uid_t user) {
   return "/dev/shm/saphira-" + std::to_string(user);
 }
@@ -90,7 +90,7 @@ std::string own_folder() {
   return ours;
 }
 
-/// Where deployments of this user may be. One that was started without a home is in the second
+/// The folders of this user's deployments. One that was started without a home is in the second
 /// folder. Nothing is made, so that a stop needs no room on the disk.
 std::set<std::string> own_folders() {
   return {chosen_folder(), temporary_folder()};

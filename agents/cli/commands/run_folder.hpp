@@ -62,8 +62,8 @@ class FoundBus {
   int lock_ = -1;
 };
 
-/// For a new version of this program, which takes the place of this process (exec): keeps what the
-/// objects above hold, so that nobody else takes it meanwhile. Returns the descriptors, in words.
+/// Keeps the locks of the objects above over an exec() of a new version of this program. Returns
+/// their descriptors, in words.
 std::string keep_held();
 /// The objects that are made from now on take over what keep_held() has kept.
 void take_held(const std::string& descriptors);

@@ -307,7 +307,8 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
   canceling_.push_back({{connection, cancel.reference}, *id, now() + kCanceled});
 }
 
-/// Answers the pages whose goals have ended, or have not in time. Intentions decide who may cancel.
+/// Answers each page that asked to cancel a goal: it has ended, or it has not within the time.
+/// Intentions decide who may cancel.
 void Gateway::tell_cancels() {
   std::erase_if(canceling_, [this](const Canceling& one) {
     const auto status = goals_.status(one.goal);

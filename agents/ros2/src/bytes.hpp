@@ -48,7 +48,7 @@ std::optional<T> read(std::string bytes) {
   }
 }
 
-/// Where the answer to a request goes. ROS 2's two middlewares differ: Cyclone's requests and
+/// The address of an answer. ROS 2's two middlewares differ: Cyclone's requests and
 /// answers begin with 16 bytes, the client's number and the request's; Fast RTPS' answers name the
 /// request beside their bytes.
 struct Ticket {

@@ -66,7 +66,7 @@ class Client {
   dds_entity_t participant_;
 };
 
-/// Takes what has come; true where `each` was for one of them.
+/// Takes the new samples. True where `each` was true for one of them.
 template <class T>
 bool take(dds_entity_t reader, const std::function<bool(const T&)>& each) {
   bool found = false;

@@ -169,11 +169,15 @@ class Cut {
           format(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
                            : "%.2f m/s cut to %.2f: no sonar looks behind",
                  wanted_, blind));
-    const double covered = blind > 0.0 ? body_.covered - margin_ : body_.sonar_range;
-    sweep_ = stops_within(covered - kSweeps * speed_, blind) < speed_;
-    cut(stops_within(covered, blind), GuardAction::limit,
-        format("%.2f m/s cut to %.2f: the sonars have covered no more than %.2f m ahead", wanted_,
-               stops_within(covered, blind), body_.covered));
+    if (blind > 0.0) {
+      const double covered = body_.covered - margin_;
+      const double safe = stops_within(covered, blind);
+      sweep_ = stops_within(covered - kSweeps * speed_, blind) < speed_;
+      cut(safe, GuardAction::limit,
+          format("%.2f m/s cut to %.2f: the sonars have covered no more than %.2f m ", wanted_,
+                 safe, body_.covered) +
+              side());
+    }
     const double unheard = stops_within(reach_ - margin_, 0.0);
     cut(unheard, GuardAction::limit,
         format("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));

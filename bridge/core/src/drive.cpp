@@ -241,7 +241,8 @@ void Core::guard(reflector::Setpoints& wanted) {
   guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
   if (drives(grant_.role)) {
     const authority::GuardSettings& settings = guards_[static_cast<std::size_t>(grant_.role)];
-    session_.body.covered = session_.coverage.way(wanted.velocity >= 0.0);
+    if (wanted.velocity != 0.0)
+      session_.body.covered = session_.coverage.way(wanted.velocity > 0.0);
     guarded_ =
         authority::guard(settings, session_.body, session_.echoes.spots(), wanted.velocity,
                          wanted.rotation_velocity, reflector_.state().information.rotation_velocity,

@@ -38,11 +38,7 @@ class Follow : public Activity {
         if (const Reference* const person = found->reference())
           who_ = person->id;
     const lps::SeenThing* const thing = who_ ? seen_thing(world, *who_) : nullptr;
-    const bool in_sight =
-        thing != nullptr &&
-        static_cast<double>(world.around.cycle - std::min(thing->seen, world.around.cycle)) *
-                kTick <=
-            kPlaced;
+    const bool in_sight = thing != nullptr && seconds_unseen(world, *thing) <= kPlaced;
     if (in_sight)
       trail_.add(thing->pose_in_odom.position());
     trail_.reach(self.robot().pose_in_odom.position());

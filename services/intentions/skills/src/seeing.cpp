@@ -25,12 +25,6 @@ std::optional<Wanted> wanted(const std::string& what) {
 
 constexpr double kInSight = 1.0;  // [s] since it was seen
 
-double unseen(const World& world, const SeenThing& thing) {
-  return thing.seen < world.around.cycle
-             ? static_cast<double>(world.around.cycle - thing.seen) * kTick
-             : 0.0;
-}
-
 double distance(const World& world, const SeenThing& thing) {
   return (thing.pose_in_odom.position() - world.robot.pose_in_odom.position()).norm();
 }
@@ -71,13 +65,19 @@ Value place_in(const World& world, Values arguments) {
 
 }  // namespace
 
+double seconds_unseen(const World& world, const SeenThing& thing) {
+  return thing.seen < world.around.cycle
+             ? static_cast<double>(world.around.cycle - thing.seen) * kTick
+             : 0.0;
+}
+
 std::optional<Value> nearest_seen(const World& world, const std::string& what) {
   const std::optional<Wanted> kind = wanted(what);
   if (!kind)
     return std::nullopt;
   // One out of sight is only a guess, and may have gone: it does not hide one in sight.
   const auto rank = [&](const SeenThing& thing) {
-    return std::pair(unseen(world, thing) > kInSight, distance(world, thing));
+    return std::pair(seconds_unseen(world, thing) > kInSight, distance(world, thing));
   };
   const SeenThing* best = nullptr;
   if (world.around.things != nullptr)
@@ -95,9 +95,11 @@ void add_seeing(Functions& functions) {
                          [](const World&, const SeenThing& thing) {
                            return Value(Reference{Reference::Kind::kThing, thing.id, 0});
                          }));
-  functions.add(of_thing(
-      "seconds-unseen", "(seconds-unseen THING): since it was seen last [s]; nil once forgotten",
-      [](const World& world, const SeenThing& thing) { return Value(unseen(world, thing)); }));
+  functions.add(of_thing("seconds-unseen",
+                         "(seconds-unseen THING): since it was seen last [s]; nil once forgotten",
+                         [](const World& world, const SeenThing& thing) {
+                           return Value(seconds_unseen(world, thing));
+                         }));
   functions.add(of_thing(
       "speed-of", "(speed-of THING): how fast it moves [m/s]",
       [](const World&, const SeenThing& thing) { return Value(thing.velocity_in_odom.norm()); }));

@@ -13,6 +13,9 @@ namespace saphira::intentions {
 /// "blob-c"), as a reference, or nil. None for an unknown kind in `what`.
 std::optional<Value> nearest_seen(const World& world, const std::string& what);
 
+/// [s] since a person or blob was seen last.
+double seconds_unseen(const World& world, const lps::SeenThing& thing);
+
 /// Functions about people and colours that a camera sees.
 void add_seeing(Functions& functions);
 

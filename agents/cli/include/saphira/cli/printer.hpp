@@ -24,7 +24,7 @@ class Printer {
   void print(std::string_view text);
   /// A picture over the last one: only the newest queued one is printed.
   void show(std::string_view picture);
-  /// For a program that runs for long: what a full disk does not take is left out, and counted.
+  /// Lines that a full disk does not take are counted and left out, as a long run needs it.
   void outlast_full_disk();
   /// Waits until everything is printed; false at the time limit.
   bool flush(std::chrono::milliseconds limit);

@@ -73,8 +73,8 @@ class Supervisor {
   /// True while new versions are taken in.
   bool renews() const { return renewing_ || !to_renew_.empty(); }
 
-  /// For a new version of this program, which takes the place of this process (exec): the running
-  /// children, in words. Their descriptors stay open over it.
+  /// The running children, in words, for a new version of this program in this process. Their
+  /// descriptors stay open over the exec().
   std::string hand_over() const;
   /// In place of start(): goes on with the children of hand_over(), and starts the others. Ends
   /// those that it has no use for. std::invalid_argument where the text is of another version.

@@ -40,7 +40,7 @@ using ResultRequest = nav2_msgs::action::dds_::NavigateToPose_GetResult_Request_
 using ResultResponse = nav2_msgs::action::dds_::NavigateToPose_GetResult_Response_;
 using FeedbackMessage = nav2_msgs::action::dds_::NavigateToPose_FeedbackMessage_;
 
-/// Where messages differ.
+/// Distributions with different messages.
 enum class Distribution { humble, iron, jazzy };
 
 enum class Kind {

@@ -52,7 +52,7 @@ class Outward {
   static Messages why(const std::string& sentence, std::int64_t time_ns);
   static Messages diagnostics(const situation::Situation& situation, std::int64_t time_ns);
 
-  /// Where the robot is [none: it has not been heard].
+  /// The newest place of the robot [none: no RobotState came].
   const std::optional<viewer::Place>& place() const { return place_; }
 
  private:

@@ -26,14 +26,14 @@ struct Label {
   v1::Pose2 at;
 };
 
-/// Lines on the floor, in the frame of what they are made of.
+/// Lines on the floor, in the frame of the artifact or percept.
 struct Plan {
   std::vector<Line> walls;
   std::vector<Line> openings;  ///< doors, breaks, junctions
   std::vector<Label> names;    ///< of places
 };
 
-/// Of what is seen now, in odom.
+/// The outlines of the present percepts, in odom.
 Plan plan_of(const v1::Perception& perception);
 /// Of the map.
 Plan plan_of(const v1::FloorMap& map);
