@@ -67,7 +67,8 @@ struct File {
   std::vector<Definition> definitions;
 };
 
-constexpr std::size_t kVaries = 1000000;  // more than any key may have
+constexpr std::size_t kVaries = 1000000;      // more than any key may have
+constexpr unsigned long kMostNumbers = 4096;  // a longer sequence of octets is base64 in JSON
 
 struct Base {
   const char* cpp;
@@ -343,7 +344,7 @@ class Generator {
     all["members.hpp"] = top + std::string("#include <type_traits>\n\n") +
                          (foreign_ ? "#include \"saphira/idl/members.hpp\"\n" : "") +
                          "#include \"saphira/" + place_ + "/types.hpp\"\n" +
-                         (foreign_ ? "\n" : visitor) + members_.str();
+                         (foreign_ ? "\n" : visitor()) + members_.str();
     if (foreign_)
       return all;
     all["schema.json"] =
@@ -356,7 +357,8 @@ class Generator {
 
  private:
   static constexpr const char* top = "// Generated from idl/; changes are lost.\n#pragma once\n\n";
-  static constexpr const char* visitor = R"(
+  static std::string visitor() {
+    return R"(
 namespace saphira {
 
 /// A member of a struct of the contract.
@@ -367,6 +369,10 @@ struct Member {
   const char* (*name_of)(std::int32_t);  ///< of a number whose values have names [nullptr: it is none]
 };
 
+/// A sequence of octets with a higher bound is base64 in JSON.
+constexpr std::uint32_t kMostNumbers = )" +
+           std::to_string(kMostNumbers) + R"(;
+
 /// Calls visit(member, value) for each member of a sample of the contract, in their order.
 template <class T, class Visit>
 constexpr void visit_members(T& sample, Visit&& visit) {
@@ -376,6 +382,7 @@ constexpr void visit_members(T& sample, Visit&& visit) {
 }  // namespace saphira
 
 )";
+  }
 
   static constexpr const char* python_top = R"(# Generated from idl/; changes are lost.
 """The types of the contract. Lengths are in m, angles in rad, times in s."""
@@ -610,7 +617,10 @@ class Topic(Generic[T]):
     else if (const auto found = constants_.find(member.type.name); found != constants_.end())
       type = "\"anyOf\": [{\"enum\": [" + listed(found->second) + "]}, {" +
              bases.at(aliases_.at(found->first)).json + "}]";
-    if (!member.type.bound.empty())
+    if (member.type.name == "octet" && !member.type.bound.empty() &&
+        std::stoul(member.type.bound) > kMostNumbers)
+      type = R"("type": "string", "contentEncoding": "base64")";
+    else if (!member.type.bound.empty())
       type =
           "\"type\": \"array\", \"maxItems\": " + member.type.bound + ", \"items\": {" + type + "}";
     if (!member.comment.empty())

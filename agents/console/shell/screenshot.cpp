@@ -1,13 +1,12 @@
 #include "screenshot.hpp"
 
-#include <libwebsockets.h>
-
 #include <chrono>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
 
 #include "browser.hpp"
+#include "saphira/base/base64.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::console {
@@ -15,16 +14,6 @@ namespace saphira::console {
 namespace {
 
 constexpr std::chrono::milliseconds kSettle{1500};  // echoes and grid come
-
-std::string decode_base64(const std::string& text) {
-  std::string bytes(text.size() + 4, '\0');
-  const int size =
-      lws_b64_decode_string(text.c_str(), bytes.data(), static_cast<int>(bytes.size()));
-  if (size < 0)
-    throw std::runtime_error("the browser's picture cannot be read");
-  bytes.resize(static_cast<std::size_t>(size));
-  return bytes;
-}
 
 }  // namespace
 
@@ -43,7 +32,7 @@ void make_screenshot(const std::string& address, const ScreenshotOptions& option
   std::this_thread::sleep_for(kSettle);
   const nlohmann::json picture = browser.call("Page.captureScreenshot", {{"format", "png"}});
   std::ofstream out(options.file, std::ios::binary);
-  out << decode_base64(picture.at("data").get<std::string>());
+  out << from_base64(picture.at("data").get<std::string>()).value_or("");
   if (!out.flush())
     throw UnusableFile(cannot_be(options.file, "written"));
 }

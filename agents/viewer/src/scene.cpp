@@ -1,10 +1,10 @@
 #include "saphira/viewer/scene.hpp"
 
-#include <openssl/evp.h>
-
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "saphira/base/base64.hpp"
 
 namespace saphira::viewer {
 
@@ -27,15 +27,6 @@ constexpr int kFloat32 = 7;
 constexpr int kLineList = 2;
 
 constexpr double kLetters = 0.4;  // [m] of drawn names
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                  reinterpret_cast<const unsigned char*>(bytes.data()),
-                  static_cast<int>(bytes.size()));
-  text.pop_back();  // its zero
-  return text;
-}
 
 json time_of(std::int64_t time_ns) {
   return {{"sec", time_ns / 1'000'000'000}, {"nsec", time_ns % 1'000'000'000}};

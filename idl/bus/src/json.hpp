@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "saphira/base/base64.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/idl/members.hpp"
@@ -42,6 +43,9 @@ class JsonWriter {
   }
   template <class T>
   void value(const Member& member, const std::vector<T>& items) {
+    if constexpr (std::is_same_v<T, std::uint8_t>)
+      if (member.bound > kMostNumbers)
+        return quote(base64(items));
     text_ += '[';
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (i > 0)

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "saphira/base/base64.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/idl/members.hpp"
@@ -49,6 +50,12 @@ class JsonReader {
   template <class T>
   void read(const Member& member, const nlohmann::json& json, std::vector<T>& items,
             const std::string& place) {
+    if constexpr (std::is_same_v<T, std::uint8_t>)
+      if (member.bound > kMostNumbers) {
+        const auto bytes = json.is_string() ? from_base64(json.get<std::string>()) : std::nullopt;
+        expect(bytes.has_value(), json, place, "a text in base64");
+        return items.assign(bytes->begin(), bytes->end());
+      }
     expect(json.is_array(), json, place, "a list [...]");
     items.clear();
     for (std::size_t i = 0; i < json.size(); ++i)
