@@ -121,6 +121,8 @@ int main(int argc, char** argv) {
                  "picture beside the right one");
   app.add_option("--stereo-socket", options.stereo_socket,
                  "Local socket that sends the same pictures to whoever connects");
+  app.add_option("--camera-socket", options.camera_socket,
+                 "Local socket that sends pictures in colour, for saphira-camera");
   app.add_option(
       "--view-socket", options.view_socket,
       "Local socket of the simulator's own view: what is true, and what people do to it");

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "listener.hpp"
+#include "picture_feed.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
 #include "saphira/base/places.hpp"
@@ -28,7 +29,6 @@
 #include "saphira/sim/resume.hpp"
 #include "saphira/sim/simulation.hpp"
 #include "saphira/sim/view.hpp"
-#include "stereo_feed.hpp"
 #include "view_feed.hpp"
 #include "world_check.hpp"
 
@@ -169,13 +169,15 @@ class Station {
         listener_(listen(options, number + 1)) {
     if (const std::string path = options.check.value_or(default_check()); !path.empty())
       check_.emplace(path, prefix_, server().parameters());
-    if (!options.stereo.empty() || options.stereo_socket) {
-      stereo_.emplace(options.stereo.empty() ? "" : numbered(options.stereo, number + 1),
-                      options.stereo_socket
-                          ? std::optional(numbered(*options.stereo_socket, number + 1))
-                          : std::nullopt,
-                      options.seed + number);
-    }
+    const auto numbered_socket = [&](const std::optional<std::string>& socket) {
+      return socket ? std::optional(numbered(*socket, number + 1)) : std::nullopt;
+    };
+    if (!options.stereo.empty() || options.stereo_socket)
+      pictures_.emplace_back(stereo_pairs(options.seed + number),
+                             options.stereo.empty() ? "" : numbered(options.stereo, number + 1),
+                             numbered_socket(options.stereo_socket));
+    if (options.camera_socket)
+      pictures_.emplace_back(color_pictures(), "", numbered_socket(options.camera_socket));
     if (options.terminal)
       terminal_.emplace(numbered(*options.terminal, number + 1));
     log("listening on " + (terminal_ ? terminal_->name() : listener_->name()) +
@@ -188,8 +190,8 @@ class Station {
     fds.push_back({listener_ ? listener_->fd() : -1, POLLIN, 0});
   }
   void add_viewers_to(std::vector<pollfd>& fds) const {
-    if (stereo_)
-      stereo_->add_to(fds);
+    for (const PictureFeed& feed : pictures_)
+      feed.add_to(fds);
   }
   /// Waits for a client to open the terminal, which poll() does not report.
   bool waits_for_terminal() const { return terminal_ && !terminal_open_; }
@@ -263,9 +265,9 @@ class Station {
     if (!rows.empty() && (live || !client_))
       trace_.flush();
     // After the packet, which must not wait for the picture.
-    if (stereo_)
-      stereo_->serve(simulation_.scene(), number_, server().devices().head(), server().cycle(),
-                     server().single_step() ? kPicturesInStep : 1);
+    for (PictureFeed& feed : pictures_)
+      feed.serve(simulation_.scene(), number_, server().devices().head(), server().cycle(),
+                 server().single_step() ? kPicturesInStep : 1);
   }
 
   /// Disconnects the client on request of the view.
@@ -351,7 +353,7 @@ class Station {
   Fd client_;
   protocol::Bytes output_;
   std::optional<LineCheck> check_;
-  std::optional<StereoFeed> stereo_;
+  std::vector<PictureFeed> pictures_;
   int cycles_ = 0;  // since the client's last bytes
   Clock::time_point heard_ = Clock::now();
 };
@@ -774,7 +776,7 @@ void check(const HostOptions& options) {
   if (!options.terminal && !options.tcp)
     for (std::size_t number = 1; number <= 1 + options.more.size(); ++number)
       expect_socket(numbered(options.socket.value_or(default_socket()), number));
-  for (const auto& socket : {options.view_socket, options.stereo_socket})
+  for (const auto& socket : {options.view_socket, options.stereo_socket, options.camera_socket})
     if (socket)
       expect_socket(*socket);
 }

@@ -1,8 +1,11 @@
 #include "saphira/sim/stereo.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "pixels.hpp"
 #include "saphira/base/format.hpp"
@@ -26,6 +29,40 @@ constexpr double kHead = 0.42;
 constexpr double kBelt = 0.52;
 constexpr double kArmpit = 0.77;  // below an outstretched arm; the shoulder is above it
 
+// The color of a surface: the shares of red, green and blue in its light [1/255].
+struct Tint {
+  std::uint8_t red = 255;
+  std::uint8_t green = 255;
+  std::uint8_t blue = 255;
+};
+constexpr Tint kWallPaint{255, 246, 228};
+constexpr Tint kCarpet{214, 222, 255};
+constexpr Tint kWood{255, 196, 128};
+constexpr Tint kCardboard{255, 214, 158};
+constexpr Tint kSkin{255, 206, 176};
+constexpr Tint kShell{255, 90, 70};  // of robots
+constexpr Tint kTrousers{150, 170, 255};
+constexpr std::array<Tint, 6> kClothes{{{255, 120, 110},
+                                        {110, 190, 255},
+                                        {140, 240, 150},
+                                        {255, 220, 110},
+                                        {220, 150, 255},
+                                        {120, 240, 240}}};
+constexpr std::array<std::pair<std::string_view, Tint>, 7> kNamed{{{"red", {255, 60, 50}},
+                                                                   {"orange", {255, 150, 40}},
+                                                                   {"yellow", {255, 235, 60}},
+                                                                   {"green", {70, 255, 90}},
+                                                                   {"blue", {70, 110, 255}},
+                                                                   {"pink", {255, 120, 200}},
+                                                                   {"black", {70, 70, 70}}}};
+
+Tint tint_of(const Look& look, const Tint& otherwise) {
+  for (const auto& [name, tint] : kNamed)
+    if (name == look.color)
+      return tint;
+  return otherwise;
+}
+
 // An upright face of an object, from low to high.
 struct Face {
   bool round = false;
@@ -38,6 +75,7 @@ struct Face {
   std::uint32_t seed = 0;
   int thing = 0;        // number of the object that the face surrounds
   double turned = 0.0;  // [rad] rotation of a round one
+  Tint tint;
 };
 
 // The intersection of a column's plane with a face.
@@ -52,40 +90,47 @@ struct Meeting {
 
 class Faces {
  public:
-  Faces(const Scene& scene, RobotNumber self, const Pose& eye, const StereoRig& rig)
+  Faces(const Scene& scene, RobotNumber self, const Pose& eye, const PinholeCamera& camera)
       : eye_(eye.position()),
         ahead_(eye.direction()),
-        edge_(0.5 * rig.columns / rig.focal() + 1e-6),
-        range_(rig.range),
-        pixel_(1.0 / rig.focal()) {
+        edge_(0.5 * camera.columns / camera.focal() + 1e-6),
+        range_(camera.range),
+        pixel_(1.0 / camera.focal()) {
     std::uint32_t seed = 1;
     for (const Segment& segment : scene.world().segments)
-      add(segment, 0.0, kWallHeight, kWallGrey, seed++, ++things_);
+      add(segment, 0.0, kWallHeight, kWallGrey, seed++, ++things_, kWallPaint);
     for (const Door& door : scene.doors())
-      add(scene.leaf(door), 0.0, door.plan->look.height, 120.0, seed++, ++things_);
+      add(scene.leaf(door), 0.0, door.plan->look.height, 120.0, seed++, ++things_,
+          tint_of(door.plan->look, kWood));
     for (const Box& box : scene.boxes()) {
       ++things_;
       for (const Segment& side : scene.sides(box))
-        add(side, 0.0, box.plan->look.height, grey(seed), seed, things_);
+        add(side, 0.0, box.plan->look.height, grey(seed), seed, things_,
+            tint_of(box.plan->look, kCardboard));
       ++seed;
     }
     for (const Person& person : scene.persons()) {
       const double height = person.plan->look.height;
       const double radius = person.plan->radius;
-      add({person.at, radius}, 0.0, kShoulder * height, grey(seed), seed, 0.0, kBelt * height);
+      const Tint clothes =
+          tint_of(person.plan->look, kClothes[hash(seed, 5, 11) % kClothes.size()]);
+      add({person.at, radius}, 0.0, kShoulder * height, grey(seed), seed, 0.0, kBelt * height,
+          clothes);
       if (const auto line = arm(person))
-        add(*line, kArmpit * height, kShoulder * height, grey(seed), seed, ++things_);
+        add(*line, kArmpit * height, kShoulder * height, grey(seed), seed, ++things_, clothes);
       ++seed;
-      add({person.at, kHead * radius}, kShoulder * height, height, 150.0, seed++, 0.0, 0.0);
+      add({person.at, kHead * radius}, kShoulder * height, height, 150.0, seed++, 0.0, 0.0, kSkin);
     }
     for (const PostPlan& post : scene.world().movable.posts) {
-      add({post.at, post.radius}, 0.0, post.look.height, grey(seed), seed, 0.0, 0.0);
+      add({post.at, post.radius}, 0.0, post.look.height, grey(seed), seed, 0.0, 0.0,
+          tint_of(post.look, kWallPaint));
       ++seed;
     }
     for (RobotNumber i = 0; i < scene.robots(); ++i) {
       const Pose at = scene.robot(i).pose_in_world();
       if (i != self)
-        add({at.position(), scene.robot(i).radius()}, 0.0, kRobotHeight, 90.0, seed, at.th, 0.0);
+        add({at.position(), scene.robot(i).radius()}, 0.0, kRobotHeight, 90.0, seed, at.th, 0.0,
+            kShell);
       ++seed;
     }
   }
@@ -130,19 +175,19 @@ class Faces {
   }
 
   void add(const Segment& segment, double low, double high, double grey, std::uint32_t seed,
-           int thing) {
+           int thing, const Tint& tint) {
     if ((nearest_point(segment, eye_) - eye_).norm() > range_ ||
         is_outside(segment.from, segment.to, 0.0))
       return;
-    faces_.push_back({false, segment, {}, low, high, grey, 0.0, seed, thing, 0.0});
+    faces_.push_back({false, segment, {}, low, high, grey, 0.0, seed, thing, 0.0, tint});
   }
   void add(const Disc& disc, double low, double high, double grey, std::uint32_t seed,
-           double turned, double belt) {
+           double turned, double belt, const Tint& tint) {
     ++things_;
     if ((disc.centre - eye_).norm() > range_ + disc.radius ||
         is_outside(disc.centre, disc.centre, disc.radius))
       return;
-    faces_.push_back({true, {}, disc, low, high, grey, belt, seed, things_, turned});
+    faces_.push_back({true, {}, disc, low, high, grey, belt, seed, things_, turned, tint});
   }
 
   void meet_segment(const Face& face, const Vec2& way, std::vector<Meeting>& meetings) const {
@@ -195,7 +240,7 @@ struct Row {
   Detail detail;
 };
 
-std::vector<Row> rows_of(const StereoRig& rig) {
+std::vector<Row> rows_of(const PinholeCamera& rig) {
   std::vector<Row> rows(static_cast<std::size_t>(rig.rows));
   for (int i = 0; i < rig.rows; ++i) {
     Row& row = rows[static_cast<std::size_t>(i)];
@@ -208,72 +253,107 @@ std::vector<Row> rows_of(const StereoRig& rig) {
   return rows;
 }
 
-void look(const StereoRig& rig, const std::vector<Meeting>& meetings, const Vec2& eye,
+// Sets a pixel, and returns its color.
+Tint look(const PinholeCamera& camera, const std::vector<Meeting>& meetings, const Vec2& eye,
           const Vec2& way, const Row& row, std::size_t at, Pixels& pixels) {
-  const double end = std::min(row.depth, rig.range);
+  const double end = std::min(row.depth, camera.range);
+  const double texture = kTexture * camera.texture;
   for (const Meeting& meeting : meetings) {
     if (meeting.depth >= end)
       break;
     const Face& face = *meeting.face;
-    const double height = rig.height + row.slope * meeting.depth;
+    const double height = camera.height + row.slope * meeting.depth;
     if (height < face.low || height > face.high)
       continue;
     if (meeting.leaves) {
-      const Vec2 lid = eye + way * ((face.high - rig.height) / row.slope);
-      return pixels.set(at, face.grey + 20.0, kTexture, lid.x(), lid.y(), face.seed + 7000U,
-                        meeting.detail);
+      const Vec2 lid = eye + way * ((face.high - camera.height) / row.slope);
+      pixels.set(at, face.grey + 20.0, texture, lid.x(), lid.y(), face.seed + 7000U,
+                 meeting.detail);
+      return face.tint;
     }
-    const double grey = height < face.belt ? 0.5 * face.grey : face.grey;
-    return pixels.set(at, grey + meeting.light, kTexture, meeting.u, height, face.seed,
-                      meeting.detail);
+    const bool is_below = height < face.belt;
+    pixels.set(at, (is_below ? 0.5 * face.grey : face.grey) + meeting.light, texture, meeting.u,
+               height, face.seed, meeting.detail);
+    return is_below ? kTrousers : face.tint;
   }
-  if (end >= rig.range)
-    return pixels.set(at, kFar);
+  if (end >= camera.range) {
+    pixels.set(at, kFar);
+    return {};
+  }
   const Vec2 point = eye + way * end;
   const bool floor = row.slope < 0.0;
-  pixels.set(at, floor ? kFloor : kCeiling, kTexture, point.x(), point.y(),
+  pixels.set(at, floor ? kFloor : kCeiling, texture, point.x(), point.y(),
              floor ? 100001U : 100003U, row.detail);
+  return floor ? kCarpet : Tint{};
 }
 
-GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, double left,
-                 double gain, Random& random) {
-  const Pose middle = compose(scene.robot(robot).pose_in_world(), rig.pose_in_robot);
+// Calls put(index, grey, tint) for each pixel, by its index in rows from the top.
+template <class Put>
+void render(const Scene& scene, RobotNumber robot, const PinholeCamera& camera, double left,
+            double gain, Random& random, Put put) {
+  const Pose middle = compose(scene.robot(robot).pose_in_world(), camera.pose_in_robot);
   const Vec2 ahead(std::cos(middle.th), std::sin(middle.th));
   const Vec2 aside(-ahead.y(), ahead.x());
-  const Faces faces(scene, robot, compose(middle, {0.0, left, 0.0}), rig);
-  const std::vector<Row> rows = rows_of(rig);
-  const double focal = rig.focal();
-  const double noise = rig.noise * std::sqrt(6.0);
-  GreyImage image{rig.columns, rig.rows, {}};
-  const auto columns = static_cast<std::size_t>(rig.columns);
-  image.pixels.resize(columns * rows.size());
+  const Faces faces(scene, robot, compose(middle, {0.0, left, 0.0}), camera);
+  const std::vector<Row> rows = rows_of(camera);
+  const double focal = camera.focal();
+  const double noise = camera.noise * std::sqrt(6.0);
+  const auto columns = static_cast<std::size_t>(camera.columns);
   std::vector<Meeting> meetings;
+  std::vector<Tint> tints(rows.size());
   Pixels pixels(rows.size());
   for (std::size_t column = 0; column < columns; ++column) {
-    const double across = (static_cast<double>(column) + 0.5 - 0.5 * rig.columns) / focal;
+    const double across = (static_cast<double>(column) + 0.5 - 0.5 * camera.columns) / focal;
     const Vec2 way = ahead - aside * across;
     faces.meet(way, meetings);
     for (std::size_t row = 0; row < rows.size(); ++row)
-      look(rig, meetings, faces.eye(), way, rows[row], row, pixels);
+      tints[row] = look(camera, meetings, faces.eye(), way, rows[row], row, pixels);
     const std::vector<std::uint8_t>& values = pixels.expose(gain, noise, random);
     for (std::size_t row = 0; row < rows.size(); ++row)
-      image.pixels[row * columns + column] = values[row];
+      put(row * columns + column, values[row], tints[row]);
   }
+}
+
+GreyImage render_grey(const Scene& scene, RobotNumber robot, const PinholeCamera& camera,
+                      double left, double gain, Random& random) {
+  GreyImage image{camera.columns, camera.rows, {}};
+  image.pixels.resize(static_cast<std::size_t>(camera.columns) *
+                      static_cast<std::size_t>(camera.rows));
+  render(scene, robot, camera, left, gain, random,
+         [&](std::size_t at, std::uint8_t grey, const Tint& /*tint*/) { image.pixels[at] = grey; });
   return image;
 }
 
 }  // namespace
 
-double StereoRig::focal() const {
+double PinholeCamera::focal() const {
   return 0.5 * columns / std::tan(0.5 * field_of_view);
 }
 
 StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig& rig,
                          Random& random) {
   StereoPair pair;
-  pair.left = render(scene, robot, rig, 0.5 * rig.baseline, 1.0, random);
-  pair.right = render(scene, robot, rig, -0.5 * rig.baseline, 1.0 + rig.gain_difference, random);
+  pair.left = render_grey(scene, robot, rig, 0.5 * rig.baseline, 1.0, random);
+  pair.right =
+      render_grey(scene, robot, rig, -0.5 * rig.baseline, 1.0 + rig.gain_difference, random);
   return pair;
+}
+
+ColorImage render_picture(const Scene& scene, RobotNumber robot, const PinholeCamera& camera,
+                          Random& random) {
+  ColorImage image{camera.columns, camera.rows, {}};
+  image.pixels.resize(3 * static_cast<std::size_t>(camera.columns) *
+                      static_cast<std::size_t>(camera.rows));
+  render(scene, robot, camera, 0.0, 1.0, random,
+         [&](std::size_t at, std::uint8_t grey, const Tint& tint) {
+           const auto part = [&](unsigned share) {
+             return static_cast<std::uint8_t>(grey * share / 255U);
+           };
+           image.pixels[3 * at] = part(tint.red);
+           image.pixels[3 * at + 1] = part(tint.green);
+           image.pixels[3 * at + 2] = part(tint.blue);
+         });
+  return image;
 }
 
 std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle) {
@@ -289,6 +369,15 @@ std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t c
       out.append(begin, begin + image->columns);
     }
   return out;
+}
+
+std::string to_ppm(const ColorImage& image, const PinholeCamera& camera, std::uint64_t cycle) {
+  std::string out = format(
+      "P6\n# saphira picture cycle=%llu field=%.9g height=%.9g forward=%.9g pan=%.9g\n"
+      "%d %d\n255\n",
+      static_cast<unsigned long long>(cycle), camera.field_of_view, camera.height,
+      camera.pose_in_robot.x, camera.pose_in_robot.th, image.columns, image.rows);
+  return out.append(image.pixels.begin(), image.pixels.end());
 }
 
 }  // namespace saphira::sim

@@ -287,13 +287,16 @@ std::vector<RunningBus> running_buses() {
   return buses;
 }
 
-std::vector<std::string> audit_files() {
+namespace {
+
+/// The files with that ending in `folder` of each run folder, the newest first.
+std::vector<std::string> newest_files(const std::string& folder, const std::string& ending) {
   std::vector<std::filesystem::directory_entry> found;
   std::error_code none;
-  for (const std::string& folder : all_folders())
-    for (const auto& run : std::filesystem::directory_iterator(folder, none))
-      for (const auto& file : std::filesystem::directory_iterator(run.path(), none))
-        if (file.path().extension() == ".audit")
+  for (const std::string& all : all_folders())
+    for (const auto& run : std::filesystem::directory_iterator(all, none))
+      for (const auto& file : std::filesystem::directory_iterator(run.path() / folder, none))
+        if (file.path().extension() == ending)
           found.push_back(file);
   std::sort(found.begin(), found.end(), [&](const auto& one, const auto& other) {
     return one.last_write_time(none) > other.last_write_time(none);
@@ -302,6 +305,16 @@ std::vector<std::string> audit_files() {
   for (const auto& file : found)
     files.push_back(file.path());
   return files;
+}
+
+}  // namespace
+
+std::vector<std::string> audit_files() {
+  return newest_files("", ".audit");
+}
+
+std::vector<std::string> box_files() {
+  return newest_files("box", ".mcap");
 }
 
 std::string keep_held() {

@@ -45,6 +45,8 @@ std::string log_of(const std::string& name);
 /// The audits of this machine's robots, the newest first: of this user, and of the system's
 /// service.
 std::vector<std::string> audit_files();
+/// Likewise the recordings of the last minute after an event.
+std::vector<std::string> box_files();
 
 /// Lets other commands find this bus, as long as the object lives (running_buses); with a full disk
 /// by a file in memory.

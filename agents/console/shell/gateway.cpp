@@ -63,6 +63,7 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
       origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
               web::name_of(options.server.place)),
       node_(node),
+      box_(options.box, node),
       server_(server_of(options, kept), access_, page_files(), events()) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);
@@ -187,8 +188,11 @@ void Gateway::poll() {
   for (bus::RequestClient* client : {&stops_, &resets_, &registration_, &processes_})
     take_answers(*client);
   tell_cancels();
-  if (const v1::RobotState* const robot = mind_.robot())
+  if (const v1::RobotState* const robot = mind_.robot()) {
     stamp_ = robot->stamp;
+    cameras_.heard(stamp_.cycle, now());
+  }
+  any = cameras_.poll(now()) || any;
   if (auto grant = grants_.take_newest())
     grant_ = std::move(grant);
   if (any)
@@ -208,7 +212,14 @@ void Gateway::look_at_simulator() {
   }
 }
 
+void Gateway::look_at_cameras() {
+  cameras_.look(std::any_of(pages_.begin(), pages_.end(), [](const auto& each) {
+    return each.second.channel == Channel::pictures && each.second.greeted;
+  }));
+}
+
 void Gateway::tick() {
+  look_at_cameras();
   poll();
   look_at_keys();
   audit_.tend(now());
@@ -216,6 +227,7 @@ void Gateway::tick() {
   drive();
   press_estop();
   explain();
+  keep_what_happened();
   show_control();
   for (const auto& [connection, page] : pages_)
     if (!page.greeted && now() - page.opened > kGreeting)
@@ -245,6 +257,17 @@ void Gateway::explain() {
   board_.put(why_topic_, "",
              situation::to_json(situation::why(mind_.situation(mind_.newest_cycle(), false))),
              now());
+}
+
+/// The last minute after an event goes into the box.
+void Gateway::keep_what_happened() {
+  if (const auto text = box_.poll(now()))
+    messages_.write({.stamp = stamp_, .source = "console", .text = *text});
+  if (now() - looked_ < kExplain || !mind_.heard())
+    return;
+  looked_ = now();
+  if (const auto occasion = occasions_.look(mind_.situation(mind_.newest_cycle(), false), looked_))
+    box_.keep(*occasion, looked_);
 }
 
 void Gateway::show_control() {

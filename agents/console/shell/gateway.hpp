@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "box.hpp"
+#include "cameras.hpp"
 #include "dialer.hpp"
 #include "key.hpp"
 #include "mind.hpp"
@@ -32,6 +34,7 @@ struct GatewayOptions {
   std::optional<relay::Address> dial;  ///< a relay for further access
   std::string dial_token;              ///< our token there
   std::string dial_authority;          ///< PEM file to check its certificate
+  std::string box;                     ///< folder for the last minute after an event; empty: none
   std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
 };
 
@@ -67,6 +70,7 @@ class Gateway {
     Connection operator_id = 0;  ///< the operator of the samples of this connection [0: none]
     double opened = 0.0;         ///< [s]
     Viewer viewer;
+    PictureFlow flow;               ///< pictures
     std::deque<std::string> queue;  ///< commands: outgoing messages
     std::uint64_t world = 0;        ///< simulator: newest version that was sent
     std::uint64_t scene = 0;        ///< likewise
@@ -91,8 +95,10 @@ class Gateway {
   void drive();
   void press_estop();
   void explain();
+  void keep_what_happened();
   void show_control();
   void look_at_simulator();
+  void look_at_cameras();
   void ask_simulator(Connection connection, const Page& page, std::string text);
 
   void opened(Connection connection, Channel channel, const Caller& caller);
@@ -151,7 +157,12 @@ class Gateway {
   std::optional<v1::Grant> grant_;
   std::uint64_t utterances_ = 0;
   double explained_ = -1e9;  ///< [s]
+  situation::Occasions occasions_;
+  double looked_ = -1e9;  ///< [s] for occasions
+  bus::Writer<v1::Message> messages_ = node_.writer(bus::topics::kMessages);
+  Box box_;
   std::string shown_control_;
+  Cameras cameras_{node_};
   std::optional<SimulatorLink> simulator_;
 
   Server server_;

@@ -78,6 +78,8 @@ std::optional<std::string> Gateway::next(Connection connection) {
       return simulator_->scene().line;
     }
   }
+  if (page.channel == Channel::pictures)
+    return cameras_.next(page.flow, now());
   if (page.channel != Channel::telemetry)
     return std::nullopt;
   return board_.frame(page.viewer, now());
@@ -121,7 +123,10 @@ bool Gateway::came(Connection connection, const std::string& text) {
   if (!page.greeted)
     return false;
   if (const auto* ack = std::get_if<Ack>(&message)) {
-    Board::seen(page.viewer, ack->frame, now());
+    if (page.channel == Channel::pictures)
+      page.flow.acknowledged(ack->frame, now());
+    else
+      Board::seen(page.viewer, ack->frame, now());
     server_.want(connection);
   } else if (page.channel == Channel::commands) {
     obey(connection, page, message);
@@ -153,7 +158,7 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
     ++viewers_;
   if (page.visitor.may(DoorRight::drive) && page.channel == Channel::commands)
     admit(connection, page, hello);
-  if (page.greeted && page.channel == Channel::telemetry)
+  if (page.greeted && (page.channel == Channel::telemetry || page.channel == Channel::pictures))
     return true;
   // A page without the key gets this message, and is closed without the key in time.
   say(connection, std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +

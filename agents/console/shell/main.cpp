@@ -79,6 +79,9 @@ int main(int argc, char** argv) {
         app.add_option("--simulator", options.simulator,
                        "socket of a simulator's own view (saphira-sim --view-socket), for the page "
                        "/simulator.html");
+        app.add_option("--box", options.box,
+                       "folder for the last minute after a stop, a failed goal, or the loss of a "
+                       "program, the robot or its place");
         app.add_option("--key-file", options.key_file,
                        "keeps key and port over a restart, so that open pages go on");
         app.add_option("--person-keys", options.person_keys,

@@ -28,10 +28,12 @@ constexpr int kTogether = 10'000;                // [us]
 constexpr std::string_view kAccess = "/access";  // why a page may not connect; empty: it may
 constexpr const char* kTelemetry = "saphira.telemetry";
 constexpr const char* kCommands = "saphira.commands";
+constexpr const char* kPictures = "saphira.pictures";
 constexpr const char* kSimulator = "saphira.simulator";
 
 Channel channel_of(const char* protocol) {
   return std::strcmp(protocol, kCommands) == 0    ? Channel::commands
+         : std::strcmp(protocol, kPictures) == 0  ? Channel::pictures
          : std::strcmp(protocol, kSimulator) == 0 ? Channel::simulator
                                                   : Channel::telemetry;
 }
@@ -103,6 +105,7 @@ struct Server::Impl {
   };
   struct Socket {
     Connection id;
+    bool bytes;  // what goes out is no text
   };
   struct Open {
     lws* wsi = nullptr;
@@ -249,6 +252,7 @@ int Server::Impl::filter(lws* wsi) const {
 void Server::Impl::established(lws* wsi, Socket& socket, Channel channel) {
   setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);
   socket.id = ++last;
+  socket.bytes = channel == Channel::pictures;
   open[socket.id].wsi = wsi;
   events.opened(socket.id, channel, caller_of(wsi));
 }
@@ -273,7 +277,8 @@ int Server::Impl::send(lws* wsi, const Socket& socket) {
     return 0;
   std::vector<unsigned char> buffer(LWS_PRE + text->size());
   std::memcpy(buffer.data() + LWS_PRE, text->data(), text->size());
-  if (lws_write(wsi, buffer.data() + LWS_PRE, text->size(), LWS_WRITE_TEXT) < 0)
+  if (lws_write(wsi, buffer.data() + LWS_PRE, text->size(),
+                socket.bytes ? LWS_WRITE_BINARY : LWS_WRITE_TEXT) < 0)
     return -1;
   lws_callback_on_writable(wsi);  // there may be more
   return 0;
@@ -329,10 +334,11 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
   for (const PageFile& file : files)
     impl_->pages.emplace_back(file);
   impl_->events = std::move(events);
-  static const std::array<lws_protocols, 6> protocols{
+  static const std::array<lws_protocols, 7> protocols{
       {{"http", Impl::http, sizeof(Impl::Http), 0, 0, nullptr, 0},
        {kTelemetry, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        {kCommands, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
+       {kPictures, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        {kSimulator, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};

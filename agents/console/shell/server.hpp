@@ -30,9 +30,10 @@ struct ServerOptions {
 /// The address for visitors of a relay, who count as remote.
 constexpr const char* kRelayed = "127.0.0.77";
 
-/// The kinds of a page's connections: so that telemetry never delays a command. simulator: both
-/// ways, of the page of the simulator's own view.
-enum class Channel { telemetry, commands, simulator };
+/// The kinds of a page's connections: so that telemetry never delays a command, nor a picture
+/// either. simulator: both ways, of the page of the simulator's own view. The messages of pictures
+/// are bytes.
+enum class Channel { telemetry, commands, pictures, simulator };
 
 /// HTTP and WebSockets (libwebsockets), in one thread: the page's files, and texts to and from each
 /// connection. Bounded: connections, sizes, and silences.

@@ -1,12 +1,13 @@
 #include "simulator_link.hpp"
 
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <utility>
+
+#include "saphira/base/local_socket.hpp"
 
 namespace saphira::console {
 namespace {
@@ -27,14 +28,7 @@ void SimulatorLink::disconnect() {
 }
 
 void SimulatorLink::connect() {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (socket_.size() >= sizeof address.sun_path)
-    return;
-  socket_.copy(address.sun_path, socket_.size());
-  fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd_ >= 0 && ::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    disconnect();
+  fd_ = connect_local(socket_, SOCK_NONBLOCK);
 }
 
 bool SimulatorLink::poll(double now) {

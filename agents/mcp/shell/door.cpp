@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saphira/base/base64.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
@@ -23,10 +24,11 @@ constexpr std::size_t kMostGoals = 4;   // underway at once
 constexpr double kNews = 1e-6;          // of progress, for new words alone
 constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
 constexpr std::size_t kLongestNote = 160;
-constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
-constexpr double kGrace = 15.0;  // [s] after the deadline, for the last word about a task
-constexpr double kStop = 5.0;    // [s] for a robot to stand
-constexpr double kOld = 60.0;    // [s] after which the dialogue does not act on words
+constexpr double kPicture = 2.0;  // [s] for a camera that was off
+constexpr double kReply = 10.0;   // [s] for the robot's or an agent's reply
+constexpr double kGrace = 15.0;   // [s] after the deadline, for the last word about a task
+constexpr double kStop = 5.0;     // [s] for a robot to stand
+constexpr double kOld = 60.0;     // [s] after which the dialogue does not act on words
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -86,6 +88,7 @@ void Door::hear_reply(const v1::Utterance& reply) {
 /// Takes sentences of the robot, and events and answers of agents.
 void Door::hear() {
   goals_.poll();
+  picture_ = picture_reader_ ? picture_reader_->take_newest() : std::nullopt;
   for (const auto& sample : said_reader_.take())
     if (sample.data.answers.writer == node_.instance())
       hear_reply(sample.data);
@@ -164,6 +167,10 @@ void Door::turn(double now) {
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
+  // The camera is off while nobody reads.
+  if (std::none_of(waiting_.begin(), waiting_.end(),
+                   [](const auto& each) { return each.second.what == Waiting::For::picture; }))
+    picture_reader_.reset();
   write_due();
   note();
 }
@@ -242,7 +249,11 @@ void Door::begin(const Call& call) {
   } else if (call.tool == "map") {
     session_.answer(call.number, robot_.map());
   } else if (call.tool == "look") {
-    session_.answer(call.number, robot_.view());
+    if (call.as_text || !situation::is_heard(robot_.mind().processes().all(), "camera"))
+      return session_.answer(call.number, robot_.view());
+    waiting_[call.number] = {.what = Waiting::For::picture, .until = now_ + kPicture};
+    if (!picture_reader_)
+      picture_reader_.emplace(node_.reader(bus::topics::kCameraPictures));
   } else if (call.tool == "knows") {
     session_.answer(call.number, robot_.facts());
   } else {  // removed between the call and now
@@ -523,6 +534,17 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
            {{"said", waiting.said}},
            waiting.said.empty()});
       return true;
+    case Waiting::For::picture: {
+      if (!late && !picture_)
+        return false;
+      Result result = robot_.view();
+      if (picture_)
+        result.jpeg = base64(picture_->jpeg);
+      else
+        result.text += "\nThe camera has sent no picture: robot_status may say why.";
+      session_.answer(number, result);
+      return true;
+    }
     case Waiting::For::stop:
       if (!late && !waiting.result)
         return false;

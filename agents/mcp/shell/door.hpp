@@ -110,7 +110,17 @@ class Door {
  private:
   /// A call without an answer yet.
   struct Waiting {
-    enum class For { goal, cancel, request, words, stop, estop, event, belief } what = For::goal;
+    enum class For {
+      goal,
+      cancel,
+      request,
+      words,
+      stop,
+      estop,
+      event,
+      belief,
+      picture
+    } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     double until = 0.0;        ///< [s]
@@ -173,6 +183,8 @@ class Door {
   bus::RequestClient stops_;
   bus::Reader<v1::Utterance> said_reader_ = node_.reader(bus::topics::kSaid);
   bus::Reader<v1::AgentEvent> event_reader_ = node_.reader(bus::topics::kAgentEvents);
+  std::optional<bus::Reader<v1::CameraPicture>> picture_reader_;  ///< while a call waits for one
+  std::optional<v1::CameraPicture> picture_;                      ///< of this turn
   bus::Writer<v1::Utterance> heard_writer_ = node_.writer(bus::topics::kHeard);
   bus::Writer<v1::MotorCommand> stop_writer_ = node_.writer(bus::topics::kDriveEstop);
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call

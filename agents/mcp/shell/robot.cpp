@@ -168,7 +168,8 @@ std::vector<Tool> fixed_tools() {
        "The robot's place on the map, the places that have a name, nearest first, and closed doors",
        object(nullptr), true},
       {"look",
-       "The walls, doors, people and echoes around the robot, nearest first; x ahead, y left [m]",
+       "The walls, doors, people and echoes around the robot, nearest first; x ahead, y left [m]; "
+       "and the picture of its camera, if it has one",
        object(nullptr), true},
       {"knows",
        "What people told the robot, and it knows now: each fact with its number, speaker and time",

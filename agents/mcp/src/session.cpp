@@ -456,7 +456,7 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
                     " s");
   }
   const bool as_task = tool->lasts && request.modern && has_tasks(parameters);
-  calls_.push_back({number, tool->name, std::move(arguments), as_task});
+  calls_.push_back({number, tool->name, std::move(arguments), as_task, !uri.is_null()});
 }
 
 Result Session::others() const {
@@ -529,7 +529,7 @@ void Session::answer(std::uint64_t call, const Result& told) {
   const auto found = open_.find(call);
   if (found == open_.end())
     return;
-  const Result result{for_model(told.text), for_model(told.value), told.is_error};
+  const Result result{for_model(told.text), for_model(told.value), told.is_error, told.jpeg};
   const Open open = std::move(found->second);
   open_.erase(found);
   if (open.watches)
@@ -542,6 +542,9 @@ void Session::answer(std::uint64_t call, const Result& told) {
         open.request,
         {{"contents", {{{"uri", open.uri}, {"mimeType", "text/plain"}, {"text", result.text}}}}});
   Json json{{"content", {{{"type", "text"}, {"text", result.text}}}}, {"isError", result.is_error}};
+  if (!result.jpeg.empty())
+    json["content"].push_back(
+        {{"type", "image"}, {"data", result.jpeg}, {"mimeType", "image/jpeg"}});
   if (result.value.is_object() && structures(open.request))
     json["structuredContent"] = result.value;
   if (!open.task.empty())

@@ -60,7 +60,7 @@ void Session::watch(const std::string& uri) {
   open.tool = tool->name;
   open.uri = uri;
   open.watches = true;
-  calls_.push_back({number, tool->name, Json::object()});
+  calls_.push_back({number, tool->name, Json::object(), false, true});
 }
 
 /// The text of a watched resource. The first one is only remembered.

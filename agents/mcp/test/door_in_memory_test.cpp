@@ -727,5 +727,31 @@ TEST_F(DoorInMemory, AKeyToWatchReadsAndStops) {
   EXPECT_EQ(stop[0].data.person.name, "anna");
 }
 
+TEST_F(DoorInMemory, ALookHasThePictureOfACameraThatIsThere) {
+  call(1, "look", {});
+  EXPECT_EQ(result(1)["content"].size(), 1U) << "there is no camera";
+
+  bus::Node camera(test::memory_options("camera"), memory);
+  auto pictures = camera.writer(bus::topics::kCameraPictures);
+  camera.status().state = v1::SERVICE_RUNNING;
+  camera.publish_status();
+  turn();
+  EXPECT_EQ(pictures.matched(), 0U) << "nobody looks";
+  call(2, "look", {});
+  EXPECT_EQ(pictures.matched(), 1U);
+  EXPECT_TRUE(result(2).is_null());
+  pictures.write({.camera = "front", .jpeg = {'f', 'o', 'o'}});
+  turn();
+  const Json image = result(2)["content"][1];
+  EXPECT_EQ(image["type"], "image");
+  EXPECT_EQ(image["mimeType"], "image/jpeg");
+  EXPECT_EQ(image["data"], "Zm9v");
+  EXPECT_EQ(pictures.matched(), 0U) << "the camera is off again";
+
+  call(3, "look", {});
+  turn(2.1);
+  EXPECT_EQ(result(3)["content"].size(), 1U) << "a camera that sends nothing";
+}
+
 }  // namespace
 }  // namespace saphira::mcp

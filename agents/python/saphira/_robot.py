@@ -456,6 +456,15 @@ class Robot(Context):
 
     # Reasons
 
+    @property
+    def picture(self) -> Pending[v1.CameraPicture]:
+        """The next picture of the robot's camera. Nobody: none in 5 s."""
+        return self.read(topics.CAMERA_PICTURES)
+
+    def pictures(self) -> Stream[v1.CameraPicture]:
+        """The pictures of the robot's camera, the newest each time. It is off while nobody reads."""
+        return self._stream(topics.CAMERA_PICTURES, newest=True)
+
     def why(self, cycle: int = 0) -> Pending[Explanation]:
         """Why it does what it does; cycle: in that one, or so many before now (below 0)."""
         return Pending(self._waiter, self._why(cycle, ""))

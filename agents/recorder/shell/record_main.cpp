@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "last_minute.hpp"
 #include "recorder.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
@@ -24,12 +25,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kTurn = std::chrono::milliseconds(20);
 constexpr auto kFlush = std::chrono::seconds(1);
+constexpr auto kListen = std::chrono::seconds(2);  // to what is kept, and what comes after it
 
 struct Options {
   std::string file;
   std::vector<std::string> topics;
   double seconds = 0.0;
   bool overwrite = false;
+  bool last_minute = false;
 };
 
 std::int64_t now_ns() {
@@ -74,6 +77,32 @@ class Held {
   int fd_ = -1;
 };
 
+int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& file,
+                     const bus::Stop& stop) {
+  // The robot and its people come first.
+  (void)!nice(10);
+  recorder::LastMinute minute(node);
+  const auto began = Clock::now();
+  while (!stop.requested() && Clock::now() - began < kListen) {
+    node.wait(kTurn, &stop);
+    node.publish_status();
+    minute.poll(now_ns());
+  }
+  recorder::Writer writer(out);
+  if (!minute.write(node, writer)) {
+    std::fprintf(stderr, "saphira: no robot is heard; saphira status shows which programs run\n");
+    out.close();
+    std::filesystem::remove(file);
+    return bus::kExitFailed;
+  }
+  if (!writer.close()) {
+    std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
+    return bus::kExitFailed;
+  }
+  std::printf("%s\n", file.c_str());
+  return bus::kExitOk;
+}
+
 int record(const bus::NodeOptions& node_options, const Options& options, const bus::Stop& stop) {
   const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
   const auto topics = recorder::recorded_topics(options.topics);
@@ -87,6 +116,8 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
     return failed(bus::kExitUsage);
   bus::Node node(node_options);
   node.status().state = v1::SERVICE_RUNNING;
+  if (options.last_minute)
+    return keep_last_minute(node, out, file, stop);
   recorder::Writer writer(out);
   recorder::Recorder recorder(node, writer, topics);
   for (const std::string& topic : recorder.refused())
@@ -129,6 +160,8 @@ int main(int argc, char** argv) {
         app.add_option("file", own.file, "FILE.mcap; else ROBOT-DATE-TIME.mcap in this folder");
         app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();
         app.add_flag("--overwrite", own.overwrite, "replace a recording of that name");
+        app.add_flag("--last-minute", own.last_minute,
+                     "what its programs keep of the last minute, which is written at once");
         app.add_option("--for", own.seconds, "[s] end then").positive();
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

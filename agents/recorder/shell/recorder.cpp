@@ -10,7 +10,6 @@ namespace saphira::recorder {
 
 namespace {
 
-constexpr double kGridPeriod = 10.0;  // [s] a grid is large
 constexpr std::int64_t kLongestGap =
     10'000'000'000;  // [ns] without any sample; presence has 10 a second
 constexpr std::int64_t kShortGap = 100'000'000;  // [ns] that is played in its place

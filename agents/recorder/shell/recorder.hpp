@@ -17,6 +17,8 @@
 
 namespace saphira::recorder {
 
+inline constexpr double kGridPeriod = 10.0;  ///< [s] between two drawn grids, which are large
+
 /// The topics of this contract that a recording holds; `only`: those among these names, if there is
 /// any. The topics recall/... repeat what others have said. std::invalid_argument: an unknown name.
 std::vector<bus::TopicEntry> recorded_topics(const std::vector<std::string>& only);

@@ -24,7 +24,8 @@ const std::vector<std::string>& drawn_topics() {
                                                bus::topics::kPerception.name,
                                                bus::topics::kGrid.name,
                                                bus::topics::kMap.name,
-                                               bus::topics::kLog.name};
+                                               bus::topics::kLog.name,
+                                               bus::topics::kCameraPictures.name};
   return topics;
 }
 
@@ -50,6 +51,8 @@ Scene::Messages draw(Scene& scene, const std::string& topic, const std::string& 
     return Scene::take(read<v1::FloorMap>(json), time_ns);
   if (topic == bus::topics::kLog.name)
     return Scene::take(read<v1::LogRecord>(json));
+  if (topic == bus::topics::kCameraPictures.name)
+    return Scene::take(read<v1::CameraPicture>(json), time_ns);
   if (topic == bus::topics::kRegistration.name)
     scene.take(read<v1::Registration>(json));
   return {};

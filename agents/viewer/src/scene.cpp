@@ -12,14 +12,15 @@ namespace {
 
 using nlohmann::json;
 
-enum Which : std::size_t { kTransforms, kPose, kSonars, kGrid, kScene, kLog };
+enum Which : std::size_t { kTransforms, kPose, kSonars, kGrid, kScene, kLog, kCamera };
 
-constexpr std::array<DrawnChannel, 6> kChannels{{{"viewer/transforms", "foxglove.FrameTransforms"},
+constexpr std::array<DrawnChannel, 7> kChannels{{{"viewer/transforms", "foxglove.FrameTransforms"},
                                                  {"viewer/pose", "foxglove.PoseInFrame"},
                                                  {"viewer/sonars", "foxglove.PointCloud"},
                                                  {"viewer/grid", "foxglove.Grid"},
                                                  {"viewer/scene", "foxglove.SceneUpdate"},
-                                                 {"viewer/log", "foxglove.Log"}}};
+                                                 {"viewer/log", "foxglove.Log"},
+                                                 {"viewer/camera", "foxglove.CompressedImage"}}};
 
 // Numbers of the format.
 constexpr int kUint8 = 1;
@@ -131,6 +132,8 @@ json example(const std::string& type) {
     return json::parse(Scene(0.0).take(v1::GridTile(), false, 1).front().json);
   if (type == "foxglove.Log")
     return json::parse(Scene::take(v1::LogRecord()).front().json);
+  if (type == "foxglove.CompressedImage")
+    return json::parse(Scene::take(v1::CameraPicture(), 1).front().json);
   json entity = entity_of("", "", false, 0);
   entity["metadata"].push_back({{"key", ""}, {"value", ""}});
   entity["arrows"].push_back(arrow_of(1.0));
@@ -249,6 +252,13 @@ Scene::Messages Scene::take(const v1::LogRecord& record) {
                          {"name", record.name},
                          {"file", ""},
                          {"line", 0}})};
+}
+
+Scene::Messages Scene::take(const v1::CameraPicture& picture, std::int64_t time_ns) {
+  return {message(kCamera, {{"timestamp", time_of(time_ns)},
+                            {"frame_id", "base_link"},
+                            {"data", base64(picture.jpeg)},
+                            {"format", "jpeg"}})};
 }
 
 }  // namespace saphira::viewer

@@ -97,6 +97,14 @@ TEST(Scene, EchoesArePoints) {
   EXPECT_EQ(cloud["data"].get<std::string>().substr(0, 6), "AAAAPw") << "0.5 as a float";
 }
 
+TEST(Scene, APictureIsACompressedImage) {
+  v1::CameraPicture picture;
+  picture.jpeg = {'f', 'o', 'o'};
+  const json image = content(Scene::take(picture, kNow), "viewer/camera");
+  EXPECT_EQ(image["data"], "Zm9v");
+  EXPECT_EQ(image["format"], "jpeg");
+}
+
 v1::GridTile tile(std::int32_t column, std::int32_t row, std::uint8_t value) {
   v1::GridTile made;
   made.column = column;

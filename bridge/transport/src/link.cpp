@@ -9,7 +9,6 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -24,6 +23,7 @@
 #include <utility>
 
 #include "baud.hpp"
+#include "saphira/base/local_socket.hpp"
 
 namespace saphira::transport {
 
@@ -179,17 +179,13 @@ void Link::open(double now) {
     return opened();
   }
   if (address_.kind == Address::Kind::local) {
-    fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    sockaddr_un name{};
-    name.sun_family = AF_UNIX;
-    std::memcpy(name.sun_path, address_.name.c_str(),
-                std::min(address_.name.size(), sizeof name.sun_path - 1));
-    if (fd_ >= 0 && ::connect(fd_, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0)
+    fd_ = connect_local(address_.name, SOCK_NONBLOCK);
+    if (fd_ >= 0)
       return opened();
-    if (fd_ >= 0 && errno == ENOENT)
+    if (errno == ENOENT)
       return close(address_.name + ": there is no such socket or line (does the simulator run?)",
                    now);
-    if (fd_ >= 0 && errno == ECONNREFUSED)
+    if (errno == ECONNREFUSED)
       return close(address_.name + ": nobody listens there (does the simulator run?)", now);
     return fail(address_.name);
   }

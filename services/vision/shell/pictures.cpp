@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "saphira/base/local_socket.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::vision {
@@ -18,25 +18,6 @@ namespace {
 
 constexpr std::size_t kKept = 4;
 constexpr int kRetry = 500;  // [ms]
-
-// A file descriptor; -1 with errno without a listener.
-int connect_to(const std::string& path) {
-  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) {
-    ::close(fd);
-    errno = ENAMETOOLONG;
-    return -1;
-  }
-  std::memcpy(address.sun_path, path.data(), path.size());
-  if (::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
-    return fd;
-  const int error = errno;
-  ::close(fd);
-  errno = error;
-  return -1;
-}
 
 }  // namespace
 
@@ -100,7 +81,7 @@ bool Pictures::pause(int milliseconds) const {
 
 void Pictures::run() {
   do {
-    const int fd = connect_to(path_);
+    const int fd = connect_local(path_);
     if (fd < 0) {
       say(false, path_ + ": " + std::strerror(errno));
       continue;

@@ -1,5 +1,7 @@
 import type {RefObject} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
+import {store, stored} from './address';
+import {CameraPanel, cameraOf} from './camera_panel';
 import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
@@ -19,6 +21,7 @@ const wordsPeriod = 100;     // [ms] between two looks at the words
 const noteTime = 8000;       // [ms]
 const longNoteTime = 20_000; // [ms] of bad news
 const aside = 30;            // [pixels] of a card from the place that it is about
+const cameraShown = 'saphira camera';
 const beside: {[side: string]: number} = {top: 75, bottom: 60};
 
 function look(link: Link, now: number): Seen {
@@ -200,6 +203,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
   const [target, setTarget] = useState<Target>();
   const [corner, setCorner] = useState('');
   const [layers, setLayers] = useState<Layers>();
+  const [camera, setCamera] = useState(!!stored(cameraShown));
   const [, look] = useState(0);
   const driving = drive.mine();
   useEffect(() => {
@@ -259,6 +263,11 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
     if (v) change(), v.dirty = true;
     look(n => n + 1);
   };
+  const showCamera = (on: boolean) => {
+    store(cameraShown, on ? 'yes' : '');
+    setCamera(on);
+  };
+  const hasCamera = !!cameraOf(link);
   const stale = s.state !== 'live';
   return <>
     <div class="map">
@@ -271,6 +280,8 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         <button title="the whole map" onClick={() => act(() => v!.fit())}>All</button>
         <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
         <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
+        {hasCamera && <button aria-pressed={camera} title="what the robot's camera sees" onClick={() => showCamera(!camera)}>
+          <span class="word">Camera</span><span class="sign" aria-hidden="true">◉</span></button>}
         <Legend />
       </div>
       {layers && <details class="layers" onToggle={() => act(() => {})}><summary>Layers</summary>
@@ -281,6 +292,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="simulator.html">the simulator's own view</a></p>}
       </details>}
     </div>
+    {camera && hasCamera && <CameraPanel link={link} close={() => showCamera(false)} />}
     {driving && s.state !== 'gone' && <Stick drive={drive} />}
     {target && <TargetCard card={card} corner={corner} link={link} target={target} close={close} />}
   </>;
@@ -294,7 +306,7 @@ function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
     const [v, h] = corner.split(' ');
     return points.every(p => Math.abs(p.x - x(h)) > width + aside || Math.abs(p.y - y(v)) > height + beside[v]);
   };
-  const corners = ['bottom right', ...(document.querySelector('.layers[open]') ? [] : ['top right']),
+  const corners = [...(document.querySelector('.camera') ? [] : ['bottom right']), ...(document.querySelector('.layers[open]') ? [] : ['top right']),
     ...(document.querySelector('#legend:not([hidden])') ? [] : ['top left']),
     ...(view.bottom > 0 ? [] : ['bottom left'])];   // the stick
   if (corners.includes(was) && free(was)) return was;

@@ -42,7 +42,7 @@ export class Link {
   private lanes: WebSocket[] = [];   // further ones for samples
   private lane = 0;
   private ticket = '';
-  private key = storedKey();
+  readonly key = storedKey();
   private barred = 0;        // attempts in turn that something let not through
   private offset = NaN;      // [ms] our clock less the gateway's, with the quickest frame
   private offsetAt = 0;

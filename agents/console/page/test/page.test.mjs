@@ -22,14 +22,14 @@ async function choosePlace(page) {
   await page.getByRole('dialog').waitFor();
 }
 // How many pixels of the picture each color has.
-async function colorsOf(page) {
-  return new Map(await page.evaluate(() => {
-    const canvas = document.querySelector('canvas'), count = new Map();
+async function colorsOf(page, selector = 'canvas') {
+  return new Map(await page.evaluate(selector => {
+    const canvas = document.querySelector(selector), count = new Map();
     for (const color of new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer))
       count.set(color, (count.get(color) ?? 0) + 1);
     const [r, g, b] = [0, 8, 16].map(shift => color => (color >> shift & 255).toString(16).padStart(2, '0'));
     return [...count].map(([color, pixels]) => [`#${r(color)}${g(color)}${b(color)}`, pixels]);
-  }));
+  }, selector));
 }
 // From now on the page hears these topics with other members, and so much older [ms]; of a cycle: by so many later.
 const hears = (page, topics, age = 0) => page.evaluate(([topics, age]) => {
@@ -56,6 +56,21 @@ test('shows the robot, on a map, soon', async () => {
   await page.getByText('The robot does not know where it is (nothing fits). Click where it is on the map').waitFor();
   assert.match(await fact(page, 'Lost, at a guess'), / m, \d+°, 0% sure$/);
   await until('a robot that is not filled', async () => !(await colorsOf(page)).has(robotColor));
+  await leave(page);
+});
+
+test('the camera is shown, and it is off while nobody looks', async () => {
+  const page = await person();
+  await open(page);
+  const state = () => page.evaluate(() => saphira.all('system/status').find(([, {data}]) => data.name === 'camera')?.[1].data.reason);
+  await until('a camera that is off', async () => await state() === 'off: nobody looks');
+  await page.getByRole('button', {name: 'Camera', exact: true}).click();
+  await page.locator('.camera figcaption').getByText(/^0\.\d s old$/).waitFor();
+  const colors = await colorsOf(page, '.camera canvas');
+  assert.ok(colors.size > 500, `${colors.size} colors are in the picture`);
+  assert.equal(await state(), '');
+  await page.getByRole('button', {name: 'Close the camera'}).click();
+  await until('a camera that is off', async () => await state() === 'off: nobody looks');
   await leave(page);
 });
 

@@ -58,6 +58,8 @@ struct HostOptions {
   std::string stereo;
   /// Local socket that sends the same pictures to each client. README, "Vision".
   std::optional<std::string> stereo_socket;
+  /// Local socket that sends pictures in colour, for people.
+  std::optional<std::string> camera_socket;
   /// Local socket of the simulator's own view (view.hpp): the true state, and people's actions.
   std::optional<std::string> view_socket;
   /// File with the places of all that moves, written at the end and taken at the start, so that a

@@ -33,12 +33,14 @@ struct Call {
   std::string tool;
   Json arguments;
   bool as_task = false;  ///< its answer is a task, at once
+  bool as_text = false;  ///< of a resource: its answer is a text, without a picture
 };
 
 struct Result {
   std::string text;       ///< for the model
   Json value;             ///< the same for programs: an object that fits Tool.output, or null
   bool is_error = false;  ///< the request failed; the text gives the reason and advice
+  std::string jpeg = {};  ///< a picture for the model, in base64; empty: none
 };
 
 /// The end of a call, for the log.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saphira/idl/system.hpp"
+#include "saphira/idl/vision.hpp"
 #include "saphira/viewer/picture.hpp"
 
 namespace saphira::viewer {
@@ -52,6 +53,7 @@ class Scene {
   /// No message: it places the next RobotState.
   void take(const v1::Registration& registration) { placing_.take(registration); }
   static Messages take(const v1::LogRecord& record);
+  static Messages take(const v1::CameraPicture& picture, std::int64_t time_ns);
 
  private:
   Tiles tiles_;

@@ -1,4 +1,4 @@
-#include "stereo_feed.hpp"
+#include "picture_feed.hpp"
 
 #include <sys/socket.h>
 
@@ -16,9 +16,9 @@
 
 namespace saphira::sim {
 
-StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& socket,
-                       std::uint64_t seed)
-    : folder_(std::move(folder)), seed_(seed) {
+PictureFeed::PictureFeed(Render render, std::string folder,
+                         const std::optional<std::string>& socket)
+    : render_(std::move(render)), folder_(std::move(folder)) {
   std::error_code error;
   if (!folder_.empty() && !std::filesystem::is_directory(folder_) &&
       !std::filesystem::create_directories(folder_, error))
@@ -27,7 +27,7 @@ StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& soc
     listener_.emplace(Listener::local(*socket));
 }
 
-void StereoFeed::add_to(std::vector<pollfd>& fds) const {
+void PictureFeed::add_to(std::vector<pollfd>& fds) const {
   if (listener_)
     fds.push_back({listener_->fd(), POLLIN, 0});
   for (const Viewer& viewer : viewers_)
@@ -36,7 +36,7 @@ void StereoFeed::add_to(std::vector<pollfd>& fds) const {
 }
 
 // False where the viewer has gone.
-bool StereoFeed::send(Viewer& viewer) {
+bool PictureFeed::send(Viewer& viewer) {
   // Bytes from viewers are ignored, but their end is not.
   std::array<char, 256> said{};
   const ssize_t heard = ::recv(viewer.fd.get(), said.data(), said.size(), MSG_DONTWAIT);
@@ -52,7 +52,7 @@ bool StereoFeed::send(Viewer& viewer) {
   return true;
 }
 
-void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
+void PictureFeed::write(const std::string& picture, std::uint64_t cycle) const {
   const std::string name = folder_ + format("/%06llu.pgm", static_cast<unsigned long long>(cycle));
   std::ofstream file(name, std::ios::binary);
   file << picture << std::flush;
@@ -60,17 +60,15 @@ void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
     throw std::runtime_error(cannot_be(name, "written"));
 }
 
-void StereoFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
-                       std::size_t waiting) {
-  rig_.pose_in_robot.th = head;
+void PictureFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
+                        std::size_t waiting) {
   if (listener_)
     for (Fd fd = listener_->accept(); fd; fd = listener_->accept())
       viewers_.push_back(
           {std::move(fd), std::accumulate(before_.begin(), before_.end(), std::string())});
   const bool is_kept = listener_ && waiting > 1;
   if (cycle != cycle_ && cycle != 0 && (!folder_.empty() || !viewers_.empty() || is_kept)) {
-    Random random(seed_, cycle);
-    const std::string picture = to_pgm(render_stereo(scene, robot, rig_, random), rig_, cycle);
+    const std::string picture = render_(scene, robot, head, cycle);
     for (Viewer& viewer : viewers_)
       if (viewer.waiting.size() <= (waiting - 1) * picture.size())
         viewer.waiting += picture;
@@ -83,6 +81,26 @@ void StereoFeed::serve(const Scene& scene, RobotNumber robot, double head, std::
   }
   cycle_ = cycle;
   std::erase_if(viewers_, [](Viewer& viewer) { return !send(viewer); });
+}
+
+PictureFeed::Render stereo_pairs(std::uint64_t seed) {
+  return [seed](const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle) {
+    StereoRig rig;
+    rig.pose_in_robot.th = head;
+    Random random(seed, cycle);
+    return to_pgm(render_stereo(scene, robot, rig, random), rig, cycle);
+  };
+}
+
+PictureFeed::Render color_pictures() {
+  return [](const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle) {
+    PinholeCamera camera;
+    camera.pose_in_robot.th = head;
+    camera.noise = 0.0;  // it would be most of a compressed picture
+    camera.texture = 0.25;
+    Random random(0, 0);
+    return to_ppm(render_picture(scene, robot, camera, random), camera, cycle);
+  };
 }
 
 }  // namespace saphira::sim

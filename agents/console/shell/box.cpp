@@ -1,0 +1,100 @@
+#include "box.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "environment.hpp"
+#include "saphira/base/format.hpp"
+#include "saphira/base/places.hpp"
+
+namespace saphira::console {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDelay = 5.0;  // [s]
+constexpr std::size_t kMostFiles = 20;
+constexpr std::uintmax_t kMostBytes = 200'000'000;
+
+/// Removes the oldest recordings: their names have their times.
+void prune(const std::string& folder) {
+  std::error_code none;
+  std::vector<fs::path> files;
+  for (const auto& file : fs::directory_iterator(folder, none))
+    if (file.path().extension() == ".mcap")
+      files.push_back(file.path());
+  std::sort(files.begin(), files.end(), std::greater<>());
+  std::uintmax_t bytes = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    bytes += fs::file_size(files[i], none);
+    if (i >= kMostFiles || bytes > kMostBytes)
+      fs::remove(files[i], none);
+  }
+}
+
+}  // namespace
+
+Box::Box(std::string folder, bus::NodeOptions options)
+    : folder_(std::move(folder)), options_(std::move(options)) {}
+
+Box::~Box() {
+  if (recorder_ > 0) {
+    ::kill(recorder_, SIGTERM);
+    ::waitpid(recorder_, nullptr, 0);
+  }
+}
+
+void Box::keep(const situation::Occasion& occasion, double now) {
+  if (folder_.empty() || recorder_ > 0 || due_)
+    return;
+  due_ = now + kDelay;
+  file_ =
+      folder_ + "/" + local_text(std::time(nullptr), "%Y-%m-%d-%H%M%S-") + occasion.kind + ".mcap";
+  text_ = occasion.text;
+}
+
+void Box::start() {
+  std::error_code none;
+  fs::create_directories(folder_, none);
+  std::vector<std::string> words{program_folder() + "/saphira-record", "--last-minute", file_};
+  std::vector<std::string> variables;
+  for (const auto& [name, value] : cli::as_environment(options_))
+    variables.push_back(name + "=" + value);
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    variables.emplace_back(*variable);
+  const auto pointers = [](std::vector<std::string>& texts) {
+    std::vector<char*> all;
+    for (std::string& text : texts)
+      all.push_back(text.data());
+    all.push_back(nullptr);
+    return all;
+  };
+  if (::posix_spawn(&recorder_, words[0].c_str(), nullptr, nullptr, pointers(words).data(),
+                    pointers(variables).data()) != 0)
+    recorder_ = -1;
+}
+
+std::optional<std::string> Box::poll(double now) {
+  if (due_ && now >= *due_) {
+    due_.reset();
+    start();
+  }
+  int status = 0;
+  if (recorder_ <= 0 || ::waitpid(recorder_, &status, WNOHANG) == 0)
+    return std::nullopt;
+  recorder_ = -1;
+  if (status != 0)
+    return "the last minute was not kept (" + text_ + "): the log says why";
+  prune(folder_);
+  return text_ + ". The last minute is in " + file_ + ": saphira replay plays it";
+}
+
+}  // namespace saphira::console
