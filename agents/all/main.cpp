@@ -220,6 +220,8 @@ int main(int argc, char** argv) {
                        "file of the same form with what stands and walks in that world besides");
         app.add_option("--view-socket", robot.view_socket,
                        "local socket of the simulator's own view");
+        app.add_option("--camera-socket", robot.camera_socket,
+                       "local socket that sends pictures in colour, for saphira-camera");
         app.add_option("--robot-file", robot.robot,
                        "parameter file of the simulated robot, or the name of one that is shipped")
             .last_wins();

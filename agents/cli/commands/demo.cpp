@@ -59,7 +59,7 @@ struct DemoOptions {
   std::string trace;
 };
 
-/// The console is for people: benchmarks, and runs without a person, do not need it.
+/// Console and camera are for people: benchmarks, and runs without a person, do not need them.
 bool has_console(const DemoOptions& options) {
   return !options.headless && !options.json && !options.lockstep && !options.single_process;
 }
@@ -75,7 +75,7 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
   deployment.bus.lockstep = options.lockstep;
   if (!has_console(options))
     std::erase_if(deployment.programs,
-                  [](const Program& program) { return program.name == "console"; });
+                  [](const Program& program) { return program.name == "console" || program.when; });
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
   if (!options.world.empty()) {
     set.push_back("world=" + options.world);

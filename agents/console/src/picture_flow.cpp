@@ -8,13 +8,17 @@ namespace saphira::console {
 
 namespace {
 
-constexpr double kFull = 0.2;    // [s] beyond the quickest answer
-constexpr double kPeriod = 0.1;  // [s] between two pictures of a camera
-constexpr double kMostUnderWay = 8;
+constexpr double kFull = 0.2;       // [s] beyond the quickest answer
+constexpr double kPeriod = 0.1;     // [s] between two pictures of a camera
+constexpr double kMost = 8.0;       // pictures on their way at a time
+constexpr double kMore = 0.5;       // of them with each quick answer
 constexpr double kForgets = 1.002;  // the quickest delay grows with each answer: links change
+constexpr double kMean = 0.2;       // share of the newest gap in the mean
+constexpr double kSlow = 0.15;      // [s] between answers
+constexpr double kQuick = 0.115;    // [s] likewise
 constexpr std::array<int, 4> kQualities{0, 40, 25, 15};
-constexpr int kWorse = -2;   // full answers in turn until the quality falls
-constexpr int kBetter = 50;  // other answers in turn until it rises
+constexpr int kWorse = -4;   // answers in turn until the quality falls
+constexpr int kBetter = 80;  // until it rises
 
 }  // namespace
 
@@ -23,14 +27,9 @@ bool PictureFlow::is_full(double delay) const {
 }
 
 bool PictureFlow::takes(std::uint64_t number, double now) const {
-  if (number == last_)
-    return false;
-  const double delay =
-      under_way_.empty() ? delay_ : std::max(delay_, now - under_way_.front().sent);
-  const double room = is_full(delay) || quickest_ > 1e8
-                          ? 1.0
-                          : std::min(kMostUnderWay, 1.0 + std::ceil(quickest_ / kPeriod));
-  return static_cast<double>(under_way_.size()) < room;
+  return number != last_ &&
+         (under_way_.empty() || (static_cast<double>(under_way_.size() + 1) <= room_ &&
+                                 !is_full(now - under_way_.front().sent)));
 }
 
 void PictureFlow::sent(std::uint64_t number, double now) {
@@ -43,10 +42,18 @@ void PictureFlow::acknowledged(std::uint64_t number, double now) {
                                   [&](const UnderWay& each) { return each.number == number; });
   if (found == under_way_.end())
     return;
-  delay_ = now - found->sent;
+  const double delay = now - found->sent;
   under_way_.erase(under_way_.begin(), found + 1);
-  quickest_ = std::min(kForgets * quickest_, delay_);
-  even_ = is_full(delay_) ? std::min(0, even_) - 1 : std::max(0, even_) + 1;
+  quickest_ = std::min(kForgets * quickest_, delay);
+  if (answered_ >= 0.0)
+    gap_ += kMean * (now - answered_ - gap_);
+  answered_ = now;
+  const bool full = is_full(delay);
+  room_ = std::clamp(room_ + (full ? -1.0 : kMore), 1.0,
+                     std::min(kMost, 1.0 + std::ceil(quickest_ / kPeriod)));
+  even_ = full || gap_ > kSlow ? std::min(0, even_) - 1
+          : gap_ < kQuick      ? std::max(0, even_) + 1
+                               : 0;
   if (even_ <= kWorse && step_ + 1 < kQualities.size()) {
     ++step_;
     even_ = 0;

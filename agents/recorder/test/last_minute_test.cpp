@@ -62,7 +62,7 @@ TEST_F(LastMinuteTest, HasWhatWasKeptUnderItsLiveTopicsAtItsTimes) {
   for (const Row& row : rows)
     all += row.topic + " " + std::to_string(std::lround(row.before * 10)) + "\n";
   EXPECT_EQ(all,
-            "robot/state 2\nmap 2\n"
+            "map 2\nrobot/state 2\n"
             "robot/state 1\ngoals/status 1\n"
             "robot/state 0\n");
   EXPECT_NE(rows[3].json.find("GOAL_FAILED"), std::string::npos);

@@ -52,9 +52,10 @@ std::optional<Occasion> Occasions::find(const Situation& situation, double now) 
     known->second = status.state;
   }
   for (const Program& program : situation.programs) {
+    const std::pair key{program.status.name, program.status.instance};
     if (program.age < kNotHeard)
-      programs_.insert(program.status.instance);
-    else if (programs_.erase(program.status.instance) > 0)
+      programs_.insert(key);
+    else if (programs_.erase(key) > 0)
       note("program-lost", program.status.name + " is not heard any more");
   }
   present.silent = situation.robot && situation.silence >= kNoState;

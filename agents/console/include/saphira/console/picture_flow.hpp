@@ -6,10 +6,11 @@
 namespace saphira::console {
 
 /// Decides when a page gets the next picture, and how good it is, so that pictures come as often
-/// and as fresh as the page's link carries them. A page acknowledges each picture; the link is full
-/// when the answers take longer than the quickest one by 0.2 s. Then one picture is on its way at a
-/// time, and its quality falls. Otherwise as many are on their way as fit into the quickest delay.
-/// Times are seconds of any steady clock.
+/// and as fresh as the page's link carries them. A page acknowledges each picture. As many are on
+/// their way as fit into the quickest answer's delay; the link is full when answers take 0.2 s
+/// longer, and then there is one less each time. The quality falls while the link is full or
+/// answers come less often than each 0.15 s, and rises while they come as often as pictures. Times
+/// are seconds of any steady clock.
 class PictureFlow {
  public:
   /// True where a newer picture than the last one may go.
@@ -28,10 +29,12 @@ class PictureFlow {
 
   std::deque<UnderWay> under_way_;
   std::uint64_t last_ = 0;
-  double delay_ = 0.0;
-  double quickest_ = 1e9;
-  std::size_t step_ = 0;  ///< of the quality; 0: the best
-  int even_ = 0;          ///< answers in turn for a better or a worse one: above or below 0
+  double answered_ = -1.0;  ///< [s] time of the newest answer [-1: none yet]
+  double gap_ = 0.1;        ///< [s] between answers, in the mean
+  double quickest_ = 1e9;   ///< [s] delay of an answer
+  double room_ = 4.0;       ///< pictures on their way at a time
+  std::size_t step_ = 0;    ///< of the quality; 0: the best
+  int even_ = 0;            ///< answers in turn for a better or a worse one: above or below 0
 };
 
 }  // namespace saphira::console

@@ -36,7 +36,7 @@ class Occasions {
   };
   std::optional<Before> before_;
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalState> goals_;
-  std::set<std::uint64_t> programs_;  ///< instances that are heard
+  std::set<std::pair<std::string, std::uint64_t>> programs_;  ///< heard: name and instance
   double held_ = -1.0;  ///< [s] since when the guard stops the robot [-1: it does not]
   std::map<std::string, double> told_;  ///< [s] by kind
 };
