@@ -52,13 +52,15 @@ void Conversation::listen() {
 Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
   Outputs out;
   for (const Event& event : events) {
-    if (event.kind != Event::Kind::heard || event.heard.outcome == Outcome::not_for_it)
+    Heard heard = event.heard;
+    if (grammar_.urgent(heard.freely).alone)  // a stop by itself needs no keyword
+      heard = {Outcome::command, heard.freely, kCertain};
+    if (event.kind != Event::Kind::heard || heard.outcome == Outcome::not_for_it)
       continue;
     out.um = true;
-    out.utterances.push_back(event.heard);
-    if (event.heard.outcome == Outcome::addressed)
-      out.utterances.back().text.resize(
-          std::min(event.heard.text.size(), event.heard.text.find(' ')));
+    if (heard.outcome == Outcome::addressed)
+      heard.text.resize(std::min(heard.text.size(), heard.text.find(' ')));
+    out.utterances.push_back(std::move(heard));
   }
   return out;
 }

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/text.hpp"
 #include "saphira/speech/agreement.hpp"
 
 namespace saphira::speech {
@@ -90,7 +91,8 @@ struct Recognizer::Self {
   /// The second decoder hears the utterance once more.
   bool hears_again() const;
   bool is_sure(const Heard& heard) const;
-  /// A decoder without a grammar, which knows every English word, hears something else.
+  /// The words that a decoder without a grammar hears, which knows every English word.
+  std::vector<std::string> heard_freely() const;
   bool is_doubted(const std::string& command) const;
   void finish(std::vector<Event>& events);
   void give_up_attention(std::vector<Event>& events);
@@ -274,14 +276,20 @@ bool Recognizer::Self::is_sure(const Heard& heard) const {
   return again.outcome == heard.outcome && again.text == heard.text && !is_doubted(heard.text);
 }
 
-bool Recognizer::Self::is_doubted(const std::string& command) const {
+std::vector<std::string> Recognizer::Self::heard_freely() const {
   ps_decoder_t* const from = second.get();
   const std::string before = ps_get_search(from);
   ps_set_search(from, kFree);
-  const bool heard = hears_again();
-  const char* const hypothesis = heard ? ps_get_hyp(from, nullptr) : nullptr;
-  const std::vector<std::string> freely = words_of(hypothesis == nullptr ? "" : hypothesis);
+  const char* const hypothesis = hears_again() ? ps_get_hyp(from, nullptr) : nullptr;
+  std::vector<std::string> freely = words_of(hypothesis == nullptr ? "" : hypothesis);
   ps_set_search(from, before.c_str());
+  return freely;
+}
+
+/// Without the grammar it is something else.
+bool Recognizer::Self::is_doubted(const std::string& command) const {
+  ps_decoder_t* const from = second.get();
+  const std::vector<std::string> freely = heard_freely();
   std::vector<std::string> said = words_of(command);
   if (!said.empty() && keywords.contains(said.front()))
     said.erase(said.begin());
@@ -309,6 +317,10 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   if (!std::exchange(in_speech, false))
     return;
   Heard heard = result(decoder.get());
+  const std::vector<std::string> said = words_of(heard.text);
+  const bool is_named = !keyword.empty() || (!said.empty() && keywords.contains(said.front()));
+  if (!is_named && seconds(recent) < settings.longest_alone)
+    heard.freely = joined(heard_freely(), " ");
   if (heard.outcome == Outcome::command)
     heard.confidence = is_at_once(heard.text) || is_sure(heard) ? kCertain : kUncertain;
   recent.clear();

@@ -42,6 +42,23 @@ TEST_F(ConversationTest, ItSaysUmToWhatIsForTheRobotOnly) {
   EXPECT_EQ(ums, 1);
 }
 
+TEST_F(ConversationTest, AStopByItselfNeedsNoKeyword) {
+  for (const char* const voice : {"slt", "awb", "kal16"}) {
+    EXPECT_EQ(hear(said_by(voice, "Stop!")), Texts{"stop"}) << voice;
+    EXPECT_EQ(ums, 1);
+    EXPECT_EQ(hear(said_by(voice, "stop stop stop")), Texts{"stop stop stop"}) << voice;
+    EXPECT_EQ(hear(said_by(voice, "please stop")), Texts{"please stop"}) << voice;
+  }
+  conversation->said("Karen, do you have the report?");
+  EXPECT_EQ(hear(said_by("slt", "stop")), Texts{"stop"}) << "no reply";
+}
+
+TEST_F(ConversationTest, WordsNearAStopAreNone) {
+  for (const char* const text : {"don't stop", "stop talking", "the bus stop is over there", "shop",
+                                 "the weather is nice today"})
+    EXPECT_EQ(hear(said_by("slt", text)), Texts{}) << text;
+}
+
 TEST_F(ConversationTest, ItDoesNotHearItself) {
   EXPECT_EQ(hear(said_by("slt", "flakey turn left"), true), Texts{});
   EXPECT_EQ(hear(said_by("slt", "flakey turn right")), Texts{"flakey turn right"});

@@ -1,6 +1,7 @@
 // The recognition of spoken commands: voices of flite and espeak-ng say the utterances of
 // services/agent_interface/test/utterances.txt, clean and with noise, with the keyword and without.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -15,7 +16,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
-#include "saphira/speech/recognizer.hpp"
+#include "saphira/speech/conversation.hpp"
 #include "saphira/speech/voice.hpp"
 #include "support/guarded.hpp"
 #include "support/quantile.hpp"
@@ -95,6 +96,46 @@ std::vector<std::string> names(const agent_interface::Grammar& grammar) {
 /// A wrong command that costs little.
 constexpr const char* kStop = "stop()";
 
+/// Stops that need no keyword.
+constexpr std::array kLoneStops{
+    "Stop!",          "Stop, stop!", "Stop stop stop",   "Hey, stop!",  "Please stop", "Stop now",
+    "Stop it",        "No, stop",    "Stop right there", "Help! Stop!", "Halt!",       "Freeze!",
+    "Emergency stop", "Stop moving", "Watch out, stop",  "Stop, please"};
+/// Speech to other people, most of it near such a stop.
+constexpr std::array kOtherSpeech{"Shop",
+                                  "Top",
+                                  "Stock",
+                                  "Step",
+                                  "Stopped",
+                                  "Start",
+                                  "Start now",
+                                  "Stuff",
+                                  "Star",
+                                  "Spot",
+                                  "Don't stop",
+                                  "Never stop",
+                                  "Stop talking",
+                                  "Did it stop",
+                                  "It stopped",
+                                  "A stop sign",
+                                  "The bus stop is over there",
+                                  "We can stop here and have lunch",
+                                  "The top shelf",
+                                  "Hold",
+                                  "Hall",
+                                  "Three",
+                                  "Breeze",
+                                  "Please",
+                                  "Hello",
+                                  "Good morning",
+                                  "Okay",
+                                  "Not now",
+                                  "Yes",
+                                  "No",
+                                  "The shop is closed",
+                                  "The weather is nice today",
+                                  "I was at the station on Tuesday"};
+
 double power(const Sound& sound) {
   double sum = 0.0;
   for (const std::int16_t sample : sound)
@@ -162,6 +203,10 @@ struct Tally {
   int taken = 0;        ///< of them, accepted as a command, and certain
   int keyless = 0;
   int keyless_taken = 0;
+  int lone_stops = 0;
+  int lone_stops_right = 0;
+  int others = 0;       ///< all that is no stop
+  int false_stops = 0;  ///< of them
 };
 
 class Bench {
@@ -175,7 +220,8 @@ class Bench {
   Tally run(const std::string& name, Noise noise) {
     const std::string file = config_folder() + "/speech/pronunciations.dict";
     Recognizer recognizer({}, read_file(file), file);
-    recognizer.listen_for(grammar_.graph(names(grammar_), false));
+    Conversation conversation(recognizer, grammar_);
+    conversation.names(names(grammar_));
     const Voice voice(name);
     Random random(static_cast<std::uint64_t>(options_.seed));
     Tally tally;
@@ -187,13 +233,28 @@ class Bench {
       sound.resize(sound.size() + static_cast<std::size_t>(2.2 * kRate), 0);
       if (noise != Noise::none)
         add_noise(sound, noise, babble_, power(said), end, options_.noise_db, random);
-      return understood(recognizer, sound, end, noise == Noise::none);
+      return understood(conversation, sound, end, noise == Noise::none);
     };
+    const auto hear_other = [&](const std::string& text) {
+      const std::string heard = hear(text);
+      ++tally.others;
+      tally.false_stops += heard == kStop ? 1 : 0;
+      return heard;
+    };
+    for (const char* const text : kLoneStops) {
+      ++tally.lone_stops;
+      tally.lone_stops_right += hear(text) == kStop ? 1 : 0;
+    }
+    for (const char* const text : kOtherSpeech)
+      hear_other(text);
+    ++tally.others;
+    tally.false_stops += understood(conversation, babble_, 0, false) == kStop ? 1 : 0;
     for (std::size_t i = 0; i < phrases_.size(); i += static_cast<std::size_t>(options_.every)) {
       const Phrase& phrase = phrases_[i];
       if (phrase.meaning.empty() && noise != Noise::none)
         continue;
-      const std::string heard = hear(phrase.text);
+      const std::string heard =
+          phrase.meaning == kStop ? hear(phrase.text) : hear_other(phrase.text);
       if (phrase.meaning.empty()) {
         ++tally.near_misses;
         tally.taken += !heard.empty() && heard != kStop && certain_ ? 1 : 0;
@@ -209,7 +270,8 @@ class Bench {
       if (noise != Noise::none || phrase.meaning == kStop)
         continue;  // a stop needs no keyword
       ++tally.keyless;
-      tally.keyless_taken += hear(phrase.text.substr(phrase.text.find(' ') + 1)).empty() ? 0 : 1;
+      tally.keyless_taken +=
+          hear_other(phrase.text.substr(phrase.text.find(' ') + 1)).empty() ? 0 : 1;
     }
     return tally;
   }
@@ -218,26 +280,27 @@ class Bench {
 
  private:
   /// The meaning of the first command in it; empty: none.
-  std::string understood(Recognizer& recognizer, const Sound& sound, std::size_t voice_ends,
+  std::string understood(Conversation& conversation, const Sound& sound, std::size_t voice_ends,
                          bool times) {
     constexpr std::size_t kBlock = kRate / 50;
     std::string meaning;
     for (std::size_t at = 0; at < sound.size(); at += kBlock) {
       const std::size_t to = std::min(sound.size(), at + kBlock);
-      for (const Event& event :
-           recognizer.hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
-                                 sound.begin() + static_cast<std::ptrdiff_t>(to)))) {
-        if (event.kind != Event::Kind::heard || event.heard.outcome != Outcome::command ||
-            !meaning.empty())
+      for (const Heard& heard : conversation
+                                    .hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
+                                                sound.begin() + static_cast<std::ptrdiff_t>(to)),
+                                          false)
+                                    .utterances) {
+        if (heard.outcome != Outcome::command || !meaning.empty())
           continue;
-        const auto what = grammar_.understand(event.heard.text);
-        certain_ = event.heard.confidence >= kCertain;
+        const auto what = grammar_.understand(heard.text);
+        certain_ = heard.confidence >= kCertain;
         meaning = what.meanings.size() == 1 ? describe(what.meanings.front()) : "several meanings";
         if (times && to > voice_ends)
           um.push_back(static_cast<double>(to - voice_ends) / kRate);
       }
     }
-    recognizer.end();
+    conversation.end();
     return meaning;
   }
 
@@ -267,13 +330,20 @@ int run(const Options& options) {
     sum.taken += one.taken;
     sum.keyless += one.keyless;
     sum.keyless_taken += one.keyless_taken;
+    sum.lone_stops += one.lone_stops;
+    sum.lone_stops_right += one.lone_stops_right;
+    sum.others += one.others;
+    sum.false_stops += one.false_stops;
   };
   const auto tell = [&](const std::string& voice, const char* how, const Tally& one) {
-    std::fprintf(options.json ? stderr : stdout,
-                 "%-16s %-12s right %3d of %3d, wrong %2d, asked back %2d (wrong %2d); taken for "
-                 "a command: %d of %d without the keyword, %d of %d near misses\n",
-                 voice.c_str(), how, one.right, one.commands, one.wrong, one.asked_back,
-                 one.asked_wrong, one.keyless_taken, one.keyless, one.taken, one.near_misses);
+    std::fprintf(
+        options.json ? stderr : stdout,
+        "%-16s %-12s right %3d of %3d, wrong %2d, asked back %2d (wrong %2d); taken for "
+        "a command: %d of %d without the keyword, %d of %d near misses; lone stops %d of %d, "
+        "false ones %d of %d\n",
+        voice.c_str(), how, one.right, one.commands, one.wrong, one.asked_back, one.asked_wrong,
+        one.keyless_taken, one.keyless, one.taken, one.near_misses, one.lone_stops_right,
+        one.lone_stops, one.false_stops, one.others);
     std::fflush(stdout);
     voices.push_back({{"voice", voice},
                       {"sound", how},
@@ -284,7 +354,11 @@ int run(const Options& options) {
                       {"asked_wrong", one.asked_wrong},
                       {"keyless_taken", one.keyless_taken},
                       {"near_misses", one.near_misses},
-                      {"near_misses_taken", one.taken}});
+                      {"near_misses_taken", one.taken},
+                      {"lone_stops", one.lone_stops},
+                      {"lone_stops_right", one.lone_stops_right},
+                      {"others", one.others},
+                      {"false_stops", one.false_stops}});
   };
   for (const bool unseen : {false, true})
     for (const std::string& voice : unseen ? options.unseen : options.seen) {
@@ -297,19 +371,27 @@ int run(const Options& options) {
         tell(voice, kind == Noise::white ? "white noise" : "babble", noise);
       }
     }
-  const nlohmann::json result{{"accept_seen", share(all[0].right, all[0].commands)},
-                              {"accept_unseen", share(all[1].right, all[1].commands)},
-                              {"false_accept", share(all[0].keyless_taken + all[1].keyless_taken,
-                                                     all[0].keyless + all[1].keyless)},
-                              {"near_misses_taken", share(all[0].taken + all[1].taken,
-                                                          all[0].near_misses + all[1].near_misses)},
-                              {"wrong_in_white_noise", share(noisy[0].wrong, noisy[0].commands)},
-                              {"accept_in_white_noise", share(noisy[0].right, noisy[0].commands)},
-                              {"wrong_in_babble", share(noisy[1].wrong, noisy[1].commands)},
-                              {"accept_in_babble", share(noisy[1].right, noisy[1].commands)},
-                              {"um_s_p50", test::quantile(bench.um, 0.5)},
-                              {"um_s_p95", test::quantile(bench.um, 0.95)},
-                              {"voices", voices}};
+  Tally clean = all[0];
+  add(clean, all[1]);
+  Tally noise = noisy[0];
+  add(noise, noisy[1]);
+  const nlohmann::json result{
+      {"lone_stops", share(clean.lone_stops_right, clean.lone_stops)},
+      {"lone_stops_in_noise", share(noise.lone_stops_right, noise.lone_stops)},
+      {"false_stops", share(clean.false_stops + noise.false_stops, clean.others + noise.others)},
+      {"accept_seen", share(all[0].right, all[0].commands)},
+      {"accept_unseen", share(all[1].right, all[1].commands)},
+      {"false_accept",
+       share(all[0].keyless_taken + all[1].keyless_taken, all[0].keyless + all[1].keyless)},
+      {"near_misses_taken",
+       share(all[0].taken + all[1].taken, all[0].near_misses + all[1].near_misses)},
+      {"wrong_in_white_noise", share(noisy[0].wrong, noisy[0].commands)},
+      {"accept_in_white_noise", share(noisy[0].right, noisy[0].commands)},
+      {"wrong_in_babble", share(noisy[1].wrong, noisy[1].commands)},
+      {"accept_in_babble", share(noisy[1].right, noisy[1].commands)},
+      {"um_s_p50", test::quantile(bench.um, 0.5)},
+      {"um_s_p95", test::quantile(bench.um, 0.95)},
+      {"voices", voices}};
   std::printf("%s\n", result.dump(options.json ? -1 : 2).c_str());
   return 0;
 }

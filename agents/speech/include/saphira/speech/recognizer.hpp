@@ -26,6 +26,7 @@ struct Heard {
   Outcome outcome = Outcome::not_for_it;
   std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
   double confidence = 0.0;  ///< [0..1] kCertain: a second hearing has the same text
+  std::string freely{};     ///< short, and without the keyword: the words heard without the grammar
 };
 
 /// The result for a stretch of sound.
@@ -56,6 +57,7 @@ struct RecognizerSettings {
   int pause = 40;            ///< [10 ms] of silence that ends an utterance
   /// [s] after the keyword alone in which further words belong to it: "Flakey, ... turn left".
   double attention = 1.5;
+  double longest_alone = 5.0;  ///< [s] of an order without the keyword, with the silence around it
 };
 
 /// Speech to words, by pocketsphinx with a grammar between two loops of phones. Words outside of
