@@ -3,7 +3,6 @@
 #include <map>
 
 #include "commands.hpp"
-#include "robot_log.hpp"
 #include "saphira/base/format.hpp"
 #include "watch.hpp"
 
@@ -69,16 +68,10 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
 
 void add_log(CLI::App& app, Chosen& chosen) {
   auto count = std::make_shared<std::uint64_t>(0);
-  CLI::App* command =
-      app.add_subcommand("log", "Messages of all programs; and tools for logs of robots");
+  CLI::App* command = app.add_subcommand("log", "Messages of all programs");
   command->add_option("-n", *count, "the newest so many lines, and no more")->check(above_zero());
-  add_robot_log(*command, chosen);
-  command->callback([count, command, &chosen] {
-    if (!command->get_subcommands().empty())
-      return;
-    chosen.run = [count](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return *count > 0 ? newest(*count, node, stop) : follow(node, stop);
-    };
+  chosen.when(command, [count](const bus::NodeOptions& node, const bus::Stop& stop) {
+    return *count > 0 ? newest(*count, node, stop) : follow(node, stop);
   });
 }
 

@@ -45,7 +45,7 @@ TEST(Localization, OnPatrolThePoseStaysWithinAHandOfTheTruth) {
 }
 
 TEST(Localization, DeadReckoningThatTurnsByAConstantTooMuchDoesNotLoseIt) {
-  // As much as that of the Intel log's robot (agents/logs/README.md).
+  // As much as that of the robot of a public log (Intel Research Lab).
   for (const double turn : {radians(3.4), radians(-3.4)}) {
     DriveOptions options = on_office(doubled(4));
     options.bend = turn;

@@ -280,8 +280,7 @@ Map parse_map(std::string_view text, const std::string& file) {
   std::map<std::uint32_t, int> lines_of_ids;
   expect_own_format(text, file,
                     "a map of Saphira's, which has a line for each corridor, door and "
-                    "wall (config/maps/README.md). A robot can make one: saphira map build; from "
-                    "laser scans: saphira log map");
+                    "wall (config/maps/README.md). A robot can make one: saphira map build");
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     Scanner in(file, text.substr(0, end), number);
