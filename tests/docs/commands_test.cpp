@@ -212,7 +212,7 @@ TEST(ShownCommands, HaveTheirWords) {
     else if (command == "map" && one.words.size() > 2 &&
              std::none_of(one.words.begin(), one.words.end(), is_form))
       EXPECT_NO_THROW(cli::check_map_words({one.words.begin() + 1, one.words.end()})) << what;
-    else if (std::set<std::string>{"beliefs", "device", "drive", "estop", "knows", "log", "map",
+    else if (std::set<std::string>{"beliefs", "device", "drive", "estop", "knows", "map",
                                    "processes", "security"}
                  .contains(command))
       EXPECT_TRUE(std::regex_search(help_of({one.file, "saphira", {command}}),

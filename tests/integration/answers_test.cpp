@@ -158,22 +158,6 @@ TEST_F(Answers, RecordSparesAFileWithOtherContent) {
   EXPECT_EQ(read_file(file), "notes");
 }
 
-TEST_F(Answers, LogMapSparesTheLogAndWritesNoMapWithoutWalls) {
-  const std::string scans =
-      "FLASER 3 81 81 81 0 0 0 0 0 0 1 h 1\nFLASER 3 81 81 81 1 0 0 1 0 0 2 h 2\n";
-  const std::string log = write("far.log", scans);
-  const Outcome same = run({"log", "map", log, folder_.path("./far.log")});
-  EXPECT_EQ(same.code, 2);
-  EXPECT_TRUE(has(same.text, "far.log: this is the log itself; expected another file"))
-      << same.text;
-  EXPECT_EQ(read_file(log), scans);
-  const std::string map = write("old.map", "POS (1) 0, 0, 0 \"home\"\n");
-  const Outcome none = run({"log", "map", log, map});
-  EXPECT_EQ(none.code, 1);
-  EXPECT_TRUE(has(none.text, "far.log: no wall was found; nothing is written")) << none.text;
-  EXPECT_EQ(read_file(map), "POS (1) 0, 0, 0 \"home\"\n");
-}
-
 TEST_F(Answers, UpNamesTheMistakeInADeployment) {
   const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
   const Outcome outcome = run({"up", file});

@@ -36,8 +36,6 @@ const std::vector<Mistake>& mistakes() {
       {{"--profile", "hots", "status"}, {"did you mean host?"}},
       {{"--interface", "lo", "status"}, {"--interface: expected an IPv4 address", "found lo"}},
       {{"security"}, {"security: expected a command (init, add,", "found none"}},
-      {{"log", "map", "/nowhere/a.log", "a.map"},
-       {"expected a file, found nothing at /nowhere/a.log"}},
       {{"--domain", "300", "status"}, {"300", "231"}},
       {{"--domain", "1.5", "status"},
        {"--domain: expected a whole number between 0 and 231, found 1.5"}},
