@@ -2,7 +2,7 @@ import {randomBytes} from 'node:crypto';
 import http from 'node:http';
 import https from 'node:https';
 
-// A WebSocket by hand: what it sends need not be right. `texts` has what came, until somebody takes it. tls: what
+// A WebSocket by hand: what it sends need not be right. `texts` has what came, until somebody takes it; `take` is called with bytes. tls: what
 // https takes; without it the connection is plain.
 export function socketTo(port, protocol, headers = {}, tls = undefined, path = '/') {
   return new Promise((resolve, reject) => {
@@ -21,6 +21,7 @@ export function socketTo(port, protocol, headers = {}, tls = undefined, path = '
           else if (size === 127) size = rest.length >= 10 ? Number(rest.readBigUInt64BE(2)) : Infinity, at = 10;
           if (rest.length < at + size) return;
           if ((rest[0] & 15) === 1) connection.texts.push(JSON.parse(rest.subarray(at, at + size)));
+          if ((rest[0] & 15) === 2) connection.take?.(rest.subarray(at, at + size));
           rest = rest.subarray(at + size);
         }
       });

@@ -3,17 +3,16 @@
 // the page's side of the two connections, with a key that is held all the time.
 import assert from 'node:assert/strict';
 import {mkdtempSync, rmSync} from 'node:fs';
-import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, describe, test} from 'node:test';
+import {link} from './link.mjs';
 import {end, rig as robotRig, sleep, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
 const period = 50;           // [ms] of the samples
 const wanted = 0.3;          // [m/s]
 const within = 0.6;          // [s] until the robot stands: 0.5 s, and a row of the trace
-const resend = 200;          // [ms] until TCP sends again what was lost, besides the delay
 const folder = mkdtempSync(join(tmpdir(), 'saphira-teleop-'));
 const table = [], rigs = [];
 
@@ -30,37 +29,6 @@ after(async () => {
   rmSync(folder, {recursive: true, force: true});
   console.log(`\n| link | speed [m/s] | what happens | until it stands [s] | afterwards |\n| --- | --- | --- | --- | --- |\n${table.join('\n')}`);
 });
-
-// The same losses in each run.
-function chance(seed) {
-  let state = seed;
-  return () => (state = (state * 1103515245 + 12345) % 2147483648) / 2147483648;
-}
-
-// A link of its own for an operator. What is lost is sent again, and what follows waits for it, as TCP does.
-async function link({port}, delay = 0, loss = 0) {
-  const state = {cut: false};
-  const random = chance(7);
-  const carry = (from, to) => {
-    let last = Promise.resolve();
-    from.on('data', data => {
-      const due = Date.now() + delay + (random() < loss ? resend + 2 * delay : 0);
-      last = last.then(async () => {
-        while ((Date.now() < due || state.cut) && !to.destroyed) await sleep(5);
-        if (!to.destroyed) to.write(data);
-      });
-    });
-    from.on('close', () => last.then(() => to.destroy())).on('error', () => {});
-  };
-  const server = net.createServer(near => {
-    const far = net.connect(port, '127.0.0.1');
-    carry(near, far);
-    carry(far, near);
-  });
-  server.unref();
-  await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
-  return Object.assign(state, {port: server.address().port});
-}
 
 // A page with a key that is held: `held` false lets it go.
 async function operator({people, port, key}, at, name) {
@@ -131,12 +99,12 @@ function row(link, velocity, what, stands, then) {
   table.push(`| ${link} | ${velocity.toFixed(2)} | ${what} | ${stands === undefined ? '-' : stands.toFixed(1)} | ${then} |`);
 }
 
-const bad = [100, 0.05];
+const bad = {delay: 100, loss: 0.05};
 describe('driving', {concurrency: true}, () => {
   test('over 100 ms and 5 % loss each way it drives; a cut for 2 s ends in watching, one for 0.3 s need not', async () => {
     const robot = await rig(), {now, speed, stood, drivesOn} = robot;
     for (const cut of [2, 0.3]) {
-      const far = await link(robot, ...bad), ann = await operator(robot, far.port, `ann${cut}`);
+      const far = await link(robot.port, bad), ann = await operator(robot, far.port, `ann${cut}`);
       const velocity = await drives(robot, ann), from = now();
       far.cut = true;
       await sleep(cut * 1000);
@@ -158,7 +126,7 @@ describe('driving', {concurrency: true}, () => {
 
   test('a link that is cut for 20 s comes back to watching', async () => {
     const robot = await rig(), {now, speed, stood, drivesOn} = robot;
-    const far = await link(robot, ...bad), ann = await operator(robot, far.port, 'ann');
+    const far = await link(robot.port, bad), ann = await operator(robot, far.port, 'ann');
     const velocity = await drives(robot, ann);
     let from = now();
     far.cut = true;
@@ -185,7 +153,7 @@ describe('driving', {concurrency: true}, () => {
     const letGo = await until('that it stands', () => stood(from));
     row('none', quick, 'key let go', letGo, 'keeps control');
     near.leave();
-    const far = await link(robot, 500), ann = await operator(robot, far.port, 'fay');
+    const far = await link(robot.port, {delay: 500}), ann = await operator(robot, far.port, 'fay');
     const slow = await drives(robot, ann);
     // Of what is asked for: a busy machine delays, and so slows, the near one as well.
     assert.ok(slow < 0.7 * wanted, `${slow} of ${wanted} m/s over 500 ms`);
