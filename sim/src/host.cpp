@@ -49,6 +49,9 @@ constexpr double kGap = 0.050;  // [s]
 constexpr int kMostAhead = 10;    // [cycles]
 constexpr double kGivenUp = 2.0;  // [s]
 
+// Steps that wait for a client.
+constexpr int kMostSteps = 100;
+
 // Between two checks for a client at a terminal.
 constexpr int kLook = 50;  // [ms]
 
@@ -409,6 +412,7 @@ class Serving {
     if (fds_[0].revents != 0)
       return false;
     step(fds_);
+    take_steps();
     if (view_ != nullptr)
       serve_view();
     return true;
@@ -499,6 +503,16 @@ class Serving {
         stations_[i]->accept();
   }
 
+  /// Without a client time does not pass, so a step waits for one, such as a bridge that has found
+  /// the paused robot silent and connects again.
+  void take_steps() {
+    for (; steps_ > 0 && simulation_.runs(); --steps_) {
+      simulation_.advance(kTicksPerPacket);
+      for (const auto& station : stations_)
+        station->write(true);
+    }
+  }
+
   void serve_view() {
     const bool asked =
         view_->serve([this] { return describe_world(simulation_.scene().world(), choice_()); },
@@ -526,12 +540,12 @@ class Serving {
   std::string obey(const Wish& wish) {
     if (const auto* pause = std::get_if<Pause>(&wish)) {
       pacing_.paused = pause->on;
+      steps_ = 0;
     } else if (std::holds_alternative<StepOnce>(wish)) {
       if (!pacing_.paused)
         return "time is not paused";
-      simulation_.advance(kTicksPerPacket);
-      for (const auto& station : stations_)
-        station->write(true);
+      steps_ = std::min(steps_ + 1, kMostSteps);
+      take_steps();
     } else if (const auto* rate = std::get_if<SetRate>(&wish)) {
       if (unpaced_)
         return "the simulator runs as fast as it can";
@@ -560,6 +574,7 @@ class Serving {
   Timer timer_;
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<pollfd> fds_;
+  int steps_ = 0;  // asked for, while time is paused
   bool running_ = false;
   bool waits_ = false;  // for a client to read its output
   bool timed_ = false;

@@ -196,6 +196,38 @@ TEST_F(HostTest, ServesLive) {
   EXPECT_FALSE(std::filesystem::exists(*options_.socket));
 }
 
+TEST_F(HostTest, AStepWhileTimeIsPausedWaitsForAClient) {
+  options_.view_socket = directory_ + "/view";
+  start();
+  const int viewer = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  options_.view_socket->copy(address.sun_path, sizeof address.sun_path - 1);
+  const auto say = [&](const std::string& line) {
+    EXPECT_EQ(::send(viewer, line.data(), line.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(line.size()));
+  };
+  EXPECT_TRUE(wait_for([&] {
+    return ::connect(viewer, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }));
+  say("{\"do\":\"pause\",\"on\":true}\n{\"do\":\"step\"}\n");
+  std::string shown;
+  EXPECT_TRUE(wait_for([&] {
+    char part[4096];
+    const ssize_t size = ::recv(viewer, part, sizeof part, MSG_DONTWAIT);
+    shown.append(part, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return shown.find("\"paused\":true") != std::string::npos;
+  }));
+  Client client(*options_.socket);
+  client.open();
+  client.information();
+  EXPECT_TRUE(wait_for([&] { return trace().size() == 1U; }));
+  say("{\"do\":\"step\"}\n");
+  client.information();
+  EXPECT_TRUE(wait_for([&] { return trace().size() == 2U; }));
+  ::close(viewer);
+}
+
 // As a bridge opens a serial line, leaves, and returns.
 TEST_F(HostTest, ServesATerminal) {
   options_.socket.reset();
