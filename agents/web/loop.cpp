@@ -110,6 +110,7 @@ bool is_here(lws* wsi) {
     return lws_hdr_custom_length(wsi, name.data(), static_cast<int>(name.size())) >= 0;
   };
   return (address.starts_with("127.") || address == "::1") &&
+         header(wsi, WSI_TOKEN_HTTP) != "HTTP/1.0" &&  // nginx by its defaults
          lws_hdr_total_length(wsi, WSI_TOKEN_X_FORWARDED_FOR) <= 0 &&
          lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_X_REAL_IP) <= 0 &&
          lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_VIA) <= 0 && !has("forwarded:") &&

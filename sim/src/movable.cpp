@@ -143,6 +143,9 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
   } else if (word == "color" || word == "colour") {
     Look& look = last_look(in, word);
     look.color = in.word("a color");
+  } else if (word == "wide") {
+    needs(Last::kPerson, "person");
+    plans_.persons.back().radius = size(in, "width") / 2.0;
   } else if (word == "tall") {
     Look& look = last_look(in, word);
     look.height = size(in, "height");

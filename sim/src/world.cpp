@@ -102,8 +102,9 @@ class Parser {
     } else {
       in.fail(
           "expected a segment (x y x y), width, height, push, pop, position, sonar, robot, person, "
-          "walk, lead, wait, point, repeat, door, open, close, period, box, post, color, tall or "
-          "cloth, found \"" +
+          "walk, lead, wait, point, repeat, door, open, close, period, box, post, color, tall, "
+          "wide "
+          "or cloth, found \"" +
           std::string(word) + "\"");
     }
   }

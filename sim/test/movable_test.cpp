@@ -30,7 +30,7 @@ void run(Scene& scene, double seconds) {
 TEST(Movable, IsReadInItsFrame) {
   const World it = world(
       "push 1000 2000 90\n"
-      "person ann 500 0 tall 1600 color red walk 1500 0 800 wait 2.5 repeat\n"
+      "person ann 500 0 tall 1600 wide 600 color red walk 1500 0 800 wait 2.5 repeat\n"
       "door d1 0 0 900 0 -90 open 5 close 10 period 20\n"
       "box crate 1000 -1000 0 600 400 5\n"
       "post ball 2000 0 100 color orange\n"
@@ -40,6 +40,7 @@ TEST(Movable, IsReadInItsFrame) {
   EXPECT_EQ(ann.look.name, "ann");
   EXPECT_EQ(ann.look.color, "red");
   EXPECT_DOUBLE_EQ(ann.look.height, 1.6);
+  EXPECT_DOUBLE_EQ(ann.radius, 0.3);
   EXPECT_NEAR((ann.at - Vec2(1.0, 2.5)).norm(), 0.0, 1e-12);
   ASSERT_EQ(ann.script.size(), 2U);
   EXPECT_NEAR((ann.script[0].to - Vec2(1.0, 3.5)).norm(), 0.0, 1e-12);
@@ -149,6 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenLine{"box b 0 0 0 600", 16, "width"}, BrokenLine{"box b 0 0 0 600 0 5", 17, "width"},
         BrokenLine{"post p 0 0", 11, "radius"}, BrokenLine{"color red", 1, "before this color"},
         BrokenLine{"robot 0 0", 10, "theta"}, BrokenLine{"tall 5", 1, "before this tall"},
+        BrokenLine{"post a 1 1 60 wide 600", 15, "before this wide"},
         // Mistakes with respect to the walls.
         BrokenLine{"position 5000 -10 0", 1, "in the world"},
         BrokenLine{"robot 10001 5000 0", 1, "in the world"},

@@ -55,6 +55,7 @@ struct DemoOptions {
   double time_limit = kTimeLimit;
   std::string world;
   std::string base;
+  std::string people;
   std::vector<double> goal{kGoalX, kGoalY};
   std::string trace;
 };
@@ -87,9 +88,12 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
   }
   if (!options.base.empty())
     set.push_back("base=" + options.base);
-  const std::vector<std::string> more = options.lockstep
-                                            ? std::vector<std::string>{"--trace", trace, "--step"}
-                                            : std::vector<std::string>{"--trace", trace};
+  std::vector<std::string> more{"--trace", trace};
+  if (options.lockstep)
+    more.emplace_back("--step");
+  if (!options.people.empty())
+    more.insert(more.end(),
+                {"--things", find_file(config_folder() + "/people", options.people, ".wld")});
   if (options.single_process) {
     // saphira-all takes the options of all programs, and those of the bus once.
     Program all{"all", {"saphira-all"}, {}, {}, true, true};
@@ -529,6 +533,8 @@ void add_demo(CLI::App& app, Chosen& chosen) {
                       "in place of the office: a name of config/worlds, or a file");
   command->add_option("--base", options->base,
                       "in place of the Pioneer 1: a name of config/robots, or a file");
+  command->add_option("--people", options->people,
+                      "who is in the way: standing, or another file of things of config/people");
   command->add_option("--goal", options->goal, "X Y [m], seen from where the robot starts")
       ->expected(2)
       ->transform(number_in_unit("m"))

@@ -119,7 +119,7 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
                    : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
                    : lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0    ? "GET"
                                                                          : "";
-  request.caller = {web::host(wsi), header(wsi, WSI_TOKEN_ORIGIN), true};
+  request.caller = {web::host(wsi), header(wsi, WSI_TOKEN_ORIGIN), web::is_here(wsi)};
   request.authorization = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
   request.session = decoded_header(wsi, "mcp-session-id:");
   request.version = decoded_header(wsi, "mcp-protocol-version:");

@@ -156,7 +156,9 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   Client* const client = client_of(exchange, request, sender, visitor, id);
   if (client == nullptr)
     return;
-  presence_.came(id, now());
+  console::AccessSettings here;
+  here.port = port();
+  presence_.came(id, !console::may_watch(here, request.caller), now());
   if (sender.answers)
     presence_.answered(id);
   see(id, *client);
@@ -251,7 +253,9 @@ void HttpDoor::tick() {
     }
     if (presence_.loses_goals(id, now())) {
       node_.info(client->door.who() + " is not there: its goals end");
-      client->door.close("its client had no stream and no call open");
+      client->door.close(presence_.is_hidden(id)
+                             ? "its client sent nothing for a while, and a proxy hides the rest"
+                             : "its client had no stream and no call open");
     }
     if (presence_.is_pinged(id, now())) {
       client->session.ping();

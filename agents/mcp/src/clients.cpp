@@ -22,8 +22,9 @@ std::string Clients::begin(const std::string& id, const std::string& name, doubl
   return (name.empty() ? "" : name + " ") + std::to_string(++count_);
 }
 
-void Clients::came(const std::string& id, double now) {
+void Clients::came(const std::string& id, bool hidden, double now) {
   Client& client = all_.at(id);
+  client.hidden = hidden;
   client.asked = now;
   client.seen = now;
   client.lost = false;
@@ -34,8 +35,8 @@ void Clients::see(const std::string& id, const State& state, double now) {
   const bool closes = state.connections < client.state.connections;
   client.state = state;
   client.lost = client.lost && state.busy;
-  const bool by_ping = client.answers && state.busy && state.streams;
-  if (!by_ping && (closes || state.connections > 0))
+  const bool by_messages = state.busy && (client.hidden || (client.answers && state.streams));
+  if (!by_messages && (closes || state.connections > 0))
     client.seen = std::max(client.seen, closes ? now : std::min(state.heard, now));
 }
 

@@ -36,7 +36,7 @@ TEST_F(McpClients, AConnectionWhoseOtherSideAcknowledgesNothingDoesNotCount) {
 
 TEST_F(McpClients, AClientBetweenItsConnectionsLivesByItsMessages) {
   for (double now = 100.0; now < 110.0; now += 1.4) {
-    clients.came("a", now);
+    clients.came("a", false, now);
     see(now, 1, now);
     see(now + 1.3, 0, 0.0);
     EXPECT_FALSE(clients.loses_goals("a", now + 1.3));
@@ -52,7 +52,7 @@ TEST_F(McpClients, GoalsEndOnceForEachAbsence) {
   state.busy = true;  // a call was held back
   see(103.1, 0, 0.0);
   EXPECT_TRUE(clients.loses_goals("a", 103.1));
-  clients.came("a", 104.0);
+  clients.came("a", false, 104.0);
   see(105.5, 0, 0.0);
   EXPECT_TRUE(clients.loses_goals("a", 105.5));
 }
@@ -76,15 +76,42 @@ TEST_F(McpClients, AClientThatAnswersPingsIsThereAsLongAsItDoes) {
   EXPECT_TRUE(clients.is_pinged("a", 100.5));
   see(150.0, 1, 150.0, true);
   EXPECT_FALSE(clients.loses_goals("a", 150.0)) << "it never answers, and its connection is there";
-  clients.came("a", 150.0);
+  clients.came("a", false, 150.0);
   clients.answered("a");
   see(151.4, 1, 151.4, true);
   EXPECT_FALSE(clients.loses_goals("a", 151.4));
   see(151.5, 1, 151.5, true);
   EXPECT_TRUE(clients.loses_goals("a", 151.5));
-  clients.came("a", 152.0);
+  clients.came("a", false, 152.0);
   see(153.5, 1, 153.5, false);
   EXPECT_FALSE(clients.loses_goals("a", 153.5)) << "no ping reaches it";
+}
+
+// Nothing tells a proxy either that the network behind it is gone.
+TEST_F(McpClients, BehindAProxyAClientIsThereByItsMessagesAlone) {
+  clients.came("a", true, 100.0);
+  for (double now = 100.0; now < 110.0; now += 1.4) {
+    clients.came("a", true, now);
+    see(now + 0.1, 2, now + 0.1, true);
+    see(now + 1.3, 1, now + 1.3, true);
+    EXPECT_FALSE(clients.loses_goals("a", now + 1.3));
+  }
+  clients.came("a", true, 110.0);
+  see(111.4, 2, 111.4, true);
+  EXPECT_FALSE(clients.loses_goals("a", 111.4));
+  see(111.5, 1, 111.5, true);
+  EXPECT_TRUE(clients.loses_goals("a", 111.5)) << "the end of an answer is no sign of it";
+  EXPECT_TRUE(clients.is_hidden("a"));
+  clients.came("a", false, 120.0);
+  see(125.0, 1, 125.0);
+  EXPECT_FALSE(clients.loses_goals("a", 125.0)) << "it has come without the proxy";
+}
+
+TEST_F(McpClients, BehindAProxyTheConnectionsOfAClientWithoutAGoalCount) {
+  state.busy = false;
+  clients.came("a", true, 100.0);
+  see(150.0, 1, 150.0, true);
+  EXPECT_FALSE(clients.is_gone("a", 150.0));
 }
 
 TEST_F(McpClients, WithoutAGoalNobodyIsPinged) {
@@ -109,7 +136,7 @@ struct McpPlaces : testing::Test {
 
 TEST_F(McpPlaces, TheLongestSilentGivesItsPlace) {
   EXPECT_EQ(clients.place(), "a");
-  clients.came("a", 200.0);
+  clients.came("a", false, 200.0);
   EXPECT_EQ(clients.place(), "b");
   clients.see("b", {.connections = 1, .heard = 300.0, .streams = true}, 300.0);
   EXPECT_EQ(clients.place(), "b") << "an open stream says nothing";

@@ -143,13 +143,18 @@ int connected(int port) {
   return fd;
 }
 
+/// As a client names this server that comes to it by no proxy.
+std::string host(int port) {
+  return "\r\nHost: localhost:" + std::to_string(port);
+}
+
 /// The answer to a request of HTTP, until the server closes. next: what follows in the same packet.
 std::string http(int port, const std::string& head, const std::string& body = {},
                  const std::string& next = {}) {
   const int fd = connected(port);
-  const std::string text = head +
-                           "\r\nHost: localhost\r\nContent-Length: " + std::to_string(body.size()) +
-                           "\r\n\r\n" + body + next;
+  const std::string text = head + host(port) +
+                           "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+                           body + next;
   EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   std::string answer;
   char buffer[4096];
@@ -273,7 +278,7 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   const auto listen = [&] {
     const int fd = connected(port);
     std::string get = session;
-    get.replace(0, 4, "GET") += "\r\nHost: localhost\r\n\r\n";
+    get.replace(0, 4, "GET") += host(port) + "\r\n\r\n";
     EXPECT_EQ(write(fd, get.data(), get.size()), static_cast<ssize_t>(get.size()));
     EXPECT_TRUE(comes(fd, "text/event-stream"));
     return fd;
@@ -286,13 +291,14 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   close(stream);
 
   // A task is polled to its end.
-  const auto ask = [&](const std::string& method, const std::string& name, json parameters) {
+  const auto ask = [&](const std::string& method, const std::string& name, json parameters,
+                       const std::string& more = {}) {
     parameters["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
                            {"io.modelcontextprotocol/clientCapabilities",
                             {{"extensions", {{"io.modelcontextprotocol/tasks", json::object()}}}}}};
     return message_of(http(port,
                            post + "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: " + method +
-                               "\r\nMcp-Name: " + name,
+                               "\r\nMcp-Name: " + name + more,
                            json{{"id", 5}, {"method", method}, {"params", parameters}}.dump()));
   };
   const json task = ask("tools/call", "go_to", go(0.7, 20))["result"];
@@ -309,23 +315,40 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   json modern = go(5.0, 20);
   modern["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
                      {"io.modelcontextprotocol/clientCapabilities", json::object()}};
-  const auto drive_and_break = [&](const std::string& head, const json& parameters) {
+  const auto drive = [&](const std::string& head, const json& parameters) {
     const std::string body =
         json{{"id", 1}, {"method", "tools/call"}, {"params", parameters}}.dump();
-    const std::string text =
-        head + "\r\nHost: localhost\r\nContent-Length: " + std::to_string(body.size()) +
-        "\r\n\r\n" + body;
+    const std::string text = head + host(port) +
+                             "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+                             body;
     const int fd = connected(port);
     EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
     EXPECT_TRUE(system.wait_moving());
-    close(fd);
-    EXPECT_TRUE(system.wait_still());
+    return fd;
   };
-  drive_and_break(post +
-                      "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: tools/call\r\n"
-                      "Mcp-Name: go_to",
-                  modern);
-  drive_and_break(session, go(5.0, 20));
+  const std::string newer =
+      post + "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: tools/call\r\nMcp-Name: go_to";
+  close(drive(newer, modern));
+  EXPECT_TRUE(system.wait_still());
+  close(drive(session, go(5.0, 20)));
+  EXPECT_TRUE(system.wait_still());
+
+  // A proxy keeps the connection of a client that has gone, in both eras; one that sends something
+  // drives on.
+  const std::string proxy = "\r\nVia: 1.1 proxy";
+  for (const auto& [head, parameters] :
+       {std::pair(newer, modern), std::pair(session, go(5.0, 20))}) {
+    const int kept = drive(head + proxy, parameters);
+    EXPECT_TRUE(system.wait_still());
+    EXPECT_TRUE(comes(kept, "a proxy hides the rest"));
+    close(kept);
+  }
+  const json there = ask("tools/call", "go_to", go(1.4, 20), proxy)["result"];
+  EXPECT_TRUE(wait_until([&] {
+    state = ask("tasks/get", there["taskId"], {{"taskId", there["taskId"]}}, proxy)["result"];
+    return state["status"] == "completed";
+  })) << state.dump();
+  EXPECT_EQ(state["result"]["structuredContent"]["state"], "succeeded") << state;
 
   // A client is killed between its calls: its stream closes. One that comes back hears of its
   // goals.

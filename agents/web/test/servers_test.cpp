@@ -190,7 +190,8 @@ class Echo {
               server_->answer(exchange, 200, "text/plain",
                               request.method + " " + request.path + " " + request.caller.host +
                                   " " + std::to_string(request.body.size()) + " " +
-                                  request.body.substr(0, 20));
+                                  request.body.substr(0, 20) +
+                                  (request.caller.loopback ? "" : "by a proxy"));
             },
             [](auto) {}, [] {}, [] {}};
   }
@@ -236,6 +237,14 @@ TEST(Servers, AProxyNamesTheHostThatWasAskedFor) {
   EXPECT_TRUE(has(answer(echo.port(), {"GET /mcp HTTP/1.0\r\nHost: 127.0.0.1:1\r\n"
                                        "X-Forwarded-Host: robot.example:8443, inner\r\n\r\n"}),
                   "GET /mcp robot.example:8443 0 "));
+}
+
+TEST(Servers, AProxyThatSaysNothingSpeaksHttp10) {
+  Echo echo;
+  EXPECT_TRUE(answer(echo.port(), {"GET /mcp HTTP/1.1\r\nHost: localhost\r\n\r\n"})
+                  .ends_with("GET /mcp localhost 0 "));
+  EXPECT_TRUE(answer(echo.port(), {"GET /mcp HTTP/1.0\r\nHost: localhost\r\n\r\n"})
+                  .ends_with("GET /mcp localhost 0 by a proxy"));
 }
 
 /// A console with a page, which notes its callers.

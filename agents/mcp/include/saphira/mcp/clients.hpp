@@ -27,16 +27,19 @@ class Clients {
   std::string begin(const std::string& id, const std::string& name, double now);
   void end(const std::string& id) { all_.erase(id); }
 
-  /// A message of the client.
-  void came(const std::string& id, double now);
-  /// The message is the answer to a ping: from now on silence after a ping is absence. A proxy or
-  /// a tunnel keeps the connections of a client that has gone.
+  /// A message of the client. hidden: a proxy has passed it on. Until the next message its
+  /// connections are those of the proxy, which keeps them when the client has gone.
+  void came(const std::string& id, bool hidden, double now);
+  /// The message is the answer to a ping: from now on silence after a ping is absence. A tunnel
+  /// that nothing shows hides its client, too.
   void answered(const std::string& id) { all_.at(id).answers = true; }
   /// Call before each decision, and at least ten times a second.
   void see(const std::string& id, const State& state, double now);
 
   /// Its goals end now: they are underway, and the client is not there. True once for each absence.
   bool loses_goals(const std::string& id, double now);
+  /// Its messages alone say that it is there.
+  bool is_hidden(const std::string& id) const { return all_.at(id).hidden; }
   bool is_gone(const std::string& id, double now) const;
   bool is_pinged(const std::string& id, double now);
   /// Fewer than kMostBusy others have goals, so there is always a place for one that only stops.
@@ -57,6 +60,7 @@ class Clients {
     double asked = 0.0;  ///< [s] newest message
     double seen = 0.0;   ///< [s] newest sign
     State state = {};
+    bool hidden = false;
     bool answers = false;  ///< pings
     bool lost = false;     ///< its goals, in this absence
     double pinged = 0.0;   ///< [s]

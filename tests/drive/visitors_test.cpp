@@ -1,0 +1,59 @@
+// Errands through a narrow hall, among people and things that are not on its map.
+#include <gtest/gtest.h>
+
+#include "drive/whole.hpp"
+
+namespace saphira::test {
+namespace {
+
+class Visitors : public testing::TestWithParam<const char*> {
+ protected:
+  WholeOptions options(const std::string& world, std::uint64_t seed = 1) const {
+    WholeOptions options;
+    options.map = "small-office";
+    options.drive.world = world;
+    options.drive.robot = GetParam();
+    options.drive.seed = seed;
+    options.drive.guard = true;
+    return options;
+  }
+  static intentions::GoalStatus to_d(Whole& whole) {
+    return whole.achieve("go-to-place", {saphira::text("place", "D")}, 3000);
+  }
+};
+
+constexpr const char* kTrue = "something, perhaps a person, stands before door 9 (D)";
+
+TEST_P(Visitors, APersonWhoStaysInTheHallIsTheReasonAndNotTheDoorBehind) {
+  Whole whole(options(world_with("small-office", "stays", "person pat 7800 4400\n")));
+  const auto status = to_d(whole);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED) << status.reason;
+  EXPECT_NE(status.reason.find(kTrue), std::string::npos) << status.reason;
+  EXPECT_LT(whole.cycle(), 2000U);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+TEST_P(Visitors, TheErrandGoesOnWhenThePersonHasGone) {
+  Whole whole(options(
+      world_with("small-office", "goes", "person pat 7800 4400 wait 60 walk 10000 4800 600\n")));
+  const auto status = to_d(whole);
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+// Ann and Bob meet the robot where a cupboard narrows the hall.
+TEST_P(Visitors, AmongPeopleWhoWalkAnErrandEndsWithTheTrueReason) {
+  for (const std::uint64_t seed : {1, 2}) {
+    Whole whole(options("visitors", seed));
+    const auto status = to_d(whole);
+    EXPECT_TRUE(status.state == v1::GOAL_SUCCEEDED ||
+                (status.state == v1::GOAL_FAILED && status.reason.find(kTrue) != std::string::npos))
+        << status.reason;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, Visitors, testing::Values("pioneer", "p3dx"),
+                         [](const auto& robot) { return std::string(robot.param); });
+
+}  // namespace
+}  // namespace saphira::test
