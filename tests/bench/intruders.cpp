@@ -44,9 +44,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kRobot = "guarded";
 constexpr seconds kTrial{5};
+// A program that is not let in is named after 5 s.
+constexpr seconds kNaming{20};
 constexpr milliseconds kCycle{100};
 constexpr milliseconds kLate{50};
 constexpr std::int64_t kHour = 3600;
+constexpr const char* kAudit = "for the audit: ";
 
 bus::NodeOptions options_of(const std::string& program, const std::string& credentials,
                             std::uint32_t domain) {
@@ -129,39 +132,57 @@ class Watched {
       throw std::runtime_error("the bridge does not begin: " + process_.output());
   }
 
+  /// Waits until it has named somebody, if it does.
+  void wait_for_name() {
+    test::wait_until([&] { return process_.output().find(kAudit) != std::string::npos; }, kNaming);
+  }
+
   /// Its end, and what it tells of the trial.
   nlohmann::json end(Intrusion& result) {
     result.aborted = !process_.running();
     process_.signal(SIGTERM);
     process_.wait();
     const std::string said = process_.output();
-    result.named = named(said);
     const std::size_t at = said.rfind("\n{");
     if (at == said.npos)
       return nlohmann::json::object();
     const auto told = nlohmann::json::parse(said.substr(at + 1));
     result.cycles = told.at("cycles");
     result.late = told.at("late");
+    if (const std::size_t name = said.find(kAudit); name != said.npos) {
+      const std::size_t begin = name + std::strlen(kAudit);
+      result.named = said.substr(begin, said.find('\n', begin) - begin);
+      result.named_by.push_back("audit");
+      if (said.find("bridge: " + result.named) != said.npos)
+        result.named_by.push_back("log");
+    }
+    if (told.at("status").get<std::string>().find("kept out") != std::string::npos)
+      result.named_by.push_back("status");
     return told;
   }
 
  private:
-  /// The first line of its log that names somebody.
-  static std::string named(const std::string& said) {
-    for (std::size_t at = 0; at < said.size();) {
-      const std::size_t end = std::min(said.find('\n', at), said.size());
-      const std::string line = said.substr(at, end - at);
-      at = end + 1;
-      for (const char* const sign : {"not let in", "may not", "strangers", "refuse", "revoked"})
-        if (const std::size_t text = line.find("bridge: ");
-            text != line.npos && line.find(sign, text) != line.npos)
-          return line.substr(text + 8);
-    }
-    return {};
-  }
-
   test::Process process_;
 };
+
+/// A drive of an operator, with what is heard of it on the wire meanwhile.
+std::vector<Wire::Packet> drive(const Wire& wire, const std::string& credentials,
+                                std::uint32_t domain) {
+  std::vector<Wire::Packet> packets;
+  bus::Node node(options_of("bench", credentials, domain));
+  auto commands = node.writer(bus::topics::kDriveTeleop);
+  std::jthread listener([&] { packets = wire.hear(domain, seconds(4)); });
+  v1::MotorCommand command;
+  for (const auto end = Clock::now() + seconds(4); Clock::now() < end;) {
+    ++command.number;
+    commands.write(command);
+    node.wait(milliseconds(20));
+  }
+  listener.join();
+  if (wire.hears() && packets.empty())
+    throw std::runtime_error("nothing of an operator's drive was heard on the wire");
+  return packets;
+}
 
 class Trials {
  public:
@@ -175,14 +196,16 @@ class Trials {
         bridge_(site.add("guarded", {"bridge"}, "", 365, now)) {}
 
   std::vector<Intrusion> all() {
-    trial("nobody", [] {});
+    trial(kNobody, [] {});
     for (const auto& members : heard_)
       for (const std::string name : members)
         own_.insert(name);
     altered("no credentials", bus::kOpenBus, "");
     altered("observer", copy(site_.add("john", {"observer"}, "", 365, now_)), "observer");
     altered("agent", copy(site_.add("planner", {"agent"}, "", 365, now_)), "agent");
-    altered("operator of another robot", forged("far", "operator", "other"), "");
+    altered("operator of another robot", copy(site_.add("far", {"operator"}, "other", 365, now_)),
+            "");
+    altered("the same, self-signed", forged("farther", "operator", "other"), "");
     altered("self-signed", forged("liar", "observer", ""), "");
     altered("other site", other_site(), "");
     // The authority itself is valid since a day.
@@ -227,6 +250,8 @@ class Trials {
     Watched bridge(self_, bridge_, folder_ + "/bridge-" + std::to_string(results_.size()));
     act();
     std::this_thread::sleep_for(kTrial);
+    if (who != kNobody)
+      bridge.wait_for_name();
     told_ = bridge.end(result);
     heard_ = told_.value("heard", nlohmann::json::object());
     return result;
@@ -271,9 +296,9 @@ class Trials {
   /// Pieces of samples in the name of the bridge, of others and of nobody.
   void fragments() {
     const Wire wire;
-    trial("fragments", [&] {
-      const auto heard =
-          wire.hears() ? wire.hear(domain_, seconds(3)) : std::vector<Wire::Packet>();
+    const std::string credentials = site_.add("kate", {"operator"}, "", 365, now_);
+    Intrusion& result = trial("fragments", [&] {
+      const auto heard = drive(wire, credentials, domain_);
       std::mt19937 random(1);
       for (int i = 0; i < 20000 && !heard.empty(); ++i) {
         Wire::Packet packet = heard[random() % heard.size()];
@@ -295,36 +320,20 @@ class Trials {
         wire.send(packet);
       }
     });
-    if (!wire.hears())
-      results_.back().who += " (left out: no right to hear packets)";
+    result.left_out = !wire.hears();
   }
 
-  /// An operator's packets again, during its drive and after its end.
+  /// An operator's packets again, after its drive.
   void replay() {
     const Wire wire;
     const std::string credentials = site_.add("karen", {"operator"}, "", 365, now_);
     Intrusion& result = trial("replayed packets", [&] {
-      std::vector<Wire::Packet> packets;
-      {
-        bus::Node node(options_of("bench", credentials, domain_));
-        auto commands = node.writer(bus::topics::kDriveTeleop);
-        std::jthread listener([&] { packets = wire.hear(domain_, seconds(4)); });
-        v1::MotorCommand command;
-        for (const auto end = Clock::now() + seconds(4); Clock::now() < end;) {
-          ++command.number;
-          commands.write(command);
-          node.wait(milliseconds(20));
-        }
-        listener.join();
-        for (const Wire::Packet& packet : packets)
-          wire.send(packet);
-      }
+      const auto packets = drive(wire, credentials, domain_);
       for (int i = 0; i < 5; ++i)
         for (const Wire::Packet& packet : packets)
           wire.send(packet);
     });
-    if (!wire.hears())
-      result.who += " (left out: no right to hear packets)";
+    result.left_out = !wire.hears();
     if (const std::size_t again = told_.value("repeated", std::size_t{0}); again > 0)
       result.got.push_back(std::to_string(again) + " commands again");
     if (told_.value("commands", std::size_t{0}) == 0)
@@ -358,6 +367,7 @@ int watched(const std::string& credentials, std::uint32_t domain) {
   std::size_t commands = 0;
   std::size_t repeated = 0;
   std::set<std::uint64_t> numbers;
+  std::string status;
   auto states = node.writer(bus::topics::kRobotState);
   bus::for_each_topic([&]<class T>(const bus::Topic<T>& topic) {
     bool reads = true;
@@ -371,6 +381,9 @@ int watched(const std::string& credentials, std::uint32_t domain) {
       turns.push_back([&, reader, name = std::string(topic.name)] {
         for (const auto& sample : reader->take()) {
           heard[name].insert(sample.info.sender ? sample.info.sender->text() : "none");
+          if constexpr (std::is_same_v<T, v1::ServiceStatus>)
+            if (sample.data.name == "bridge")
+              status = sample.data.reason;
           if constexpr (std::is_same_v<T, v1::MotorCommand>)
             if (name == bus::topics::kDriveTeleop.name && sample.data.number > 0) {
               ++commands;
@@ -399,10 +412,15 @@ int watched(const std::string& credentials, std::uint32_t domain) {
     for (const auto& turn : turns)
       turn();
     node.publish_status();
+    // As the bridge writes it into its audit.
+    for (const std::string& text : node.take_refused())
+      std::printf("%s%s\n", kAudit, text.c_str());
+    std::fflush(stdout);
   }
   std::printf("\n%s\n", nlohmann::json{{"cycles", cycles},
                                        {"late", late},
                                        {"heard", heard},
+                                       {"status", status},
                                        {"commands", commands},
                                        {"repeated", repeated}}
                             .dump()

@@ -42,13 +42,17 @@ def test_the_program_with_asyncio_drives(programs: None, tmp_path: Path) -> None
 def test_the_calendar_is_asked(robot: saphira.Robot, tmp_path: Path) -> None:
     (tmp_path / "calendar_agent.py").write_text(PROGRAMS[2])
     program = subprocess.Popen([sys.executable, "calendar_agent.py"], cwd=tmp_path)
-    answer = None
-    while answer is None:  # until the facilitator has heard of the agent
-        with contextlib.suppress(saphira.Nobody):
-            answer = robot.ask("place_of", person="karen", of="calendar").wait()
-    assert answer["place"] == "library"
-    program.send_signal(signal.SIGINT)
-    assert program.wait(30) == 0
+    try:
+        answer = None
+        while answer is None:  # until the facilitator has heard of the agent
+            assert program.poll() is None
+            with contextlib.suppress(saphira.Nobody):
+                answer = robot.ask("place_of", person="karen", of="calendar").wait()
+        assert answer["place"] == "library"
+        program.send_signal(signal.SIGINT)
+        assert program.wait(30) == 0
+    finally:
+        program.kill()
 
 
 def test_the_driver_turns_and_lets_go(robot: saphira.Robot, tmp_path: Path) -> None:

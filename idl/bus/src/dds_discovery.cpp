@@ -236,15 +236,19 @@ void Discovery::tell_forbidden(const rtps::GUID_t& guid, const EndpointEntry& en
   if (!guard_ || told_.size() >= kMostProgramsTold || program == programs_.end() ||
       !program->second.identity)
     return;
-  const std::string why =
-      guard_->why_not(*program->second.identity, endpoint.topic, endpoint.writer);
+  const Identity& identity = *program->second.identity;
+  std::string why = guard_->why_not(identity, endpoint.topic, endpoint.writer);
+  const std::string robot = entrance_->robot_of(Entrance::prefix_at(guid.guidPrefix.value));
+  if (why.empty() && !robot.empty() && endpoint.robot != robot)
+    why = identity.text() + " may not have it of " + endpoint.robot +
+          ": its permissions are for the robot " + robot + " alone";
   const bool ours = std::any_of(own_.begin(), own_.end(), [&](const EndpointEntry& own) {
     return own.topic == endpoint.topic && own.writer != endpoint.writer;
   });
-  if (why.empty() || !ours || !told_.insert({"forbidden", endpoint.id}).second)
+  if (why.empty() || !ours || !told_.insert({"forbidden", why}).second)
     return;
-  troubles_.push_back("topic " + endpoint.topic + ": " + name(with_program(guid, endpoint)) +
-                      " is refused: " + why);
+  refusals_.texts.push_back("topic " + endpoint.topic + ": " + name(with_program(guid, endpoint)) +
+                            " is refused: " + why);
   wake_->signal();
 }
 
@@ -295,10 +299,8 @@ Refusals Discovery::take_refusals() {
   const std::scoped_lock lock(mutex_);
   // Fast DDS does not report that it has refused a program's permissions.
   if (entrance_) {
-    for (const std::string& address : entrance_->take_new_strangers())
-      refusals_.texts.push_back("strangers at " + address +
-                                " are kept out: their announcements are dropped, and counted in "
-                                "the status");
+    const std::vector<std::string> strangers = entrance_->take_new_strangers();
+    refusals_.texts.insert(refusals_.texts.end(), strangers.begin(), strangers.end());
     for (const auto& [prefix, program] : programs_)
       if (Clock::now() - program.found > kSlowHandshake &&
           !entrance_->is_in(Entrance::prefix_at(prefix.value)))

@@ -94,22 +94,23 @@ std::string Guard::why_not(const Identity& identity, const std::string& topic, b
          ": that is for " + (writes ? roles.those_that_write(topic) : roles.those_that_read(topic));
 }
 
-bool Guard::revoked(const std::uint8_t* prefix) const {
+std::string Guard::revoked(const std::uint8_t* prefix) const {
   if (!any_)
-    return false;
+    return {};
   security::PrefixHead head{};
   std::copy_n(prefix, head.size(), head.begin());
   const std::scoped_lock lock(mutex_);
-  return revoked_.contains(head);
+  const auto found = revoked_.find(head);
+  return found == revoked_.end() ? std::string() : found->second;
 }
 
 void Guard::take(const security::Revoked& list) {
-  std::set<security::PrefixHead> heads;
+  std::map<security::PrefixHead, std::string> heads;
   for (const std::string& member : list.members)
     for (const security::Role& role : credentials_.roles.roles)
       if (const auto subject = security::parse_subject("CN=" + member + ",OU=" + role.name +
                                                        ",O=" + credentials_.subject.site))
-        heads.insert(security::prefix_head(*subject));
+        heads.try_emplace(security::prefix_head(*subject), subject->name);
   number_ = list.number;
   const std::scoped_lock lock(mutex_);
   revoked_ = std::move(heads);

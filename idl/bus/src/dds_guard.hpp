@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "saphira/base/boot_clock.hpp"
@@ -45,8 +45,8 @@ class Guard {
   const security::Seal& seal() const { return seal_; }
   bool seal_required() const { return credentials_.roles.seal_required; }
 
-  /// True where the certificate of a packet's sender is revoked. From any thread.
-  bool revoked(const std::uint8_t* prefix) const;
+  /// The member whose revoked certificate a packet's sender has; empty: none. From any thread.
+  std::string revoked(const std::uint8_t* prefix) const;
 
   /// Looks for a newer list of revoked certificates, at intervals.
   void look(const std::string& program);
@@ -65,7 +65,7 @@ class Guard {
   std::string trouble_;
   std::uint64_t number_ = 0;
   mutable std::mutex mutex_;
-  std::set<security::PrefixHead> revoked_;
+  std::map<security::PrefixHead, std::string> revoked_;  ///< and their members
   std::atomic<bool> any_{false};
 };
 

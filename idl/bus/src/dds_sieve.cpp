@@ -4,6 +4,7 @@
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -16,6 +17,7 @@
 
 #include "introduction.hpp"
 #include "log.hpp"
+#include "saphira/security/documents.hpp"
 #include "sieve.hpp"
 
 namespace saphira::bus::internal {
@@ -43,7 +45,7 @@ class Sieve : public transport::ChainingTransport {
       return low->send(buffer, size, begin, end, timeout);
     std::vector<rtps::octet> sealed(buffer, buffer + size);
     if (descriptor_.guard)
-      descriptor_.guard->seal().close(sealed, unix_seconds());
+      descriptor_.guard->seal().close(sealed, seal_time());
     const auto length = static_cast<std::uint32_t>(sealed.size());
     const bool sent = low->send(sealed.data(), length, begin, end, timeout);
     if (descriptor_.machines)
@@ -58,9 +60,14 @@ class Sieve : public transport::ChainingTransport {
     if (descriptor_.guard)
       opened = descriptor_.guard->seal().open(buffer, size);
     const auto sound = static_cast<std::uint32_t>(sound_length(buffer, opened.size));
-    if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)) ||
-        !plausible(buffer, sound))
+    if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)))
       return;
+    if (!plausible(buffer, sound)) {
+      // Of a member too, after a while without a network.
+      if (descriptor_.guard && !descriptor_.entrance->is_in(Entrance::prefix_at(sender_of(buffer))))
+        drop(remote);
+      return;
+    }
     const bool announces = is_announcement(buffer, sound);
     std::unique_lock<std::mutex> alone;
     if (descriptor_.guard) {
@@ -68,7 +75,8 @@ class Sieve : public transport::ChainingTransport {
       if (introduces)
         alone = std::unique_lock(introductions());
       const Entrance::Prefix sender = Entrance::prefix_at(sender_of(buffer));
-      if (descriptor_.guard->revoked(sender.data())) {
+      if (const std::string member = descriptor_.guard->revoked(sender.data()); !member.empty()) {
+        drop(remote, "they use the certificate of " + member + ", which is revoked");
         // Fast DDS 2.9 may hang where it forgets a participant in its handshake.
         if (descriptor_.entrance->is_in(sender))
           pass(next, farewell(sender.data()), local, remote);
@@ -76,12 +84,15 @@ class Sieve : public transport::ChainingTransport {
       }
       if (!speaks_for_itself(buffer, sound)) {
         if (!is_farewell(buffer, sound))  // an honest program says it too
-          descriptor_.entrance->forged(address_of(remote), BootClock::now());
+          drop(remote);
         return;
       }
       const auto fate = fate_of(sender, announces, introduces, opened.sealed, remote);
       if (fate == Entrance::Fate::drops)
         return;
+      if (introduces && !announces)
+        descriptor_.entrance->limit(
+            sender, security::robot_of({reinterpret_cast<const char*>(buffer), sound}));
       if (announces && fate == Entrance::Fate::waits) {
         std::vector<rtps::octet> shortened(buffer, buffer + sound);
         set_lease(shortened.data(), shortened.size(), Entrance::kLease);
@@ -103,12 +114,24 @@ class Sieve : public transport::ChainingTransport {
   Entrance::Fate fate_of(const Entrance::Prefix& sender, bool announces, bool introduces,
                          std::optional<std::int64_t> sealed, const rtps::Locator_t& from) const {
     const auto now = BootClock::now();
-    std::optional<std::chrono::seconds> age;
+    std::optional<Entrance::Sealed> seal;
     if (sealed)
-      age = std::chrono::seconds(unix_seconds() - *sealed);
-    return announces    ? descriptor_.entrance->announced(sender, address_of(from), now, age)
+      seal = {std::chrono::seconds(*sealed), std::chrono::seconds(unix_seconds() - *sealed)};
+    return announces    ? descriptor_.entrance->announced(sender, address_of(from), now, seal)
            : introduces ? descriptor_.entrance->shakes_hands(sender, now)
                         : descriptor_.entrance->sends(sender, now);
+  }
+
+  /// Counts a dropped packet.
+  void drop(const rtps::Locator_t& from, const std::string& proof = {}) const {
+    descriptor_.entrance->drop(address_of(from), BootClock::now(), proof);
+  }
+
+  /// [s] since 1970. It never goes back, whatever the clock does: others take an announcement that
+  /// is older than the one before for a repeated one.
+  std::int64_t seal_time() {
+    const std::scoped_lock lock(mutex_);
+    return newest_seal_ = std::max(newest_seal_, unix_seconds());
   }
 
   /// An announcement from that machine.
@@ -181,6 +204,7 @@ class Sieve : public transport::ChainingTransport {
   SieveDescriptor descriptor_;
   std::mutex mutex_;  // each port has a thread, and several threads send
   BootClock::time_point announced_;
+  std::int64_t newest_seal_ = 0;
   std::set<std::pair<std::string, std::uint32_t>> opened_;
   transport::SendResourceList openers_;
   Sequences sequences_;

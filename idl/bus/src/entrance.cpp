@@ -10,11 +10,16 @@
 namespace saphira::bus::internal {
 
 Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& address, Time now,
-                                   std::optional<std::chrono::seconds> sealed) {
+                                   std::optional<Sealed> sealed) {
   const std::scoped_lock lock(mutex_);
   if (const auto known = known_.find(prefix); known != known_.end()) {
+    std::optional<std::chrono::seconds>& newest = known->second.sealed;
+    if (newest && sealed && sealed->time < *newest - kSwapped)
+      return dropped(address, now, "they repeat announcements of members");
     // A sealed participant goes on to seal.
-    const Fate found = known->second.sealed && !sealed ? Fate::drops : fate(known->second, now);
+    const Fate found = newest && !sealed ? Fate::drops : fate(known->second, now);
+    if (newest && sealed)
+      newest = std::max(*newest, sealed->time);
     return found == Fate::drops ? dropped(address, now) : found;
   }
   if (const auto refused = refused_.find(prefix); refused != refused_.end()) {
@@ -24,18 +29,19 @@ Entrance::Fate Entrance::announced(const Prefix& prefix, const std::string& addr
   }
   if (!has_place(prefix, now, sealed))
     return dropped(address, now);
-  known_[prefix] = {.since = now, .address = address, .sealed = sealed.has_value()};
+  Known& known = known_[prefix] = {.since = now, .address = address};
   ++waiting_;
-  if (sealed)
+  if (sealed) {
+    known.sealed = sealed->time;
     ++sealed_waiting_;
+  }
   return Fate::waits;
 }
 
-bool Entrance::has_place(const Prefix& prefix, Time now,
-                         std::optional<std::chrono::seconds> sealed) {
+bool Entrance::has_place(const Prefix& prefix, Time now, const std::optional<Sealed>& sealed) {
   if (!sealed && seal_ == Seal::required)
     return false;
-  if (sealed && sealed_waiting_ >= kRepeated && (*sealed > kFresh || *sealed < -kFresh))
+  if (sealed && sealed_waiting_ >= kRepeated && (sealed->age > kFresh || sealed->age < -kFresh))
     return false;
   if (!sealed && waiting_ >= kCrowd && !heard_twice(prefix, now))
     return false;
@@ -115,15 +121,27 @@ bool Entrance::is_in(const Prefix& prefix) const {
   return known != known_.end() && known->second.in;
 }
 
+void Entrance::limit(const Prefix& prefix, const std::string& robot) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto known = known_.find(prefix); known != known_.end() && !robot.empty())
+    known->second.robot = robot;
+}
+
+std::string Entrance::robot_of(const Prefix& prefix) const {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known == known_.end() ? std::string() : known->second.robot;
+}
+
 std::string Entrance::address_of(const Prefix& prefix) const {
   const std::scoped_lock lock(mutex_);
   const auto known = known_.find(prefix);
   return known == known_.end() ? std::string() : known->second.address;
 }
 
-void Entrance::forged(const std::string& address, Time now) {
+Entrance::Fate Entrance::drop(const std::string& address, Time now, const std::string& proof) {
   const std::scoped_lock lock(mutex_);
-  dropped(address, now);
+  return dropped(address, now, proof);
 }
 
 std::string Entrance::strangers(Time now) const {
@@ -133,7 +151,7 @@ std::string Entrance::strangers(Time now) const {
   const std::scoped_lock lock(mutex_);
   std::string text;
   for (const auto& [address, stranger] : strangers_)
-    if (stranger.packets >= kStranger && now - stranger.last < kSilence)
+    if (!stranger.proofs.empty() && now - stranger.last < kSilence)
       text += (text.empty() ? "strangers are kept out: " : ", ") +
               (address.empty() ? "other addresses" : address) + " (" +
               std::to_string(stranger.packets) + " packets in " +
@@ -144,14 +162,17 @@ std::string Entrance::strangers(Time now) const {
 
 std::vector<std::string> Entrance::take_new_strangers() {
   const std::scoped_lock lock(mutex_);
-  std::vector<std::string> addresses;
+  std::vector<std::string> texts;
   for (auto& [address, stranger] : strangers_)
-    if (stranger.packets >= kStranger && !std::exchange(stranger.named, true))
-      addresses.push_back(address.empty() ? "other addresses" : address);
-  return addresses;
+    for (auto& [proof, named] : stranger.proofs)
+      if (!std::exchange(named, true))
+        texts.push_back("strangers at " + (address.empty() ? "other addresses" : address) +
+                        " are kept out: " + (proof.empty() ? "what they send is dropped" : proof) +
+                        "; the status counts their packets");
+  return texts;
 }
 
-Entrance::Fate Entrance::dropped(const std::string& address, Time now) {
+Entrance::Fate Entrance::dropped(const std::string& address, Time now, const std::string& proof) {
   auto found = strangers_.find(address);
   if (found == strangers_.end()) {
     std::erase_if(strangers_, [&](const auto& one) { return now - one.second.last >= kSilence; });
@@ -163,6 +184,8 @@ Entrance::Fate Entrance::dropped(const std::string& address, Time now) {
   if (stranger.packets++ == 0)
     stranger.first = now;
   stranger.last = now;
+  if ((!proof.empty() || stranger.packets >= kStranger) && stranger.proofs.size() < kMostProofs)
+    stranger.proofs.try_emplace(proof);
   return Fate::drops;
 }
 

@@ -42,10 +42,14 @@ class Entrance {
     waits,  ///< passes; an announcement is good for kLease alone
     drops,
   };
-  /// `address`: where it comes from. `sealed`: how long ago it was sealed, by the clocks of two
-  /// machines; none: it has no good seal.
+  /// A good seal: its time by the sender's clock, and its age by the clocks of two machines.
+  struct Sealed {
+    std::chrono::seconds time{0};
+    std::chrono::seconds age{0};
+  };
+  /// `address`: where it comes from.
   Fate announced(const Prefix& prefix, const std::string& address, Time now,
-                 std::optional<std::chrono::seconds> sealed = std::nullopt);
+                 std::optional<Sealed> sealed = std::nullopt);
   /// Of a message of a handshake: of one that was not announced nothing passes.
   Fate shakes_hands(const Prefix& prefix, Time now);
   /// Of any other packet.
@@ -57,15 +61,19 @@ class Entrance {
   void refuse(const Prefix& prefix);
   void forget(const Prefix& prefix, Time now);
   bool is_in(const Prefix& prefix) const;
+  /// The robot that its permissions are for, as its handshake says [empty: every one].
+  void limit(const Prefix& prefix, const std::string& robot);
+  std::string robot_of(const Prefix& prefix) const;
   /// Where one that is known was announced from.
   std::string address_of(const Prefix& prefix) const;
 
-  /// A packet from there that is said to be of another participant.
-  void forged(const std::string& address, Time now);
+  /// Another packet that was dropped. `proof`: they, its senders, do what no member does; empty: of
+  /// a member some may be dropped as well, so that only kStranger of them count.
+  Fate drop(const std::string& address, Time now, const std::string& proof = {});
   /// In words, the strangers of the last minutes: their addresses, how many packets, since when and
   /// until when. Empty: none.
   std::string strangers(Time now) const;
-  /// The addresses of strangers that were not named before.
+  /// In words, the strangers that were not named before, for each proof once.
   std::vector<std::string> take_new_strangers();
 
   /// Those that wait at most: with what Fast DDS keeps of those that were let in it stays below its
@@ -79,6 +87,8 @@ class Entrance {
   static constexpr std::size_t kMostUnsealed = 16;
   static constexpr std::size_t kRepeated = 5;
   static constexpr std::chrono::seconds kFresh{600};
+  /// A program's seals never go back in time, but the network may swap announcements.
+  static constexpr std::chrono::seconds kSwapped{2};
   static constexpr std::chrono::seconds kPatience{3};
   static constexpr std::chrono::seconds kPatienceInPeace{20};
   static constexpr std::chrono::seconds kLease{3};
@@ -92,22 +102,24 @@ class Entrance {
   /// addresses are named, until they have been silent for so long.
   static constexpr std::uint64_t kStranger = 100;
   static constexpr std::size_t kMostAddresses = 8;
+  static constexpr std::size_t kMostProofs = 8;  ///< of an address
   static constexpr std::chrono::seconds kSilence{600};
 
  private:
   struct Known {
     Time since;
     std::string address;
+    std::string robot = {};
     int found = 0;  ///< by Fast DDS, which tells when it forgets it; may be found again before
     bool in = false;
     bool refused = false;
-    bool sealed = false;
+    std::optional<std::chrono::seconds> sealed = std::nullopt;  ///< the newest time
   };
   struct Stranger {
     Time first;
     Time last;
     std::uint64_t packets = 0;
-    bool named = false;
+    std::map<std::string, bool> proofs;  ///< true: named; "" for kStranger packets
   };
   struct Heard {
     Prefix prefix{};
@@ -115,9 +127,9 @@ class Entrance {
   };
 
   Fate fate(const Known& known, Time now) const;
-  Fate dropped(const std::string& address, Time now);
+  Fate dropped(const std::string& address, Time now, const std::string& proof = {});
   bool heard_twice(const Prefix& prefix, Time now);
-  bool has_place(const Prefix& prefix, Time now, std::optional<std::chrono::seconds> sealed);
+  bool has_place(const Prefix& prefix, Time now, const std::optional<Sealed>& sealed);
   void leave(const Known& known);
   std::chrono::seconds patience(const Known& known) const {
     return waiting_ >= kCrowd && !known.sealed ? kPatience : kPatienceInPeace;

@@ -64,8 +64,9 @@ class Wake {
 /// What was refused since the last call.
 struct Refusals {
   std::uint64_t samples = 0;  ///< that were not of their topic's type
-  std::vector<std::string>
-      texts;  ///< of these, each topic and writer once; each program not let in
+  /// Of these, each topic and writer once; each program that was not let in, each topic that a
+  /// member may not have, and strangers.
+  std::vector<std::string> texts;
 };
 
 /// One node's side of a bus.

@@ -166,13 +166,13 @@ TEST(Entrance, StrangersWithoutASealKeepNobodyOutWhoHasIt) {
     waiting += entrance.shakes_hands(program(stranger), now) == Fate::drops ? 0U : 1U;
   EXPECT_LE(waiting, Entrance::kMostUnsealed);
   for (std::uint8_t member = 200; member < 220; ++member) {
-    EXPECT_EQ(entrance.announced(program(member), "", now, seconds(0)), Fate::waits);
+    EXPECT_EQ(entrance.announced(program(member), "", now, Entrance::Sealed{}), Fate::waits);
     entrance.found(program(member));
   }
   now += Entrance::kPatience + seconds(1);
   EXPECT_EQ(entrance.shakes_hands(program(200), now), Fate::waits) << "it has time";
   entrance.let_in(program(200));
-  EXPECT_EQ(entrance.announced(program(200), "", now, seconds(0)), Fate::passes);
+  EXPECT_EQ(entrance.announced(program(200), "", now, Entrance::Sealed{}), Fate::passes);
   EXPECT_EQ(entrance.announced(program(200), "", now), Fate::drops) << "forged in its name";
 }
 
@@ -180,7 +180,7 @@ TEST(Entrance, WhatOthersHaveSealedIsNotRepeatedForLong) {
   Entrance entrance(1, Entrance::Seal::preferred);
   const Entrance::Time now{seconds(1000)};
   const auto announced = [&](std::uint8_t number, std::chrono::seconds age) {
-    return entrance.announced({number}, "", now, age);
+    return entrance.announced({number}, "", now, Entrance::Sealed{seconds(0), age});
   };
   for (std::uint8_t i = 0; i < Entrance::kRepeated; ++i)
     EXPECT_EQ(announced(i, seconds(100000)), Fate::waits) << "clocks may be wrong";
@@ -197,7 +197,7 @@ TEST(Entrance, WhereTheSealIsRequiredNothingElsePasses) {
   const Entrance::Time now{seconds(1000)};
   EXPECT_EQ(entrance.announced({1}, "", now), Fate::drops);
   EXPECT_EQ(entrance.sends({1}, now), Fate::drops);
-  EXPECT_EQ(entrance.announced({1}, "", now, seconds(0)), Fate::waits);
+  EXPECT_EQ(entrance.announced({1}, "", now, Entrance::Sealed{}), Fate::waits);
   EXPECT_EQ(entrance.sends({1}, now), Fate::waits);
 }
 
@@ -212,7 +212,7 @@ TEST_F(EntranceTest, StrangersAreCountedAndNamed) {
   now_ += seconds(2);
   EXPECT_EQ(entrance_.strangers(now_),
             "strangers are kept out: 10.0.0.7 (100 packets in 5 s, the last 2 s ago)");
-  EXPECT_EQ(entrance_.take_new_strangers(), std::vector<std::string>{"10.0.0.7"});
+  EXPECT_EQ(entrance_.take_new_strangers().size(), 1U);
   EXPECT_TRUE(entrance_.take_new_strangers().empty());
   now_ += Entrance::kSilence;
   EXPECT_EQ(entrance_.strangers(now_), "");
@@ -221,8 +221,39 @@ TEST_F(EntranceTest, StrangersAreCountedAndNamed) {
 TEST_F(EntranceTest, OnlySomeAddressesAreNamed) {
   for (std::uint32_t address = 0; address < 1000; ++address)
     for (std::uint64_t i = 0; i < Entrance::kStranger; ++i)
-      entrance_.forged(std::to_string(address), now_);
+      entrance_.drop(std::to_string(address), now_);
   EXPECT_EQ(entrance_.take_new_strangers().size(), Entrance::kMostAddresses + 1);
+}
+
+// Of one packet, since no member sends it.
+TEST_F(EntranceTest, WhoIsProvedAStrangerIsNamedForEachProofOnce) {
+  for (const char* const proof : {"they do this", "they do that", "they do this"})
+    EXPECT_EQ(entrance_.drop("10.0.0.7", now_, proof), Fate::drops);
+  const std::vector<std::string> named = entrance_.take_new_strangers();
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_NE(named[0].find("10.0.0.7"), std::string::npos);
+  EXPECT_NE(named[0].find("they do that"), std::string::npos);
+  EXPECT_NE(named[1].find("they do this"), std::string::npos);
+  EXPECT_EQ(entrance_.strangers(now_),
+            "strangers are kept out: 10.0.0.7 (3 packets in 0 s, the last 0 s ago)");
+  for (std::uint64_t i = 0; i < 1000; ++i)
+    entrance_.drop("10.0.0.7", now_, std::to_string(i));
+  EXPECT_EQ(entrance_.take_new_strangers().size(), Entrance::kMostProofs - 2);
+}
+
+TEST_F(EntranceTest, WhoRepeatsAnEarlierAnnouncementIsAStranger) {
+  const auto announced = [&](int time) {
+    return entrance_.announced(program(1), "10.0.0.7", now_,
+                               Entrance::Sealed{seconds(time), seconds(0)});
+  };
+  EXPECT_EQ(announced(1000), Fate::waits);
+  entrance_.let_in(program(1));
+  EXPECT_EQ(announced(1010), Fate::passes);
+  EXPECT_EQ(announced(1008), Fate::passes) << "swapped in the network";
+  EXPECT_TRUE(entrance_.take_new_strangers().empty());
+  EXPECT_EQ(announced(1007), Fate::drops);
+  EXPECT_EQ(announced(1011), Fate::passes);
+  EXPECT_EQ(entrance_.take_new_strangers().size(), 1U);
 }
 
 TEST_F(EntranceTest, WhereOneComesFromIsKnown) {

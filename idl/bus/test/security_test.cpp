@@ -235,7 +235,7 @@ TEST_F(EveryLine, IsKeptByTheOthers) {
                            [&] {
                              for (const security::Role& other : roles.roles)
                                for (const std::string& trouble :
-                                    internal::transport_of(node(other.name)).take_troubles())
+                                    internal::transport_of(node(other.name)).take_refusals().texts)
                                  std::erase_if(untold, [&](const std::string& part) {
                                    return trouble.find(part) != std::string::npos;
                                  });
@@ -339,6 +339,21 @@ TEST_F(Forger, IsHeldToItsGenuinePermissions) {
   for (const std::string& topic : bridge_.heard("john"))
     EXPECT_TRUE(roles.may_write("observer", topic)) << topic;
   EXPECT_FALSE(saphira::test::has(genuine.output(), "hears drive/behaviors"));
+  EXPECT_TRUE(saphira::test::has(bridge_.refusals(),
+                                 "john (observer) may not write the topic drive/teleop"))
+      << bridge_.refusals();
+}
+
+// Its permissions are genuine, and for another robot.
+TEST_F(Forger, IsNamedWhereItWantsAnotherRobot) {
+  auto genuine = altered("genuine", site_.copy_of("karen"));
+  const std::string told = "karen (operator) may not have it of " + robot("s") +
+                           ": its permissions are for the robot " + robot("other");
+  EXPECT_TRUE(turn_until([&] { return saphira::test::has(bridge_.refusals(), told); }))
+      << bridge_.refusals();
+  for (Honest* const honest : {&bridge_, &services_})
+    EXPECT_EQ(honest->heard("karen"), std::set<std::string>());
+  EXPECT_FALSE(saphira::test::has(genuine.output(), "hears ")) << genuine.output();
 }
 
 TEST_F(Forger, IsNotLetIn) {

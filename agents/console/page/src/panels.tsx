@@ -227,10 +227,11 @@ function Because({cause, depth}: {cause: Cause; depth: number}) {
     <ul>{cause.because.map((c, i) => <Because key={c.kind + i} cause={c} depth={depth + 1} />)}</ul></details></li>;
 }
 
-// The strangers that are kept out: their addresses, and from the log the names that they gave.
+// The strangers that are kept out: their addresses, and from the log the names that they gave; and members who
+// try what they may not.
 function KeptOut({link}: {link: Link}) {
   const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
-  const refused = link.all<LogRecord>('system/log').filter(([, {data}]) => / is not let in /.test(data.text));
+  const refused = link.all<LogRecord>('system/log').filter(([, {data}]) => / is not let in | are kept out: | is refused: .* may not /.test(data.text));
   if (strangers.length + refused.length === 0) return null;
   return <div class="told bad" role="alert"><strong>Kept out of the bus</strong>
     <ul class="lines">{strangers.map(s => <li key={s.address}>{s.address}: {s.packets} packets in {s.during} s, the last {s.ago} s ago; heard by {s.by.join(', ')}</li>)}
