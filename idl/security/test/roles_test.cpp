@@ -113,6 +113,25 @@ TEST(Roles, TheShippedFileCoversTheContract) {
   EXPECT_EQ(roles.those_that_write("drive/teleop"), "operator");
 }
 
+// As docs/security.md has it, with operator for the page.
+TEST(Roles, ARobotsProgramsNeedTheRolesBridgeAndServicesAlone) {
+  const std::string file = config_folder() + "/security/roles.yaml";
+  const Roles roles = parse_roles(read_file(file), file, topics_of_contract());
+  const std::string folder = config_folder() + "/deployments";
+  int found = 0;
+  for (const std::string& name : names_in(folder, ".yaml")) {
+    const std::string deployment = read_file(folder + "/" + name + ".yaml");
+    for (const Role& role : roles.roles)
+      for (const std::string& program : role.programs)
+        if (deployment.find("saphira-" + program + "\n") != std::string::npos ||
+            deployment.find("saphira-" + program + " ") != std::string::npos) {
+          ++found;
+          EXPECT_TRUE(role.name == "bridge" || role.name == "services") << name << ": " << program;
+        }
+  }
+  EXPECT_GT(found, 40);
+}
+
 // A damaged file is taken, or refused with line and column.
 TEST(Roles, DamagedFilesAreToldNotTaken) {
   const std::string file = config_folder() + "/security/roles.yaml";
