@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 
@@ -18,7 +19,7 @@ namespace saphira::bridge {
 namespace {
 
 constexpr const char* kRoomFile = ".room";
-constexpr std::size_t kRoom = 1024;  // [bytes] more than any latches
+constexpr std::size_t kRoom = 4096;  // [bytes] more than any latches
 
 }  // namespace
 
@@ -27,10 +28,9 @@ authority::Latches LatchFile::read() const {
   if (path_.empty() || (!std::filesystem::exists(path_, error) && !error))
     return {};
   // The file exists because of a latch: an empty one is as bad as a damaged one.
-  std::ifstream file(path_);
-  std::string line;
-  const bool whole = std::getline(file, line) && !file.eof();
-  return authority::latches_from_text(whole ? line + "\n" : "?");
+  std::ostringstream content;
+  content << std::ifstream(path_).rdbuf();
+  return authority::latches_from_text(content.str().empty() ? "?" : content.str());
 }
 
 std::string LatchFile::write(const authority::Latches& latches) {

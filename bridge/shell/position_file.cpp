@@ -6,15 +6,15 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/full_disk.hpp"
 
 namespace saphira::bridge {
 namespace {
 
-constexpr std::size_t kSize = 256;
+constexpr std::size_t kSize = 500;  // without its sum
 
 }  // namespace
 
@@ -25,12 +25,7 @@ PositionFile::PositionFile(std::string path, Files files)
   trouble_ = read_or_set_aside(
       path_,
       [this](const std::string& content) {
-        const std::string_view padded = std::string_view(content).substr(0, content.find('\n'));
-        const auto line = unsealed_line(padded.substr(0, padded.find_last_not_of(' ') + 1));
-        if (line)
-          found_ = reflector::from_text(std::string(*line) + "\n");
-        if (!found_)
-          throw std::runtime_error("it holds no position of the robot");
+        found_ = restored<reflector::OdometryMemory>(unsealed(content, path_));
       },
       files);
   if (changes_ && !open() && !is_full(errno))
@@ -52,11 +47,9 @@ std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   if (!changes_)
     return {};
   // One write of one size: a kill leaves the old line or the new one.
-  std::string text = reflector::to_text(memory);
-  text.pop_back();  // its line break
-  text = sealed_line(text);
+  std::string text = saved(memory);
   text.resize(kSize, ' ');
-  text.back() = '\n';
+  text = sealed(text);
   const ssize_t written = open() ? ::pwrite(fd_, text.data(), text.size(), 0) : -1;
   const std::string why =
       written == static_cast<ssize_t>(text.size())

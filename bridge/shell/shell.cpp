@@ -398,14 +398,14 @@ void Shell::take_audit(double now) {
   // The bus repeats older entries to a new reader: they were taken before a restart.
   for (const auto& sample : audit_reader_.take())
     if (!sample.info.disposed && sample.info.age <= now - begun_)
-      if (const auto entry =
-              reports_.take(bus::from_bus(sample.data), bus::asker_of(sample.info), now))
+      if (const auto entry = reports_.take(sample.data, bus::asker_of(sample.info), now))
         perform(*entry, now);
   for (const std::string& text : node_.take_refused())
-    perform(AuditEntry{AuditEntry::Act::refused, "somebody on the bus", text}, now);
+    perform(v1::AuditEntry{.act = v1::AUDIT_REFUSED, .who = "somebody on the bus", .text = text},
+            now);
 }
 
-void Shell::perform(const AuditEntry& entry, double) {
+void Shell::perform(const v1::AuditEntry& entry, double) {
   if (audit_file_)
     tell_audit(audit_file_->write(entry, unix_time()));
 }

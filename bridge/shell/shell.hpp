@@ -101,7 +101,7 @@ class Shell {
   void perform(const KeepOdometry& keep, double now);
   void perform(const StatusReport& report, double now);
   void perform(const Note& note, double now);
-  void perform(const AuditEntry& entry, double now);
+  void perform(const v1::AuditEntry& entry, double now);
   void take_audit(double now);
   void tell_audit(const std::string& trouble);
   void tend_files(double now);

@@ -29,7 +29,7 @@ TEST(PositionFile, IsReadByTheNextOne) {
     memory.odom = 7;
     EXPECT_EQ(file.write(memory), "");
   }
-  EXPECT_EQ(read_file(folder.path("state")).size(), 256U) << "one line of one size";
+  EXPECT_EQ(read_file(folder.path("state")).size(), 510U) << "one line of one size";
   const auto back = PositionFile(folder.path("state")).found();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->odom, 7U);

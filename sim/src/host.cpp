@@ -774,8 +774,8 @@ void Host::take_state() {
   if (file.empty())
     return;
   const std::string damaged = read_or_set_aside(file, [&](const std::string& content) {
-    const std::string without_place = resume(
-        parts_->simulation.scene(), std::string(unsealed(content, file)), file, world_of(options_));
+    const std::string without_place =
+        resume(parts_->simulation.scene(), unsealed(content, file), world_of(options_));
     if (!without_place.empty() && options_.log)
       options_.log("warning", file + ": these begin at their start: " + without_place);
   });

@@ -165,7 +165,7 @@ class Watched {
   test::Process process_;
 };
 
-/// A drive of an operator, with what is heard of it on the wire meanwhile.
+/// A drive of an operator; returns the packets on the wire meanwhile.
 std::vector<Wire::Packet> drive(const Wire& wire, const std::string& credentials,
                                 std::uint32_t domain) {
   std::vector<Wire::Packet> packets;

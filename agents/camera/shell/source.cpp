@@ -47,7 +47,7 @@ class SocketSource final : public Source {
   PpmStream stream_;
 };
 
-/// By libv4l2, which converts what the camera has.
+/// A camera of V4L2. libv4l2 converts the camera's own format.
 class DeviceSource final : public Source {
  public:
   DeviceSource(const std::string& path, int columns, int rows)

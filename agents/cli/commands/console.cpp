@@ -1,7 +1,9 @@
 #include <cstdlib>
+#include <iostream>
 
 #include "commands.hpp"
 #include "environment.hpp"
+#include "run_folder.hpp"
 #include "saphira/base/places.hpp"
 
 namespace saphira::cli {
@@ -33,6 +35,19 @@ void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* su
   });
 }
 
+/// A file's name is its time and the event: 2026-05-04-101530-goal-failed.mcap.
+int box() {
+  const std::vector<std::string> files = box_files();
+  if (files.empty()) {
+    std::cerr << "saphira: nothing is kept yet: saphira up keeps the last minute after a stop, a "
+                 "failed goal, or the loss of a program, the robot or its place\n";
+    return bus::kExitFailed;
+  }
+  for (const std::string& file : files)
+    std::cout << file << '\n';
+  return bus::kExitOk;
+}
+
 }  // namespace
 
 void add_console(CLI::App& app, Chosen& chosen) {
@@ -50,6 +65,12 @@ void add_record(CLI::App& app, Chosen& chosen) {
 
 void add_replay(CLI::App& app, Chosen& chosen) {
   add_program(app, chosen, "replay", "Play a recording on the bus, as another robot");
+}
+
+void add_box(CLI::App& app, Chosen& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "box", "The recordings of the last minute after an event, the newest first");
+  chosen.when(command, [](const bus::NodeOptions&, const bus::Stop&) { return box(); });
 }
 
 void add_foxglove(CLI::App& app, Chosen& chosen) {

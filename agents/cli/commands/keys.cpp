@@ -121,19 +121,6 @@ int audit(const AuditWords& words) {
   return bus::kExitOk;
 }
 
-/// A file's name is its time and the event: 2026-05-04-101530-goal-failed.mcap.
-int box() {
-  const std::vector<std::string> files = box_files();
-  if (files.empty()) {
-    std::cerr << "saphira: nothing is kept yet: saphira up keeps the last minute after a stop, a "
-                 "failed goal, or the loss of a program, the robot or its place\n";
-    return bus::kExitFailed;
-  }
-  for (const std::string& file : files)
-    std::cout << file << '\n';
-  return bus::kExitOk;
-}
-
 }  // namespace
 
 void add_keys(CLI::App& app, Chosen& chosen) {
@@ -172,12 +159,6 @@ void add_audit(CLI::App& app, Chosen& chosen) {
   command->add_option("--known", words->known, "a hash noted earlier, which has to be there");
   chosen.when(command,
               [words](const bus::NodeOptions&, const bus::Stop&) { return audit(*words); });
-}
-
-void add_box(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "box", "The recordings of the last minute after an event, the newest first");
-  chosen.when(command, [](const bus::NodeOptions&, const bus::Stop&) { return box(); });
 }
 
 }  // namespace saphira::cli

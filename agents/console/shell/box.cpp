@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDelay = 5.0;  // [s]
+constexpr double kDelay = 5.0;              // [s]
+constexpr double kDelayWhileDriven = 30.0;  // [s] of the minute that the others keep
 constexpr std::size_t kMostFiles = 20;
 constexpr std::uintmax_t kMostBytes = 200'000'000;
 
@@ -53,9 +54,9 @@ Box::~Box() {
 }
 
 void Box::keep(const situation::Occasion& occasion, double now) {
-  if (folder_.empty() || recorder_ > 0 || due_)
+  if (recorder_ > 0 || occasion_)
     return;
-  due_ = now + kDelay;
+  occasion_ = now;
   file_ =
       folder_ + "/" + local_text(std::time(nullptr), "%Y-%m-%d-%H%M%S-") + occasion.kind + ".mcap";
   text_ = occasion.text;
@@ -67,7 +68,8 @@ void Box::start() {
   std::vector<std::string> words{program_folder() + "/saphira-record", "--last-minute", file_};
   std::vector<std::string> variables;
   for (const auto& [name, value] : cli::as_environment(options_))
-    variables.push_back(name + "=" + value);
+    if (!value.empty())
+      variables.push_back(name + "=" + value);
   for (char** variable = environ; *variable != nullptr; ++variable)
     variables.emplace_back(*variable);
   const auto pointers = [](std::vector<std::string>& texts) {
@@ -82,9 +84,9 @@ void Box::start() {
     recorder_ = -1;
 }
 
-std::optional<std::string> Box::poll(double now) {
-  if (due_ && now >= *due_) {
-    due_.reset();
+std::optional<std::string> Box::poll(bool is_driven, double now) {
+  if (occasion_ && now >= *occasion_ + (is_driven ? kDelayWhileDriven : kDelay)) {
+    occasion_.reset();
     start();
   }
   int status = 0;

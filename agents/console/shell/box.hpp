@@ -14,24 +14,25 @@ namespace saphira::console {
 /// program waits for nothing. The newest 20 files stay, of 200 MB at most.
 class Box {
  public:
-  /// An empty folder: nothing is kept. One that is missing is made.
+  /// A folder that is missing is made.
   Box(std::string folder, bus::NodeOptions options);
   ~Box();
   Box(const Box&) = delete;
   Box& operator=(const Box&) = delete;
 
-  /// Begins some seconds later, so that the recording has what follows, and nobody is disturbed
-  /// amid it. An occasion that comes until its end is in the same recording. now: [s].
+  /// An occasion that comes before the recording ends is in the same recording. now: [s].
   void keep(const situation::Occasion& occasion, double now);
-  /// The outcome in words, once.
-  std::optional<std::string> poll(double now);
+  /// Begins the recording 5 s after the occasion, so that it has what follows; while a person
+  /// drives, whom a further program on the bus may disturb, 30 s after it. Returns the outcome in
+  /// words, once.
+  std::optional<std::string> poll(bool is_driven, double now);
 
  private:
   void start();
 
   std::string folder_;
   bus::NodeOptions options_;
-  std::optional<double> due_;  ///< [s]
+  std::optional<double> occasion_;  ///< [s] time of one that is not recorded yet
   pid_t recorder_ = -1;
   std::string file_;
   std::string text_;

@@ -63,7 +63,6 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
       origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
               web::name_of(options.server.place)),
       node_(node),
-      box_(options.box, node),
       server_(server_of(options, kept), access_, page_files(), events()) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);
@@ -75,6 +74,8 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
              now());
   if (!options.simulator.empty())
     simulator_.emplace(options.simulator);
+  if (!options.box.empty())
+    box_.emplace(options.box, node);
   show_control();
   server_.watch(node_.wake_fd());
   if (options.dial)
@@ -261,13 +262,15 @@ void Gateway::explain() {
 
 /// The last minute after an event goes into the box.
 void Gateway::keep_what_happened() {
-  if (const auto text = box_.poll(now()))
+  if (!box_)
+    return;
+  if (const auto text = box_->poll(control_.holder() != 0, now()))
     messages_.write({.stamp = stamp_, .source = "console", .text = *text});
   if (now() - looked_ < kExplain || !mind_.heard())
     return;
   looked_ = now();
   if (const auto occasion = occasions_.look(mind_.situation(mind_.newest_cycle(), false), looked_))
-    box_.keep(*occasion, looked_);
+    box_->keep(*occasion, looked_);
 }
 
 void Gateway::show_control() {

@@ -160,7 +160,7 @@ class Gateway {
   situation::Occasions occasions_;
   double looked_ = -1e9;  ///< [s] for occasions
   bus::Writer<v1::Message> messages_ = node_.writer(bus::topics::kMessages);
-  Box box_;
+  std::optional<Box> box_;
   std::string shown_control_;
   Cameras cameras_{node_};
   std::optional<SimulatorLink> simulator_;

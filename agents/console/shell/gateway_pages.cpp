@@ -180,8 +180,9 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
     page.operator_id = connection;
     name(connection, page, page.name);
     if (page.visitor.person)
-      audit_.write({AuditEntry::Act::let_in, page.name + " at the console",
-                    std::string("to ") + security::name_of(page.visitor.right)});
+      audit_.write({.act = v1::AUDIT_LET_IN,
+                    .who = page.name + " at the console",
+                    .text = std::string("to ") + security::name_of(page.visitor.right)});
     return;
   }
   for (const auto& [other, known] : pages_)
@@ -313,7 +314,7 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
 }
 
 /// Answers each page that asked to cancel a goal: it has ended, or it has not within the time.
-/// Intentions decide who may cancel.
+/// The intentions service decides about the right to cancel.
 void Gateway::tell_cancels() {
   std::erase_if(canceling_, [this](const Canceling& one) {
     const auto status = goals_.status(one.goal);

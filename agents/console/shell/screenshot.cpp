@@ -31,8 +31,11 @@ void make_screenshot(const std::string& address, const ScreenshotOptions& option
   browser.value("document.getElementById('tab-" + options.tab + "').click()");
   std::this_thread::sleep_for(kSettle);
   const nlohmann::json picture = browser.call("Page.captureScreenshot", {{"format", "png"}});
+  const auto bytes = from_base64(picture.at("data").get<std::string>());
+  if (!bytes)
+    throw std::runtime_error("the browser's picture cannot be read");
   std::ofstream out(options.file, std::ios::binary);
-  out << from_base64(picture.at("data").get<std::string>()).value_or("");
+  out << *bytes;
   if (!out.flush())
     throw UnusableFile(cannot_be(options.file, "written"));
 }

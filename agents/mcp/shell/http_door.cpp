@@ -106,8 +106,9 @@ HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& requ
       std::make_unique<Client>(node_, robot_, options_, presence_.begin(id, sender.name, now()),
                                id == Clients::kNobody ? console::Visitor{} : visitor);
   if (visitor.person)
-    audit_.write({AuditEntry::Act::let_in, visitor.person->name + " by " + client->door.who(),
-                  std::string("to ") + security::name_of(visitor.right)});
+    audit_.write({.act = v1::AUDIT_LET_IN,
+                  .who = visitor.person->name + " by " + client->door.who(),
+                  .text = std::string("to ") + security::name_of(visitor.right)});
   client->is_new = begins;
   return client.get();
 }

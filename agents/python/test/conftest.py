@@ -48,7 +48,8 @@ def programs(bus: Path) -> Iterator[None]:
     """The robot in the small office, and the facilitator."""
     commands: list[list[Any]] = [
         [PROGRAMS / "saphira-all", "--world", "small-office", "--map", "small-office",
-         "--socket", bus / "robot"],
+         "--socket", bus / "robot", "--camera-socket", bus / "camera"],
+        [PROGRAMS / "saphira-camera", "--socket", bus / "camera"],
         [PROGRAMS / "saphira-facilitator"],
     ]  # fmt: skip
     log = open(bus / "log", "w")

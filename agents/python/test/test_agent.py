@@ -131,3 +131,12 @@ def test_the_map_and_the_senses_are_arrays(robot: saphira.Robot) -> None:
     grid = robot.grid.wait()
     assert np.nanmax(grid.occupied) <= 1.0 and np.isnan(grid.occupied).any()
     assert grid.extent[0] < grid.extent[1]
+
+
+def test_the_camera_gives_pictures(robot: saphira.Robot) -> None:
+    picture = robot.picture.wait()
+    assert (picture.columns, picture.rows) == (320, 240)
+    assert picture.jpeg.startswith(b"\xff\xd8")
+    stream = robot.pictures()
+    first, second = next(stream), next(stream)
+    assert first.number < second.number

@@ -13,16 +13,16 @@
 
 namespace saphira::recorder {
 
-/// A recording of the last minute: of what its writers keep of it (recall/...), of all that is
-/// latched, and of what is said while it listens. It can begin after the event that it is about.
+/// Records the last minute: the samples that its writers keep (recall/...), all latched samples,
+/// and those that come while it listens. It may begin after the event.
 class LastMinute {
  public:
   explicit LastMinute(bus::Node& node);
 
   /// Takes the new samples; call for two seconds. `now_ns`: since 1970.
   void poll(std::int64_t now_ns);
-  /// Writes what has come, at the times of its cycles, the samples of recall/... under the topics
-  /// that they repeat. False: nothing of the robot was there.
+  /// Writes the samples at the times of their cycles; those of recall/... have the topics that they
+  /// repeat. False: nothing of the robot was there.
   bool write(bus::Node& node, Writer& writer);
 
  private:

@@ -250,7 +250,7 @@ class DirectRobot final : public ServedRobot {
   void perform(const bridge::StopEnded&) {}
   void perform(const bridge::KeepLatches&) {}
   void perform(const bridge::KeepOdometry&) {}
-  void perform(const AuditEntry&) {}  // nobody else is there
+  void perform(const v1::AuditEntry&) {}  // nobody else is there
   void perform(const bridge::StatusReport& report) {
     const std::lock_guard lock(mutex_);
     trouble_ = report.condition.reason;

@@ -1,5 +1,7 @@
 #include "saphira/situation/occasions.hpp"
 
+#include <utility>
+
 namespace saphira::situation {
 
 namespace {
@@ -23,51 +25,53 @@ std::optional<Occasion> Occasions::look(const Situation& situation, double now) 
 }
 
 std::optional<Occasion> Occasions::find(const Situation& situation, double now) {
-  // Each kind is looked at in each call, so that none is found late.
   std::optional<Occasion> found;
-  const auto note = [&](const char* kind, const std::string& text) {
-    if (!found && before_)
+  const auto note = [&](bool is_new, const char* kind, const std::string& text) {
+    if (is_new && !found)
       found = {kind, text};
   };
-  Before present = before_.value_or(Before());
+  const bool begins = !before_;
+  const Seen before = before_.value_or(Seen());
+  Seen seen = before;
+  seen.failed.clear();
+  seen.programs.clear();
   if (const auto& grant = situation.grant) {
-    present.estopped = grant->estopped;
-    present.stop = {grant->stop.asker, grant->stop.number};
-    if (present.estopped && !(before_ && before_->estopped))
-      note("estop", "emergency stop by " + grant->estop_source);
-    if (before_ && present.stop != before_->stop && grant->stop.number != 0)
-      note("stopped", "stopped by " + grant->stop_source);
+    seen.estopped = grant->estopped;
+    seen.stop = Key{grant->stop.asker, grant->stop.number};
+    note(before.stop && seen.estopped && !before.estopped, "estop",
+         "emergency stop by " + grant->estop_source);
+    note(before.stop && seen.stop != before.stop, "stopped", "stopped by " + grant->stop_source);
     const bool holds = grant->guard == v1::GUARD_STOP;
-    if (holds && held_ >= 0.0 && now - held_ >= kHeld) {
-      note("guard", "the guard holds the robot: " + grant->guard_reason);
-      held_ = now + 1e9;  // once, until it lets go
+    const bool is_long = holds && held_ >= 0.0 && now - held_ >= kHeld;
+    note(is_long, "guard", "the guard holds the robot: " + grant->guard_reason);
+    // Once, until it lets go.
+    held_ = !holds ? -1.0 : is_long ? now + 1e9 : held_ < 0.0 ? now : held_;
+  }
+  seen.knows_goals = situation.statuses_known;
+  for (const v1::GoalStatus& status : situation.statuses)
+    if (status.state == v1::GOAL_FAILED) {
+      const Key id{status.id.writer, status.id.number};
+      seen.failed.insert(id);
+      note(before.knows_goals && !before.failed.contains(id), "goal-failed",
+           status.functor + " has failed: " + status.reason);
     }
-    held_ = !holds ? -1.0 : held_ < 0.0 ? now : held_;
-  }
-  for (const v1::GoalStatus& status : situation.statuses) {
-    const auto [known, first] =
-        goals_.try_emplace({status.id.writer, status.id.number}, status.state);
-    if (status.state == v1::GOAL_FAILED && (first || known->second != v1::GOAL_FAILED))
-      note("goal-failed", status.functor + " has failed: " + status.reason);
-    known->second = status.state;
-  }
   for (const Program& program : situation.programs) {
     const std::pair key{program.status.name, program.status.instance};
     if (program.age < kNotHeard)
-      programs_.insert(key);
-    else if (programs_.erase(key) > 0)
-      note("program-lost", program.status.name + " is not heard any more");
+      seen.programs.insert(key);
+    else
+      note(before.programs.contains(key), "program-lost",
+           program.status.name + " is not heard any more");
   }
-  present.silent = situation.robot && situation.silence >= kNoState;
-  if (present.silent && !(before_ && before_->silent))
-    note("silent", "the robot's state does not come any more");
+  seen.silent = situation.robot && situation.silence >= kNoState;
+  note(seen.silent && !before.silent, "silent", "the robot's state does not come any more");
   if (const auto& registration = situation.registration) {
-    present.lost = registration->state == v1::REGISTRATION_LOST;
-    if (present.lost && !(before_ && before_->lost))
-      note("robot-lost", "the robot does not know where it is: " + registration->reason);
+    seen.lost = registration->state == v1::REGISTRATION_LOST;
+    note(before.lost && !*before.lost && *seen.lost, "robot-lost",
+         "the robot does not know where it is: " + registration->reason);
   }
-  before_ = present;
-  return found;
+  before_ = std::move(seen);
+  return begins ? std::nullopt : found;
 }
 
 }  // namespace saphira::situation

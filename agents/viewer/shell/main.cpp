@@ -35,7 +35,9 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
   };
   options.came = [&](const std::string& key) {
     if (const auto person = visitor_of(key).person)
-      audit.write({AuditEntry::Act::let_in, person->name + " at the Foxglove door", "to watch"});
+      audit.write({.act = v1::AUDIT_LET_IN,
+                   .who = person->name + " at the Foxglove door",
+                   .text = "to watch"});
   };
   viewer::Live live(node);
   std::optional<viewer::Server> server;

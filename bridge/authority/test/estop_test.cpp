@@ -202,12 +202,10 @@ TEST(Latches, AreTheSameAfterTheirText) {
   EXPECT_EQ(to_text({}), "");
   EXPECT_EQ(latches_from_text(""), Latches{});
   for (const Wait wait : {Wait::none, Wait::driven, Wait::reset}) {
-    for (const Latches& latches : {Latches{true, "a button\tof the lab", wait},
+    for (const Latches& latches : {Latches{true, "a button\tof\nthe lab", wait},
                                    Latches{true, "", wait}, Latches{false, "", wait}})
       EXPECT_EQ(latches_from_text(to_text(latches)), latches);
   }
-  const Latches two_lines{true, "a\nb", Wait::none};
-  EXPECT_EQ(latches_from_text(to_text(two_lines)).estop_source, "a b");
 }
 
 TEST(Latches, WhatCannotBeReadIsAnEmergencyStop) {

@@ -93,18 +93,20 @@ void Core::writer_lost(Role role, const authority::WriterId& writer, double now)
   arbiter_.lost(role, writer, time(now));
 }
 
-std::optional<AuditEntry> Reports::take(AuditEntry entry, const Checked& writer, double now) {
+std::optional<v1::AuditEntry> Reports::take(v1::AuditEntry entry, const Checked& writer,
+                                            double now) {
   if (!writer || writer->role == "services" || writer->role == "robot")
     return entry;
-  if (entry.act != AuditEntry::Act::let_in && entry.act != AuditEntry::Act::refused)
+  if (entry.act != v1::AUDIT_LET_IN && entry.act != v1::AUDIT_REFUSED)
     return std::nullopt;
   std::erase_if(minutes_, [&](const auto& one) { return now - one.second.began >= kMinute; });
   const auto [minute, is_first] = minutes_.try_emplace(writer->text(), Minute{now, 0});
   if (minute->second.entries > kMost)
     return std::nullopt;
   if (++minute->second.entries > kMost)
-    return AuditEntry{AuditEntry::Act::refused, writer->text(),
-                      "more than " + std::to_string(kMost) + " reports a minute"};
+    return v1::AuditEntry{.act = v1::AUDIT_REFUSED,
+                          .who = writer->text(),
+                          .text = "more than " + std::to_string(kMost) + " reports a minute"};
   entry.who = named(entry.who, writer);
   return entry;
 }
@@ -119,7 +121,7 @@ Answer Core::stop(const Request& request, double now) {
     stopped += (stopped.empty() ? "" : ", ") + driver;
   stopped = stopped.empty() ? "nobody drove" : "stopped: " + stopped;
   info("stop by " + source + ": " + stopped);
-  put(AuditEntry{AuditEntry::Act::stopped, source, stopped});
+  put(v1::AuditEntry{.act = v1::AUDIT_STOPPED, .who = source, .text = stopped});
   grant_changed_ = true;
   if (!in_session()) {
     grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
@@ -163,8 +165,10 @@ Answer Core::reset_estop(const std::string& source, double now) {
   info(why.empty() ? "emergency stop reset by " + source
                    : "emergency stop not reset by " + source + ": " + why);
   put(why.empty()
-          ? AuditEntry{AuditEntry::Act::reset, source, "the emergency stop"}
-          : AuditEntry{AuditEntry::Act::refused, source, "to reset the emergency stop: " + why});
+          ? v1::AuditEntry{.act = v1::AUDIT_RESET, .who = source, .text = "the emergency stop"}
+          : v1::AuditEntry{.act = v1::AUDIT_REFUSED,
+                           .who = source,
+                           .text = "to reset the emergency stop: " + why});
   return why.empty() ? Answer{} : Answer{AnswerCode::refused, why};
 }
 
@@ -186,7 +190,8 @@ void Core::keep_latches(double now) {
   if (latches == kept_)
     return;
   if (latches.estopped && !kept_.estopped) {
-    put(AuditEntry{AuditEntry::Act::stopped, latches.estop_source, "the emergency stop"});
+    put(v1::AuditEntry{
+        .act = v1::AUDIT_STOPPED, .who = latches.estop_source, .text = "the emergency stop"});
     warn("emergency stop, pressed by " + latches.estop_source +
          ": the robot stands until saphira estop reset" +
          (settings_.keeps_latches ? "" : " (without --state a restart forgets it)"));
@@ -229,7 +234,8 @@ void Core::decide(double now) {
                     ? "nobody drives: " + grant_.reason
                     : grant_.source + " drives (" + authority::name(grant_.role) + ")");
     if (drives(grant_.role))
-      words_.audit({AuditEntry::Act::drove, grant_.source, authority::name(grant_.role)});
+      audit_.push_back(
+          {.act = v1::AUDIT_DROVE, .who = grant_.source, .text = authority::name(grant_.role)});
     refused_drivers_.clear();
   }
   grant_changed_ = grant_changed_ || changed;
@@ -287,8 +293,8 @@ void Core::flush(double now) {
   const Notes words = std::exchange(words_, {});
   for (const Note& line : words.lines())
     put(line);
-  for (const AuditEntry& entry : words.audit())
-    put(entry);
+  for (v1::AuditEntry& entry : std::exchange(audit_, {}))
+    put(std::move(entry));
   if (grant_changed_ && !settings_.lockstep)
     publish_grant();
 }
@@ -323,14 +329,15 @@ void Core::step(double now) {
 void Core::publish_grant() {
   grant_changed_ = false;
   std::vector<authority::Refusal> refused = arbiter_.take_refused();
-  std::vector<AuditEntry> entries;
+  std::vector<v1::AuditEntry> entries;
   for (const authority::Refusal& one : refused)
     if (const std::string what = std::string("to drive (") + authority::name(one.role) + ")";
         refused_drivers_.size() < kMostRefusedDrivers &&
         refused_drivers_.insert(one.source + what).second)
-      entries.push_back({AuditEntry::Act::refused, one.source, what + ": " + one.reason});
+      entries.push_back(
+          {.act = v1::AUDIT_REFUSED, .who = one.source, .text = what + ": " + one.reason});
   put(GrantDecided{grant_, told_, guarded_, std::move(refused), session_.stamp});
-  for (AuditEntry& entry : entries)
+  for (v1::AuditEntry& entry : entries)
     put(std::move(entry));
 }
 

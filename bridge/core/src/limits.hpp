@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace saphira::bridge {
 
 inline constexpr double kCycle = 0.1;  // [s] manual 2.1.1

@@ -129,13 +129,13 @@ struct Audited : StopScene {
   /// Without the drivers that a stronger one keeps from driving.
   std::vector<std::string> acts() {
     std::vector<std::string> found;
-    for (const AuditEntry& entry : all<AuditEntry>())
+    for (const v1::AuditEntry& entry : all<v1::AuditEntry>())
       if (!entry.text.starts_with("to drive"))
         found.push_back(std::to_string(static_cast<int>(entry.act)) + " " + entry.who);
     forget();
     return found;
   }
-  static std::string act(AuditEntry::Act act, const std::string& who) {
+  static std::string act(v1::AuditAct act, const std::string& who) {
     return std::to_string(static_cast<int>(act)) + " " + who;
   }
 };
@@ -146,9 +146,9 @@ TEST(Audit, NamesEachDriverOnceAndWhoStops) {
   EXPECT_EQ(scene.acts(), std::vector<std::string>{}) << "it drove before";
   scene.drive(Role::teleop, 0.1);
   scene.cycles(3, Role::teleop, 0.1);
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::drove, "teleop")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_DROVE, "teleop")});
   scene.stop();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::stopped, "a person")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_STOPPED, "a person")});
 }
 
 TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
@@ -158,10 +158,10 @@ TEST(Audit, NamesWhoIsRefusedOnceUnderADriver) {
     scene.tell(scene.wish(Role::direct, 0.1));
     scene.cycles(1, Role::teleop, 0.1);
   }
-  const std::vector<AuditEntry> entries = scene.all<AuditEntry>();
+  const std::vector<v1::AuditEntry> entries = scene.all<v1::AuditEntry>();
   EXPECT_EQ(std::count_if(entries.begin(), entries.end(),
-                          [](const AuditEntry& entry) {
-                            return entry.act == AuditEntry::Act::refused && entry.who == "direct";
+                          [](const v1::AuditEntry& entry) {
+                            return entry.act == v1::AUDIT_REFUSED && entry.who == "direct";
                           }),
             1);
 }
@@ -170,20 +170,20 @@ TEST(Audit, NamesWhoPressesAndResetsTheEmergencyStop) {
   Audited scene;
   scene.estop(true);
   EXPECT_EQ(scene.acts(),
-            std::vector{Audited::act(AuditEntry::Act::stopped, scene.core.latches().estop_source)});
+            std::vector{Audited::act(v1::AUDIT_STOPPED, scene.core.latches().estop_source)});
   scene.core.reset_estop("karen", scene.now);
   scene.deliver();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::refused, "karen")})
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_REFUSED, "karen")})
       << "it is still pressed";
   scene.estop(false);
   scene.core.reset_estop("karen", scene.now);
   scene.deliver();
-  EXPECT_EQ(scene.acts(), std::vector{Audited::act(AuditEntry::Act::reset, "karen")});
+  EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_RESET, "karen")});
 }
 
 TEST(Audit, AProgramSpeaksForItselfUnlessItIsAService) {
-  const AuditEntry drove{AuditEntry::Act::drove, "karen (operator)", ""};
-  const AuditEntry wrong{AuditEntry::Act::refused, "somebody", "1 wrong key"};
+  const v1::AuditEntry drove{.act = v1::AUDIT_DROVE, .who = "karen (operator)", .text = ""};
+  const v1::AuditEntry wrong{.act = v1::AUDIT_REFUSED, .who = "somebody", .text = "1 wrong key"};
   Reports reports;
   EXPECT_EQ(reports.take(drove, Identity{"flakey", "services"}, 0.0), drove);
   EXPECT_EQ(reports.take(drove, std::nullopt, 0.0), drove) << "an open bus";
@@ -198,7 +198,8 @@ TEST(Audit, NobodyFillsItWithReports) {
   const auto taken = [&](const Identity& writer, double now) {
     std::size_t entries = 0;
     for (int i = 0; i < 1000; ++i)
-      if (reports.take({AuditEntry::Act::refused, std::to_string(i), ""}, writer, now))
+      if (reports.take({.act = v1::AUDIT_REFUSED, .who = std::to_string(i), .text = ""}, writer,
+                       now))
         ++entries;
     return entries;
   };

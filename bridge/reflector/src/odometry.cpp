@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "saphira/protocol/information.hpp"
 
@@ -13,38 +12,6 @@ namespace {
 constexpr double kCounts = 32768.0;  // of a position, before it rolls over
 
 }  // namespace
-
-std::string to_text(const OdometryMemory& m) {
-  char text[256];
-  std::snprintf(text, sizeof text, "odom1 %llu %u %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n",
-                static_cast<unsigned long long>(m.odom), m.raw.x, m.raw.y, m.raw.th,
-                m.raw_unwrapped.x, m.raw_unwrapped.y, m.raw_unwrapped.th, m.server_in_odom.x,
-                m.server_in_odom.y, m.server_in_odom.th);
-  return text;
-}
-
-std::optional<OdometryMemory> from_text(const std::string& text) {
-  OdometryMemory m;
-  unsigned long long odom = 0;
-  unsigned x = 0;
-  unsigned y = 0;
-  char end = 0;
-  const int n =
-      std::sscanf(text.c_str(), "odom1 %llu %u %u %lf %lf %lf %lf %lf %lf %lf%c", &odom, &x, &y,
-                  &m.raw.th, &m.raw_unwrapped.x, &m.raw_unwrapped.y, &m.raw_unwrapped.th,
-                  &m.server_in_odom.x, &m.server_in_odom.y, &m.server_in_odom.th, &end);
-  if (n != 11 || end != '\n' || x > 0x7FFF || y > 0x7FFF)
-    return std::nullopt;
-  for (const double value : {m.raw.th, m.raw_unwrapped.x, m.raw_unwrapped.y, m.raw_unwrapped.th,
-                             m.server_in_odom.x, m.server_in_odom.y, m.server_in_odom.th}) {
-    if (!std::isfinite(value))
-      return std::nullopt;
-  }
-  m.odom = odom;
-  m.raw.x = static_cast<std::uint16_t>(x);
-  m.raw.y = static_cast<std::uint16_t>(y);
-  return m;
-}
 
 void Odometry::connect(std::optional<OdometryMemory> memory, std::uint64_t fresh,
                        const Slack& slack) {

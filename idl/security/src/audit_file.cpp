@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "saphira/base/durable.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/printable.hpp"
@@ -67,11 +67,9 @@ bool is_there(const std::string& path) {
 
 }  // namespace
 
-const char* name_of(AuditEntry::Act act) {
-  constexpr std::array names{"drove",   "stopped",  "reset",   "asked",
-                             "changed", "canceled", "refused", "let in"};
-  const auto number = static_cast<std::size_t>(act);
-  return number < names.size() ? names[number] : "did something unknown";
+const char* name_of(v1::AuditAct act) {
+  return word_of(
+      act, {"drove", "stopped", "reset", "asked", "changed", "canceled", "refused", "let in"});
 }
 
 AuditFile::AuditFile(std::string path, std::size_t most) : path_(std::move(path)), most_(most) {
@@ -121,7 +119,8 @@ std::string AuditFile::rotate(double time) {
   return {};
 }
 
-std::string AuditFile::write(const AuditEntry& entry, double time) {
+std::string AuditFile::write(v1::AuditEntry entry, double time) {
+  entry.time_ns = 0;
   std::erase_if(recent_, [&](const Recent& one) { return time - one.time >= kRepeats; });
   if (std::any_of(recent_.begin(), recent_.end(),
                   [&](const Recent& one) { return one.entry == entry; }))
@@ -147,7 +146,7 @@ std::string AuditFile::tend(double time) {
 }
 
 std::string AuditFile::write_waiting(double time) {
-  const auto put = [&](const AuditEntry& entry, double then) {
+  const auto put = [&](const v1::AuditEntry& entry, double then) {
     std::string trouble = size_ > most_ ? rotate(then) : "";
     return trouble.empty() ? append(name_of(entry.act), entry.who, entry.text, then) : trouble;
   };
@@ -155,8 +154,10 @@ std::string AuditFile::write_waiting(double time) {
     if (std::string trouble = put(waiting_.front().entry, waiting_.front().time); !trouble.empty())
       return trouble;
   if (lost_ > 0) {
-    const AuditEntry gap{AuditEntry::Act::refused, "the audit",
-                         std::to_string(lost_) + " later entries had no room on the disk"};
+    const v1::AuditEntry gap{
+        .act = v1::AUDIT_REFUSED,
+        .who = "the audit",
+        .text = std::to_string(lost_) + " later entries had no room on the disk"};
     if (std::string trouble = put(gap, time); !trouble.empty())
       return trouble;
     lost_ = 0;

@@ -19,8 +19,9 @@ class AuditFileTest : public testing::Test {
   /// Entries of different texts.
   void write(int count) {
     for (int i = 0; i < count; ++i)
-      EXPECT_EQ(audit->write({AuditEntry::Act::asked, "karen (operator), saphira goal",
-                              std::to_string(++number)},
+      EXPECT_EQ(audit->write({.act = v1::AUDIT_ASKED,
+                              .who = "karen (operator), saphira goal",
+                              .text = std::to_string(++number)},
                              1'800'000'000.0),
                 "");
   }
@@ -42,8 +43,9 @@ class AuditFileTest : public testing::Test {
 
 TEST_F(AuditFileTest, SaysWhoDidWhatAndWhen) {
   EXPECT_THROW(read_audit(path), UnusableFile);
-  audit->write({AuditEntry::Act::stopped, "john (observer), the console", "nobody drove"},
-               1'800'000'000.0);
+  audit->write(
+      {.act = v1::AUDIT_STOPPED, .who = "john (observer), the console", .text = "nobody drove"},
+      1'800'000'000.0);
   const AuditRecord record = read_audit(path);
   EXPECT_EQ(record.lines, std::vector<std::string>{
                               "1\t2027-01-15T08:00:00Z\tstopped\tjohn (observer), the console\t"
@@ -181,8 +183,10 @@ TEST_F(AuditFileTest, WhatAFullDiskDoesNotTakeWaitsAndIsCounted) {
   std::filesystem::rename(path, kept);
   std::filesystem::create_symlink("/dev/full", path);
   for (std::size_t i = 0; i < AuditFile::kMostWaiting + 2; ++i)
-    EXPECT_NE(audit->write({AuditEntry::Act::asked, "karen (operator)", std::to_string(i)}, 100.0),
-              "");
+    EXPECT_NE(
+        audit->write({.act = v1::AUDIT_ASKED, .who = "karen (operator)", .text = std::to_string(i)},
+                     100.0),
+        "");
   EXPECT_NE(audit->tend(100.0), "");
   std::filesystem::rename(kept, path);
   EXPECT_EQ(audit->tend(200.0), "");
@@ -224,15 +228,17 @@ TEST_F(AuditFileTest, APowerCutLeavesAWholeChain) {
 }
 
 TEST_F(AuditFileTest, ARepetitionWithinTenSecondsIsLeftOut) {
-  const AuditEntry entry{AuditEntry::Act::drove, "karen (operator), saphira drive", ""};
+  const v1::AuditEntry entry{
+      .act = v1::AUDIT_DROVE, .who = "karen (operator), saphira drive", .text = ""};
   for (const double time : {100.0, 101.0, 109.9, 110.0})
     audit->write(entry, time);
   EXPECT_EQ(read_audit(path).lines.size(), 2U);
 }
 
 TEST_F(AuditFileTest, ATextOfSomebodyElseIsNoSecondEntry) {
-  audit->write({AuditEntry::Act::asked, "a\tb\n2\t", "\x1b[2J" + std::string(2000, 'x')},
-               1'800'000'000.0);
+  audit->write(
+      {.act = v1::AUDIT_ASKED, .who = "a\tb\n2\t", .text = "\x1b[2J" + std::string(2000, 'x')},
+      1'800'000'000.0);
   const AuditRecord record = read_audit(path);
   ASSERT_EQ(record.lines.size(), 1U);
   EXPECT_EQ(record.lines[0].find('\x1b'), std::string::npos);

@@ -12,6 +12,7 @@
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/agent_interface/pointing.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -72,10 +73,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
   if (!options_.memory.empty()) {
     const std::string trouble = read_or_set_aside(
         options_.memory,
-        [&](const std::string& text) {
-          if (const std::size_t bad = dialogue_.restore(text); bad > 0)
-            throw std::runtime_error(counted(bad, "line") + " cannot be read, the others count");
-        },
+        [&](const std::string& text) { restore(unsealed(text, options_.memory), dialogue_); },
         node_.options().files());
     if (!trouble.empty())
       node_.warn(trouble);
@@ -226,7 +224,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
 
 void DialogueShell::remember() {
   if (node_.options().files() == Files::kChange && !options_.memory.empty() &&
-      !replace_file(options_.memory, dialogue_.save()))
+      !replace_file(options_.memory, sealed(saved(dialogue_))))
     node_.warn("what the robot was told cannot be kept: " + cannot_be(options_.memory, "written"));
 }
 

@@ -5,6 +5,7 @@
 
 #include "agent_interface/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/sender.hpp"
@@ -42,10 +43,7 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memo
     return;
   const Files files = node_.options().files();
   const std::string trouble = read_or_set_aside(
-      memory_,
-      [this](const std::string& text) {
-        facilitator_.restore(std::string(unsealed(text, memory_)));
-      },
+      memory_, [this](const std::string& text) { restore(unsealed(text, memory_), facilitator_); },
       files);
   if (!trouble.empty())
     node_.warn(trouble);
@@ -155,7 +153,7 @@ void FacilitatorShell::step(double now) {
 
   const Facilitator::Outputs out = facilitator_.step(now);
   awaits_ = !out.requests.empty();
-  if (out.changed && !memory_.empty() && !replace_file(memory_, sealed(facilitator_.save())))
+  if (out.changed && !memory_.empty() && !replace_file(memory_, sealed(saved(facilitator_))))
     node_.warn(cannot_be(memory_, "written") + "; after a restart an action may be done again");
   for (const Request& request : out.requests)
     if (request.service == robot_.address())
@@ -169,7 +167,7 @@ void FacilitatorShell::step(double now) {
     answer.service = solved.service;
     solved_.write(answer);
   }
-  for (const AuditEntry& entry : out.audit)
+  for (const v1::AuditEntry& entry : out.audit)
     audit_.write(entry);
   for (const std::string& text : out.notes)
     node_.info(text);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "saphira/base/durable.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "words.hpp"
@@ -26,10 +26,6 @@ constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "look", "attend
 /// Tasks, which continue while the dialogue restarts.
 constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
                               "inquire",     "patrol",      "guide",   "come-back"};
-constexpr const char* kHeardLine = "heard\t";
-constexpr const char* kOpenLine = "open\t";
-constexpr const char* kSaidLine = "said\t";
-constexpr const char* kGoneLine = "gone\t";
 
 /// A sentence that changes the knowledge of the robot.
 bool is_fact(const Meaning& meaning) {
@@ -495,53 +491,10 @@ Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) 
   return out;
 }
 
-std::string Dialogue::save() const {
-  std::string text = knowledge_.save();
-  for (const UtteranceId& id : heard_)
-    text += sealed_line(kHeardLine + std::to_string(id.first) + "\t" + std::to_string(id.second)) +
-            "\n";
-  for (const Gone& one : gone_)
-    text += sealed_line(kGoneLine + field(one.person) + "\t" + field(one.source)) + "\n";
-  if (said_ != CycleRef{})
-    text +=
-        sealed_line(kSaidLine + std::to_string(said_.first) + "\t" + std::to_string(said_.second)) +
-        "\n";
-  for (const std::string& line : tasks_.save())
-    text += sealed_line(kOpenLine + line) + "\n";
-  return text;
-}
-
-std::size_t Dialogue::restore(std::string_view text) {
-  std::string advice;
-  while (!text.empty()) {
-    const std::size_t length = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, length);
-    const std::optional<std::string_view> content = unsealed_line(line);
-    if (content && content->starts_with(kHeardLine)) {
-      const std::string rest(content->substr(std::string_view(kHeardLine).size()));
-      const std::size_t tab = rest.find('\t');
-      if (tab != std::string::npos)
-        heard_.emplace_back(std::strtoull(rest.c_str(), nullptr, 10),
-                            std::strtoull(rest.c_str() + tab + 1, nullptr, 10));
-    } else if (content && content->starts_with(kSaidLine)) {
-      const std::string rest(content->substr(std::string_view(kSaidLine).size()));
-      char* end = nullptr;
-      before_.first = std::strtoull(rest.c_str(), &end, 10);
-      before_.second = std::strtoull(end, nullptr, 10);
-      said_ = before_;
-    } else if (content && content->starts_with(kGoneLine)) {
-      const std::string rest(content->substr(std::string_view(kGoneLine).size()));
-      const std::size_t tab = rest.find('\t');
-      if (tab != std::string::npos)
-        gone_.push_back({rest.substr(0, tab), rest.substr(tab + 1)});
-    } else if (content && content->starts_with(kOpenLine)) {
-      tasks_.restore(std::string(content->substr(std::string_view(kOpenLine).size())));
-    } else {
-      advice += std::string(line) + "\n";
-    }
-    text.remove_prefix(std::min(length + 1, text.size()));
-  }
-  return knowledge_.restore(advice);
+void Dialogue::archive(Archive& a) {
+  a("knowledge", knowledge_)("heard", heard_)("gone", gone_)("said", said_)("tasks", tasks_);
+  if (a.restores())
+    before_ = said_;
 }
 
 }  // namespace saphira::agent_interface

@@ -127,8 +127,6 @@ std::vector<Arguments> rows_of(const Arguments& part, const Arguments& bound,
 }
 
 // In the memory.
-constexpr const char* kAsker = "asker";
-constexpr const char* kNoRole = "-";
 
 /// Nothing was done: another agent may get the same request.
 bool untouched(AnswerCode code) {
@@ -282,7 +280,7 @@ bool Facilitator::may_change(const Id& trigger, const Checked& who) {
 
 void Facilitator::deny(const std::string& who, const std::string& what) {
   out_.warnings.push_back(who + " is refused " + what + "; who asked for it may, or an operator");
-  out_.audit.push_back({AuditEntry::Act::refused, who, what});
+  out_.audit.push_back({.act = v1::AUDIT_REFUSED, .who = who, .text = what});
 }
 
 void Facilitator::list_triggers(const Request& request) {
@@ -502,7 +500,8 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   const bool acts = begun(id) || (can != nullptr && can->acts);
   open.asked.push_back({agent, acts, now + kAgain});
   if (acts && !open.acts)
-    out_.audit.push_back({AuditEntry::Act::asked, open.request.source, describe(open.request)});
+    out_.audit.push_back(
+        {.act = v1::AUDIT_ASKED, .who = open.request.source, .text = describe(open.request)});
   open.acts = open.acts || acts;
   // Requests of triggers and for parts are of one run of this program. So its agent does not know
   // the action of a conjunction again after a restart: agent 0, which is none, was asked.
@@ -859,41 +858,6 @@ void Facilitator::forget_begun(const Id& id) {
 Checked Facilitator::asker_of_begun(const Id& id) const {
   const auto found = askers_.find(id);
   return found == askers_.end() ? std::nullopt : Checked(found->second);
-}
-
-std::string Facilitator::save() const {
-  std::ostringstream text;
-  for (const auto& [trigger, times] : fired_)
-    text << "fired " << trigger.first << ' ' << trigger.second << ' ' << times << '\n';
-  for (const auto& [request, agent] : begun_)
-    text << "begun " << request.first << ' ' << request.second << ' ' << agent << '\n';
-  // At the end: an earlier version reads up to here.
-  for (const auto& [request, asker] : askers_)
-    text << kAsker << ' ' << request.first << ' ' << request.second << ' '
-         << (asker.role.empty() ? kNoRole : asker.role) << ' ' << asker.name << '\n';
-  return text.str();
-}
-
-void Facilitator::restore(const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string word;
-    Id id;
-    std::uint64_t value = 0;
-    if (!(words >> word >> id.first >> id.second))
-      continue;
-    if (Identity asker; word == kAsker && words >> asker.role >> std::ws) {
-      std::getline(words, asker.name);
-      if (asker.role == kNoRole)
-        asker.role.clear();
-      askers_[id] = asker;
-    } else if (words >> value && word == "fired") {
-      fired_[id] = value;
-    } else if (word == "begun") {
-      begun_.emplace_back(id, value);
-    }
-  }
 }
 
 }  // namespace saphira::agent_interface

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "saphira/base/numbers.hpp"
+#include "saphira/base/archive.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -97,9 +97,9 @@ Tasks::Outputs Tasks::left(const ProgramId& program) {
 Tasks::Outputs Tasks::deny(const Task& task, const Utterance& utterance) const {
   Outputs out;
   const std::string ends = named_task(task, utterance.speaker);
-  out.denied = {AuditEntry::Act::refused,
-                named(named_person(utterance.speaker) + " (by words)", utterance.person),
-                "to end " + ends + ": " + quoted(utterance.text)};
+  out.denied = {.act = v1::AUDIT_REFUSED,
+                .who = named(named_person(utterance.speaker) + " (by words)", utterance.person),
+                .text = "to end " + ends + ": " + quoted(utterance.text)};
   out.said.push_back({utterance.id, utterance.speaker,
                       "that would end " + ends + ": " + task.goal.person->name +
                           " or an operator may do that, and everybody may stop me",
@@ -260,50 +260,21 @@ UtteranceId Tasks::spoken_for() const {
   return answers;
 }
 
-std::vector<std::string> Tasks::save() const {
-  std::vector<std::string> lines;
+void Tasks::archive(Archive& a) {
+  struct Kept : Task {
+    void archive(Archive& a) {
+      a("tag", goal.tag)("functor", goal.functor)("lasting", goal.lasting);
+      a("speaker", goal.speaker)("person", goal.person)("what", what)("doing", doing)("name", name);
+      a("answers", answers)("ref", ref)("sample", sample);
+    }
+  };
+  std::vector<Kept> kept;
   for (const Task& one : open_)
     if (one.ref != GoalRef{})
-      lines.push_back(std::to_string(one.goal.tag) + "\t" + std::to_string(one.ref.first) + "\t" +
-                      std::to_string(one.ref.second) + "\t" + std::to_string(one.answers.first) +
-                      "\t" + std::to_string(one.answers.second) + "\t" + field(one.goal.speaker) +
-                      "\t" + field(one.what) + "\t" + field(one.doing) + "\t" + field(one.name) +
-                      "\t" + one.goal.functor + "\t" + field(one.sample) +
-                      (one.goal.person ? "\t" + field(one.goal.person->name) + "\t" +
-                                             field(one.goal.person->role)
-                                       : ""));
-  return lines;
-}
-
-void Tasks::restore(const std::string& line) {
-  std::vector<std::string> parts = fields(line);
-  if (parts.size() < 7)
-    return;
-  Checked person;
-  if (parts.size() > 12)
-    person = Identity{parts[11], parts[12]};
-  parts.resize(11);  // an older file has 7 or 10
-  std::array<std::uint64_t, 5> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto number = number_in<std::uint64_t>(parts[i]);
-    if (!number)
-      return;
-    numbers[i] = *number;
-  }
-  tag_ = std::max(tag_, numbers[0]);
-  Task task;
-  task.goal.tag = numbers[0];
-  task.goal.functor = parts[9];
-  task.goal.lasting = true;
-  task.goal.speaker = parts[5];
-  task.goal.person = person;
-  task.what = parts[6];
-  task.doing = parts[7];
-  task.name = parts[8];
-  task.sample = parts[10];
-  task.answers = {numbers[3], numbers[4]};
-  task.ref = {numbers[1], numbers[2]};
-  open_.push_back(std::move(task));
+      kept.push_back({one});
+  a("tag", tag_)("open", kept);
+  if (a.restores())
+    open_.assign(kept.begin(), kept.end());
 }
 
 }  // namespace saphira::agent_interface

@@ -86,21 +86,4 @@ bool is_open(const KnownGoal& goal) {
   return goal.state != KnownGoal::State::failed && goal.state != KnownGoal::State::over;
 }
 
-std::string field(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return text;
-}
-
-std::vector<std::string> fields(std::string_view line) {
-  std::vector<std::string> result(1);
-  for (const char c : line) {
-    if (c == '\t')
-      result.emplace_back();
-    else
-      result.back() += c;
-  }
-  return result;
-}
-
 }  // namespace saphira::agent_interface

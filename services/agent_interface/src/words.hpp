@@ -58,11 +58,6 @@ std::string claim_source(const Utterance& utterance);
 
 bool is_open(const KnownGoal& goal);
 
-/// A text as a field of a line that is kept; fields are separated by tabs. Tabs and line breaks in
-/// people's words become blanks.
-std::string field(std::string text);
-std::vector<std::string> fields(std::string_view line);
-
 inline constexpr const char* kLost = "I do not know where I am on the map";
 /// The robot's place in the map's words; empty: unknown, or nameless.
 std::string here(const Situation& situation);

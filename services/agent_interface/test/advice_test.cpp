@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "dialogue_fixture.hpp"
+#include "saphira/base/archive.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -100,7 +101,7 @@ TEST_F(DialogueTest, FactsAboutPeopleAreTakenBackInWords) {
   EXPECT_EQ(last.claims[1].name, "place-of-karen");
   EXPECT_TRUE(last.claims[1].nil);
   Dialogue restarted{grammar()};
-  EXPECT_EQ(restarted.restore(dialogue.save()), 0u);
+  restore(saved(dialogue), restarted);
   EXPECT_EQ(restarted.claims(), dialogue.claims());
   hear("Flakey, Karen is in EJ-233");
   ASSERT_EQ(dialogue.claims().size(), 1u);
@@ -213,7 +214,7 @@ TEST_F(DialogueTest, KnowledgeOutlivesARestart) {
   hear("Flakey, EJ-231 is Karen's office");
   hear("Flakey, there is a spill in EJ-233");
   Dialogue restarted{grammar()};
-  EXPECT_EQ(restarted.restore(dialogue.save() + "nonsense\n"), 1u);
+  restore(saved(dialogue), restarted);
   EXPECT_EQ(restarted.knowledge().all(), dialogue.knowledge().all());
   EXPECT_EQ(restarted.claims().size(), 2u);
 }

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "dialogue_fixture.hpp"
+#include "saphira/base/archive.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -98,7 +99,7 @@ TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
   EXPECT_EQ(dialogue.hear(utterance, situation).goals.size(), 1u);
   EXPECT_TRUE(dialogue.hear(utterance, situation).goals.empty());
   Dialogue restarted{grammar()};
-  EXPECT_EQ(restarted.restore(dialogue.save()), 0u);
+  restore(saved(dialogue), restarted);
   EXPECT_TRUE(restarted.hear(utterance, situation).goals.empty());
 }
 

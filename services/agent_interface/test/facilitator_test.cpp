@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/random.hpp"
 
 namespace saphira::agent_interface {
@@ -422,7 +423,7 @@ TEST_F(Facilitation, ATriggerFiresItsTimesWhateverIsHeardAgain) {
   EXPECT_EQ(firings(facilitator, now), 3u) << "it was changed";
   facilitator.take_back({1, 4});
   EXPECT_TRUE(facilitator.step(now).changed);
-  EXPECT_EQ(facilitator.save().find("fired"), std::string::npos);
+  EXPECT_EQ(saved(facilitator), saved(Facilitator(kSelf)));
 }
 
 TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
@@ -430,7 +431,7 @@ TEST_F(Facilitation, ATriggerFiresItsTimesOverARestart) {
   facilitator.set(every_five_seconds(12), now);
   EXPECT_EQ(firings(facilitator, now), 10u);
   Facilitator next(kSelf + 1);
-  next.restore(facilitator.save());
+  restore(saved(facilitator), next);
   next.announce(agent_that_notes());
   next.set(every_five_seconds(12), now);
   EXPECT_EQ(firings(next, now), 2u);
@@ -480,7 +481,7 @@ TEST_F(Facilitation, ATriggerThatIsCalledOffFiresNoMoreUntilItIsChanged) {
   facilitator.set(every_five_seconds(0), now);  // its holder is heard again
   EXPECT_EQ(firings(facilitator, now), 0u);
   Facilitator next(kSelf + 1);
-  next.restore(facilitator.save());
+  restore(saved(facilitator), next);
   next.announce(agent_that_notes());
   next.set(every_five_seconds(0), now);
   EXPECT_EQ(firings(next, now), 0u) << "after a restart";
@@ -516,9 +517,9 @@ struct FacilitationAgain : Facilitation {
     facilitator.announce(agent(2, "sweeper", true));
     facilitator.ask(place_of(5), now);
     EXPECT_TRUE(facilitator.step(now).changed) << "it is kept before the request is sent";
-    const std::string kept = facilitator.save();
+    const std::string kept = saved(facilitator);
     facilitator = Facilitator(kSelf + 1, now + 2.0);
-    facilitator.restore(kept);
+    restore(kept, facilitator);
     facilitator.announce(agent(1, "a cheaper one", true));
   }
 };
@@ -561,7 +562,7 @@ TEST_F(Facilitation, AnActionThatAnAgentRefusedMayBeBegunByAnother) {
   facilitator.announce(agent(1, "a", true));
   ask(place_of(5));
   hear("a", place_of(5), {AnswerCode::refused, "no"});
-  EXPECT_EQ(facilitator.save(), "");
+  EXPECT_EQ(saved(facilitator), saved(Facilitator(kSelf)));
 }
 
 TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
@@ -824,7 +825,7 @@ TEST_F(Conjunctions, AnActionIsNotBegunAgainAfterARestart) {
   const auto asked = answer(at("library"));
   EXPECT_TRUE(asked.changed) << "it is kept before the request is sent";
   Facilitator next(kSelf + 1, now + 2.0);
-  next.restore(facilitator.save());
+  restore(saved(facilitator), next);
   next.announce(agent(1, "a"));
   next.ask(go_to_karen(5), now);
   EXPECT_TRUE(next.step(now).requests.empty());
@@ -833,7 +834,8 @@ TEST_F(Conjunctions, AnActionIsNotBegunAgainAfterARestart) {
   EXPECT_EQ(end.solved.at(0).answer.code, AnswerCode::lost);
   sent(asked);
   answer({AnswerCode::refused, "no such place"});
-  EXPECT_EQ(facilitator.save(), "") << "nothing was done: it may be asked anew";
+  EXPECT_EQ(saved(facilitator), saved(Facilitator(kSelf)))
+      << "nothing was done: it may be asked anew";
 }
 
 TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
@@ -899,14 +901,14 @@ TEST_F(Facilitation, ARequestIsWithdrawnByItsAskerAndByOperators) {
   const auto asked = ask(request);
   EXPECT_EQ(asked.requests.at(0).person, request.person);
   ASSERT_EQ(asked.audit.size(), 1U);
-  EXPECT_EQ(asked.audit[0].act, AuditEntry::Act::asked);
+  EXPECT_EQ(asked.audit[0].act, v1::AUDIT_ASKED);
   Request other = withdrawal(5);
   other.person = Identity{"planner", "agent"};
   const auto refused = ask(other);
   EXPECT_TRUE(refused.requests.empty() && refused.solved.empty());
   EXPECT_EQ(refused.warnings.size(), 1U);
   ASSERT_EQ(refused.audit.size(), 1U);
-  EXPECT_EQ(refused.audit[0].act, AuditEntry::Act::refused);
+  EXPECT_EQ(refused.audit[0].act, v1::AUDIT_REFUSED);
   other.person = Identity{"karen", "operator"};
   EXPECT_EQ(ask(other).requests.at(0).functor, kWithdraw);
 }
@@ -916,12 +918,12 @@ TEST_F(Facilitation, AnActionIsItsAskersOverARestart) {
   Request request = place_of(5);
   request.person = Identity{"anna at flakey", "agent"};
   ask(request);
-  const std::string kept = facilitator.save();
+  const std::string kept = saved(facilitator);
   const auto back = [&] {
     facilitator = Facilitator(kSelf + 1, now + 2.0);
-    facilitator.restore(kept);
+    restore(kept, facilitator);
     facilitator.announce(agent(2, "sweeper", true));
-    EXPECT_EQ(facilitator.save(), kept);
+    EXPECT_EQ(saved(facilitator), kept);
   };
   const Identity planner{"planner", "agent"};
   for (Request other : {withdrawal(5), request}) {
@@ -930,7 +932,7 @@ TEST_F(Facilitation, AnActionIsItsAskersOverARestart) {
     const auto refused = ask(other);
     EXPECT_TRUE(refused.requests.empty() && refused.solved.empty()) << other.functor;
     ASSERT_EQ(refused.audit.size(), 1U);
-    EXPECT_EQ(refused.audit[0].act, AuditEntry::Act::refused);
+    EXPECT_EQ(refused.audit[0].act, v1::AUDIT_REFUSED);
     EXPECT_EQ(facilitator.open(), 0U);
   }
   for (const Identity& who : {*request.person, Identity{"karen", "operator"}}) {

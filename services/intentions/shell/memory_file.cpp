@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
@@ -34,7 +35,7 @@ MemoryFile::MemoryFile(std::string path, std::size_t most, Files files)
   };
   std::size_t expected = 0;
   read(path_ + kLines, [&](const std::string& content) {
-    expected = std::stoul(std::string(unsealed(content, path_ + kLines)));
+    expected = restored<std::size_t>(unsealed(content, path_ + kLines));
   });
   bool found = false;
   read(path_, [&](const std::string& content) {
@@ -53,7 +54,7 @@ MemoryFile::MemoryFile(std::string path, std::size_t most, Files files)
     troubles_.push_back(path_ + " is gone, or empty: it had " + std::to_string(expected) +
                         " lines");
   read(path_ + kWork, [this](const std::string& content) {
-    memory_.work = read_work(path_ + kWork, unsealed(content, path_ + kWork));
+    memory_.work = restored<Work>(unsealed(content, path_ + kWork));
   });
   memory_.condition = !troubles_.empty()                        ? Memory::Condition::kDamaged
                       : found || std::filesystem::exists(path_) ? Memory::Condition::kWhole
@@ -92,7 +93,7 @@ bool MemoryFile::begin(Memory& memory) {
 }
 
 bool MemoryFile::keep_count(std::size_t lines) const {
-  return replace_file(path_ + kLines, sealed(std::to_string(lines) + "\n"));
+  return replace_file(path_ + kLines, sealed(saved(lines)));
 }
 
 void MemoryFile::begin_anew() {
@@ -109,7 +110,7 @@ void MemoryFile::begin_anew() {
 
 bool MemoryFile::keep(const Work& work) const {
   return path_.empty() || files_ == Files::kStay ||
-         replace_file(path_ + kWork, sealed(write_work(work)));
+         replace_file(path_ + kWork, sealed(saved(work)));
 }
 
 bool MemoryFile::append(const std::string& lines) {

@@ -107,10 +107,10 @@ std::string Service::missing() {
          std::to_string(registration->map_revision);
 }
 
-void Service::say(const Notes& notes) {
+void Service::say(const Notes& notes, const std::vector<v1::AuditEntry>& audit) {
   ports_.say(notes.lines());
-  for (const AuditEntry& entry : notes.audit())
-    audit_.write(bus::to_bus(entry));
+  for (const v1::AuditEntry& entry : audit)
+    audit_.write(bus::timed(entry));
 }
 
 void Service::step(const runtime::Turn& turn) {
@@ -126,7 +126,7 @@ void Service::step(const runtime::Turn& turn) {
     draw_way(*outputs.way);
   if (outputs.look)
     servo_.ask({"look", {{"angle", *outputs.look}}});
-  say(outputs.notes);
+  say(outputs.notes, outputs.audit);
 }
 
 void Service::between(double silence) {
@@ -135,7 +135,7 @@ void Service::between(double silence) {
   const Core::Told told = core_.between(heard, silence);
   remember(told.news);
   publish(told.news);
-  say(told.notes);
+  say(told.notes, told.audit);
 }
 
 Core::Inputs Service::inputs_of(const runtime::Turn& turn) {

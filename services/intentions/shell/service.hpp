@@ -56,7 +56,7 @@ class Service final : public runtime::Service {
   /// To the disk, before it is published: nothing reported or done is done again.
   void remember(const News& news);
   void publish(const News& news);
-  void say(const Notes& notes);
+  void say(const Notes& notes, const std::vector<v1::AuditEntry>& audit);
   void publish(const Core::Outputs& said);
   void publish(const std::vector<Belief>& beliefs);
   void draw_way(const std::vector<Vec2>& way);

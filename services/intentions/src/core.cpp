@@ -72,7 +72,7 @@ Core::Outputs Core::step(Inputs inputs) {
     now.person = newest_grant_ ? why_to_wait(*newest_grant_) : std::string();
 
   Outputs outputs;
-  now.events = events_of(inputs.heard, outputs.notes);
+  now.events = events_of(inputs.heard, outputs);
   std::string gone = who_is_gone(inputs);
   if (gone.empty() && !lockstep_)
     gone = newest_grant_ ? newest_grant_->refusal : std::string();
@@ -161,7 +161,7 @@ std::string Core::who_is_gone(const Inputs& inputs) {
 
 Core::Told Core::between(const Heard& heard, double silence) {
   Told told;
-  told.news = executor_.hear(events_of(heard, told.notes));
+  told.news = executor_.hear(events_of(heard, told));
   // A single-stepped simulator may stand still for any time.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
     robot_here_ = false;
@@ -300,12 +300,13 @@ std::optional<std::string> Core::ask(const std::string& name, ProcessAction acti
   return executor_.interrupt(node->id) ? "" : name + " is not an intention any more";
 }
 
-std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
+template <class Out>
+std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
   std::vector<GoalEvent> events;
   for (const Heard::Goal& goal : heard.goals) {
     GoalEvent event = goal.event;
     const double before_start = heard.running < kStarting ? goal.age - heard.running : 0.0;
-    if (!take_person(goal, before_start > 0.0, event, notes))
+    if (!take_person(goal, before_start > 0.0, event, out))
       continue;
     if (const auto asked = requesters_.find(event.goal.id);
         event.kind == GoalEvent::Kind::kDisposed && event.by.empty() && asked != requesters_.end())
@@ -339,20 +340,23 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
 
 /// True where the person may do that to the goal: the owner, who asked for it first, and operators.
 /// Names the person in the event, where it is not the owner. is_old: written before this start.
-bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Notes& notes) {
+template <class Out>
+bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Out& out) {
   const GoalId& id = event.goal.id;
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
   const std::string who = named(event.goal.requester, goal.person);
   event.goal.requester = who;
-  const auto note = [&](AuditEntry::Act act, const std::string& text) {
+  const auto note = [&](v1::AuditAct act, const std::string& text) {
     if (!is_old)
-      notes.audit({act, who, "goal " + describe(id) + (text.empty() ? "" : ", " + text)});
+      out.audit.push_back({.act = act,
+                           .who = who,
+                           .text = "goal " + describe(id) + (text.empty() ? "" : ", " + text)});
   };
   const auto found = owners_.find(id);
   if (found == owners_.end()) {
     if (writes) {
       owners_[id] = {goal.person, event.goal};
-      note(AuditEntry::Act::asked, describe(Request{event.goal.functor, event.goal.arguments}));
+      note(v1::AUDIT_ASKED, describe(Request{event.goal.functor, event.goal.arguments}));
     }
     return true;
   }
@@ -366,8 +370,8 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
                             " may not " + (writes ? "change" : "cancel") +
                             " it; its owner may, or an operator";
     if (!std::exchange(owner.told, true)) {
-      notes.warn(why);
-      note(AuditEntry::Act::refused, std::string("to ") + (writes ? "change" : "cancel") + " it");
+      out.notes.warn(why);
+      note(v1::AUDIT_REFUSED, std::string("to ") + (writes ? "change" : "cancel") + " it");
     }
     return false;
   }
@@ -376,9 +380,9 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, N
     event.goal.requester = owner.goal.requester;
   }
   if (!writes)
-    note(AuditEntry::Act::canceled, event.why);
+    note(v1::AUDIT_CANCELED, event.why);
   else if (event.goal != owner.goal)
-    note(AuditEntry::Act::changed, describe(Request{event.goal.functor, event.goal.arguments}));
+    note(v1::AUDIT_CHANGED, describe(Request{event.goal.functor, event.goal.arguments}));
   if (writes)
     owner.goal = event.goal;
   return true;

@@ -284,22 +284,21 @@ TEST_F(OwnedGoal, APersonAtADoorDoesNotCancelThoseOfAnother) {
 }
 
 TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {
-  using Act = AuditEntry::Act;
   const auto acts = [&](const Core::Heard::Goal& goal) {
-    std::vector<Act> all;
+    std::vector<v1::AuditAct> all;
     const Core::Outputs outputs = hear(goal);
-    for (const AuditEntry& entry : outputs.notes.audit()) {
+    for (const v1::AuditEntry& entry : outputs.audit) {
       EXPECT_EQ(entry.who, goal.person->text() + ", a test");
       all.push_back(entry.act);
     }
     return all;
   };
-  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector{Act::asked});
-  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector<Act>{}) << "told once more";
-  EXPECT_EQ(acts(by(kAgent, kWritten, 7)), std::vector{Act::refused});
-  EXPECT_EQ(acts(by(kAgent, kDisposed)), std::vector<Act>{}) << "one entry is enough";
-  EXPECT_EQ(acts(by(kOperator, kWritten, 7)), std::vector{Act::changed});
-  EXPECT_EQ(acts(by(kOperator, kDisposed)), std::vector{Act::canceled});
+  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector{v1::AUDIT_ASKED});
+  EXPECT_EQ(acts(by(kKarenHerself, kWritten)), std::vector<v1::AuditAct>{}) << "told once more";
+  EXPECT_EQ(acts(by(kAgent, kWritten, 7)), std::vector{v1::AUDIT_REFUSED});
+  EXPECT_EQ(acts(by(kAgent, kDisposed)), std::vector<v1::AuditAct>{}) << "one entry is enough";
+  EXPECT_EQ(acts(by(kOperator, kWritten, 7)), std::vector{v1::AUDIT_CHANGED});
+  EXPECT_EQ(acts(by(kOperator, kDisposed)), std::vector{v1::AUDIT_CANCELED});
 }
 
 TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {

@@ -100,8 +100,7 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
 }
 
 TEST_F(IntentionsProgram, StartsWithADamagedMemoryAndSaysSo) {
-  std::ofstream(dir.path("memory"))
-      << sealed_line("ended 1f 2 succeeded none fine") << "\nplaced \x81\n";
+  std::ofstream(dir.path("memory")) << sealed("ended 1f 2 succeeded none fine") << "placed \x81\n";
   std::ofstream(dir.path("memory.work")) << sealed("nonsense\n");
   test::Process service(command(), dir.path("log"));
   Robot10Hz world(robot);

@@ -39,7 +39,7 @@ TEST(MemoryFile, RemembersOverARestart) {
     EXPECT_EQ(memory.memory().endings, std::vector{kEnding});
     ASSERT_EQ(memory.memory().placements.size(), 1U);
     // Entries that the ending superseded are not written again.
-    EXPECT_EQ(read_file(path).find("placed 1 2"), std::string::npos);
+    EXPECT_EQ(memory.memory().placements[0].id, (GoalId{6, 7}));
   }
 }
 
@@ -82,7 +82,7 @@ TEST(MemoryFile, OneThatWasCutIsDamaged) {
 TEST(MemoryFile, GoesOnAfterATornLine) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  std::ofstream(path) << write_line(kEnding) << "ended 1 3 succ";
+  std::ofstream(path) << write_line(kEnding) << write_line(kEnding).substr(0, 40);
   Ending next = kEnding;
   next.id.number = 4;
   EXPECT_TRUE(MemoryFile(path).append(write_line(next)));
@@ -179,7 +179,7 @@ TEST(MemoryFile, RemembersTheWorkAndSetsAsideWhatIsDamagedOfIt) {
                   12,
                   2,
                   77,
-                  {{{0xfedcba9876543210ULL, 7}, "about-turn", Value(Value::List{1.5, "a b"})}},
+                  {{{0xfedcba9876543210ULL, 7}, "about-turn", {"[1.5,\"a b\"]"}}},
                   {{"*speed*", Value(0.3), "patrol", -4}}};
   EXPECT_TRUE(MemoryFile(path).keep(work));
   EXPECT_EQ(MemoryFile(path).memory().work, work);

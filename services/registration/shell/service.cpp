@@ -6,6 +6,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "registration/shell/convert.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -56,7 +57,7 @@ Service::Service(runtime::Ports& ports, const Core::Settings& settings, std::str
     const std::string trouble = read_or_set_aside(
         memory_file_,
         [&](const std::string& content) {
-          Remembered found = parse_remembered(content, memory_file_);
+          auto found = restored<Remembered>(unsealed(content, memory_file_));
           Core(settings, found);  // throws where it is unusable
           remembered = std::move(found);
         },
@@ -97,6 +98,12 @@ void Service::step(const runtime::Turn& turn) {
   remember();
 }
 
+void Service::archive(Archive& a) {
+  if (a.restores())
+    core_.emplace(Core::Settings{});
+  a("core", *core_);
+}
+
 void Service::between(double /*silence*/) {
   publish_map();
 }
@@ -113,7 +120,7 @@ void Service::publish_map() {
 }
 
 void Service::remember() {
-  const std::string trouble = saver_.offer([this] { return to_text(*core_->remembered()); });
+  const std::string trouble = saver_.offer([this] { return sealed(saved(*core_->remembered())); });
   if (!trouble.empty())
     ports_.say({{Note::Level::warning, trouble + ": a restart will not know where the robot is"}});
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
@@ -133,6 +134,8 @@ Core::Core(Settings settings, std::optional<Remembered> remembered) {
 
 void Core::take_up(Remembered remembered) {
   check(remembered.map);
+  if (const auto why = maps::problem(remembered.memory.pose_in_map))
+    throw std::invalid_argument(*why);
   if (remembered.source != now_.source)
     now_.start.reset();
   now_.editor.replace(remembered.map);
@@ -443,21 +446,18 @@ std::optional<Remembered> Core::remembered() const {
   return now;
 }
 
-CoreState Core::save() const {
-  CoreState saved{now_, std::nullopt, processes_.save()};
-  if (registration_)
-    saved.placed.emplace(CoreState::Placed{registration_->map(), registration_->state()});
-  return saved;
-}
-
-void Core::restore(CoreState saved) {
-  processes_.restore(saved.processes);
-  now_ = std::move(saved.own);
-  registration_.reset();
-  if (!saved.placed)
+void Core::archive(Archive& a) {
+  a("processes", processes_)("now", now_);
+  bool placed = registration_.has_value();
+  maps::Map map = placed ? registration_->map() : maps::Map{};
+  a("placed", placed)("map", map);  // while the map is being built, still the one before
+  if (a.restores())
+    registration_.reset();
+  if (!placed)
     return;
-  registration_.emplace(settings_for(now_.sonars), std::move(saved.placed->map));
-  registration_->set_state(std::move(saved.placed->state));
+  if (a.restores())
+    registration_.emplace(settings_for(now_.sonars), std::move(map));
+  a("registration", *registration_);
 }
 
 }  // namespace saphira::registration

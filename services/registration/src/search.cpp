@@ -20,12 +20,12 @@ bool elsewhere(const Pose& a, const Pose& b) {
 
 /// True where the map has a wall there.
 bool is_wall(const LineMap& lines, const Vec2& position) {
-  constexpr double kNear = 0.3;  // [m]
+  constexpr double kBeside = 0.3;  // [m]
   return std::any_of(lines.surfaces().begin(), lines.surfaces().end(), [&](const Surface& surface) {
     const Vec2 way = surface.to - surface.from;
     const double along = std::clamp(
         (position - surface.from).dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
-    return (surface.from + along * way - position).norm() < kNear;
+    return (surface.from + along * way - position).norm() < kBeside;
   });
 }
 Pose inverse(const Pose& pose) {

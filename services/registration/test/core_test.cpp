@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "process.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/artifact_traits.hpp"
@@ -487,7 +488,7 @@ TEST_F(RegistrationInAHall, ARestartGoesOnFromWhatWasRemembered) {
   drive(100);
   const std::uint32_t id = id_of(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})));
   const Pose before = robot.stand(core).pose_in_map;
-  Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
+  Core next(settings(), restored<Remembered>(saved(*core.remembered())));
   EXPECT_NE(maps::find(next.map(), id), nullptr);
   EXPECT_TRUE(next.map_changed());
   robot.reconnect();
@@ -522,7 +523,7 @@ TEST_F(RegistrationInAHall, ARestartKnowsThatTheMapWasDeleted) {
   robot.stand(core);
   core.act(request("delete"));
   robot.stand(core);
-  const Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
+  const Core next(settings(), restored<Remembered>(saved(*core.remembered())));
   EXPECT_EQ(next.map_source(), "");
   EXPECT_TRUE(next.map().features.empty());
 }
@@ -591,7 +592,7 @@ void expect_no_difference(const std::string& map, const std::function<void(Core&
     ASSERT_EQ(robot_a.step(a), robot_b.step(b)) << i;
     ASSERT_EQ(a.map(), b.map()) << i;
     ASSERT_EQ(a.map_revision(), b.map_revision()) << i;
-    ASSERT_EQ(to_text(*a.remembered()), to_text(*b.remembered())) << i;
+    ASSERT_EQ(saved(*a.remembered()), saved(*b.remembered())) << i;
     exchange(b);
   }
 }
@@ -605,13 +606,12 @@ TEST(RegistrationCore, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
   for (const char* map : {kHall, ""}) {
     std::optional<Core> another;
     expect_no_difference(map, [&](Core& core) {
-      const CoreState saved = core.save();
       // One with another history.
       another.emplace(settings("CORRIDOR (9) 0, 0, 0, 5000, 3000\n"));
       Robot robot;
       robot.step(*another);
-      another->restore(saved);
-      core.restore(another->save());
+      restore(saved(core), *another);
+      restore(saved(*another), core);
     });
   }
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "saphira/base/archive.hpp"
+
 namespace saphira::registration {
 namespace {
 
@@ -80,11 +82,10 @@ TEST(Standing, WhileItTurnsSlowlyEverythingChanges) {
     EXPECT_FALSE(standing.step({0.0, 0.0, radians(0.5)}, around(1.0 + 0.01 * i))) << i;
 }
 
-TEST(Standing, ACopyGoesOnAsTheFirstOne) {
+TEST(Standing, ARestoredOneGoesOnAsTheFirstOne) {
   Standing standing;
   carried(standing, around(1.0), 20);
-  Standing copy = standing;
-  EXPECT_EQ(copy, standing);
+  auto copy = restored<Standing>(saved(standing));
   EXPECT_EQ(carried(copy, around(3.0), 4), carried(standing, around(3.0), 4));
 }
 

@@ -20,18 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLineSum = 8;  // digits
-constexpr std::string_view kMark = "; memory of saphira\n";
-constexpr std::string_view kSum = "; sum ";
+constexpr std::size_t kSum = 8;  // hexadecimal digits
+constexpr std::string_view kEarlierMark = "; memory of saphira\n";
 
 std::string sum_of(std::string_view text) {
   Fnv1a hash;
   hash.add(text);
-  return hash.text();
-}
-
-std::string short_sum_of(std::string_view text) {
-  return sum_of(text).substr(0, kLineSum);
+  return hash.text().substr(0, kSum);
 }
 
 /// Closes itself.
@@ -65,66 +60,33 @@ class File {
 
 }  // namespace
 
-std::string sealed_line(std::string_view line) {
-  return short_sum_of(line) + " " + std::string(line);
+std::string sealed(std::string_view text) {
+  return sum_of(text) + " " + std::string(text) + "\n";
 }
 
-std::optional<std::string_view> unsealed_line(std::string_view line) {
-  if (line.size() <= kLineSum || line[kLineSum] != ' ')
+std::optional<std::string_view> unsealed(std::string_view text) {
+  if (text.size() <= kSum + 1 || text[kSum] != ' ' || text.back() != '\n')
     return std::nullopt;
-  const std::string_view rest = line.substr(kLineSum + 1);
-  if (short_sum_of(rest) != line.substr(0, kLineSum))
-    return std::nullopt;
-  return rest;
-}
-
-std::string sealed(const std::string& text) {
-  std::string whole = std::string(kMark) + text;
-  const std::string sum = sum_of(whole);
-  return whole.append(kSum).append(sum).append("\n");
+  const std::string_view inner = text.substr(kSum + 1, text.size() - kSum - 2);
+  return sum_of(inner) == text.substr(0, kSum) ? std::optional(inner) : std::nullopt;
 }
 
 std::string_view unsealed(std::string_view text, const std::string& file) {
-  const std::size_t last = text.rfind(kSum);
-  std::string_view whole = text.substr(0, last);
-  if (last == std::string_view::npos ||
-      text.substr(last) != std::string(kSum) + sum_of(whole) + "\n")
-    throw FileError(file, 1, 1, "it is not as it was written: its sum is missing or wrong");
-  if (whole.starts_with(kMark))  // an earlier version wrote none
-    whole.remove_prefix(kMark.size());
-  return whole;
+  if (const auto inner = unsealed(text))
+    return *inner;
+  throw FileError(file, 1, 1, "it is not as it was written: its sum is missing or wrong");
 }
 
-namespace {
-
-/// A line that begins with a sum and a blank, of which one letter may be wrong, or is cut off
-/// within the sum.
-bool begins_with_sum(std::string_view line) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  const std::string_view sum = line.substr(0, kLineSum);
-  const auto right = std::count_if(
-      sum.begin(), sum.end(), [&](char c) { return kDigits.find(c) != std::string_view::npos; });
-  const bool cut = line.size() <= kLineSum;
-  const auto wrong = std::ssize(sum) - right + (cut || line[kLineSum] == ' ' ? 0 : 1);
-  return wrong <= (cut ? 0 : 1);
-}
-
-}  // namespace
-
+/// A sum and a blank, of which one letter may be wrong, or a part of a sum.
 bool was_sealed(std::string_view content) {
-  const std::string_view mark = kMark.substr(0, content.size());
-  if (content.starts_with(mark) || content.find_first_not_of('\0') == std::string_view::npos)
-    return true;
-  while (!content.empty()) {
-    const std::size_t end = std::min(content.find('\n'), content.size());
-    const std::string_view line = content.substr(0, end);
-    // A shorter line was cut off; then it is the last one.
-    if (line.starts_with(kSum) ||
-        ((line.size() > kLineSum || end == content.size()) && begins_with_sum(line)))
-      return true;
-    content.remove_prefix(std::min(end + 1, content.size()));
-  }
-  return false;
+  const std::string_view sum = content.substr(0, std::min(content.find('\n'), kSum));
+  auto wrong = std::count_if(sum.begin(), sum.end(), [](char c) {
+    return std::string_view("0123456789abcdef").find(c) == std::string_view::npos;
+  });
+  if (content.size() > sum.size() && content[sum.size()] != ' ')
+    wrong += content[sum.size()] == '\n' ? 2 : 1;
+  return wrong <= (content.size() > kSum ? 1 : 0) || content.starts_with(kEarlierMark) ||
+         content.find_first_not_of('\0') == std::string_view::npos;
 }
 
 std::string read_or_set_aside(const std::string& path,

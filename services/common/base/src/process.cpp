@@ -128,20 +128,4 @@ std::vector<const Process*> ProcessTable::processes() const {
   return all;
 }
 
-std::vector<Process::Progress> ProcessTable::save() const {
-  std::vector<Process::Progress> saved;
-  saved.reserve(processes_.size());
-  for (const auto& process : processes_)
-    saved.push_back(process->now_);
-  return saved;
-}
-
-void ProcessTable::restore(const std::vector<Process::Progress>& saved) {
-  if (saved.size() != processes_.size())
-    throw std::invalid_argument("there are " + std::to_string(processes_.size()) +
-                                " processes, and " + std::to_string(saved.size()) + " were saved");
-  for (std::size_t i = 0; i < saved.size(); ++i)
-    processes_[i]->now_ = saved[i];
-}
-
 }  // namespace saphira

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "saphira/base/archive.hpp"
+
 namespace saphira {
 namespace {
 
@@ -183,15 +185,16 @@ TEST(ProcessTable, GoesOnFromWhatWasSaved) {
   a.request("one", ProcessAction::suspend, 3);
   a.request("two", ProcessAction::interrupt);
   for (std::uint64_t cycle = 2; cycle < 8; ++cycle) {
-    b.restore(a.save());
+    restore(saved(a), b);
     a.step(cycle);
     b.step(cycle);
-    EXPECT_EQ(a.save(), b.save()) << cycle;
+    EXPECT_EQ(saved(a), saved(b)) << cycle;
   }
   EXPECT_TRUE(b.find("one")->works());
   EXPECT_FALSE(b.find("two")->works());
   ProcessTable none;
-  EXPECT_THROW(none.restore(a.save()), std::invalid_argument);
+  none.add("one", "");
+  EXPECT_THROW(restore(saved(a), none), std::runtime_error);
 }
 
 }  // namespace

@@ -75,8 +75,9 @@ void Desk::handle(const Counter& counter, Request request) {
   const bool is_own =
       request.person && (request.person->role == "services" || request.person->role == "robot");
   if (audit_ && !is_own)
-    audit_->write({refuses ? AuditEntry::Act::refused : AuditEntry::Act::asked, request.source,
-                   describe(request) + (refuses ? ": " + done->text : "")});
+    audit_->write({.act = refuses ? v1::AUDIT_REFUSED : v1::AUDIT_ASKED,
+                   .who = request.source,
+                   .text = describe(request) + (refuses ? ": " + done->text : "")});
   if (refuses) {
     ++refused_;
     node_.warn("a request of " + request.source + ": " + done->text);

@@ -689,7 +689,7 @@ void Executor::take_up(Entry& entry, const World& world) {
       throw ActivityError("the robot's dead reckoning has begun anew");
     forest_.restore(entry.node, done->intentions, world);
     return;
-  } catch (const ActivityError& error) {
+  } catch (const std::runtime_error& error) {
     why = error.what();
   }
   // A built-in only needs its arguments, which are places and headings.

@@ -10,7 +10,7 @@
 #include "forest_node.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
-#include "saved.hpp"
+#include "saphira/intentions/functions.hpp"
 
 // The progress of a tree, over a restart of the service. Built-in activities, which manage their
 // own children, begin anew with their arguments, which are places and headings by then.
@@ -20,8 +20,10 @@ namespace {
 /// Intentions of one goal: the progress of a larger tree is not saved.
 constexpr std::size_t kMostRemembered = 256;
 
+}  // namespace
+
 /// The memory of one intention.
-struct SavedNode {
+struct Forest::SavedNode {
   std::uint32_t id = 0;
   std::uint32_t parent = 0;
   bool is_activity = false;
@@ -38,38 +40,20 @@ struct SavedNode {
   IntentionState state = IntentionState::kInit;
   GoalCode code = v1::CODE_NONE;
   std::string reason;
-  Value activity;       ///< the value of Activity::save()
-  Value::List beliefs;  ///< that end with it: name, value, and so on
+  Saved activity;
+  std::vector<std::pair<std::string, Value>> beliefs;  ///< that end with it
 
-  SavedNode() = default;
-  explicit SavedNode(const Value& saved) {
-    Loading in(saved);
-    fields(in, *this);
-  }
-  Value value() const {
-    Saving out;
-    fields(out, *this);
-    return out.value();
-  }
-
- private:
-  template <class Archive, class Self>
-  static void fields(Archive& archive, Self& self) {
-    archive(self.id, self.parent, self.is_activity, self.name, self.schema, self.given,
-            self.blocking, self.until_satisfied, self.priority, self.timeout, self.begun,
-            self.suspended_at, self.holds, self.state, self.code, self.reason, self.activity,
-            self.beliefs);
-  }
+  /// Interrupted time does not count.
+  Ticks begun_again(Ticks now) const { return begun + (suspended_at ? now - *suspended_at : 0); }
 };
 
-/// Interrupted time does not count.
-Ticks begun_again(const SavedNode& saved, Ticks now) {
-  return saved.begun + (saved.suspended_at ? now - *saved.suspended_at : 0);
-}
+/// The memory of a tree.
+struct Forest::SavedTree {
+  bool control_off = false;
+  std::vector<SavedNode> nodes;  ///< parents first
+};
 
-}  // namespace
-
-Value Forest::save_one(const Node& node) const {
+Forest::SavedNode Forest::save_one(const Node& node) const {
   SavedNode saved;
   saved.id = node.shown.id;
   saved.parent = node.shown.parent;
@@ -93,11 +77,11 @@ Value Forest::save_one(const Node& node) const {
     saved.activity = node.activity->save();
   for (const auto& [name, id] : whiles_)
     if (const Belief* const belief = beliefs_->stored(name); id == node.shown.id && belief)
-      saved.beliefs.insert(saved.beliefs.end(), {Value(belief->name), belief->value});
-  return saved.value();
+      saved.beliefs.emplace_back(belief->name, belief->value);
+  return saved;
 }
 
-Value Forest::save(std::uint32_t root) const {
+Saved Forest::save(std::uint32_t root) const {
   std::set<std::uint32_t> ids{root};
   for (auto id = ids.begin(); id != ids.end(); ++id) {
     const Node& node = *at(*id);
@@ -106,14 +90,13 @@ Value Forest::save(std::uint32_t root) const {
     if (ids.size() > kMostRemembered)
       return {};
   }
-  Value::List nodes{Value::truth(control_off_.contains(root))};
+  SavedTree tree{control_off_.contains(root), {}};
   for (const std::uint32_t id : ids)
-    nodes.push_back(save_one(*at(id)));
-  return Value(std::move(nodes));
+    tree.nodes.push_back(save_one(*at(id)));
+  return {saved(tree)};
 }
 
-Forest::Node& Forest::restore_one(Node& parent, const Value& value, const World& world) {
-  SavedNode saved(value);
+Forest::Node& Forest::restore_one(Node& parent, SavedNode saved, const World& world) {
   Start start;
   start.schema = saved.schema;
   start.name = saved.name.value_or("");
@@ -140,7 +123,7 @@ Forest::Node& Forest::restore_one(Node& parent, const Value& value, const World&
     make_behavior(child, start, world);
   }
   child.timeout = saved.timeout;
-  child.begun = begun_again(saved, world.now);
+  child.begun = saved.begun_again(world.now);
   if (finished(saved.state)) {
     child.shown.state = saved.state;
     child.shown.label = "END";
@@ -149,25 +132,25 @@ Forest::Node& Forest::restore_one(Node& parent, const Value& value, const World&
   return child;
 }
 
-void Forest::restore(std::uint32_t root, const Value& saved, const World& world) {
-  const Value::List& nodes = saved.list();
-  if (nodes.size() < 2)
+void Forest::restore(std::uint32_t root, const Saved& saved, const World& world) {
+  if (saved == Saved{})
     throw ActivityError("it was more than can be remembered");
-  std::vector<SavedNode> known;
-  for (std::size_t i = 1; i < nodes.size(); ++i)
-    known.emplace_back(nodes[i]);
+  const auto tree = restored<SavedTree>(saved.text);
+  const std::vector<SavedNode>& known = tree.nodes;
+  if (known.empty())
+    throw ActivityError("what was remembered is not whole");
   std::map<std::uint32_t, std::uint32_t> ids{{known[0].id, root}};
   try {
     for (std::size_t i = 1; i < known.size(); ++i) {
       const auto parent = ids.find(known[i].parent);
       if (parent == ids.end())
         throw ActivityError("what was remembered is not whole");
-      ids[known[i].id] = restore_one(*at(parent->second), nodes[i + 1], world).shown.id;
+      ids[known[i].id] = restore_one(*at(parent->second), known[i], world).shown.id;
     }
     // The root last: after an earlier failure it is as it was planted.
     for (auto one = known.rbegin(); one != known.rend(); ++one) {
       Node& node = *at(ids.at(one->id));
-      if (node.activity != nullptr && !finished(node.shown.state) && !one->activity.nil())
+      if (node.activity != nullptr && !finished(node.shown.state) && one->activity != Saved{})
         node.activity->restore(one->activity, ids);
     }
   } catch (...) {
@@ -177,18 +160,17 @@ void Forest::restore(std::uint32_t root, const Value& saved, const World& world)
   Node& top = *at(root);
   if (top.activity->keeps_children())
     top.shown.state = IntentionState::kRunning;
-  top.begun = begun_again(known[0], world.now);
+  top.begun = known[0].begun_again(world.now);
   for (const SavedNode& one : known)
     for (const Hold hold : {Hold::kActivity, Hold::kPerson})
       if ((one.holds & static_cast<unsigned>(hold)) != 0)
         interrupt(ids.at(one.id), hold);
   for (const SavedNode& one : known)
-    for (std::size_t i = 0; i + 1 < one.beliefs.size(); i += 2)
-      if (const std::string* const name = one.beliefs[i].text()) {
-        whiles_[normal(*name)] = ids.at(one.id);
-        beliefs_->set(*name, one.beliefs[i + 1], one.schema, world.now);
-      }
-  if (nodes[0].truthy()) {
+    for (const auto& [name, value] : one.beliefs) {
+      whiles_[normal(name)] = ids.at(one.id);
+      beliefs_->set(name, value, one.schema, world.now);
+    }
+  if (tree.control_off) {
     control_off_.insert(root);
     beliefs_->set(kBehaviorControl, Value(), top.shown.schema, world.now);
   }

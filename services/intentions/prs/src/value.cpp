@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "language/reader.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
@@ -159,6 +160,14 @@ bool Value::operator==(const Value& other) const {
   if (is_list() && other.is_list())
     return list() == other.list();
   return is_ == other.is_;
+}
+
+/// As text: it is read with the checks of the language.
+void Value::archive(Archive& a) {
+  std::string text = to_text(*this);
+  a.item(text);
+  if (a.restores())
+    *this = parse_value(text);
 }
 
 std::string to_text(const Value& value) {

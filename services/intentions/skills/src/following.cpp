@@ -7,6 +7,7 @@
 #include <string>
 
 #include "driving.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/intentions/activity.hpp"
 #include "seeing.hpp"
 
@@ -33,19 +34,21 @@ class Follow : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const World& world = self.world();
-    if (!who_)
+    auto& [who, trail] = now_;
+    const std::size_t places = trail.places();
+    if (!who)
       if (const std::optional<Value> found = nearest_seen(world, "person"))
         if (const Reference* const person = found->reference())
-          who_ = person->id;
-    const lps::SeenThing* const thing = who_ ? seen_thing(world, *who_) : nullptr;
+          who = person->id;
+    const lps::SeenThing* const thing = who ? seen_thing(world, *who) : nullptr;
     const bool in_sight = thing != nullptr && seconds_unseen(world, *thing) <= kPlaced;
     if (in_sight)
-      trail_.add(thing->pose_in_odom.position());
-    trail_.reach(self.robot().pose_in_odom.position());
-    const double left = trail_.length();
+      trail.add(thing->pose_in_odom.position());
+    trail.reach(self.robot().pose_in_odom.position());
+    const double left = trail.length();
     const double near = in_sight ? distance_ : kAtEnd;
     const bool there = left <= near;
-    const Vec2 goal = trail_.at(there ? left : std::min(left, kLook));
+    const Vec2 goal = trail.at(there ? left : std::min(left, kLook));
     self.intend_behavior(
         "track", "AttendAtPos", kTask,
         {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
@@ -53,6 +56,12 @@ class Follow : public Activity {
          number("speed", std::min(speed_, kSlow + std::max(0.0, left - kKeeps * near)))});
     self.level(there ? 1.0 : 0.0);
     self.say(in_sight ? "following a person" : "going where it saw a person last");
+    if (trail.places() != places)
+      self.moved_on();
+  }
+  Saved save() const override { return {saved(now_)}; }
+  void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>&) override {
+    now_ = restored<Now>(saved.text);
   }
 
  private:
@@ -60,8 +69,11 @@ class Follow : public Activity {
 
   double distance_ = 0.0;
   double speed_ = 0.0;
-  std::optional<std::uint64_t> who_;
-  Trail trail_;
+  struct Now {
+    std::optional<std::uint64_t> who;
+    Trail trail;
+  };
+  Now now_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <deque>
 
 #include "saphira/geometry/pose.hpp"
@@ -18,6 +19,12 @@ class Trail {
   double length() const;
   /// The point this far [m] along the way; at most its end.
   Vec2 at(double distance) const;
+  std::size_t places() const { return places_.size(); }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("robot", robot_)("places", places_);
+  }
 
  private:
   Vec2 robot_{0.0, 0.0};

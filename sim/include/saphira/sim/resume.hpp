@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "saphira/sim/scene.hpp"
 
@@ -11,8 +12,7 @@ namespace saphira::sim {
 std::string places_text(const Scene& scene, const std::string& world);
 
 /// Puts everything at its place again. Returns what has none, in words; empty: nothing.
-/// FileError where the text is not of places_text(); of another world nothing is changed.
-std::string resume(Scene& scene, const std::string& text, const std::string& file,
-                   const std::string& world);
+/// std::runtime_error where the text is not of places_text(); of another world nothing is changed.
+std::string resume(Scene& scene, std::string_view text, const std::string& world);
 
 }  // namespace saphira::sim

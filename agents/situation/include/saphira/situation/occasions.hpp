@@ -28,15 +28,18 @@ class Occasions {
  private:
   std::optional<Occasion> find(const Situation& situation, double now);
 
-  struct Before {
-    std::pair<std::uint64_t, std::uint64_t> stop;  ///< asker and number
+  using Key = std::pair<std::uint64_t, std::uint64_t>;
+  /// The part of a situation that the next one is compared with.
+  struct Seen {
+    std::optional<Key> stop;  ///< asker and number [none: no grant is known]
     bool estopped = false;
-    bool lost = false;
+    std::optional<bool> lost;  ///< [none: no registration is known]
     bool silent = false;
+    bool knows_goals = false;
+    std::set<Key> failed;                                      ///< goals
+    std::set<std::pair<std::string, std::uint64_t>> programs;  ///< heard: name and instance
   };
-  std::optional<Before> before_;
-  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalState> goals_;
-  std::set<std::pair<std::string, std::uint64_t>> programs_;  ///< heard: name and instance
+  std::optional<Seen> before_;
   double held_ = -1.0;  ///< [s] since when the guard stops the robot [-1: it does not]
   std::map<std::string, double> told_;  ///< [s] by kind
 };

@@ -19,7 +19,7 @@ struct Latches {
   bool operator==(const Latches&) const = default;
 };
 
-/// One line of text. Empty where nothing is latched.
+/// A sealed line. Empty where nothing is latched.
 std::string to_text(const Latches& latches);
 /// Reads to_text(). An unreadable text counts as an emergency stop, since there may have been one.
 Latches latches_from_text(const std::string& text);

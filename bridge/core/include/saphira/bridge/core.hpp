@@ -199,7 +199,8 @@ class Core {
 
   CoreSettings settings_;
   std::vector<Output> out_;
-  Notes words_;  ///< to be put out when the packets are out
+  Notes words_;                        ///< to be put out when the packets are out
+  std::vector<v1::AuditEntry> audit_;  ///< likewise
 
   protocol::PacketParser parser_;
   reflector::Connection connection_;

@@ -14,6 +14,7 @@
 #include "saphira/base/stamp.hpp"
 #include "saphira/base/stop_id.hpp"
 #include "saphira/geometry/edge.hpp"
+#include "saphira/idl/system.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
@@ -56,7 +57,7 @@ class Reports {
   static constexpr std::size_t kMost = 30;
 
   /// The entry to keep; nothing where it is dropped. now: [s]
-  std::optional<AuditEntry> take(AuditEntry entry, const Checked& writer, double now);
+  std::optional<v1::AuditEntry> take(v1::AuditEntry entry, const Checked& writer, double now);
 
  private:
   struct Minute {
@@ -156,6 +157,6 @@ struct StatusReport {
 
 using Output = std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket,
                             DevicesChanged, GrantDecided, StopEnded, WatchLink, CloseLink,
-                            KeepLatches, KeepOdometry, StatusReport, Note, AuditEntry>;
+                            KeepLatches, KeepOdometry, StatusReport, Note, v1::AuditEntry>;
 
 }  // namespace saphira::bridge

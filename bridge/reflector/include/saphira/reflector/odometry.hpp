@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "saphira/geometry/pose.hpp"
 
@@ -14,6 +13,12 @@ struct RawPose {
   std::uint16_t x = 0;  ///< 15 bits
   std::uint16_t y = 0;  ///< 15 bits
   double th = 0.0;      ///< [rad] in the server's own frame
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a.members(*this);
+    a.expect(x <= 0x7FFF && y <= 0x7FFF, "15 bits");
+  }
 };
 
 /// The state by which an odom frame continues later: over a reconnection, or a restart of the
@@ -30,10 +35,6 @@ struct Slack {
   double distance = 0.0;  ///< [m]
   double angle = 0.0;     ///< [rad]
 };
-
-/// One line of text, for a small file; and back, nothing where the text is not one.
-std::string to_text(const OdometryMemory& memory);
-std::optional<OdometryMemory> from_text(const std::string& text);
 
 /// Unwraps the position counters and gives their odom frame.
 class Odometry {

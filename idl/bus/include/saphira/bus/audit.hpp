@@ -3,13 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "saphira/base/notes.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus {
 
-v1::AuditEntry to_bus(const AuditEntry& entry);
-AuditEntry from_bus(const v1::AuditEntry& entry);
+/// With the time of now.
+v1::AuditEntry timed(v1::AuditEntry entry);
 
 /// A program's side of the audit, which the bridge keeps. Without the right to write it a warning
 /// says so, and nothing is written.
@@ -17,7 +16,7 @@ class Audit {
  public:
   explicit Audit(Node& node);
 
-  void write(const AuditEntry& entry);
+  void write(const v1::AuditEntry& entry);
   /// Somebody came with a key that nobody has; `ended`: the person whose key it was [empty: none].
   /// One entry a minute at most, with their number. now: [s] of a clock that never goes back.
   void wrong_key(const std::string& door, double now, const std::string& ended = {});

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "saphira/base/notes.hpp"
+#include "saphira/idl/system.hpp"
 
 namespace saphira::security {
 
-const char* name_of(AuditEntry::Act act);
+const char* name_of(v1::AuditAct act);
 
 /// The audit of a robot, a line an entry: NUMBER TIME ACT WHO TEXT HASH, with tabs between. The
 /// hash is the SHA-256 of the line before it and of the hash of the entry before. The file PATH
@@ -27,9 +27,10 @@ class AuditFile {
   /// written before the first entry.
   explicit AuditFile(std::string path, std::size_t most = kMost);
 
-  /// time: [s] since 1970. An entry that repeats one of the last 10 s is left out. Returns the
-  /// reason why it was not written, in words; empty: it was. On a full disk it waits for tend().
-  std::string write(const AuditEntry& entry, double time);
+  /// time: [s] since 1970, instead of the entry's own. An entry that repeats one of the last 10 s
+  /// is left out. Returns the reason why it was not written, in words; empty: it was. On a full
+  /// disk it waits for tend().
+  std::string write(v1::AuditEntry entry, double time);
   /// Writes what waits, and keeps room for the next entries. Now and then.
   std::string tend(double time);
 
@@ -50,7 +51,7 @@ class AuditFile {
   std::string hash_;          ///< likewise
   std::string head_;          ///< as written last
   struct Recent {
-    AuditEntry entry;
+    v1::AuditEntry entry;
     double time = 0.0;
   };
   std::vector<Recent> recent_;

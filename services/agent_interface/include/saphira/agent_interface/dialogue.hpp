@@ -105,9 +105,9 @@ class Dialogue {
     std::vector<WantedGoal> goals;
     std::vector<Claimed> claims;
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
-    bool changed = false;                ///< save() has other contents
+    bool changed = false;                ///< the memory has other contents
     std::string note;                    ///< for the log; empty: none
-    AuditEntry denied{};                 ///< the person may not do it; without a text: they may
+    v1::AuditEntry denied{};             ///< the person may not do it; without a text: they may
     UnknownName unknown{};
     Answer answer{};  ///< of forget()
   };
@@ -118,7 +118,7 @@ class Dialogue {
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
   /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.
   Outputs without_status(const std::vector<std::uint64_t>& tags, double seconds);
-  /// A lasting goal was asked for, under that name and with that text. save() includes both.
+  /// A lasting goal was asked for, under that name and with that text.
   void asked(std::uint64_t tag, const GoalRef& goal, const std::string& sample) {
     tasks_.asked(tag, goal, sample);
   }
@@ -142,9 +142,7 @@ class Dialogue {
 
   /// The state that outlives a restart: the knowledge, the ids of heard utterances, and lasting
   /// goals.
-  std::string save() const;
-  /// Returns the number of unreadable lines.
-  std::size_t restore(std::string_view text);
+  void archive(Archive& a);
 
  private:
   /// A question back to the speaker of a sentence, until their next sentence or for 20 s. Of the

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "saphira/base/notes.hpp"
+#include "saphira/idl/system.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
@@ -110,7 +110,7 @@ class Facilitator {
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< each once
-    std::vector<AuditEntry> audit;      ///< who asks for actions, and who is refused
+    std::vector<v1::AuditEntry> audit;  ///< who asks for actions, and who is refused
     bool changed = false;  ///< the memory has changed: it is kept before the requests are sent
   };
   /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
@@ -119,9 +119,11 @@ class Facilitator {
   std::optional<double> due() const;
 
   /// The memory: firings of triggers with `times`, and the agents that were asked for actions.
-  std::string save() const;
-  /// Call before all others.
-  void restore(const std::string& text);
+  /// Restored before all other calls.
+  template <class Archive>
+  void archive(Archive& a) {
+    a("fired", fired_)("begun", begun_)("askers", askers_);
+  }
 
   std::size_t open() const { return open_.size(); }
   bool is_open(std::uint64_t asker, std::uint64_t number) const {

@@ -51,10 +51,10 @@ class Knowledge {
   /// True where there is a fact about that person, or that person knows a place of others.
   bool knows(std::string_view person) const;
 
-  /// As text, a sealed line for each (saphira/base/durable.hpp). Unreadable lines are left out;
-  /// restore returns their number.
-  std::string save() const;
-  std::size_t restore(std::string_view text);
+  template <class Archive>
+  void archive(Archive& a) {
+    a("all", all_)("newest", newest_);
+  }
 
  private:
   std::vector<Advice> all_;

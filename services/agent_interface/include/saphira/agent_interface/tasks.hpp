@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "saphira/base/identity.hpp"
-#include "saphira/base/notes.hpp"
+#include "saphira/idl/system.hpp"
 #include "saphira/requests/argument.hpp"
+
+namespace saphira {
+class Archive;
+}
 
 namespace saphira::agent_interface {
 
@@ -108,8 +112,8 @@ class Tasks {
     std::vector<Said> said;
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
     std::vector<WantedGoal> goals;
-    std::vector<Task> asks;  ///< the steps for which it asks "Shall I drop that?"
-    AuditEntry denied{};     ///< this person may not do it; without a text: they may
+    std::vector<Task> asks;   ///< the steps for which it asks "Shall I drop that?"
+    v1::AuditEntry denied{};  ///< this person may not do it; without a text: they may
   };
 
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
@@ -127,7 +131,7 @@ class Tasks {
   const Task* task() const;
   /// The open task of that tag; nullptr: none.
   const Task* find(std::uint64_t tag) const;
-  /// A lasting goal was asked for, under that name and with that text. save() includes both.
+  /// A lasting goal was asked for, under that name and with that text.
   void asked(std::uint64_t tag, const GoalRef& goal, const std::string& sample);
   /// The lasting goals that have not ended.
   std::vector<LastingGoal> lasting() const;
@@ -137,9 +141,9 @@ class Tasks {
   /// The utterance that an activity's message answers; 0, 0: none.
   UtteranceId spoken_for() const;
 
-  /// The lasting goals, a line of text each. The later steps of a sequence are not kept.
-  std::vector<std::string> save() const;
-  void restore(const std::string& line);
+  /// The lasting goals alone: others end with the dialogue. The later steps of a sequence are not
+  /// kept.
+  void archive(Archive& a);
 
  private:
   void begin(Task task, Outputs& out);

@@ -13,6 +13,7 @@
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/base/stamp.hpp"
+#include "saphira/idl/system.hpp"
 #include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/executor.hpp"
 #include "saphira/intentions/gaze.hpp"
@@ -121,6 +122,7 @@ class Core {
     std::vector<Edge> edges;     ///< [odom] of the map near the robot
     std::optional<double> look;  ///< [rad] the direction that the head has to turn to
     Notes notes;
+    std::vector<v1::AuditEntry> audit;
   };
   Outputs step(Inputs inputs);
 
@@ -128,6 +130,7 @@ class Core {
   struct Told {
     News news;
     Notes notes;
+    std::vector<v1::AuditEntry> audit;
   };
   /// Handles inputs that need no cycle; `silence` [s] since the newest one.
   Told between(const Heard& heard, double silence);
@@ -150,8 +153,11 @@ class Core {
                                  std::uint32_t cycles);
 
  private:
-  std::vector<GoalEvent> events_of(const Heard& heard, Notes& notes);
-  bool take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Notes& notes);
+  /// Out: Outputs or Told.
+  template <class Out>
+  std::vector<GoalEvent> events_of(const Heard& heard, Out& out);
+  template <class Out>
+  bool take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Out& out);
   std::vector<ClaimEvent> claims_of(const Heard& heard);
   void note_grants(const std::vector<Heard::Grant>& estops);
   void look_around(const Inputs& inputs, Surroundings& around);

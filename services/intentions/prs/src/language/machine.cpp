@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "language/program.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
-#include "saved.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -80,8 +80,9 @@ class Machine : public Activity {
 
   void child_ended(Self& self) override { go_on(self); }
 
-  Value save() const override;
-  void restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) override;
+  Saved save() const override { return {saved(*this)}; }
+  void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) override;
+  void archive(Archive& a);
 
   const Value* variable(std::string_view name) const override {
     for (std::size_t i = 0; i < program_->locals.size(); ++i)
@@ -723,67 +724,32 @@ std::string mark_of(const Program& program) {
   return "v" + hash.text();
 }
 
-/// The saved state of a thread without its children.
-template <class Archive, class T>
-void fields(Archive& archive, T& thread, Value::List& children) {
-  archive(thread.id, thread.parent, thread.owner, thread.at, thread.waiting, thread.fresh,
-          thread.holds, thread.held_since, thread.over, thread.restores, thread.since, thread.limit,
-          thread.child, thread.threshold, children, thread.failed, thread.code, thread.has_failed);
-}
-
-Value Machine::save() const {
-  Value::List threads;
-  for (const Thread& thread : threads_) {
-    Value::List children;
-    for (const Child& child : thread.children) {
-      Saving out;
-      out(child.id, child.kept);
-      children.push_back(out.value());
-    }
-    Saving out;
-    fields(out, thread, children);
-    threads.push_back(out.value());
-  }
-  Saving out;
-  out(mark_of(*program_), locals_, threads, last_thread_, begun_at_, suspended_at_, outcome_,
-      reason_);
-  return out.value();
-}
-
-void Machine::restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
-  Machine next(program_, {});
-  std::string mark;
-  Value::List threads;
-  Loading in(saved);
-  in(mark);
-  if (mark != mark_of(*program_))
+void Machine::archive(Archive& a) {
+  std::string program = mark_of(*program_);
+  a("program", program);
+  if (program != mark_of(*program_))
     throw ActivityError("the schema " + program_->name + " is another than it was");
-  in(next.locals_, threads, next.last_thread_, next.begun_at_, next.suspended_at_, next.outcome_,
-     next.reason_);
-  next.threads_.clear();
-  bool whole = next.locals_.size() == locals_.size() && !threads.empty();
-  const auto now = [&](std::uint32_t before) -> std::uint32_t {
-    const auto found = children.find(before);
-    return found == children.end() ? 0 : found->second;
+  a("locals", locals_)("threads", threads_)("last_thread", last_thread_)("begun_at", begun_at_);
+  a("suspended_at", suspended_at_)("outcome", outcome_)("reason", reason_);
+  a.expect(locals_.size() == program_->locals.size() && !threads_.empty(),
+           "the progress of " + program_->name);
+}
+
+void Machine::restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
+  Machine next(program_, {});
+  saphira::restore(saved.text, next);
+  const auto now = [&](std::uint32_t& child) {
+    const auto found = children.find(child);
+    child = found == children.end() ? 0 : found->second;
   };
-  for (const Value& one : threads) {
-    Thread& thread = next.threads_.emplace_back();
-    Value::List begun;
-    Loading each(one);
-    fields(each, thread, begun);
-    thread.child = now(thread.child);
-    for (const Value& value : begun) {
-      Child child;
-      Loading of_child(value);
-      of_child(child.id, child.kept);
-      child.id = now(child.id);
-      if (child.id != 0)
-        thread.children.push_back(child);
-    }
-    whole = whole && thread.at < program_->steps.size();
+  for (Thread& thread : next.threads_) {
+    if (thread.at >= program_->steps.size())
+      throw ActivityError("what was remembered of " + program_->name + " is not whole");
+    now(thread.child);
+    for (Child& child : thread.children)
+      now(child.id);
+    std::erase_if(thread.children, [](const Child& child) { return child.id == 0; });
   }
-  if (!whole)
-    throw ActivityError("what was remembered of " + program_->name + " is not whole");
   *this = std::move(next);
 }
 

@@ -12,7 +12,6 @@
 #include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
 #include "saphira/registration/remembered.hpp"
-#include "saphira/registration/state.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::registration {
@@ -21,43 +20,6 @@ namespace saphira::registration {
 /// nothing for "unknown", and for "start" where the map has none. std::invalid_argument gives the
 /// expected form.
 std::optional<Pose> start_pose(const std::string& start, const maps::Map& map);
-
-/// The whole learnt state of a Core as one value, without derived data: a copy in another Core
-/// continues to the last bit as the first one would have. State that a step leaves for a later one
-/// belongs here.
-struct CoreState {
-  /// State of the core itself.
-  struct Own {
-    std::string option;  ///< the map at the start of the service
-    maps::Editor editor;
-    std::string source;                    ///< the origin of the map
-    bool changed = false;                  ///< the map, since its origin
-    std::optional<Pose> start;             ///< on the map at the start of the service
-    std::optional<Remembered> remembered;  ///< until it is used
-    std::vector<lps::SonarMount> sonars;
-    bool on = true;  ///< false: switched off by a request
-    bool adds_features = false;
-    bool snaps = true;
-    std::optional<MapBuilder> builder;
-    /// The map began empty: the builder finds the pose together with the map.
-    bool building = false;
-    Pose built_from;         ///< in the map, when building began
-    bool too_large = false;  ///< the map has reached its largest size
-    std::uint64_t odom = 0;  ///< of the newest step
-    Pose pose_in_odom;
-    Pose pose_in_map;  ///< from the newest step; before that, the start
-    v1::RegistrationState told = v1::REGISTRATION_UNPLACED;
-  };
-  /// Of the Registration.
-  struct Placed {
-    maps::Map map;  ///< while the map is being built, still the one before
-    RegistrationState state;
-  };
-
-  Own own;
-  std::optional<Placed> placed;  ///< none before the first robot
-  std::vector<Process::Progress> processes;
-};
 
 /// The registration service without the bus: keeps the robot's pose on the map, and the map's
 /// changes by perception, by requests, or by building from nothing. Files are the shell's.
@@ -134,10 +96,34 @@ class Core {
   /// Its micro-tasks. They are stepped before the core, for the same cycle.
   ProcessTable& processes() { return processes_; }
 
-  CoreState save() const;
-  void restore(CoreState saved);
+  /// Its whole learnt state: another Core continues from it to the last bit.
+  void archive(Archive& a);
 
  private:
+  /// Its whole learnt state but that of the Registration. State that a step leaves for a later one
+  /// belongs here.
+  struct State {
+    std::string option;  ///< the map at the start of the service
+    maps::Editor editor;
+    std::string source;                    ///< the origin of the map
+    bool changed = false;                  ///< the map, since its origin
+    std::optional<Pose> start;             ///< on the map at the start of the service
+    std::optional<Remembered> remembered;  ///< until it is used
+    std::vector<lps::SonarMount> sonars;
+    bool on = true;  ///< false: switched off by a request
+    bool adds_features = false;
+    bool snaps = true;
+    std::optional<MapBuilder> builder;
+    /// The map began empty: the builder finds the pose together with the map.
+    bool building = false;
+    Pose built_from;         ///< in the map, when building began
+    bool too_large = false;  ///< the map has reached its largest size
+    std::uint64_t odom = 0;  ///< of the newest step
+    Pose pose_in_odom;
+    Pose pose_in_map;  ///< from the newest step; before that, the start
+    v1::RegistrationState told = v1::REGISTRATION_UNPLACED;
+  };
+
   void begin(const std::vector<lps::SonarMount>& sonars);
   void take_up(Remembered remembered);
   void set_builder();
@@ -157,7 +143,7 @@ class Core {
       "test-match", "matches what is seen with the map (not while the map is being built)");
   Process& environment_ = processes_.add("test-environment", "says where on the map the robot is");
 
-  CoreState::Own now_;
+  State now_;
   std::optional<Registration> registration_;
 };
 

@@ -16,15 +16,12 @@ struct Look {
 
   /// The origin of the echo, if it came from the axis.
   Vec2 end() const { return sensor_in_map.position() + range * sensor_in_map.direction(); }
-  bool operator==(const Look&) const = default;
 };
 
 /// The distance of independent looks: in place or in bearing.
 struct LookSpacing {
   double way = 0.15;            ///< [m]
   double turn = radians(12.0);  ///< [rad]
-
-  bool operator==(const LookSpacing&) const = default;
 };
 
 /// Adds a look to the others. False, and not added, where it repeats one of them.

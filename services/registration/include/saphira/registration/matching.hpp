@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -38,8 +38,8 @@ struct Match {
   double turned = 0.0;
   double distance = 0.0;  ///< squared Mahalanobis
   bool accepted = false;
-  bool ambiguous = false;   ///< several artifacts fit
-  std::string_view reason;  ///< the reason without a match
+  bool ambiguous = false;  ///< several artifacts fit
+  std::string reason;      ///< the reason without a match
 
   bool operator==(const Match&) const = default;
 };

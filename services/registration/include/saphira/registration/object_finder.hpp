@@ -26,8 +26,6 @@ struct ObjectFinderSettings {
   std::size_t kept = 40;          ///< looks at each
   std::size_t candidates = 50;    ///< the most
   std::uint64_t patience = 3000;  ///< [cycles] for which a few echoes wait for more
-
-  bool operator==(const ObjectFinderSettings&) const = default;
 };
 
 /// Objects that are not on the map: obstacles met by several readings from several places, as an
@@ -40,8 +38,10 @@ class ObjectFinder {
   /// which tells the finder that they are on the map).
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
-
-  bool operator==(const ObjectFinder&) const = default;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("candidates", candidates_);
+  }
 
  private:
   struct Candidate {
@@ -51,8 +51,6 @@ class ObjectFinder {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     std::optional<maps::Feature> told;  ///< id 0: not on the map yet
-
-    bool operator==(const Candidate&) const = default;
   };
   void follow_map(const maps::Map& map);
   Candidate* candidate_at(const Vec2& position);

@@ -20,8 +20,6 @@ struct CloudSettings {
 
   double least_position = 0.1;         ///< [m] one sigma at the start, at least...
   double least_turned = radians(4.0);  ///< [rad] ...and of the heading
-
-  bool operator==(const CloudSettings&) const = default;
 };
 
 /// Possible poses of the robot near the estimated one, each with its own drift of dead reckoning;
@@ -59,16 +57,16 @@ class ParticleCloud {
     double drift_variance = 0.0;
   };
   Estimate estimate() const;
-
-  bool operator==(const ParticleCloud&) const = default;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("random", random_)("particles", particles_);
+  }
 
  private:
   struct Particle {
     Pose pose;
     double drift = 0.0;
     double log_weight = 0.0;
-
-    bool operator==(const Particle&) const = default;
   };
   std::vector<double> weights() const;
 

@@ -13,8 +13,6 @@ struct ReckoningErrors {
   double turn = 0.05;                 ///< [rad] after a turn of 1 rad
   double heading = radians(0.5);      ///< [rad] after 1 m
   double drift_walk = radians(0.01);  ///< [rad/m] change of the drift itself in 1 m
-
-  bool operator==(const ReckoningErrors&) const = default;
 };
 
 /// The robot's pose in the map and the drift of its dead reckoning (a constant false turn per
@@ -24,6 +22,7 @@ class PoseFilter {
   using State = Eigen::Vector4d;  // x, y, th, drift
   using Covariance = Eigen::Matrix4d;
 
+  PoseFilter() = default;  ///< to be restored
   PoseFilter(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, const ReckoningErrors& errors);
 
@@ -47,12 +46,14 @@ class PoseFilter {
   void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
-
-  bool operator==(const PoseFilter&) const = default;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("covariance", covariance_)("errors", errors_);
+  }
 
  private:
-  State state_;
-  Covariance covariance_;
+  State state_ = State::Zero();
+  Covariance covariance_ = Covariance::Zero();
   ReckoningErrors errors_;
 };
 

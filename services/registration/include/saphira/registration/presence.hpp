@@ -31,8 +31,6 @@ struct PresenceSettings {
   double slanted = radians(60.0);  ///< [rad] largest angle of an echo from behind it
   int door_looks = 3;              ///< looks that agree: closed, or open
   std::uint64_t again = 20;        ///< [cycles] after which a look from the same place counts again
-
-  bool operator==(const PresenceSettings&) const = default;
 };
 
 /// Detects artifacts that should be seen and are not (paper 3.2.2), by kind. OBJECTs, which people
@@ -63,8 +61,10 @@ class Presence {
     watched_.clear();
     closed_ = std::move(closed);
   }
-
-  bool operator==(const Presence&) const = default;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("watched", watched_)("closed", closed_);
+  }
 
  private:
   struct Watched {
@@ -75,8 +75,6 @@ class Presence {
     int score = 0;
     std::uint64_t counted = 0;  ///< cycle
     std::vector<Pose> agreeing;
-
-    bool operator==(const Watched&) const = default;
   };
   Watched& watch(const maps::Feature& feature);
   void look_at(Watched& watched, const Look& look, const maps::Map& map);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,10 @@
 #include "saphira/registration/presence.hpp"
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
+
+namespace saphira {
+class Archive;
+}
 
 namespace saphira::registration {
 
@@ -93,7 +98,7 @@ struct Inputs {
 
 struct Output {
   v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
-  std::string_view reason;  ///< of the state, in words
+  std::string reason;  ///< of the state, in words
   Pose pose_in_map;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
   double confidence = 0.0;  ///< [0..1] that the pose is right within its covariance
@@ -158,8 +163,8 @@ class Registration {
 
   /// The learnt state, see state.hpp.
   const RegistrationState& state() const;
-  /// Continues from there: `state` is of a Registration with the same map and settings.
-  void set_state(RegistrationState state);
+  /// For one with the same map and settings.
+  void archive(Archive& a);
 
   /// The part that the service saves over a restart: much less.
   Memory save() const;

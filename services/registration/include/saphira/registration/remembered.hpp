@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/registration.hpp"
@@ -21,10 +20,5 @@ struct Remembered {
 
   bool operator==(const Remembered&) const = default;
 };
-
-/// With its checksum. std::invalid_argument where no file can hold the map.
-std::string to_text(const Remembered& remembered);
-/// FileError with line and column for any other text.
-Remembered parse_remembered(std::string_view text, const std::string& file);
 
 }  // namespace saphira::registration

@@ -20,8 +20,6 @@ struct PlacedReading {
   double range = 0.0;
   bool echo = false;
   int sonar = 0;
-
-  bool operator==(const PlacedReading&) const = default;
 };
 
 struct SearchSettings {
@@ -50,8 +48,6 @@ struct SearchState {
     double way = 0.0;  ///< [m] followed
     int openings = 0;
     bool told = false;  ///< not proposed by an opening: given as the robot's start
-
-    bool operator==(const Hypothesis&) const = default;
   };
   std::vector<Hypothesis> hypotheses;
   std::deque<PlacedReading> history;
@@ -60,8 +56,6 @@ struct SearchState {
   std::optional<Pose> own;
   double own_score = 0.0;   ///< the total score of the present place...
   double own_recent = 0.0;  ///< ...and its recent score
-
-  bool operator==(const SearchState&) const = default;
 };
 
 /// Finds the robot in the whole map. Places that would explain a seen opening are followed with a

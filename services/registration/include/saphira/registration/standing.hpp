@@ -31,8 +31,9 @@ class Standing {
   /// One cycle; `moved` is by dead reckoning. True once where the robot was carried.
   bool step(const Pose& moved, const std::vector<PlacedReading>& readings);
 
-  bool operator==(const Standing& other) const {
-    return way_ == other.way_ && sonars_ == other.sonars_;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("way", way_)("sonars", sonars_);
   }
 
  private:
@@ -40,8 +41,6 @@ class Standing {
     double direction = 0.0;      ///< [rad] in dead reckoning, of the newest reading
     std::vector<double> ranges;  ///< [m]
     int strange = 0;             ///< readings in a row unlike any of these
-
-    bool operator==(const Heard&) const = default;
   };
 
   StandingSettings settings_;

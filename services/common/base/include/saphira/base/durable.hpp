@@ -13,20 +13,15 @@ namespace saphira {
 /// A program that only checks its input (--dry-run) leaves files as they are: kStay.
 enum class Files { kChange, kStay };
 
-/// The line behind its checksum: "9ae16a3b placed ...".
-std::string sealed_line(std::string_view line);
-/// The sealed text; none where it has changed.
-std::optional<std::string_view> unsealed_line(std::string_view line);
-
-/// A text that ends with a line break, between a first line that marks our files and a last line
-/// with its sum. Both are comments of our files: "; memory of saphira", "; sum 1f2e3d4c5b6a7988".
-std::string sealed(const std::string& text);
-/// The sealed text. FileError where it has changed or is not whole.
+/// The text behind its checksum, with a line break: "9ae16a3b {...}". A file, or a line of one.
+std::string sealed(std::string_view text);
+/// The sealed text; none where it has changed or is not whole.
+std::optional<std::string_view> unsealed(std::string_view text);
+/// The same, or a FileError.
 std::string_view unsealed(std::string_view text, const std::string& file);
 
-/// True for a content that was sealed, or has sealed lines, before its damage: one of its marks is
-/// there, in the first line at least its beginning. Also true for zero bytes alone, as a power cut
-/// leaves them.
+/// True for a content that was sealed before its damage, by its beginning, and for zero bytes
+/// alone, as a power cut leaves them.
 bool was_sealed(std::string_view content);
 
 /// Gives the content of a file to `understand`. Where that throws, or the file cannot be read, the

@@ -27,12 +27,27 @@ consteval auto enumerators(std::index_sequence<i...> /*all*/) {
   return result;
 }
 
+template <auto value>
+consteval auto enumerator_name() {
+  std::string_view text = __PRETTY_FUNCTION__;
+  text.remove_prefix(text.rfind("value = ") + 8);
+  text = text.substr(0, text.find_first_of(";]"));
+  return text.substr(text.rfind(':') + 1);
+}
+
 }  // namespace detail
 
 /// All enumerators of an enumeration with a fixed underlying type (as every enum class has) whose
 /// values are from 0 to 63, in the order of their values.
 template <class E>
 inline constexpr auto kEnumerators = detail::enumerators<E>(std::make_index_sequence<64>());
+
+/// Their names in the code, in the same order.
+template <class E>
+inline constexpr auto kEnumeratorNames = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array{detail::enumerator_name<kEnumerators<E>[i]>()...};
+}
+(std::make_index_sequence<kEnumerators<E>.size()>());
 
 /// The word of a value, of one for each enumerator from 0 on; "?" where others send another value.
 template <class E, std::size_t count>

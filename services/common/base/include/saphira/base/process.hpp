@@ -99,11 +99,13 @@ class ProcessTable {
 
   std::vector<const Process*> processes() const;
 
-  /// The progress of each process, in the order of addition. The memory of a process's own function
-  /// is its owner's.
-  std::vector<Process::Progress> save() const;
-  /// For a table with the same processes; std::invalid_argument where their number differs.
-  void restore(const std::vector<Process::Progress>& saved);
+  /// The progress of each process. The memory of a process's own function is its owner's.
+  template <class Archive>
+  void archive(Archive& a) {
+    for (const auto& process : processes_)
+      a(process->name_, process->now_);
+    a("told", told_)("asked", asked_);
+  }
 
  private:
   std::vector<std::unique_ptr<Process>> processes_;

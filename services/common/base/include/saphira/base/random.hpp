@@ -36,7 +36,10 @@ class Random {
     return mean + deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
-  bool operator==(const Random&) const = default;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("increment", increment_);
+  }
 
  private:
   std::uint64_t state_ = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/intentions/goal.hpp"
 #include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
@@ -165,11 +166,11 @@ class Activity {
   /// True: interruption and resumption apply to its children as well. False: its children are
   /// removed.
   virtual bool keeps_children() const { return false; }
-  /// The progress, for a restart of the service; nil: the arguments are enough.
-  virtual Value save() const { return {}; }
-  /// Continues from the value of save(). `children`: their new numbers by the old ones.
-  /// ActivityError where it cannot: then it is unchanged.
-  virtual void restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
+  /// The progress, for a restart of the service; none: the arguments are enough.
+  virtual Saved save() const { return {}; }
+  /// Continues from save(). `children`: their new numbers by the old ones. std::runtime_error where
+  /// it cannot: then it is unchanged.
+  virtual void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
     static_cast<void>(saved);
     static_cast<void>(children);
   }

@@ -85,13 +85,13 @@ class Forest {
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
                       std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
                       bool concurrent = false);
-  /// The progress in the tree of a root, for a restart of the service; nil where it is too large.
-  Value save(std::uint32_t root) const;
-  /// Restores a newly planted tree from the value of save(). ActivityError where that is impossible
+  /// The progress in the tree of a root, for a restart of the service; none where it is too large.
+  Saved save(std::uint32_t root) const;
+  /// Restores a newly planted tree from save(). std::runtime_error where that is impossible
   /// (another version of the schema, an object that is not seen any more): the tree is then as it
   /// was planted.
-  void restore(std::uint32_t root, const Value& saved, const World& world);
-  /// True where the value of save() may have changed since the last call.
+  void restore(std::uint32_t root, const Saved& saved, const World& world);
+  /// True where save() may have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
 
   void interrupt(std::uint32_t id, Hold why = Hold::kGoal);
@@ -141,6 +141,8 @@ class Forest {
 
  private:
   struct Node;
+  struct SavedNode;
+  struct SavedTree;
   class Handle;
   using Nodes = std::map<std::uint32_t, std::unique_ptr<Node>>;
 
@@ -151,8 +153,8 @@ class Forest {
   std::uint32_t start(Node& parent, const Start& start, const World& world);
   void make_behavior(Node& node, const Start& start, const World& world);
   std::uint64_t ask(Request request);
-  Value save_one(const Node& node) const;
-  Node& restore_one(Node& parent, const Value& saved, const World& world);
+  SavedNode save_one(const Node& node) const;
+  Node& restore_one(Node& parent, SavedNode saved, const World& world);
   void watch(Node& node, const World& world);
   void remove_children(Node& parent);
   void drop(std::uint32_t id);

@@ -62,9 +62,7 @@ struct Memory {
   bool operator==(const Memory&) const = default;
 };
 
-/// Lines of the journal, with their line break, each behind its sum (saphira/base/durable.hpp):
-///   placed writer(hex) number epoch cycle odom {name x y th x y th}
-///   ended writer(hex) number state code reason...
+/// Sealed lines of the journal (saphira/base/durable.hpp), with their line break.
 std::string write_line(const Placement& placement);
 std::string write_line(const Ending& ending);
 

@@ -9,6 +9,10 @@
 
 #include "saphira/intentions/goal.hpp"
 
+namespace saphira {
+class Archive;
+}
+
 namespace saphira::intentions {
 
 /// A directed point and the frame that it is given in.
@@ -67,6 +71,7 @@ class Value {
   bool is_t() const { return std::holds_alternative<bool>(is_); }
 
   bool operator==(const Value& other) const;
+  void archive(Archive& a);
 
  private:
   struct Elements;

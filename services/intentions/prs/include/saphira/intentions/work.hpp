@@ -2,13 +2,12 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/stop_id.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
-#include "saphira/intentions/value.hpp"
 
 namespace saphira::intentions {
 
@@ -16,7 +15,7 @@ namespace saphira::intentions {
 struct GoalWork {
   GoalId id;
   std::string functor;
-  Value intentions;  ///< as Forest::save gives it
+  Saved intentions;  ///< of the Forest
 
   bool operator==(const GoalWork&) const = default;
 };
@@ -34,14 +33,5 @@ struct Work {
 
   bool operator==(const Work&) const = default;
 };
-
-/// A line for each, with its line break:
-///   (at epoch cycle odom now)
-///   (goal writer(hex) number functor intentions)
-///   (belief name value said_by since)
-///   (heeds asker(hex) number)                    where there was a stop
-std::string write_work(const Work& work);
-/// FileError for any other text.
-Work read_work(const std::string& file, std::string_view text);
 
 }  // namespace saphira::intentions
