@@ -113,6 +113,7 @@ class Gateway {
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const teleop::Control::Sample& sample);
   void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
+  void change_map(Connection connection, const Page& page, const ChangeMap& change);
   void cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel);
   void tell_cancels();
   void hear(const Page& page, const Say& words);

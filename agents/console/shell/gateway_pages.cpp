@@ -4,9 +4,11 @@
 
 #include "gateway.hpp"
 #include "key.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/cli/goal_words.hpp"
+#include "saphira/cli/map_words.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::console {
@@ -255,11 +257,8 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     send(processes_,
          bus::request(process->functor, {bus::text("process", process->process)}, process->service),
          connection, page, process->reference);
-  else if (const auto* place = std::get_if<PlaceRobot>(&message))
-    send(registration_,
-         bus::request("place",
-                      {bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)}),
-         connection, page, place->reference);
+  else if (const auto* change = std::get_if<ChangeMap>(&message))
+    change_map(connection, page, *change);
   else if (const auto* out = std::get_if<PointOut>(&message)) {
     pointed_out_.write({.stamp = stamp_,
                         .source = operator_of(page.name),
@@ -300,6 +299,19 @@ void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& a
     answer(connection, ask.reference, true, cli::describe(goal), key_text({id.writer, id.number}));
   } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
     answer(connection, ask.reference, false, error.what());
+  }
+}
+
+/// Without the forms that read files of this machine.
+void Gateway::change_map(Connection connection, const Page& page, const ChangeMap& change) {
+  try {
+    const std::vector<std::string> words = words_of(change.words);
+    if (words.empty() || (words[0] != "put" && words[0] != "remove" && words[0] != "place"))
+      throw std::invalid_argument("expected put, remove or place");
+    send(registration_, to_bus(cli::parse_map_request(words, {})), connection, page,
+         change.reference);
+  } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
+    answer(connection, change.reference, false, error.what());
   }
 }
 
@@ -349,7 +361,12 @@ void Gateway::take_answers(bus::RequestClient& client) {
     const auto asked = asked_.find(given.number);
     if (asked == asked_.end())
       continue;
-    answer(asked->second.connection, asked->second.reference, bus::well(given.code), given.text);
+    std::string id;  // of the artifact that was put
+    for (const v1::Argument& result : given.results)
+      if (result.name == "id")
+        id = format("%.0f", result.number);
+    answer(asked->second.connection, asked->second.reference, bus::well(given.code), given.text,
+           id);
     if (bus::ended(given.code))
       asked_.erase(asked);
   }

@@ -91,9 +91,8 @@ Message read(const Json& json) {
   if (type == "process")
     return AskProcess{count(json, "reference"), text(json, "service"), text(json, "process"),
                       text(json, "functor")};
-  if (type == "place")
-    return PlaceRobot{count(json, "reference"), number(json, "x"), number(json, "y"),
-                      number(json, "th")};
+  if (type == "map")
+    return ChangeMap{count(json, "reference"), text(json, "words")};
   if (type == "point_out")
     return PointOut{number(json, "x"), number(json, "y"), truth(json, "in_map")};
   return Wrong{"\"type\" is not known: " + type.substr(0, kName)};
@@ -162,7 +161,7 @@ security::DoorRight right_for(const Message& message) {
          std::type_identity<EmergencyStop>()))
     return DoorRight::watch;
   return is(std::type_identity<ResetEmergencyStop>(), std::type_identity<AskProcess>(),
-            std::type_identity<PlaceRobot>())
+            std::type_identity<ChangeMap>())
              ? DoorRight::operate
              : DoorRight::drive;
 }

@@ -55,10 +55,9 @@ TEST(Message, EachKindIsRead) {
               R"({"type":"process","reference":1,"service":"s","process":"p","functor":"f"})"))
           .process,
       "p");
-  EXPECT_DOUBLE_EQ(
-      std::get<PlaceRobot>(parse_message(R"({"type":"place","reference":1,"x":1,"y":2,"th":3})"))
-          .th,
-      3.0);
+  EXPECT_EQ(std::get<ChangeMap>(parse_message(R"({"type":"map","reference":1,"words":"remove 3"})"))
+                .words,
+            "remove 3");
   EXPECT_FALSE(
       std::get<PointOut>(parse_message(R"({"type":"point_out","x":1,"y":2,"in_map":false})"))
           .in_map);
@@ -112,7 +111,7 @@ TEST(Message, WhoWatchesMayStopAndWhatConcernsOthersIsToOperate) {
         Message(CancelGoal{}), Message(Say{}), Message(HandBack{}), Message(PointOut{})})
     EXPECT_EQ(right_for(message), DoorRight::drive);
   for (const Message& message :
-       {Message(ResetEmergencyStop{}), Message(AskProcess{}), Message(PlaceRobot{})})
+       {Message(ResetEmergencyStop{}), Message(AskProcess{}), Message(ChangeMap{})})
     EXPECT_EQ(right_for(message), DoorRight::operate);
 }
 

@@ -1,15 +1,15 @@
-import type {RefObject} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {store, stored} from './address';
 import {CameraPanel, cameraOf} from './camera_panel';
 import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
-import {ahead, askInstead, nameOf, quoted} from './goals';
 import {Legend} from './legend';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
+import type {Sketch} from './map_edit';
 import {strangersIn} from './strangers';
+import {TargetCard} from './target_card';
 import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
 import {doubt, type Layers, type Target, View} from './view';
 import {forPage, keyless, old, percent, seconds} from './words';
@@ -250,7 +250,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
   }, [driving]);
   const v = view.current;
   const close = closer.current = () => {
-    if (v) v.target = undefined, v.dirty = true;
+    if (v) v.target = v.sketch = undefined, v.dirty = true;
     if (card.current?.contains(document.activeElement)) canvas.current!.focus({preventScroll: true});
     setTarget(undefined);
   };
@@ -294,7 +294,7 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
     </div>
     {camera && hasCamera && <CameraPanel link={link} close={() => showCamera(false)} />}
     {driving && s.state !== 'gone' && <Stick drive={drive} />}
-    {target && <TargetCard card={card} corner={corner} link={link} target={target} close={close} />}
+    {target && v && <TargetCard card={card} corner={corner} link={link} view={v} target={target} close={close} />}
   </>;
 }
 // The corner of the picture for the card, so that it covers nothing of the target: as it is, else the farthest.
@@ -326,7 +326,7 @@ function bannerText(s: Seen, barrier: string): string {
   }
 }
 
-// A click chooses a place; a drag moves the map, a wheel or two fingers change its scale. Arrow keys
+// A click chooses a place; a drag moves the map, or draws on it where something is to be drawn; a wheel or two fingers change its scale. Arrow keys
 // choose a place too, from the middle on: by 8 pixels, with Shift by 40.
 const ways: {[key: string]: [number, number]} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1], Enter: [0, 0]};
 interface Choice { choose: (target: Target) => void; enter: () => void; close: () => void; driving: () => boolean }
@@ -342,10 +342,10 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
     choose(view.at(inside(x + step * ways[e.key][0], width), inside(y + step * ways[e.key][1], height)));
   });
   const pointers = new Map<number, {x: number; y: number}>();
-  let moved = 0, apart = 0;
+  let moved = 0, apart = 0, first: Target;
   canvas.addEventListener('pointerdown', e => {
     pointers.set(e.pointerId, {x: e.offsetX, y: e.offsetY});
-    if (pointers.size === 1) moved = 0;
+    if (pointers.size === 1) moved = 0, first = view.at(e.offsetX, e.offsetY);
     canvas.setPointerCapture(e.pointerId);
   });
   canvas.addEventListener('pointermove', e => {
@@ -355,7 +355,8 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
     moved += Math.hypot(at.x - last.x, at.y - last.y);
     pointers.set(e.pointerId, at);
     if (pointers.size === 1) {
-      if (moved > 5) view.drag(at.x - last.x, at.y - last.y);
+      if (moved > 5 && view.sketch) draw(view.sketch, view.at(at.x, at.y));
+      else if (moved > 5) view.drag(at.x - last.x, at.y - last.y);
     } else {
       const [a, b] = [...pointers.values()];
       const now = Math.hypot(a.x - b.x, a.y - b.y);
@@ -363,8 +364,13 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
       apart = now;
     }
   });
+  const draw = (sketch: Sketch, to: Target) => view.drawOn({...sketch, from: sketch.kind === 'zone' ? first : sketch.from, to});
   const end = (e: PointerEvent) => {
-    if (pointers.size === 1 && moved <= 5 && e.type === 'pointerup') choose(view.at(e.offsetX, e.offsetY));
+    if (pointers.size === 1 && moved <= 5 && e.type === 'pointerup') {
+      const at = view.at(e.offsetX, e.offsetY);
+      if (view.sketch?.kind === 'facing') draw(view.sketch, at);
+      else choose(at);
+    }
     pointers.delete(e.pointerId);
     apart = 0;
   };
@@ -374,58 +380,6 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
     view.zoom(Math.exp(-e.deltaY / 500));
     e.preventDefault();
   }, {passive: false});
-}
-
-function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDivElement>; corner: string; link: Link; target: Target; close: () => void}) {
-  const [told, setTold] = useState('');
-  const [sure, setSure] = useState(false);   // asked whether the robot is here
-  useEffect(() => {
-    setTold('');
-    setSure(false);
-  }, [target]);
-  const name = target.artifact?.name;
-  const grant = link.data<Grant>('drive/grant');
-  const first = grant?.waits_for_hand_back ? 'Hand back, go' : 'Go';
-  const before = ahead(link);
-  const ask = async (words: string, instead: boolean) => {
-    if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.');
-    if (grant?.waits_for_hand_back) link.send({type: 'hand_back'});
-    const answer = await (instead ? askInstead(link, words, before) : link.ask({type: 'goal', words}));
-    if (answer.well) close();
-    else setTold(forPage(answer.text));
-  };
-  const place = async () => {
-    const answer = await link.ask({type: 'place', x: target.x, y: target.y, th: link.data<Registration>('registration')?.pose_in_map.th ?? 0});
-    setSure(false);
-    if (answer.well) close();
-    else setTold(answer.text);
-  };
-  const go = (where: string, words: string, main: boolean, title: string) => before.length === 0
-    ? <button class={main ? 'main' : ''} title={title} onClick={() => ask(words, false)}>{first} {where}</button>
-    : <>
-      <button class={main ? 'main' : ''} title={`${title}; ends ${before.length === 1 ? 'the goal' : `the ${before.length} goals`} before it`} onClick={() => ask(words, true)}>{first} {where} instead</button>
-      <button title={`${title}, once ${before.length === 1 ? 'the goal before it has' : `the ${before.length} goals before it have`} ended`} onClick={() => ask(words, false)}>{first} {where} after that</button>
-    </>;
-  const waiting = before.length - 1;
-  return <div ref={card} class={`target ${corner}`} role="dialog" aria-label="A place on the map" onKeyDown={e => e.key === 'Escape' && close()}>
-    <div class="row"><strong aria-live="polite">{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
-      <button class="plain" aria-label="Close" onClick={close}>×</button></div>
-    {link.mayDrive ? <>
-      {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}
-        {waiting > 0 && `; ${waiting} more ${waiting === 1 ? 'waits' : 'wait'}`}.</p>}
-      {name && <div class="row">{go(`to ${name}`, `go-to-place place=${quoted(name)}`, true, 'by the route that the map gives')}</div>}
-      <div class="row">{target.routed
-        ? go('here', `go-to-place place=${target.x.toFixed(3)},${target.y.toFixed(3)}@map`, !name, 'to this point, by the route that the map gives')
-        : go('here', `go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`, !name, 'straight to this point, without a route')}</div>
-      <div class="row apart">
-        {sure ? <><span class="grow">Set the robot's position here?</span>
-            <button onClick={place}>Yes</button><button onClick={() => setSure(false)}>No</button></>
-          : <><button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: target.frame === 'map'}); close(); }}>Tell programs</button>
-            {target.frame === 'map' && <button title="corrects the robot's position on the map" onClick={() => setSure(true)}>The robot is here …</button>}</>}
-      </div>
-    </> : <p class="small">Without the key you may watch.</p>}
-    {told && <p class="told bad" role="status">{told}</p>}
-  </div>;
 }
 
 function Stick({drive: {active, by, hands}}: {drive: Drive}) {

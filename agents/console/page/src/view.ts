@@ -2,6 +2,7 @@
 import {compose, identity, inverse} from './geometry';
 import {pursued} from './goals';
 import type {Link} from './link';
+import {facing, zoneOf, type Sketch} from './map_edit';
 import {drawShape} from './shapes';
 import type {Argument, Behaviors, Drawing, GridTile, MapArtifact, Perception, Pose, ProgramMind, Registration,
              RobotDescription, RobotState, SaphiraMap, Vision} from './types';
@@ -23,7 +24,11 @@ const guessed = 0.35;        // opacity of what was heard, where the place is a 
 const regionTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'ARTIFACT_JUNCTION'];
 
 export interface Layers { grid: boolean; sonar: boolean; map: boolean; route: boolean; drawings: boolean; percepts: boolean; areas: boolean; wake: boolean }
-export interface Target { x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact; routed: boolean }   // routed: in a region of the map
+export interface Target {
+  x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact;
+  zones: MapArtifact[];      // around it
+  inside?: boolean;          // in a room or corridor of the map [undefined: it has none]
+}
 interface Echo { x: number; y: number; at: number }
 interface Colors { [name: string]: string }
 interface Label { text: string; x: number; y: number; room: number; rank: number }   // room: [m] that it names
@@ -42,6 +47,8 @@ export class View {
   scale = 45;                // [pixels/m]
   layers: Layers = {grid: true, sonar: true, map: true, route: true, drawings: true, percepts: true, areas: true, wake: true};
   target?: Target;           // that was clicked
+  sketch?: Sketch;           // that is being drawn
+  onSketch = () => {};
   whole = false;             // all of the map is in the picture, and is to stay so
   bottom = 0;                // [pixels] of the picture that something lies over
   dirty = true;
@@ -196,10 +203,12 @@ export class View {
     // A click anywhere in a room means the room.
     const around = artifacts.filter(a => {
       const at = compose(inverse(a.pose_in_map), {...world, th: 0});
-      return regionTypes.includes(a.type) && Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
+      return Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
     });
-    const room = around.find(a => a.name && a.type === 'ARTIFACT_OFFICE');
-    return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom', routed: around.length > 0,
+    const room = around.find(a => a.name && a.type === 'ARTIFACT_OFFICE'), isRegion = (a: MapArtifact) => regionTypes.includes(a.type);
+    return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom',
+            zones: around.filter(a => a.type === 'ARTIFACT_ZONE'),
+            inside: artifacts.some(isRegion) ? around.some(isRegion) : undefined,
             artifact: near && near.d * this.scale < 22 ? near.a : room};
   }
 
@@ -248,6 +257,7 @@ export class View {
       if (this.onMap() && this.lost()) this.label('lost', robot.x, robot.y - this.robotRadius() - this.px(10), colors.text, 13);
     }
     if (this.target) this.drawTarget(this.target);
+    if (this.sketch) this.drawSketch(this.sketch);
     this.drawScale();
     this.dirty = false;
     if (this.undrawn !== undefined) this.link.drawn(performance.now() - this.undrawn);
@@ -623,6 +633,23 @@ export class View {
   private drawTarget(target: Target) {
     this.cross(target, this.colors.text, target.artifact ? 4 : 7);
     if (target.artifact) this.cross(target.artifact.pose_in_map, this.colors.text, 7);
+  }
+
+  drawOn(sketch: Sketch) {
+    this.sketch = sketch;
+    this.dirty = true;
+    this.onSketch();
+  }
+  private drawSketch(sketch: Sketch) {
+    if (sketch.kind === 'zone') {
+      const zone = zoneOf(sketch);
+      return this.within(zone.pose_in_map, () => this.drawZone(zone));
+    }
+    const length = this.px(45), wing = this.px(9);
+    this.within({...sketch.from, th: facing(sketch)}, () => {
+      this.line([[0, 0], [length, 0]], this.colors.text, this.px(3));
+      this.line([[length - wing, wing], [length, 0], [length - wing, -wing]], this.colors.text, this.px(3));
+    });
   }
 
   private drawDrawings(odom: Pose) {

@@ -51,7 +51,7 @@ const upgrade = protocol => `GET / HTTP/1.1\r\nHost: localhost:${port}\r\nOrigin
   `Sec-WebSocket-Protocol: ${protocol}\r\n\r\n`;
 // The messages of the fuzzer of the console's core, without those that would change what the robot does in the end.
 const messages = readFileSync(new URL('../../../../tests/fuzz/console.seed', import.meta.url), 'utf8').trim().split('\n')
-  .filter(line => !/"type":"(estop|cancel|goal|say|process|place|hand_back)"/.test(line));
+  .filter(line => !/"type":"(estop|cancel|goal|say|process|map|hand_back)"/.test(line));
 
 const count = {connections: 0, frames: 0};
 function attack() {

@@ -59,11 +59,10 @@ struct AskProcess {
   std::string process;
   std::string functor;  ///< interrupt, suspend, resume
 };
-struct PlaceRobot {
+/// A change of the map, or of the robot's place on it.
+struct ChangeMap {
   std::uint64_t reference = 0;
-  double x = 0.0;  ///< [m] [map]
-  double y = 0.0;
-  double th = 0.0;  ///< [rad]
+  std::string words;  ///< put, remove or place in the form of `saphira map`
 };
 /// A place to show to the programs on the bus.
 struct PointOut {
@@ -79,7 +78,7 @@ struct Wrong {
 using Message =
     std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, GiveControl, ReleaseControl,
                  teleop::Control::Sample, HandBack, StopRobot, EmergencyStop, ResetEmergencyStop,
-                 AskGoal, Say, CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
+                 AskGoal, Say, CancelGoal, AskProcess, ChangeMap, PointOut, Rename>;
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);

@@ -1,0 +1,58 @@
+// Changes of the map, in the words of `saphira map`, and how to undo them.
+import {degrees} from './geometry';
+import type {Answer, Link} from './link';
+import type {MapArtifact, Pose} from './types';
+
+interface Point { x: number; y: number }
+// Drawn by dragging over the map: a zone between two corners, or where the robot faces from a place on.
+export interface Sketch { kind: 'zone' | 'facing'; rule: string; from: Point; to: Point }
+interface Undo { text: string; words: string }
+
+export const rules = {ZONE_KEEP_OUT: 'keep-out', ZONE_SLOW: 'slow', ZONE_ONE_WAY: 'one-way', ZONE_PREFERRED: 'preferred'};
+export const ruleOf = (artifact: MapArtifact) => rules[artifact.rule as keyof typeof rules] ?? '';
+const least = 0.1;           // [m] of a zone
+const undos: Undo[] = [];    // of this page, the newest last
+
+export const facing = ({from, to}: Sketch) => Math.atan2(to.y - from.y, to.x - from.x);
+
+// A zone along the axes of the map; a one-way zone leads the way in which it was drawn.
+export function zoneOf({rule, from, to}: Sketch, name = '', speed = 0): MapArtifact {
+  const dx = to.x - from.x, dy = to.y - from.y, upright = Math.abs(dy) > Math.abs(dx);
+  const th = rule !== 'ZONE_ONE_WAY' ? 0 : upright ? Math.sign(dy) * Math.PI / 2 : dx < 0 ? Math.PI : 0;
+  const along = Math.max(least, Math.abs(dx)), across = Math.max(least, Math.abs(dy)), turned = rule === 'ZONE_ONE_WAY' && upright;
+  return {id: 0, type: 'ARTIFACT_ZONE', pose_in_map: {x: (from.x + to.x) / 2, y: (from.y + to.y) / 2, th},
+    length: turned ? across : along, width: turned ? along : across, name, learned: false, rule, speed};
+}
+export const placeOf = (at: Point, name: string): MapArtifact =>
+  ({id: 0, type: 'ARTIFACT_POSITION', pose_in_map: {...at, th: 0}, length: 0, width: 0, name, learned: false, rule: '', speed: 0});
+
+// The line of a map file [mm, degrees].
+export function lineOf(a: MapArtifact): string {
+  const mm = (meters: number) => Math.round(1000 * meters);
+  const name = a.name ? ` "${a.name.replace(/["\n]/g, '')}"` : '';
+  const pose = `(${a.id}) ${mm(a.pose_in_map.x)}, ${mm(a.pose_in_map.y)}, ${degrees(a.pose_in_map.th).toFixed(1)}`;
+  if (a.type === 'ARTIFACT_POSITION') return `POS ${pose}${name}`;
+  return `ZONE ${pose}, ${mm(a.length)}, ${mm(a.width)} ${ruleOf(a)}${a.rule === 'ZONE_SLOW' ? ` ${mm(a.speed)}` : ''}${name}`;
+}
+export const nameFor = (a: MapArtifact) => `${a.type === 'ARTIFACT_ZONE' ? `${ruleOf(a)} zone` : 'place'}${a.name ? ` ${a.name}` : ''}`;
+
+const change = (link: Link, words: string) => link.ask({type: 'map', words});
+const put = (a: MapArtifact) => `put "${lineOf(a).replace(/["\\]/g, '\\$&')}"`;
+
+export async function add(link: Link, artifact: MapArtifact): Promise<Answer> {
+  const answer = await change(link, put(artifact));
+  if (answer.well) undos.push({text: `adding ${nameFor(artifact)}`, words: `remove ${answer.id}`});
+  return answer;
+}
+export async function remove(link: Link, artifact: MapArtifact): Promise<Answer> {
+  const answer = await change(link, `remove ${artifact.id}`);
+  if (answer.well) undos.push({text: `removing ${nameFor(artifact)}`, words: put(artifact)});
+  return answer;
+}
+export const toUndo = () => undos[undos.length - 1]?.text ?? '';
+export async function undo(link: Link): Promise<Answer> {
+  const last = undos[undos.length - 1], answer = await change(link, last.words);
+  if (answer.well) undos.splice(undos.indexOf(last), 1);
+  return answer;
+}
+export const placeRobot = (link: Link, {x, y, th}: Pose) => change(link, `place ${x.toFixed(3)} ${y.toFixed(3)} ${th.toFixed(4)}`);
