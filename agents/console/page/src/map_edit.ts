@@ -1,7 +1,7 @@
 // Changes of the map, in the words of `saphira map`, and how to undo them.
 import {degrees} from './geometry';
 import type {Answer, Link} from './link';
-import type {MapArtifact, Pose} from './types';
+import type {MapArtifact, Pose, SaphiraMap} from './types';
 
 interface Point { x: number; y: number }
 // Drawn by dragging over the map: a zone between two corners, or where the robot faces from a place on.
@@ -40,7 +40,8 @@ const change = (link: Link, words: string) => link.ask({type: 'map', words});
 const put = (a: MapArtifact) => `put "${lineOf(a).replace(/["\\]/g, '\\$&')}"`;
 
 export async function add(link: Link, artifact: MapArtifact): Promise<Answer> {
-  const answer = await change(link, put(artifact));
+  const ids = link.data<SaphiraMap>('map')?.artifacts.map(a => a.id) ?? [];
+  const answer = await change(link, put({...artifact, id: 1 + Math.max(0, ...ids)}));
   if (answer.well) undos.push({text: `adding ${nameFor(artifact)}`, words: `remove ${answer.id}`});
   return answer;
 }

@@ -255,6 +255,43 @@ test('the card of a place does not cover it, and sets the position of the robot 
   await leave(page);
 });
 
+test('a zone is drawn on the map, refuses goals there, is removed and undone; a point outside of the building has no route', async () => {
+  const page = await person();
+  await open(page);
+  await page.locator('dt:text-is("On the map")').waitFor();
+  await page.getByRole('button', {name: 'All'}).click();
+  const canvas = await page.locator('canvas').boundingBox(), card = page.getByRole('dialog');
+  const middle = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  const zones = () => page.evaluate(() => saphira.data('map').artifacts.filter(a => a.type === 'ARTIFACT_ZONE'));
+  const red = async () => (await colorsOf(page)).get('#d32f2f') ?? 0;
+  await page.mouse.click(...middle);
+  await card.getByRole('button', {name: 'Zone …'}).click();
+  await page.mouse.move(middle[0] - 60, middle[1] - 40);
+  await page.mouse.down();
+  await page.mouse.move(middle[0] + 60, middle[1] + 40, {steps: 5});
+  await page.mouse.up();
+  await card.getByLabel('Name of the zone').fill('wet floor');
+  await card.getByRole('button', {name: 'Add', exact: true}).click();
+  await card.getByText('The zone is on the map.').waitFor();
+  const [zone] = await until('the zone', async () => (await zones()).length === 1 && zones());
+  assert.deepEqual([zone.rule, zone.name, Math.abs(zone.length / zone.width - 1.5) < 0.1], ['ZONE_KEEP_OUT', 'wet floor', true]);
+  await until('its edge', red);
+  await page.mouse.click(middle[0], middle[1] + 10);
+  await card.getByText('No goal leads here: keep-out zone wet floor.').waitFor();
+  assert.equal(await card.getByRole('button', {name: /^Go here/}).count(), 0);
+  await card.getByRole('button', {name: 'Remove'}).click();
+  await until('no zone', async () => (await zones()).length === 0);
+  await card.getByRole('button', {name: 'Undo removing keep-out zone wet floor'}).click();
+  await until('the zone', async () => (await zones()).length === 1);
+  await card.getByRole('button', {name: 'Undo adding keep-out zone wet floor'}).click();
+  await until('no zone', async () => (await zones()).length === 0);
+  await card.getByRole('button', {name: 'Close'}).click();
+  await page.mouse.click(canvas.x + 5, middle[1]);
+  await card.getByText('No room or corridor of the map has this point, so no route leads here.').waitFor();
+  await card.getByRole('button', {name: 'Go straight here'}).waitFor();
+  await leave(page);
+});
+
 test('a behavior that is edited while it runs is seen; a broken version changes nothing and says where', async () => {
   const shipped = readFileSync(join(process.env.SAPHIRA_SOURCE_DIR, 'config/behaviors/constant-velocity.beh'), 'utf8');
   const edit = text => writeFileSync(join(folder, 'constant-velocity.beh'), text);
