@@ -78,7 +78,7 @@ struct Named {
 #pragma clang diagnostic ignored "-Wundefined-var-template"
 #endif
 template <class T>
-extern const Named<T> named_object;
+extern const Named<T> kNamedObject;
 
 template <class P>
 struct MemberPointer {
@@ -98,6 +98,6 @@ consteval auto member_name() {
 /// The name of a member of a plain struct.
 template <class T, std::size_t index>
 inline constexpr std::string_view kMemberName = detail::member_name<detail::MemberPointer{
-    &std::get<index>(members_of(detail::named_object<T>.value))}>();
+    &std::get<index>(members_of(detail::kNamedObject<T>.value))}>();
 
 }  // namespace saphira
