@@ -82,7 +82,7 @@ export function App() {
   const state = look(link, now);
   const grant = link.data<Grant>('drive/grant');
   return <>
-    <Header link={link} seen={state} />
+    <Header link={link} drive={drive} seen={state} />
     <main>
       <section class="picture" aria-label="Map">
         <Picture link={link} drive={drive} seen={state} />
@@ -109,11 +109,15 @@ export function App() {
 
 const linkWords = {live: 'live', old: 'old', silent: 'no robot', gone: 'link gone', locked: 'locked'};
 
-function Header({link, seen: s}: {link: Link; seen: Seen}) {
+function Header({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) {
   const info = link.data<ConsoleInfo>('console');
   // A replay also plays the recorder's own status.
   const runs = (name: string) => link.all<ServiceStatus>('system/status').some(([, {data, at}]) => data.name === name && performance.now() - at < 3000);
   const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
+  const estop = () => {
+    link.estop();
+    drive.letGo('STOP was pressed');
+  };
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
     {runs('replay') ? <span class="chip warn" title="saphira replay plays it: nothing here moves">a recording</span>
@@ -126,7 +130,7 @@ function Header({link, seen: s}: {link: Link; seen: Seen}) {
     {strangers.length > 0 && <span class="chip bad" title="see Programs">{strangers.length === 1 ? 'a stranger is' : `${strangers.length} strangers are`} kept out</span>}
     {info?.simulator && <a class="wide" href="simulator.html">the simulator's own view</a>}
     {/* At the touch, also of a second finger, which makes no click; the click is the keyboard's. */}
-    <button class="estop" onPointerDown={() => link.estop()} onClick={e => e.detail === 0 && link.estop()}
+    <button class="estop" onPointerDown={estop} onClick={e => e.detail === 0 && estop()}
             aria-label="Emergency stop">{link.stopping ? 'STOP …' : 'STOP'}</button>
   </header>;
 }

@@ -259,7 +259,7 @@ test('a zone is drawn on the map, refuses goals there, is removed and undone; a 
   const page = await person();
   await open(page);
   await page.locator('dt:text-is("On the map")').waitFor();
-  await page.getByRole('button', {name: 'All'}).click();
+  await page.getByRole('button', {name: 'All', exact: true}).click();
   const canvas = await page.locator('canvas').boundingBox(), card = page.getByRole('dialog');
   const middle = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
   const zones = () => page.evaluate(() => saphira.data('map').artifacts.filter(a => a.type === 'ARTIFACT_ZONE'));

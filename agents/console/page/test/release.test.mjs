@@ -215,8 +215,9 @@ row(stick, 'let go outside the window', async () => {
   await stick.drop();
 });
 row(stick, 'the capture of the pointer is lost', () => page.evaluate(() => {
-  const stick = document.querySelector('svg.stick');
+  const stick = document.querySelector('svg.stick'), lost = new Promise(tell => stick.addEventListener('lostpointercapture', tell));
   for (let id = 0; id < 100; ++id) if (stick.hasPointerCapture(id)) stick.releasePointerCapture(id);
+  return lost.then(() => {});
 }));
 row(finger, 'let go', () => finger.drop());
 row(finger, 'let go beyond the edge', async () => {
