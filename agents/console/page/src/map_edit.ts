@@ -6,7 +6,7 @@ import type {MapArtifact, Pose, SaphiraMap} from './types';
 interface Point { x: number; y: number }
 // Drawn by dragging over the map: a zone between two corners, or where the robot faces from a place on.
 export interface Sketch { kind: 'zone' | 'facing'; rule: string; from: Point; to: Point }
-interface Undo { text: string; words: string }
+interface Undo { text: string; puts: boolean; artifact: MapArtifact }
 
 export const rules = {ZONE_KEEP_OUT: 'keep-out', ZONE_SLOW: 'slow', ZONE_ONE_WAY: 'one-way', ZONE_PREFERRED: 'preferred'};
 export const ruleOf = (artifact: MapArtifact) => rules[artifact.rule as keyof typeof rules] ?? '';
@@ -42,18 +42,22 @@ const put = (a: MapArtifact) => `put "${lineOf(a).replace(/["\\]/g, '\\$&')}"`;
 export async function add(link: Link, artifact: MapArtifact): Promise<Answer> {
   const ids = link.data<SaphiraMap>('map')?.artifacts.map(a => a.id) ?? [];
   const answer = await change(link, put({...artifact, id: 1 + Math.max(0, ...ids)}));
-  if (answer.well) undos.push({text: `adding ${nameFor(artifact)}`, words: `remove ${answer.id}`});
+  if (answer.well) undos.push({text: `adding ${nameFor(artifact)}`, puts: false, artifact: {...artifact, id: Number(answer.id)}});
   return answer;
 }
 export async function remove(link: Link, artifact: MapArtifact): Promise<Answer> {
   const answer = await change(link, `remove ${artifact.id}`);
-  if (answer.well) undos.push({text: `removing ${nameFor(artifact)}`, words: put(artifact)});
+  if (answer.well) undos.push({text: `removing ${nameFor(artifact)}`, puts: true, artifact: {...artifact}});
   return answer;
 }
 export const toUndo = () => undos[undos.length - 1]?.text ?? '';
 export async function undo(link: Link): Promise<Answer> {
-  const last = undos[undos.length - 1], answer = await change(link, last.words);
-  if (answer.well) undos.splice(undos.indexOf(last), 1);
+  const last = undos[undos.length - 1], {puts, artifact: {id}} = last;
+  const answer = await change(link, puts ? put(last.artifact) : `remove ${id}`);
+  if (!answer.well) return answer;
+  undos.splice(undos.indexOf(last), 1);
+  // The id of what was removed is not used again.
+  if (puts) for (const one of undos) if (one.artifact.id === id) one.artifact.id = Number(answer.id);
   return answer;
 }
 export const placeRobot = (link: Link, {x, y, th}: Pose) => change(link, `place ${x.toFixed(3)} ${y.toFixed(3)} ${th.toFixed(4)}`);

@@ -24,18 +24,19 @@ test('the line of a zone between two corners', () => {
 
 test('what was added is removed, and what was removed is put back, the newest first; a refused change is not undone', async () => {
   const asked = [];
+  let puts = 0;
   const link = {
     well: true,
     data: () => ({artifacts: [{id: 4}, {id: 9}]}),
     ask: async ({type, words}) => {
       asked.push(`${type} ${words}`);
-      return {well: link.well, text: '', id: '10'};
+      return {well: link.well, text: '', id: words.startsWith('put') ? `${10 + puts++}` : ''};
     },
   };
   const dock = placeOf({x: 1, y: 2}, 'dock');
   await add(link, dock);
   assert.equal(toUndo(), 'adding place dock');
-  await remove(link, {...dock, id: 4});
+  await remove(link, {...dock, id: 10});
   assert.equal(toUndo(), 'removing place dock');
   link.well = false;
   await add(link, dock);
@@ -46,5 +47,5 @@ test('what was added is removed, and what was removed is put back, the newest fi
   await undo(link);
   assert.equal(toUndo(), '');
   const put = id => `map put "POS (${id}) 1000, 2000, 0.0 \\"dock\\""`;
-  assert.deepEqual(asked, [put(10), 'map remove 4', put(10), put(4), put(4), 'map remove 10']);
+  assert.deepEqual(asked, [put(10), 'map remove 10', put(10), put(10), put(10), 'map remove 13']);
 });
