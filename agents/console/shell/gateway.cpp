@@ -228,7 +228,7 @@ void Gateway::tick() {
   drive();
   press_estop();
   explain();
-  keep_what_happened();
+  look_for_occasions();
   show_control();
   for (const auto& [connection, page] : pages_)
     if (!page.greeted && now() - page.opened > kGreeting)
@@ -260,17 +260,23 @@ void Gateway::explain() {
              now());
 }
 
-/// The last minute after an event goes into the box.
-void Gateway::keep_what_happened() {
-  if (!box_)
-    return;
-  if (const auto text = box_->poll(control_.holder() != 0, now()))
-    messages_.write({.stamp = stamp_, .source = "console", .text = *text});
-  if (now() - looked_ < kExplain || !mind_.heard())
+/// Tells the pages of an event; the last minute after it goes into the box.
+void Gateway::look_for_occasions() {
+  if (box_)
+    if (const auto text = box_->poll(control_.holder() != 0, now()))
+      messages_.write({.stamp = stamp_, .source = "console", .text = *text});
+  if ((!box_ && pages_.empty()) || now() - looked_ < kExplain || !mind_.heard())
     return;
   looked_ = now();
-  if (const auto occasion = occasions_.look(mind_.situation(mind_.newest_cycle(), false), looked_))
+  const auto occasion = occasions_.look(mind_.situation(mind_.newest_cycle(), false), looked_);
+  if (!occasion)
+    return;
+  if (box_)
     box_->keep(*occasion, looked_);
+  for (const auto& [connection, page] : pages_)
+    if (page.channel == Channel::commands && page.greeted &&
+        (page.operator_id == 0 || page.operator_id == connection))  // once to a page
+      say(connection, "{\"type\":\"event\",\"text\":" + quoted(occasion->text) + "}");
 }
 
 void Gateway::show_control() {

@@ -95,7 +95,7 @@ class Gateway {
   void drive();
   void press_estop();
   void explain();
-  void keep_what_happened();
+  void look_for_occasions();
   void show_control();
   void look_at_simulator();
   void look_at_cameras();

@@ -55,7 +55,15 @@ std::optional<Occasion> Occasions::find(const Situation& situation, double now) 
       note(before.knows_goals && !before.failed.contains(id), "goal-failed",
            status.functor + " has failed: " + status.reason);
     }
+  seen.stalled =
+      situation.robot && (situation.robot->left_stalled || situation.robot->right_stalled);
+  note(seen.stalled && !before.stalled, "stalled", "a wheel of the robot is stalled");
   for (const Program& program : situation.programs) {
+    if (program.status.name == "bridge" && program.age < kNotHeard) {
+      seen.has_trouble = program.status.state == v1::SERVICE_DEGRADED && !seen.estopped;
+      note(!before.programs.empty() && seen.has_trouble && !before.has_trouble, "robot-trouble",
+           program.status.reason);
+    }
     const std::pair key{program.status.name, program.status.instance};
     if (program.age < kNotHeard)
       seen.programs.insert(key);

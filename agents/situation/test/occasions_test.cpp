@@ -85,6 +85,29 @@ TEST_F(OccasionsTest, AGuardThatHoldsTheRobotForASecond) {
   EXPECT_EQ(look(1.0), "guard");
 }
 
+TEST_F(OccasionsTest, AStallAndTheTroubleThatTheBridgeTells) {
+  ASSERT_EQ(s.programs.front().status.name, "bridge");
+  look();
+  s.robot->left_stalled = true;
+  EXPECT_EQ(look(), "stalled");
+  EXPECT_EQ(look(20.0), "");
+  v1::ServiceStatus& bridge = s.programs.front().status;
+  bridge.state = v1::SERVICE_DEGRADED;
+  bridge.reason = "the battery is nearly empty";
+  now += 0.5;
+  const auto found = occasions.look(s, now);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, "robot-trouble");
+  EXPECT_EQ(found->text, "the battery is nearly empty");
+  EXPECT_EQ(look(20.0), "");
+  bridge.state = v1::SERVICE_RUNNING;
+  look();
+  s.grant->estopped = true;
+  bridge.state = v1::SERVICE_DEGRADED;
+  EXPECT_EQ(look(20.0), "estop");
+  EXPECT_EQ(look(20.0), "") << "its own trouble is the same event";
+}
+
 TEST_F(OccasionsTest, LossesOfProgramRobotAndPlace) {
   look();
   s.programs.front().age = 3.5;

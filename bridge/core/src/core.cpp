@@ -374,6 +374,7 @@ void Core::finish_cycle(double now) {
   session_.body.knows_edges = !session_.edges.empty();
   session_.body.sees_ahead = session_.echoes.sees(session_.stamp.cycle, true);
   session_.body.sees_behind = session_.echoes.sees(session_.stamp.cycle, false);
+  session_.low_battery = has_low_battery() ? session_.low_battery + 1 : 0;
   put(DevicesChanged{session_.stamp});
   if (settings_.lockstep) {
     put(KeepOdometry{reflector_.odometry()});

@@ -29,6 +29,11 @@ inline constexpr std::uint64_t kEdgesKept = 10;  // [cycles] for which edges cou
 inline constexpr unsigned kStopCycles = 2;  // least time of a stop: every service has heard of it
 inline constexpr unsigned kMostStopCycles = 50;  // then it has failed
 inline constexpr unsigned kMotorsCycles = 10;    // after these the motors should be on
+inline constexpr double kNearlyLow = 1.02;       // of the voltage at which the robot complains
+inline constexpr double kNoSuchBattery = 0.75;   // of it: the robot has another kind of battery
+inline constexpr double kLowCharge = 0.2;        // [0..1]
+// A motor that starts draws the voltage down for a moment.
+inline constexpr unsigned kLowBatteryCycles = 100;
 inline constexpr unsigned kConfigCycles = 30;    // then its configuration should be known
 
 }  // namespace saphira::bridge

@@ -1,6 +1,7 @@
 // The status of the service.
 
 #include "limits.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
 
 namespace saphira::bridge {
@@ -21,6 +22,17 @@ bool Core::motors_off() const {
   const protocol::Information& in = state.information;
   return state.cycle > kMotorsCycles &&
          !in.motors_on.value_or(in.motors != protocol::Motors::kNoPower);
+}
+
+/// By the robot's own measure of the charge, or else by the voltage.
+bool Core::has_low_battery() const {
+  const protocol::Information& in = reflector_.state().information;
+  const double low = reflector_.parameters().low_battery;
+  if (in.charge_state.value_or(0) != 0)
+    return false;
+  if (in.state_of_charge)
+    return *in.state_of_charge <= kLowCharge;
+  return in.battery > kNoSuchBattery * low && in.battery <= kNearlyLow * low;
 }
 
 Condition Core::condition(double now, const Surroundings& around) const {
@@ -78,6 +90,13 @@ Condition Core::robot_condition(double now) const {
   if (motors_off())
     return {Health::degraded,
             "the robot's motors are off (its own button, or: saphira device motors on)"};
+  if (session_.low_battery >= kLowBatteryCycles) {
+    const protocol::Information& in = reflector_.state().information;
+    return {
+        Health::degraded,
+        format("the battery is nearly empty (%.1f V%s): bring the robot to its charger", in.battery,
+               in.state_of_charge ? format(", %.0f %%", 100.0 * *in.state_of_charge).c_str() : "")};
+  }
   return {};
 }
 

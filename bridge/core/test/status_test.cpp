@@ -104,6 +104,34 @@ TEST(Status, MotorsThatAreOffAreTold) {
   EXPECT_NE(scene.condition().reason.find("the robot's motors are off"), std::string::npos);
 }
 
+TEST(Status, ABatteryThatStaysLowIsTold) {
+  struct {
+    int tenths;       // [0.1 V]; the robot complains at 11.5 V
+    unsigned charge;  // [%]; 0: the robot does not tell
+    unsigned charger;
+    bool is_low;
+  } const cases[] = {{118, 0, 0, false}, {117, 0, 0, true},   {80, 0, 0, false},
+                     {117, 0, 1, false}, {117, 21, 0, false}, {126, 20, 0, true}};
+  for (const auto& one : cases) {
+    Later scene;
+    // A packet ends behind any of these fields, without a gap.
+    scene.shown.trailing = {.battery = static_cast<std::uint16_t>(one.tenths),
+                            .charge_state = static_cast<std::uint8_t>(one.charger),
+                            .rotation = 0,
+                            .faults = 0,
+                            .lateral = 0,
+                            .temperature = 20,
+                            .state_of_charge = static_cast<std::uint8_t>(one.charge),
+                            .time = {},
+                            .flags3 = {}};
+    scene.cycles(99, Role::behaviors);
+    EXPECT_EQ(scene.condition().health, Health::running) << one.tenths;
+    scene.cycles(2, Role::behaviors);
+    EXPECT_EQ(scene.condition().health == Health::degraded, one.is_low)
+        << one.tenths << ' ' << one.charge << ' ' << scene.condition().reason;
+  }
+}
+
 TEST(Status, MotorsHaveASecondToBeSwitchedOn) {
   Scene scene;
   scene.shown.motors = protocol::Motors::kNoPower;

@@ -162,6 +162,7 @@ function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: G
   if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Its bridge may be missing, or its power off.' : 'Nothing is known of the robot yet.')}</div>;
   const tracking = registration?.state === 'REGISTRATION_TRACKING';
   const lost = registration?.state === 'REGISTRATION_LOST';
+  const trouble = link.all<ServiceStatus>('system/status').find(([, {data}]) => data.name === 'bridge' && data.state === 'SERVICE_DEGRADED')?.[1].data.reason;
   const pose = tracking || lost ? registration!.pose_in_map : robot.pose_in_odom;
   const doubtful = registration && (lost || tracking && registration.confidence <= doubt);
   const sure = tracking || lost ? `, ${percent(registration!.confidence)} sure` : '';
@@ -179,6 +180,7 @@ function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: G
       <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V</dd></div>
       <div class="place"><dt>Packets a second</dt><dd>motors {robot.motor_packets_per_s}, sonars {robot.sonar_readings_per_s}, vision {robot.vision_packets_per_s}</dd></div>
     </dl>
+    {trouble && !grant?.estopped && <p class="guard">{forPage(trouble)}</p>}
     {doubtful && <p class="guard">{lost ? 'The robot does not know where it is' : 'The place is not confirmed'} ({forPage(registration.reason)}).
       {lost && ' Click where it is on the map: The robot is here …'}</p>}
   </div>;

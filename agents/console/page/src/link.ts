@@ -1,6 +1,7 @@
 // The two connections to the gateway, and what has come by them.
 import {barrier, socketOf, store, stored, storedKey} from './address';
-import type {ControlState, Goal, Grant, ServiceStatus} from './types';
+import {notify} from './notify';
+import type {ConsoleInfo, ControlState, Goal, Grant, ServiceStatus} from './types';
 
 export interface Item<T> {
   data: T;
@@ -255,6 +256,9 @@ export class Link {
         break;
       case 'note':
         this.note(message.text as string, false);
+        break;
+      case 'event':
+        notify(this.data<ConsoleInfo>('console')?.robot ?? 'Saphira', message.text as string);
         break;
       case 'wrong':
         this.note('The console did not understand the page: ' + (message.why as string), false);

@@ -6,6 +6,7 @@ import {degrees} from './geometry';
 import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
+import {notifies, wantNotifications} from './notify';
 import {clock, forPage, instanceWords, keyless, percent, seconds} from './words';
 
 const stale = 2000;          // [ms] the status of an open goal comes each second
@@ -272,6 +273,7 @@ export function Programs({link, now}: {link: Link; now: number}) {
 export function Messages({link}: {link: Link}) {
   const [all, setAll] = useState(false);
   const [words, setWords] = useState('');
+  const [told, setTold] = useState(notifies());
   const say = (event: Event) => {
     event.preventDefault();
     if (words.trim() && link.send({type: 'say', text: words.trim()})) setWords('');
@@ -296,6 +298,7 @@ export function Messages({link}: {link: Link}) {
       {!understood && <p class="small">No program here understands speech: the tab Goals takes goals in words.</p>}
     </form>
     <label class="check"><input type="checkbox" checked={all} onChange={e => setAll((e.target as HTMLInputElement).checked)} /> everything that programs log</label>
+    {told !== undefined && <label class="check"><input type="checkbox" checked={told} onChange={async e => setTold(await wantNotifications((e.target as HTMLInputElement).checked))} /> tell me of stops, failures and a low battery while I look elsewhere</label>}
     {lines.length === 0 && nothing('No messages, and no warnings.')}
     <ul class="lines" aria-live="polite">{lines.map(l => <li key={l.key} class={l.level}><time class="faint">{clock(l.at)}</time>
       <span><span class="faint">{l.from}</span> {forPage(l.text)}</span></li>)}</ul>

@@ -14,7 +14,7 @@ namespace saphira::situation {
 /// An event after which people want to see the last minute.
 struct Occasion {
   std::string kind;  ///< as part of a file's name: goal-failed, stopped, estop, guard,
-                     ///< program-lost, silent, robot-lost
+                     ///< program-lost, silent, robot-lost, stalled, robot-trouble
   std::string text;  ///< in words, such as "go-to-place has failed: no way to N3"
 };
 
@@ -35,6 +35,8 @@ class Occasions {
     bool estopped = false;
     std::optional<bool> lost;  ///< [none: no registration is known]
     bool silent = false;
+    bool stalled = false;
+    bool has_trouble = false;  ///< by the bridge
     bool knows_goals = false;
     std::set<Key> failed;                                      ///< goals
     std::set<std::pair<std::string, std::uint64_t>> programs;  ///< heard: name and instance

@@ -151,6 +151,7 @@ class Core {
     bool stepped = false;                      ///< lockstep: this cycle was decided and sent
     std::vector<Edge> edges;        ///< [odom] of the behaviors' map near the robot, whoever drives
     std::uint64_t edges_cycle = 0;  ///< in which they came
+    unsigned low_battery = 0;       ///< [cycles] without a pause
   };
   /// The newest accepted command of a role.
   struct Driver {
@@ -194,6 +195,7 @@ class Core {
   bool motors_off() const;
   Condition condition(double now, const Surroundings& around) const;
   Condition robot_condition(double now) const;
+  bool has_low_battery() const;
   void report(double now, const Surroundings& around);
   void tell_wait(const Condition& now_is, double now);
 
