@@ -99,6 +99,24 @@ TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
   EXPECT_NE(run(2), first);
 }
 
+TEST(Navigation, AtItsEndItFacesAsAsked) {
+  for (const double facing : {90.0, -170.0}) {
+    for (const bool by_route : {false, true}) {
+      Whole whole(office());
+      const saphira::Argument heading = saphira::number("facing", radians(facing));
+      const auto status =
+          by_route
+              ? whole.achieve("go-to-place", {text("place", "EJ-231"), heading}, 1200)
+              : whole.achieve("go_to",
+                              {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map), heading},
+                              700);
+      EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+      EXPECT_NEAR(degrees(norm2_angle(whole.truth().th - radians(facing))), 0.0, 9.0) << by_route;
+      EXPECT_TRUE(whole.at_rest());
+    }
+  }
+}
+
 // Paper 3.5.1: the passage of the door begins while the robot still follows the corridor, so that
 // it does not stop between the two. From leg to leg some behavior drives in every cycle.
 TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {

@@ -76,6 +76,13 @@ std::optional<v1::Goal> goal_of(const PoseStamped& pose) {
   v1::Goal goal;
   goal.functor = "go_to";
   goal.arguments.push_back(*position);
+  if (position->frame != v1::FRAME_ROBOT) {
+    v1::Argument facing;
+    facing.name = "facing";
+    facing.kind = v1::ARGUMENT_NUMBER;
+    facing.number = position->point.th;
+    goal.arguments.push_back(facing);
+  }
   return goal;
 }
 

@@ -214,8 +214,11 @@ TEST(Inward, APoseIsAGoal) {
   EXPECT_EQ(goal.arguments.at(0).frame, v1::FRAME_MAP);
   EXPECT_EQ(goal.arguments.at(0).point.x, 1.0);
   EXPECT_NEAR(goal.arguments.at(0).point.th, -0.5, 1e-12);
+  EXPECT_EQ(goal.arguments.at(1).name, "facing");
+  EXPECT_NEAR(goal.arguments.at(1).number, -0.5, 1e-12);
   EXPECT_EQ(goal_of(pose_in("odom", {}))->arguments.at(0).frame, v1::FRAME_ODOM);
   EXPECT_EQ(goal_of(pose_in("base_link", {}))->arguments.at(0).frame, v1::FRAME_ROBOT);
+  EXPECT_EQ(goal_of(pose_in("base_link", {}))->arguments.size(), 1U);
   EXPECT_FALSE(goal_of(pose_in("camera", {})));
   EXPECT_FALSE(goal_of(pose_in("map", {std::nan(""), 0.0, 0.0})));
 }

@@ -123,10 +123,11 @@ TEST(ActivityErrors, OfWhatCannotBeReached) {
 TEST(ActivityErrors, OfSchemasAndTheirArguments) {
   EXPECT_EQ(troubles(goals("(INTEND :fly ())")),
             List({"2:9 unknown schema \"fly\": neither an activity nor a behavior"}));
-  EXPECT_EQ(troubles(goals("(INTEND :go_to ((place . dest)))")),
-            List({"2:9 go_to needs the parameter \"position\"",
-                  "2:17 go_to has no parameter \"place\": expected position, speed, radius, "
-                  "patience"}));
+  EXPECT_EQ(
+      troubles(goals("(INTEND :go_to ((place . dest)))")),
+      List({"2:9 go_to needs the parameter \"position\"",
+            "2:17 go_to has no parameter \"place\": expected position, speed, radius, facing, "
+            "patience"}));
   EXPECT_EQ(troubles(goals("(INTEND :follow-corridor ((goal . dest)))")),
             List({"2:9 follow-corridor needs the parameter \"corridor\""}));
   EXPECT_EQ(troubles(goals("(INTEND :it ())")), List({"2:9 it needs the parameter \"dest\""}));

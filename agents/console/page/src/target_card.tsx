@@ -8,7 +8,7 @@ import type {Grant, Registration} from './types';
 import type {Target, View} from './view';
 import {forPage} from './words';
 
-type Form = '' | 'zone' | 'name' | 'facing';
+type Form = '' | 'zone' | 'name' | 'facing' | 'goal facing';
 const first = 0.5;           // [m] of a new zone, to each side
 
 export function TargetCard({card, corner, link, view, target, close}:
@@ -19,7 +19,7 @@ export function TargetCard({card, corner, link, view, target, close}:
   const open = (next: Form, rule = 'ZONE_KEEP_OUT') => {
     const {x, y} = target, th = link.data<Registration>('registration')?.pose_in_map.th ?? 0;
     view.sketch = next === 'zone' ? {kind: 'zone', rule, from: {x: x - first, y: y - first}, to: {x: x + first, y: y + first}}
-      : next === 'facing' ? {kind: 'facing', rule: '', from: target, to: {x: x + Math.cos(th), y: y + Math.sin(th)}} : undefined;
+      : next === 'facing' || next === 'goal facing' ? {kind: 'facing', rule: '', from: target, to: {x: x + Math.cos(th), y: y + Math.sin(th)}} : undefined;
     view.dirty = true;
     view.onSketch = () => look(n => n + 1);
     show(next);
@@ -41,17 +41,20 @@ export function TargetCard({card, corner, link, view, target, close}:
     <div class="row"><strong aria-live="polite">{target.artifact?.name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
       <button class="plain" aria-label="Close" onClick={close}>×</button></div>
     {link.mayDrive ? <>
-      <GoalButtons link={link} target={target} tell={tell} setTold={setTold} />
+      <GoalButtons link={link} target={target} facing={form === 'goal facing' ? facing(view.sketch!) : undefined} tell={tell} setTold={setTold} />
       {target.zones.map(zone => <div class="row" key={zone.id}><span class="grow">{nameFor(zone)}</span>
         <button onClick={async () => changed(await remove(link, zone), 'Removed.')}>Remove</button></div>)}
       <div class="row apart">
         {form === 'facing' && <><span class="grow">Set the robot's position here? Drag towards where it faces.</span>
           <button onClick={async () => tell(await placeRobot(link, {x: target.x, y: target.y, th: facing(view.sketch!)}))}>Yes</button>
           <button onClick={() => open('')}>No</button></>}
+        {form === 'goal facing' && <><span class="grow">Drag towards where it is to face there, then press Go.</span>
+          <button onClick={() => open('')}>Cancel</button></>}
         {form === 'zone' && <ZoneForm sketch={view.sketch!} draw={sketch => view.drawOn(sketch)} cancel={() => open('')}
           done={async (name, speed) => changed(await add(link, zoneOf(view.sketch!, name, speed)), 'The zone is on the map.')} />}
         {form === 'name' && <NameForm cancel={() => open('')} done={async name => changed(await add(link, placeOf(target, name)), `${name} is a place of the map.`)} />}
         {form === '' && <>
+          <button title="a goal with a heading" onClick={() => open('goal facing')}>Facing …</button>
           <button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: onMap}); close(); }}>Tell programs</button>
           {onMap && <>
             <button title="corrects the robot's position on the map" onClick={() => open('facing')}>The robot is here …</button>
@@ -65,11 +68,12 @@ export function TargetCard({card, corner, link, view, target, close}:
   </div>;
 }
 
-function GoalButtons({link, target, tell, setTold}: {link: Link; target: Target; tell: (answer: Answer) => void; setTold: (text: string) => void}) {
+function GoalButtons({link, target, facing, tell, setTold}: {link: Link; target: Target; facing?: number; tell: (answer: Answer) => void; setTold: (text: string) => void}) {
   const grant = link.data<Grant>('drive/grant'), before = ahead(link), waiting = before.length - 1;
   const name = target.artifact?.name, keepOut = target.zones.find(zone => ruleOf(zone) === 'keep-out');
   const go = grant?.waits_for_hand_back ? 'Hand back, go' : 'Go', at = `${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`;
-  const ask = async (words: string, instead: boolean) => {
+  const ask = async (place: string, instead: boolean) => {
+    const words = facing === undefined ? place : `${place} facing=${facing.toFixed(3)}`;
     if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.');
     if (grant?.waits_for_hand_back) link.send({type: 'hand_back'});
     tell(await (instead ? askInstead(link, words, before) : link.ask({type: 'goal', words})));

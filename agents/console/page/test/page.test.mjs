@@ -289,6 +289,18 @@ test('a zone is drawn on the map, refuses goals there, is removed and undone; a 
   await page.mouse.click(canvas.x + 5, middle[1]);
   await card.getByText('No room or corridor of the map has this point, so no route leads here.').waitFor();
   await card.getByRole('button', {name: 'Go straight here'}).waitFor();
+  // A goal with a heading, drawn upwards.
+  await page.mouse.click(...middle);
+  await card.getByRole('button', {name: 'Facing …'}).click();
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await page.mouse.move(middle[0], middle[1] - 80, {steps: 5});
+  await page.mouse.up();
+  await card.getByRole('button', {name: 'Go here'}).click();
+  const facing = await until('the goal', () => page.evaluate(() =>
+    saphira.all('goals').flatMap(([, {data}]) => data.arguments).find(a => a.name === 'facing')?.number));
+  assert.ok(Math.abs(facing - Math.PI / 2) < 0.02, `${facing}`);
+  await endAll(page);
   await leave(page);
 });
 

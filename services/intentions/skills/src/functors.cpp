@@ -20,9 +20,10 @@ constexpr Ticks kOnTheWay = 3;
 
 /// [s] without progress before a goal fails.
 constexpr double kPatience = 20.0;
-constexpr double kGround = 0.1;  ///< [m] least progress within the patience
-constexpr double kDetour = 3.0;  ///< patiences that a robot has which gets on
-constexpr double kFar = 1000.0;  ///< [m] distance of the point that stands for a heading
+constexpr double kGround = 0.1;           ///< [m] least progress within the patience
+constexpr double kDetour = 3.0;           ///< patiences that a robot has which gets on
+constexpr double kFar = 1000.0;           ///< [m] distance of the point that stands for a heading
+constexpr double kFacing = radians(5.0);  ///< tolerance of the heading at the end of a way
 
 /// Where the readings do not confirm the place, the robot moves about: the number of times, the
 /// duration of each [s], and the speed [m/s].
@@ -161,13 +162,89 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
               format("the robot has not known where it is on the map for %.0f s", patience));
 }
 
+/// Turns on the spot. No behavior watches obstacles: the robot is round and stays in its place.
+class TurnTo : public Activity {
+ public:
+  explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
+    take(arguments);
+  }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    motion_.note(self.robot());
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const Pose& pose = self.robot().pose_in_odom;
+    // A heading is a point far away in that direction; it keeps its first place, so that the
+    // behavior does not change every cycle.
+    if (new_target_ && heading_)
+      target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
+                                  pose.y + kFar * std::sin(*heading_), 0.0});
+    const std::optional<Pose> target = in_odom(target_, self.robot());
+    if (!target) {
+      wait_for_position(self, waiting_since_, watchdog_.patience());
+      return;
+    }
+    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
+    const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
+    const double left = std::abs(norm2_angle(toward - pose.th));
+    if (new_target_)
+      whole_turn_ = left;
+    if (std::exchange(new_target_, false) || begins(self) || waited)
+      watchdog_.restart(left, self.now());
+    self.intend_behavior("TurnTo", "TurnTo", kTask,
+                         {point("goal", *target), number("success_angle", angle_),
+                          number("turn_speed", turn_speed_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
+                      : "turning to " + format_point(target_));
+    if (whole_turn_ > 0.0)
+      self.progress(1.0 - left / whole_turn_);
+    const bool satisfied =
+        left <= angle_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * angle_);
+    if (satisfied && at_rest(self.robot()))
+      self.succeed(format("turned, %.1f degrees off", degrees(left)));
+    else if (watchdog_.check(left, self.now()))
+      self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.0f degrees off",
+                                         watchdog_.patience(), degrees(left)) +
+                                      why_not_moving(self.robot(), motion_));
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    heading_.reset();
+    if (const Argument* const heading = find(arguments, "heading"))
+      heading_ = heading->number;
+    else
+      target_ = *find(arguments, "position");
+    angle_ = value_of(arguments, "angle");
+    turn_speed_ = value_of(arguments, "turn_speed");
+    watchdog_.patience(value_of(arguments, "patience"));
+    new_target_ = true;
+  }
+
+  std::optional<double> heading_;  ///< [rad] in odom
+  Argument target_;
+  std::optional<Ticks> waiting_since_;
+  double angle_ = 0.0;
+  double turn_speed_ = 0.0;
+  Watchdog watchdog_;
+  Motion motion_;
+  double whole_turn_ = 0.0;
+  bool new_target_ = true;
+};
+
 // A way counts as driven to a tenth of itself, within these limits.
 constexpr double kShareOfWay = 0.1;
 constexpr double kLeastRadius = 0.02;   // [m]
 constexpr double kWidestRadius = 0.15;  // [m]
 
 /// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop where none of them is
-/// active. At the point, Stop alone until the robot stands.
+/// active. At the point, Stop alone until the robot stands; then it turns where it is to face.
 class GoTo : public Activity {
  public:
   explicit GoTo(const Arguments& arguments) : watchdog_(0.05, kPatience) { take(arguments); }
@@ -181,6 +258,8 @@ class GoTo : public Activity {
     motion_.note(self.robot());
     if (self.state() == IntentionState::kInterrupted)
       return;
+    if (turn_)
+      return turn_->step(self);
     const std::optional<Pose> target = in_odom(target_, self.robot());
     if (!target) {
       wait_for_position(self, waiting_since_, watchdog_.patience());
@@ -222,7 +301,10 @@ class GoTo : public Activity {
       self.say("stopping at " + format_point(target_));
       if (!at_rest(self.robot()))
         return;
-      if (!unsure(self))
+      if (!unsure(self) && facing_)
+        turn_.emplace(Arguments{facing(), number("angle", kFacing), number("turn_speed", 1.0),
+                                number("patience", watchdog_.patience())});
+      else if (!unsure(self))
         self.succeed(format("arrived, %.2f m from the point", left));
       else if (checks_ < kChecks)
         checking_since_ = self.now();
@@ -289,8 +371,20 @@ class GoTo : public Activity {
     return true;
   }
 
+  /// A point far away in the direction to face.
+  Argument facing() const {
+    Argument ahead = target_;
+    ahead.name = "position";
+    ahead.point = {target_.point.x + kFar * std::cos(*facing_),
+                   target_.point.y + kFar * std::sin(*facing_), 0.0};
+    return ahead;
+  }
+
   void take(const Arguments& arguments) {
     target_ = *find(arguments, "position");
+    const Argument* const facing = find(arguments, "facing");
+    facing_ = facing == nullptr ? std::nullopt : std::optional(facing->number);
+    turn_.reset();
     speed_ = value_of(arguments, "speed");
     radius_ = value_of(arguments, "radius");
     watchdog_.patience(value_of(arguments, "patience"));
@@ -298,6 +392,8 @@ class GoTo : public Activity {
   }
 
   Argument target_;
+  std::optional<double> facing_;  ///< [rad] in the frame of the target
+  std::optional<TurnTo> turn_;    ///< at the target
   std::optional<Ticks> waiting_since_;
   KeepOut keep_out_;
   double speed_ = 0.0;
@@ -392,82 +488,6 @@ class Drive : public Activity {
   double path_ = 0.0;  ///< [m]
 };
 
-/// Turns on the spot. No behavior watches obstacles: the robot is round and stays in its place.
-class TurnTo : public Activity {
- public:
-  explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
-    take(arguments);
-  }
-
-  bool change(const Arguments& arguments) override {
-    take(arguments);
-    return true;
-  }
-
-  void step(Self& self) override {
-    motion_.note(self.robot());
-    if (self.state() == IntentionState::kInterrupted)
-      return;
-    const Pose& pose = self.robot().pose_in_odom;
-    // A heading is a point far away in that direction; it keeps its first place, so that the
-    // behavior does not change every cycle.
-    if (new_target_ && heading_)
-      target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
-                                  pose.y + kFar * std::sin(*heading_), 0.0});
-    const std::optional<Pose> target = in_odom(target_, self.robot());
-    if (!target) {
-      wait_for_position(self, waiting_since_, watchdog_.patience());
-      return;
-    }
-    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
-    const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
-    const double left = std::abs(norm2_angle(toward - pose.th));
-    if (new_target_)
-      whole_turn_ = left;
-    if (std::exchange(new_target_, false) || begins(self) || waited)
-      watchdog_.restart(left, self.now());
-    self.intend_behavior("TurnTo", "TurnTo", kTask,
-                         {point("goal", *target), number("success_angle", angle_),
-                          number("turn_speed", turn_speed_)});
-    self.intend_behavior("Stop", "Stop", kRest, {});
-    self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
-                      : "turning to " + format_point(target_));
-    if (whole_turn_ > 0.0)
-      self.progress(1.0 - left / whole_turn_);
-    const bool satisfied =
-        left <= angle_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * angle_);
-    if (satisfied && at_rest(self.robot()))
-      self.succeed(format("turned, %.1f degrees off", degrees(left)));
-    else if (watchdog_.check(left, self.now()))
-      self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.0f degrees off",
-                                         watchdog_.patience(), degrees(left)) +
-                                      why_not_moving(self.robot(), motion_));
-  }
-
- private:
-  void take(const Arguments& arguments) {
-    heading_.reset();
-    if (const Argument* const heading = find(arguments, "heading"))
-      heading_ = heading->number;
-    else
-      target_ = *find(arguments, "position");
-    angle_ = value_of(arguments, "angle");
-    turn_speed_ = value_of(arguments, "turn_speed");
-    watchdog_.patience(value_of(arguments, "patience"));
-    new_target_ = true;
-  }
-
-  std::optional<double> heading_;  ///< [rad] in odom
-  Argument target_;
-  std::optional<Ticks> waiting_since_;
-  double angle_ = 0.0;
-  double turn_speed_ = 0.0;
-  Watchdog watchdog_;
-  Motion motion_;
-  double whole_turn_ = 0.0;
-  bool new_target_ = true;
-};
-
 class Halt : public Activity {
  public:
   void step(Self& self) override {
@@ -531,8 +551,11 @@ Registry built_in() {
   Schema go_to;
   go_to.name = "go_to";
   go_to.summary = "drives to a position, around what is in the way";
+  Parameter facing =
+      quantity("facing", "rad in the frame of the position", -2.0 * kPi, 2.0 * kPi, 0.0);
+  facing.usual.reset();
   go_to.parameters = {place("position", true), quantity("speed", "m/s", 0.02, 2.0, 0.3),
-                      quantity("radius", "m", 0.0, 10.0, 0.0), patience()};
+                      quantity("radius", "m", 0.0, 10.0, 0.0), facing, patience()};
   go_to.make = make<GoTo>;
   registry.add(std::move(go_to));
 
