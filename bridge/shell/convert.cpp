@@ -12,19 +12,8 @@ namespace saphira::bridge {
 
 namespace {
 
-constexpr EnumPairs<authority::Role, v1::Role, 5> kRoles{{{
-    {authority::Role::none, v1::ROLE_NONE},
-    {authority::Role::estop, v1::ROLE_ESTOP},
-    {authority::Role::teleop, v1::ROLE_TELEOP},
-    {authority::Role::direct, v1::ROLE_DIRECT},
-    {authority::Role::behaviors, v1::ROLE_BEHAVIORS},
-}}};
-constexpr EnumPairs<authority::GuardAction, v1::GuardAction, 4> kGuardActions{{{
-    {authority::GuardAction::none, v1::GUARD_NONE},
-    {authority::GuardAction::limit, v1::GUARD_LIMIT},
-    {authority::GuardAction::slow, v1::GUARD_SLOW},
-    {authority::GuardAction::stop, v1::GUARD_STOP},
-}}};
+constexpr auto kRoles = pairs_by_name<authority::Role, v1::Role>();
+constexpr auto kGuardActions = pairs_by_name<authority::GuardAction, v1::GuardAction>();
 constexpr EnumPairs<Health, v1::ServiceState, 3> kHealths{
     {{
         {Health::running, v1::SERVICE_RUNNING},

@@ -18,17 +18,8 @@ inline constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{
     }},
     {},
     {v1::MOTORS_NOT_CONNECTED}};
-inline constexpr EnumPairs<reflector::Translation, v1::TranslationMode, 3> kTranslations{{{
-    {reflector::Translation::none, v1::TRANSLATION_NONE},
-    {reflector::Translation::velocity, v1::TRANSLATION_VELOCITY},
-    {reflector::Translation::position, v1::TRANSLATION_POSITION},
-}}};
-inline constexpr EnumPairs<reflector::Rotation, v1::RotationMode, 4> kRotations{{{
-    {reflector::Rotation::none, v1::ROTATION_NONE},
-    {reflector::Rotation::velocity, v1::ROTATION_VELOCITY},
-    {reflector::Rotation::heading, v1::ROTATION_HEADING},
-    {reflector::Rotation::relative_heading, v1::ROTATION_RELATIVE_HEADING},
-}}};
+inline constexpr auto kTranslations = pairs_by_name<reflector::Translation, v1::TranslationMode>();
+inline constexpr auto kRotations = pairs_by_name<reflector::Rotation, v1::RotationMode>();
 inline constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
     {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
     {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},

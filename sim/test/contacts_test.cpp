@@ -33,6 +33,10 @@ class Contacts : public ::testing::Test {
     for (double t = 0.0; t < seconds; t += kTick)
       scene_->tick();
   }
+  void drive(double velocity, double seconds) {
+    robot_->set_velocity(velocity);
+    run(seconds);
+  }
 
   World world_;
   std::unique_ptr<Scene> scene_;
@@ -42,8 +46,7 @@ class Contacts : public ::testing::Test {
 
 TEST_F(Contacts, ARobotThatDrivesIntoWhatItCouldHearIsToBlame) {
   make("person ann 5000 5100", with_front_sonar());
-  robot_->set_velocity(0.3);
-  run(15.0);
+  drive(0.3, 15.0);
   ASSERT_EQ(watch_->contacts().size(), 1U) << "pushing on is the same contact";
   const Contact& contact = watch_->contacts()[0];
   EXPECT_EQ(contact.blame, Blame::kCaused);
@@ -54,17 +57,14 @@ TEST_F(Contacts, ARobotThatDrivesIntoWhatItCouldHearIsToBlame) {
   EXPECT_GT(contact.needed, 0.6);
   EXPECT_FALSE(contact.walks);
   EXPECT_LT(watch_->closest_person(), 0.002);
-  robot_->set_velocity(-0.3);
-  run(2.0);
-  robot_->set_velocity(0.3);
-  run(4.0);
+  drive(-0.3, 2.0);
+  drive(0.3, 4.0);
   EXPECT_EQ(watch_->contacts().size(), 2U) << "once more";
 }
 
 TEST_F(Contacts, WhatNoSonarLooksAtIsUnseen) {
   make("post can 5000 5000 50", with_front_sonar(40.0));
-  robot_->set_velocity(0.3);
-  run(15.0);
+  drive(0.3, 15.0);
   ASSERT_EQ(watch_->contacts().size(), 1U);
   EXPECT_EQ(watch_->contacts()[0].blame, Blame::kUnseen);
   EXPECT_EQ(watch_->contacts()[0].kind, ThingKind::kPost);
@@ -76,8 +76,7 @@ TEST_F(Contacts, WhatIsBehindAWallIsNotHeard) {
     make("person ann 5000 4000 " + wall, with_front_sonar(), {5.0, 2.5, kPi / 2.0});
     run(3.0);
     EXPECT_TRUE(robot_->place({4.4, 4.0, 0.0}));
-    robot_->set_velocity(0.3);
-    run(2.0);
+    drive(0.3, 2.0);
     return watch_->contacts().size() == 1 ? std::optional(watch_->contacts()[0].blame)
                                           : std::nullopt;
   };
@@ -87,8 +86,7 @@ TEST_F(Contacts, WhatIsBehindAWallIsNotHeard) {
 
 TEST_F(Contacts, WhoStepsBeforeARobotIsHeardTooLate) {
   make("person ann 5000 7000  wait 7  walk 5000 5000 1600", with_front_sonar());
-  robot_->set_velocity(0.3);
-  run(15.0);
+  drive(0.3, 15.0);
   ASSERT_EQ(watch_->contacts().size(), 1U);
   EXPECT_EQ(watch_->contacts()[0].blame, Blame::kUnseen);
   EXPECT_GT(watch_->contacts()[0].heard, 0.0);
@@ -98,8 +96,7 @@ TEST_F(Contacts, WhoStepsBeforeARobotIsHeardTooLate) {
 TEST_F(Contacts, ARobotThatCreepsIntoSomebodyHasTouchedThem) {
   const auto blame_at = [&](double speed) {
     make("person ann 5000 5000", with_front_sonar(), {4.4, 5.0, 0.0});
-    robot_->set_velocity(speed);
-    run(60.0);
+    drive(speed, 60.0);
     return watch_->contacts().size() == 1 ? std::optional(watch_->contacts()[0].blame)
                                           : std::nullopt;
   };
@@ -129,8 +126,7 @@ TEST_F(Contacts, WallsAreThings) {
   make("", with_front_sonar());
   robot_->set_heading(kPi);
   run(5.0);
-  robot_->set_velocity(0.3);
-  run(15.0);
+  drive(0.3, 15.0);
   ASSERT_EQ(watch_->contacts().size(), 1U);
   EXPECT_EQ(watch_->contacts()[0].kind, ThingKind::kWall);
   EXPECT_EQ(watch_->contacts()[0].blame, Blame::kCaused);
@@ -139,8 +135,7 @@ TEST_F(Contacts, WallsAreThings) {
 TEST_F(Contacts, PassingAPersonIsNoContact) {
   // 0.05 m between the hulls.
   make("person ann 5000 5520", with_front_sonar());
-  robot_->set_velocity(0.15);
-  run(28.0);
+  drive(0.15, 28.0);
   EXPECT_NEAR(watch_->closest_person(), 0.05, 0.02);
   EXPECT_TRUE(watch_->contacts().empty());
 }

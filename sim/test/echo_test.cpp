@@ -7,6 +7,7 @@
 #include "process.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/sonar.hpp"
+#include "world_scene.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -43,8 +44,7 @@ std::string post(double x, double y, double radius) {
 // The largest whole degree off the axis at which a post is heard, with its surface at this
 // distance.
 int widest(double radius, double gap, double strength, const std::string& more) {
-  const World world = world_with(post(10.0 + gap + radius, 10.0, radius) + more);
-  Scene scene(world);
+  WorldScene scene(world_with(post(10.0 + gap + radius, 10.0, radius) + more));
   Sonars sonars(scene, kNobody, one_sonar(), exact(strength), 1);
   int found = -1;
   for (int off = 0; off <= 40; ++off)
@@ -68,8 +68,7 @@ TEST(Echo, PostsAreHeardWithinTheMainLobe) {
 TEST(Echo, StraightAheadOfAP3IsASlot) {
   const RobotParameters parameters = p3dx();
   const auto first_heard = [&](double aside, double strength) {
-    const World world = world_with(post(10.0, 10.0, 0.05));
-    Scene scene(world);
+    WorldScene scene(world_with(post(10.0, 10.0, 0.05)));
     Sonars sonars(scene, kNobody, parameters, exact(strength), 1);
     for (double gap = 3.5; gap > 0.3; gap -= 0.01)
       for (std::uint8_t i = 0; i < 8; ++i)
@@ -87,8 +86,7 @@ TEST(Echo, StraightAheadOfAP3IsASlot) {
 // only by chance.
 TEST(Echo, APersonIsTwoLegs) {
   const RobotParameters parameters = p3dx();
-  const World world = world_with("person ann 10000 10000");
-  Scene scene(world);
+  WorldScene scene(world_with("person ann 10000 10000"));
   SonarModel model;
   model.roughness = model.dropout = 0.0;
   model.cloth = 8.0;
@@ -119,8 +117,7 @@ TEST(Echo, APersonIsTwoLegs) {
 }
 
 TEST(Echo, ChanceLastsForAThirdOfASecond) {
-  const World world = world_with(post(11.0, 10.0, 0.05));
-  Scene scene(world);
+  WorldScene scene(world_with(post(11.0, 10.0, 0.05)));
   SonarModel model = exact(18.2);  // half of the time
   model.spread = 5.0;
   RobotParameters parameters = one_sonar();
@@ -143,8 +140,7 @@ TEST(Echo, ChanceLastsForAThirdOfASecond) {
 }
 
 TEST(Echo, WhoWalksHasALegThatAnswersHalfOfTheTime) {
-  const World world = world_with("person ann 10000 10000 walk 10000 15000 1000");
-  Scene scene(world);
+  WorldScene scene(world_with("person ann 10000 10000 walk 10000 15000 1000"));
   EXPECT_EQ(scene.persons()[0].heading, kPi / 2.0);
   const auto before = shins(scene.persons()[0]);
   EXPECT_NEAR((before[0].disc.centre - Vec2(9.9, 10.0)).norm(), 0.0, 1e-9);  // his left one
@@ -187,18 +183,16 @@ TEST(Echo, WhoWalksHasALegThatAnswersHalfOfTheTime) {
 
 TEST(Echo, WhatStandsNearerHidesWhatStandsBehind) {
   // An unheard soft post before a wall.
-  const World world = world_with(post(11.0, 10.0, 0.2) + "cloth 60  12000 5000 12000 15000");
-  Scene scene(world);
+  WorldScene scene(world_with(post(11.0, 10.0, 0.2) + "cloth 60  12000 5000 12000 15000"));
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_FALSE(sonars.fire(0, {10.0, 10.0, 0.0}).range);
   EXPECT_NEAR(*sonars.fire(0, {10.0, 11.0, 0.0}).range, 2.0, 1e-9);
 }
 
 TEST(Echo, ASquareInnerCornerIsHeardAsAWallIs) {
-  const World world = world_with(
-      "12000 5000 12000 11000  12000 11000 5000 11000  18000 18000 19000 18000 "
-      "18000 18000 18500 19000");
-  Scene scene(world);
+  WorldScene scene(
+      world_with("12000 5000 12000 11000  12000 11000 5000 11000  18000 18000 19000 18000 "
+                 "18000 18000 18500 19000"));
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   // Neither wall within 17 degrees, and both too far to be heard from aside.
   SonarModel model = exact();

@@ -28,15 +28,19 @@ class Bench {
                            "square.wld")),
         parameters_(protocol::load_parameters(source("config/robots/" + robot + ".p"))),
         scene_(world_),
-        server_(scene_, parameters_, {10.0, 10.0, 0.0}, {}) {}
-
+        server_(scene_, parameters_, {10.0, 10.0, 0.0}, {}) {
+    open();
+  }
   void open() {
     for (int i = 0; i < 3; ++i)
       server_.receive(protocol::encode_sync(i));
     send(protocol::Open{});
     packets();
   }
-  void send(const Command& command) { server_.receive(protocol::encode(command, parameters_)); }
+  void send(const Command& command, double seconds = 0.0) {
+    server_.receive(protocol::encode(command, parameters_));
+    advance(seconds);
+  }
   /// Advances the time, with a pulse at intervals.
   void advance(double seconds) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 10.0)); ++i) {
@@ -78,29 +82,24 @@ class Bench {
 
 TEST(LaterServer, MotorsWaitForEnable) {
   Bench b("p3dx-sh");
-  b.open();
-  b.send(protocol::Velocity{0.3});
-  b.advance(1.0);
+  b.send(protocol::Velocity{0.3}, 1.0);
   auto packet = b.last<InformationPacket>();
   EXPECT_EQ(packet.motors, protocol::Motors::kStopped);  // clients take no other type
   EXPECT_EQ(packet.ptu & protocol::kFlagMotors, 0U);
   EXPECT_EQ(protocol::interpret(packet, b.parameters_).motors, protocol::Motors::kNoPower);
   b.send(protocol::Enable{true});
-  b.send(protocol::Velocity{0.3});
-  b.advance(2.0);
+  b.send(protocol::Velocity{0.3}, 2.0);
   packet = b.last<InformationPacket>();
   EXPECT_EQ(packet.motors, protocol::Motors::kMoving);
   EXPECT_NE(packet.ptu & protocol::kFlagMotors, 0U);
   EXPECT_NEAR(b.server_.robot().velocity(), 0.3, 1e-9);
-  b.send(protocol::Enable{false});
-  b.advance(2.0);
+  b.send(protocol::Enable{false}, 2.0);
   EXPECT_FALSE(b.server_.robot().moving());
 }
 
 TEST(LaterServer, MovesAMetre) {
   for (const std::string robot : {"p3dx", "p3dx-sh", "p2at8+", "amigo-sh"}) {
     Bench b(robot);
-    b.open();
     b.send(protocol::Enable{true});
     b.send(protocol::Move{1.0});
     int x = 0;
@@ -119,26 +118,21 @@ TEST(LaterServer, MovesAMetre) {
 
 TEST(LaterServer, LimitsAreSet) {
   Bench b("p3dx-sh");
-  b.open();
   b.send(protocol::Enable{true});
   b.send(protocol::Acceleration{1.0});
   b.send(protocol::Acceleration{-0.2});
-  b.send(protocol::Velocity{0.5});
-  b.advance(0.3);
+  b.send(protocol::Velocity{0.5}, 0.3);
   EXPECT_NEAR(b.server_.robot().velocity(), 0.3, 1e-9);
   b.advance(0.5);
-  b.send(protocol::Stop{});
-  b.advance(1.0);
+  b.send(protocol::Stop{}, 1.0);
   EXPECT_NEAR(b.server_.robot().velocity(), 0.3, 1e-9);
-  b.send(protocol::EmergencyStop{});
-  b.advance(1.0);
+  b.send(protocol::EmergencyStop{}, 1.0);
   EXPECT_FALSE(b.server_.robot().moving());
   EXPECT_TRUE(b.state().emergency_stop.value());
 }
 
 TEST(LaterServer, ConfigurationSaysWhatTheFileSays) {
   Bench b("p3at-sh");
-  b.open();
   b.send(protocol::ConfigRequest{1});
   const auto config = b.last<protocol::ConfigPacket>();
   EXPECT_EQ(config.robot_class, "Pioneer");
@@ -158,7 +152,6 @@ TEST(LaterServer, NoTableIsBeforeAPeopleBotAtRest) {
                                       {"p2pb", 0},
                                       {"p3dx-sh", 0}}) {
     Bench b(robot);
-    b.open();
     b.send(protocol::IoRequest{1});
     EXPECT_EQ(b.last<protocol::IoPacket>().digital_inputs, Bytes{static_cast<std::uint8_t>(inputs)})
         << robot;
@@ -167,16 +160,13 @@ TEST(LaterServer, NoTableIsBeforeAPeopleBotAtRest) {
 
 TEST(LaterServer, PacketsOnRequest) {
   Bench b("peoplebot-sh");
-  b.open();
   int count = 0;
-  b.send(protocol::EncoderRequest{1});
-  b.advance(1.0);
+  b.send(protocol::EncoderRequest{1}, 1.0);
   b.last<protocol::EncoderPacket>(&count);
   EXPECT_EQ(count, 1);
   b.send(protocol::EncoderRequest{2});
   b.send(protocol::Enable{true});
-  b.send(protocol::Move{0.5});
-  b.advance(6.0);
+  b.send(protocol::Move{0.5}, 6.0);
   const auto encoders = b.last<protocol::EncoderPacket>(&count);
   EXPECT_EQ(count, 60);
   EXPECT_NEAR(encoders.left * b.parameters_.encoder_unit, 0.5, 0.02);
@@ -193,8 +183,7 @@ TEST(LaterServer, PacketsOnRequest) {
   EXPECT_EQ(io.digital_inputs, Bytes{0x12});
   EXPECT_EQ(io.analogs, std::vector<std::uint16_t>{0x200});
   b.server_.devices().set_analog(0x40, 5);
-  b.send(protocol::AnalogSelect{5});
-  b.advance(0.5);
+  b.send(protocol::AnalogSelect{5}, 0.5);
   EXPECT_EQ(b.last<protocol::IoPacket>().analogs, std::vector<std::uint16_t>{0x100});
   b.send(protocol::BatteryRequest{1});
   EXPECT_EQ(b.last<protocol::BatteryPacket>().batteries, 1);
@@ -209,32 +198,26 @@ TEST(LaterServer, PacketsOnRequest) {
 
 TEST(LaterServer, TheGripperTakesItsTime) {
   Bench b("peoplebot-sh");
-  b.open();
   b.send(protocol::GripperRequest{2});
-  b.send(protocol::Gripper{static_cast<int>(protocol::GripperAction::kClose)});
-  b.advance(0.5);
+  b.send(protocol::Gripper{static_cast<int>(protocol::GripperAction::kClose)}, 0.5);
   auto gripper = b.last<protocol::GripperPacket>();
   EXPECT_EQ(gripper.kind, 2);
   EXPECT_EQ(gripper.state & 0b111, 0b100);  // moving
   b.advance(1.5);
   EXPECT_EQ(b.last<protocol::GripperPacket>().state & 0b111, 0b010);  // closed
-  b.send(protocol::Gripper{static_cast<int>(protocol::GripperAction::kDeploy)});
-  b.advance(2.0);
+  b.send(protocol::Gripper{static_cast<int>(protocol::GripperAction::kDeploy)}, 2.0);
   EXPECT_EQ(b.state().gripper_bits & 0b111, 0b001);  // open
   Bench none("p3dx-sh");
-  none.open();
   none.send(protocol::GripperRequest{1});
   EXPECT_EQ(none.last<protocol::GripperPacket>().kind, 0);
 }
 
 TEST(LaterServer, SonarArraysGoOffAndOn) {
   Bench b("p3dx-sh");
-  b.open();
   EXPECT_EQ(b.state().sonars.size(), 0U);
   b.advance(2.0);
   EXPECT_EQ((b.last<InformationPacket>().ptu & protocol::kFlagSonars) >> 1U, 0b11U);
-  b.send(protocol::SonarSwitch{false, 2});
-  b.advance(0.2);
+  b.send(protocol::SonarSwitch{false, 2}, 0.2);
   b.packets();
   b.advance(2.0);
   for (const ServerPacket& packet : b.packets())
@@ -243,25 +226,21 @@ TEST(LaterServer, SonarArraysGoOffAndOn) {
       for (const auto& sonar : p->sonars)
         EXPECT_LT(sonar.number, 8);
     }
-  b.send(protocol::SonarSwitch{false, 0});
-  b.advance(0.2);
+  b.send(protocol::SonarSwitch{false, 0}, 0.2);
   b.packets();
   b.advance(1.0);
   EXPECT_TRUE(b.last<InformationPacket>().sonars.empty());
-  b.send(protocol::SonarSwitch{true, 0});
-  b.advance(1.0);
+  b.send(protocol::SonarSwitch{true, 0}, 1.0);
   EXPECT_FALSE(b.last<InformationPacket>().sonars.empty());
 }
 
 TEST(LaterServer, BumpersAreInTheirBits) {
   Bench b("p3dx-sh");
-  b.open();
   b.send(protocol::Enable{true});
   b.send(protocol::Velocity{0.4});
   protocol::Information state;
   for (int i = 0; i < 600 && state.front_bumpers == 0; ++i) {
-    b.send(protocol::Velocity{1.0});
-    b.advance(0.1);
+    b.send(protocol::Velocity{1.0}, 0.1);
     state = b.state();
   }
   EXPECT_EQ(state.front_bumpers & 0b00100, 0b00100);  // head on: the middle one of five
@@ -271,7 +250,6 @@ TEST(LaterServer, BumpersAreInTheirBits) {
 
 TEST(LaterServer, TrailingFieldsOfArcosAlone) {
   Bench arcos("p3dx-sh");
-  arcos.open();
   arcos.advance(0.1);
   const auto packet = arcos.last<InformationPacket>();
   EXPECT_TRUE(packet.trailing.flags3);
@@ -281,7 +259,6 @@ TEST(LaterServer, TrailingFieldsOfArcosAlone) {
   EXPECT_NEAR(arcos.state().battery, 11.4, 0.05);
   for (const std::string robot : {"p3dx", "p2dx", "pioneer"}) {
     Bench other(robot);
-    other.open();
     other.advance(0.1);
     EXPECT_FALSE(other.last<InformationPacket>().trailing.battery) << robot;
   }
@@ -351,7 +328,6 @@ TEST(FastTrackTest, SendsWhatTheCameraSees) {
 // MobileSim's and the old simulator's commands for the true pose of the robot.
 TEST(LaterServer, AHandPutsTheRobotElsewhere) {
   Bench b("p3dx-sh");
-  b.open();
   b.send(protocol::TruePose{{3.0, 4.0, radians(90)}});
   EXPECT_NEAR(b.server_.robot().pose_in_world().x, 3.0, 1e-9);
   EXPECT_NEAR(b.server_.robot().pose_in_world().th, radians(90), 1e-9);

@@ -9,6 +9,7 @@
 #include "broken_text.hpp"
 #include "process.hpp"
 #include "saphira/sim/scene.hpp"
+#include "world_scene.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -73,10 +74,9 @@ TEST(Movable, WhoLeadsWaitsForTheRobot) {
 }
 
 TEST(Movable, WhoPointsStretchesOutAnArmForThatTime) {
-  const World it = world(
-      "push 0 0 90 person ann 5000 -5000 wait 1 point -45 2 walk 5000 -6000 500 repeat pop\n"
-      "person ben 2000 2000 point 180 1000");
-  Scene scene(it);
+  WorldScene scene(
+      world("push 0 0 90 person ann 5000 -5000 wait 1 point -45 2 walk 5000 -6000 500 repeat pop\n"
+            "person ben 2000 2000 point 180 1000"));
   const Person& ann = scene.persons()[0];
   EXPECT_FALSE(arm(ann));
   EXPECT_EQ(scene.persons()[1].points, kPi) << "from the beginning";
@@ -181,9 +181,8 @@ TEST(Movable, WhatStandsCloseIsNotRefused) {
 }
 
 TEST(Movable, PeopleWalkByTheirScripts) {
-  const World it =
-      world("person ann 1000 1000 walk 3000 1000 1000 wait 1 walk 1000 1000 500 repeat");
-  Scene scene(it);
+  WorldScene scene(
+      world("person ann 1000 1000 walk 3000 1000 1000 wait 1 walk 1000 1000 500 repeat"));
   run(scene, 1.0);
   EXPECT_NEAR(scene.persons()[0].at.x(), 2.0, 0.011);
   run(scene, 1.5);
@@ -195,8 +194,7 @@ TEST(Movable, PeopleWalkByTheirScripts) {
 }
 
 TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
-  const World it = world("person ann 1000 5000 walk 8000 5000 1000");
-  Scene scene(it);
+  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000"));
   Robot& robot = scene.add_robot({}, {4.0, 5.0, kPi}, 1);
   run(scene, 3.5);
   EXPECT_NEAR(scene.persons()[0].at.x(), 4.0 - 0.22 - 0.25 - 0.1, 0.011);
@@ -211,8 +209,7 @@ TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
 }
 
 TEST(Movable, SomebodyWhoWaitedLongGoesElsewhere) {
-  const World it = world("person ann 1000 5000 walk 8000 5000 1000 walk 3000 8000 1000");
-  Scene scene(it);
+  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000 walk 3000 8000 1000"));
   scene.add_robot({}, {4.0, 5.0, kPi}, 1);
   run(scene, 6.0);
   EXPECT_NEAR(scene.persons()[0].at.y(), 5.0, 1e-9) << "waits";
@@ -221,8 +218,7 @@ TEST(Movable, SomebodyWhoWaitedLongGoesElsewhere) {
 }
 
 TEST(Movable, DoorsKeepTheirSchedule) {
-  const World it = world("door d 5000 5000 5900 5000 90 open 1 close 4 period 10");
-  Scene scene(it);
+  WorldScene scene(world("door d 5000 5000 5900 5000 90 open 1 close 4 period 10"));
   const auto end = [&] { return scene.leaf(scene.doors()[0]).to; };
   EXPECT_NEAR((end() - Vec2(5.9, 5.0)).norm(), 0.0, 1e-9);
   for (int round = 0; round < 3; ++round) {
@@ -242,8 +238,7 @@ TEST(Movable, DoorsKeepTheirSchedule) {
 }
 
 TEST(Movable, ADoorStopsAtARobot) {
-  const World it = world("door d 5000 5000 5900 5000 90");
-  Scene scene(it);
+  WorldScene scene(world("door d 5000 5000 5900 5000 90"));
   Robot& robot = scene.add_robot({}, {5.5, 5.6, 0.0}, 1);
   scene.set_door("d", true);
   run(scene, 5.0);
@@ -256,10 +251,9 @@ TEST(Movable, ADoorStopsAtARobot) {
 }
 
 TEST(Movable, PeopleOpenDoors) {
-  const World it = world(
-      "5000 0 5000 4500 5000 5500 5000 10000\n"
-      "door d 5000 4500 5000 5500 -90 person ann 3000 5000 walk 8000 5000 1000");
-  Scene scene(it);
+  WorldScene scene(
+      world("5000 0 5000 4500 5000 5500 5000 10000\n"
+            "door d 5000 4500 5000 5500 -90 person ann 3000 5000 walk 8000 5000 1000"));
   run(scene, 10.0);
   EXPECT_NEAR(scene.persons()[0].at.x(), 8.0, 1e-9);
   EXPECT_TRUE(scene.doors()[0].opens);
@@ -289,8 +283,7 @@ TEST(Movable, RobotsPushBoxes) {
 }
 
 TEST(Movable, ABoxThatIsPushedAsideTurns) {
-  const World it = world("box b 5000 5000 0 400 600 5");
-  Scene scene(it);
+  WorldScene scene(world("box b 5000 5000 0 400 600 5"));
   Robot& robot = scene.add_robot({}, {4.0, 5.2, 0.0}, 1);
   robot.set_velocity(0.3);
   for (int i = 0; i < 300; ++i) {
@@ -302,8 +295,7 @@ TEST(Movable, ABoxThatIsPushedAsideTurns) {
 }
 
 TEST(Movable, HeavyBoxesStand) {
-  const World it = world("box b 5000 5000 0 400 600 50");
-  Scene scene(it);
+  WorldScene scene(world("box b 5000 5000 0 400 600 50"));
   Robot& robot = scene.add_robot({}, {4.0, 5.0, 0.0}, 1);
   robot.set_velocity(0.3);
   run(scene, 10.0);

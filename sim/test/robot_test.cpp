@@ -39,18 +39,24 @@ void run(Robot& robot, int ticks) {
 void run(const Alone& alone, int ticks) {
   run(alone.robot, ticks);
 }
+void drive(const Alone& alone, double velocity, int ticks) {
+  alone->set_velocity(velocity);
+  run(alone, ticks);
+}
+void turn_to(const Alone& alone, double heading, int ticks) {
+  alone->set_heading(heading);
+  run(alone, ticks);
+}
 
 // Manual 5.5: constant acceleration to the set speed.
 TEST(Robot, AcceleratesAtAConstantRate) {
   RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
   const Alone robot(parameters);
-  robot->set_velocity(0.3);
-  run(robot, 30);
+  drive(robot, 0.3, 30);
   EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
   run(robot, 40);
   EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
-  robot->set_velocity(-1.0);  // clamped
-  run(robot, 15);
+  drive(robot, -1.0, 15);  // clamped
   EXPECT_NEAR(robot->velocity(), 0.0, 1e-9);
   run(robot, 80);
   EXPECT_NEAR(robot->velocity(), -0.4, 1e-9);
@@ -87,8 +93,7 @@ TEST(Robot, TurnsByATrapezoid) {
 
 TEST(Robot, TurnsTheShortWayRound) {
   const Alone robot;
-  robot->set_heading(radians(350.0));
-  run(robot, 100);
+  turn_to(robot, radians(350.0), 100);
   EXPECT_NEAR(robot->pose_in_odom().th, radians(-10.0), 0.002);
   robot->turn_by(radians(-20.0));
   run(robot, 100);
@@ -98,8 +103,7 @@ TEST(Robot, TurnsTheShortWayRound) {
 TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
   RobotParameters parameters;
   const Alone robot(parameters);
-  robot->set_heading(radians(90.0));
-  run(robot, 50);
+  turn_to(robot, radians(90.0), 50);
   robot->set_heading(radians(-90.0));
   double last = robot->rotation_velocity();
   EXPECT_GT(last, 1.0);
@@ -122,8 +126,7 @@ TEST(Robot, WheelVelocities) {
   EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
   EXPECT_NEAR(robot->rotation_velocity(), 0.05 * parameters.rotation_per_difference, 1e-9);
   // Another command leaves the mode (manual 5.4.6).
-  robot->set_heading(robot->pose_in_odom().th);
-  run(robot, 100);
+  turn_to(robot, robot->pose_in_odom().th, 100);
   EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
   EXPECT_EQ(robot->rotation_velocity(), 0.0);
 }
@@ -167,11 +170,9 @@ TEST(Robot, AtFullSpeedATurnWaitsUntilItsWheelCan) {
   RobotParameters parameters;
   parameters.max_velocity = 1.0;  // more than a turn on the spot needs of a wheel
   const Alone robot(parameters);
-  robot->set_velocity(1.0);
-  run(robot, 400);
+  drive(robot, 1.0, 400);
   EXPECT_NEAR(robot->right_velocity(), 1.0, 1e-9);
-  robot->set_heading(radians(90.0));
-  run(robot, 30);
+  turn_to(robot, radians(90.0), 30);
   EXPECT_LT(robot->velocity(), 0.9);
   EXPECT_GT(robot->rotation_velocity(), 0.2);
   run(robot, 600);
@@ -308,8 +309,7 @@ TEST(Robot, StopsAtAWallAndNeverBehindIt) {
 
 TEST(Robot, BacksIntoAWallTheSameWay) {
   const Alone robot({}, {1.0, 0.0, radians(180.0 - 60.0)}, 1, kWalled);
-  robot->set_velocity(-0.4);
-  run(robot, 2000);
+  drive(robot, -0.4, 2000);
   EXPECT_GE(robot->clearance(), -1e-12);
   EXPECT_EQ(robot->contacts(), 1);
   // The wall is at +x; the robot looks to 120 degrees, so it is behind and to its right.
@@ -320,12 +320,10 @@ TEST(Robot, BacksIntoAWallTheSameWay) {
 TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
   const Alone robot({}, {1.5, 0.0, 0.0}, 1, kWalled);
   for (int i = 1; i <= 3; ++i) {
-    robot->set_velocity(0.2);
-    run(robot, 400);
+    drive(robot, 0.2, 400);
     EXPECT_EQ(robot->contacts(), i);
     robot->clear_stalls();
-    robot->set_velocity(-0.2);
-    run(robot, 200);
+    drive(robot, -0.2, 200);
     EXPECT_GT(robot->clearance(), 0.2);
     EXPECT_FALSE(robot->left_stalled());
   }
@@ -346,8 +344,7 @@ TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
 
 TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
   const Alone robot;
-  robot->set_heading(1.0);
-  run(robot, 20);
+  turn_to(robot, 1.0, 20);
   robot->set_origin();
   run(robot, 200);
   EXPECT_NEAR(robot->pose_in_world().th, 1.0, 0.003);
@@ -417,8 +414,7 @@ TEST(Robot, TenMetresAndOneRevolution) {
     heading += std::abs(robot->pose_in_world().th);
     const double before = norm2_angle(robot->pose_in_world().th - robot->pose_in_odom().th);
     for (const double target : {120.0, 240.0, 360.0}) {
-      robot->set_heading(radians(target));
-      run(robot, 250);
+      turn_to(robot, radians(target), 250);
     }
     const double error = norm2_angle(robot->pose_in_world().th - robot->pose_in_odom().th - before);
     turned += error;
@@ -462,8 +458,7 @@ TEST(Robot, MovesAWayByATrapezoid) {
   EXPECT_NEAR(robot->pose_in_odom().x, 0.5, 0.001);
   robot->move_by(5.0);
   run(robot, 50);
-  robot->set_velocity(0.0);  // another command leaves the mode
-  run(robot, 200);
+  drive(robot, 0.0, 200);  // another command leaves the mode
   EXPECT_FALSE(robot->moving());
   EXPECT_LT(robot->pose_in_odom().x, 0.6);
 }
@@ -474,11 +469,9 @@ TEST(Robot, NoAccelerationIsSetBeyondWhatItCan) {
   parameters.max_acceleration = 2.0;
   const Alone robot(parameters);
   robot->set_deceleration(100.0);
-  robot->set_velocity(0.4);
-  run(robot, 400);
+  drive(robot, 0.4, 400);
   const double from = robot->pose_in_world().x;
-  robot->set_velocity(0.0);
-  run(robot, 100);
+  drive(robot, 0.0, 100);
   EXPECT_FALSE(robot->moving());
   EXPECT_NEAR(robot->pose_in_world().x - from, 0.4 * 0.4 / (2.0 * 2.0), 0.003);
 }
@@ -487,8 +480,7 @@ TEST(Robot, WheelsSlipInAnEmergencyStop) {
   RobotParameters parameters;
   parameters.max_velocity = 2.0;
   const Alone robot(parameters);
-  robot->set_velocity(2.0);
-  run(robot, 400);
+  drive(robot, 2.0, 400);
   EXPECT_EQ(robot->pose_in_odom().x, robot->pose_in_world().x);
   const double from = robot->pose_in_world().x;
   robot->emergency_stop();
@@ -503,8 +495,7 @@ TEST(Robot, WithoutPowerItStands) {
   const Alone robot;
   robot->enable(false);
   robot->set_velocity(0.3);
-  robot->set_heading(1.0);
-  run(robot, 100);
+  turn_to(robot, 1.0, 100);
   EXPECT_FALSE(robot->moving());
   robot->enable(true);
   run(robot, 300);
@@ -516,8 +507,7 @@ TEST(Robot, BumpersSayWhereItTouches) {
   const auto touched = [&](double th, bool rear, int switches) {
     const Alone robot({}, {1.7, 0.0, radians(th)}, 1, kWalled);
     EXPECT_EQ(robot->bumpers(switches, rear), 0);
-    robot->set_velocity(std::abs(th) < 90.0 ? 0.2 : -0.2);
-    run(robot, 500);
+    drive(robot, std::abs(th) < 90.0 ? 0.2 : -0.2, 500);
     return static_cast<int>(robot->bumpers(switches, rear));
   };
   // Five in front: 36 degrees each, the leftmost first.
@@ -563,8 +553,7 @@ TEST(Robot, OneSeedOneTrajectory) {
   const auto trajectory = [&](std::uint64_t seed) {
     const Alone robot(parameters, {}, seed, kWalled);
     robot->set_velocity(0.3);
-    robot->set_heading(2.0);
-    run(robot, 1000);
+    turn_to(robot, 2.0, 1000);
     return robot->pose_in_odom();
   };
   EXPECT_EQ(trajectory(5), trajectory(5));

@@ -9,6 +9,7 @@
 #include "saphira/protocol/information.hpp"
 #include "saphira/sim/simulation.hpp"
 #include "saphira/sim/sonar.hpp"
+#include "world_scene.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -50,8 +51,7 @@ TEST(Things, DiscsAreSeenAndTouched) {
 }
 
 TEST(Scene, RobotsSeeEachOther) {
-  const World world = arena();
-  Scene scene(world);
+  WorldScene scene(arena());
   scene.add_robot(with_sonar(), {2.0, 5.0, 0.0}, 1);
   scene.add_robot(with_sonar(), {4.0, 5.0, kPi}, 2);
   SonarModel exact;
@@ -110,8 +110,7 @@ TEST(Scene, RobotsStopEachOther) {
 }
 
 TEST(Scene, RefusesARobotInARobot) {
-  const World world = arena();
-  Scene scene(world);
+  WorldScene scene(arena());
   scene.add_robot({}, {2.0, 5.0, 0.0}, 1);
   EXPECT_THROW(scene.add_robot({}, {2.3, 5.0, 0.0}, 1), std::invalid_argument);
   EXPECT_EQ(scene.robots(), 1U);

@@ -47,7 +47,11 @@ class Fixture : public ::testing::Test {
         out.push_back(*packet);
     return out;
   }
-  void send(const Command& command) { server_.receive(encode(command)); }
+  /// Sends, and lets so many ticks pass.
+  void send(const Command& command, int ticks = 0) {
+    server_.receive(encode(command));
+    server_.advance(ticks);
+  }
   void synchronize() {
     for (int i = 0; i < 3; ++i)
       server_.receive(protocol::encode_sync(i));
@@ -105,15 +109,13 @@ TEST_F(ServerTest, SendsAPacketEvery100MillisecondsOnceOpen) {
   synchronize();
   server_.advance(100);
   EXPECT_TRUE(packets().empty());
-  send(protocol::Open{});
-  server_.advance(9);
+  send(protocol::Open{}, 9);
   EXPECT_TRUE(packets().empty());
   EXPECT_EQ(server_.ticks_to_packet(), 1);
   server_.advance(1);
   EXPECT_EQ(packets().size(), 1U);
   for (int i = 0; i < 19; ++i) {
-    send(protocol::Pulse{});
-    server_.advance(10);
+    send(protocol::Pulse{}, 10);
   }
   const auto got = packets();
   ASSERT_EQ(got.size(), 19U);
@@ -132,8 +134,7 @@ TEST_F(ServerTest, SendsAPacketEvery100MillisecondsOnceOpen) {
 TEST_F(ServerTest, DrivesAndReports) {
   open();
   send(protocol::Velocity{0.3});
-  send(protocol::Heading{radians(10.0)});
-  server_.advance(100);
+  send(protocol::Heading{radians(10.0)}, 100);
   auto got = packets();
   ASSERT_EQ(got.size(), 10U);
   EXPECT_EQ(got.back().motors, protocol::Motors::kMoving);
@@ -143,11 +144,9 @@ TEST_F(ServerTest, DrivesAndReports) {
   EXPECT_NEAR(in.control, radians(10.0), parameters_.angle_unit);
   EXPECT_NEAR(got.back().x * parameters_.distance_unit, server_.robot().pose_in_odom().x,
               parameters_.distance_unit);
-  send(protocol::SetOrigin{});
-  server_.advance(10);
+  send(protocol::SetOrigin{}, 10);
   EXPECT_LT(server_.robot().pose_in_odom().x, 0.05);
-  send(protocol::RotationVelocity{radians(-30.0)});
-  server_.advance(50);
+  send(protocol::RotationVelocity{radians(-30.0)}, 50);
   EXPECT_NEAR(server_.robot().rotation_velocity(), radians(-30.0), 1e-9);
   send(protocol::DeltaHeading{radians(20.0)});
   send(protocol::Velocity{0.0});
@@ -160,8 +159,7 @@ TEST_F(ServerTest, DrivesAndReports) {
 // A negative coordinate rolls over to the top of 15 bits (manual 5.5.1).
 TEST_F(ServerTest, ThePositionIsAlwaysPositive) {
   open();
-  send(protocol::Velocity{-0.2});
-  server_.advance(50);
+  send(protocol::Velocity{-0.2}, 50);
   const auto got = packets();
   EXPECT_GT(got.back().x, 0x7000);
   EXPECT_LT(protocol::position_difference(0, got.back().x), 0);
@@ -173,16 +171,14 @@ TEST_F(ServerTest, DevicesAreReflected) {
   send(protocol::Ptu{1500});
   send(protocol::Gripper{4});
   send(protocol::Timer{3});
-  send(protocol::Polling{{3}});
-  server_.advance(20);
+  send(protocol::Polling{{3}}, 20);
   const auto got = packets();
   EXPECT_EQ(got.back().digital_output, 0x5A);
   EXPECT_EQ(got.back().ptu, 1500);
   EXPECT_EQ(server_.devices().gripper().action(), 4);
   for (const auto& sonar : got.back().sonars)
     EXPECT_EQ(sonar.number, 3);
-  send(protocol::Polling{});
-  server_.advance(20);
+  send(protocol::Polling{}, 20);
   EXPECT_TRUE(packets().back().sonars.empty());
 }
 
@@ -196,17 +192,14 @@ TEST_F(HeadTest, TurnsAtItsSpeedWithinItsReach) {
   open();
   server_.advance(10);
   EXPECT_EQ(packets().back().ptu, 1500) << "straight ahead";
-  send(protocol::Ptu{2400});
-  server_.advance(50);
+  send(protocol::Ptu{2400}, 50);
   EXPECT_EQ(packets().back().ptu, 1860);
   EXPECT_NEAR(server_.devices().head(), radians(60.0), 1e-9);
   server_.advance(100);
   EXPECT_EQ(packets().back().ptu, 2400);
-  send(protocol::Ptu{500});
-  server_.advance(300);
+  send(protocol::Ptu{500}, 300);
   EXPECT_EQ(packets().back().ptu, 510) << "the end stop";
-  send(protocol::Ptu{0});
-  server_.advance(100);
+  send(protocol::Ptu{0}, 100);
   EXPECT_EQ(packets().back().ptu, 510) << "no pulse: it stays";
 }
 
@@ -241,20 +234,17 @@ TEST_F(ServerTest, TheWatchdogStopsAndACommandRevives) {
   server_.advance(1000);
   EXPECT_FALSE(server_.robot().moving());
   EXPECT_EQ(server_.counters().watchdog_stops, 1U);
-  send(protocol::Pulse{});
-  server_.advance(100);
+  send(protocol::Pulse{}, 100);
   EXPECT_NEAR(server_.robot().velocity(), 0.2, 1e-12);
   server_.advance(200);
   EXPECT_FALSE(server_.robot().moving());
-  send(protocol::Velocity{0.0});
-  server_.advance(100);
+  send(protocol::Velocity{0.0}, 100);
   EXPECT_FALSE(server_.robot().moving());
 }
 
 TEST_F(ServerTest, ClosingStopsTheRobotAndItsPositionStays) {
   open();
-  send(protocol::Velocity{0.4});
-  server_.advance(150);
+  send(protocol::Velocity{0.4}, 150);
   const double before = server_.robot().pose_in_odom().x;
   packets();
   send(protocol::Close{});
@@ -270,8 +260,7 @@ TEST_F(ServerTest, ClosingStopsTheRobotAndItsPositionStays) {
   EXPECT_FALSE(server_.runs());
 
   open();
-  send(protocol::Pulse{});
-  server_.advance(50);
+  send(protocol::Pulse{}, 50);
   EXPECT_FALSE(server_.robot().moving()) << "drives off with the velocity of the last client";
   EXPECT_DOUBLE_EQ(server_.robot().pose_in_odom().x, at);
   const auto again = server_.take_trace();
@@ -282,8 +271,7 @@ TEST_F(ServerTest, ClosingStopsTheRobotAndItsPositionStays) {
 
 TEST_F(ServerTest, ADroppedConnectionStopsTheRobot) {
   open();
-  send(protocol::Velocity{0.4});
-  server_.advance(150);
+  send(protocol::Velocity{0.4}, 150);
   server_.receive(Bytes{0xFA, 0xFB, 50});  // cut off in the middle
   server_.disconnect();
   EXPECT_TRUE(server_.take_output().empty());
@@ -297,8 +285,7 @@ TEST_F(ServerTest, ADroppedConnectionStopsTheRobot) {
 TEST_F(ServerTest, AFalseHeaderHoldsNothingBackForLong) {
   open();
   server_.receive(Bytes{0xFA, 0xFB, 199});
-  send(protocol::Velocity{0.2});
-  server_.advance(10);
+  send(protocol::Velocity{0.2}, 10);
   EXPECT_NEAR(server_.robot().target_velocity(), 0.2, 1e-12);
 }
 
@@ -373,8 +360,7 @@ TEST(Trace, SurvivesTheFile) {
 
 TEST_F(ServerTest, ThePictureHasTheWorldAndTheWay) {
   open();
-  send(protocol::Velocity{0.3});
-  server_.advance(190);
+  send(protocol::Velocity{0.3}, 190);
   const auto rows = server_.take_trace();
   const std::string svg = plot_svg(world_, rows, parameters_.radius);
   EXPECT_TRUE(svg.starts_with("<svg "));

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "world_scene.hpp"
+
 namespace saphira::sim {
 namespace {
 
@@ -29,8 +31,7 @@ World wall_at(double millimetres) {
 }
 
 TEST(Sonars, RangeIsFromTheTransducer) {
-  const World world = wall_at(2000);
-  Scene scene(world);
+  WorldScene scene(wall_at(2000));
   Sonars sonars(scene, kNobody, one_sonar(0.13), exact(), 1);
   const auto echo = sonars.fire(0, {0.5, 1.0, 0.0});
   ASSERT_TRUE(echo.range);
@@ -38,8 +39,7 @@ TEST(Sonars, RangeIsFromTheTransducer) {
 }
 
 TEST(Sonars, WhatIsNearerThanTheirLeastRangeReadsAsThat) {
-  const World world = wall_at(2000);
-  Scene scene(world);
+  WorldScene scene(wall_at(2000));
   RobotParameters parameters = one_sonar();
   EXPECT_NEAR(*Sonars(scene, kNobody, parameters, exact(), 1).fire(0, {1.98, 0.0, 0.0}).range, 0.05,
               1e-9);
@@ -49,8 +49,7 @@ TEST(Sonars, WhatIsNearerThanTheirLeastRangeReadsAsThat) {
 }
 
 TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
-  const World world = wall_at(2000);
-  Scene scene(world);
+  WorldScene scene(wall_at(2000));
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   for (const double off : {0.0, 10.0, -14.0}) {
     const auto echo = sonars.fire(0, {0.0, 0.0, radians(off)});
@@ -60,9 +59,9 @@ TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
 }
 
 TEST(Sonars, TheNearestCounts) {
-  const World world = parse_world(
-      "width 9000 height 9000\n2000 -1000 2000 1000  3000 -4000 3000 4000  500 2000 700 2000", "w");
-  Scene scene(world);
+  WorldScene scene(parse_world(
+      "width 9000 height 9000\n2000 -1000 2000 1000  3000 -4000 3000 4000  500 2000 700 2000",
+      "w"));
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_NEAR(*sonars.fire(0, {0.0, 0.0, 0.0}).range, 2.0, 1e-9);
   // The far wall is met behind the near one's end; the end itself is 14 degrees aside.
@@ -70,8 +69,7 @@ TEST(Sonars, TheNearestCounts) {
 }
 
 TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
-  const World world = wall_at(6000);
-  Scene scene(world);
+  WorldScene scene(wall_at(6000));
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_FALSE(sonars.fire(0, {0.0, 0.0, 0.0}).range);
   EXPECT_TRUE(sonars.fire(0, {1.5, 0.0, 0.0}).range);
@@ -81,8 +79,7 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
 // Beyond 17 degrees a wall is heard less and less, and at a larger distance even less.
 TEST(Sonars, GlancingSurfacesAreLost) {
   const auto share = [](double distance_mm, double off) {
-    const World world = wall_at(distance_mm);
-    Scene scene(world);
+    WorldScene scene(wall_at(distance_mm));
     Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
     constexpr int kFirings = 4000;
     int heard = 0;
@@ -100,8 +97,7 @@ TEST(Sonars, GlancingSurfacesAreLost) {
 }
 
 TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
-  const World world = wall_at(1000);
-  Scene scene(world);
+  WorldScene scene(wall_at(1000));
   SonarModel model = exact();
   model.roughness = 1.0;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
@@ -113,10 +109,9 @@ TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
 // A sonar along a corridor's wall hears its door posts.
 TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
   // A wall along y = 1 with a door in it, and a partition that meets it from behind at x = 5.
-  const World world = parse_world(
+  WorldScene scene(parse_world(
       "width 9000 height 9000\n0 1000 2000 1000 2900 1000 9000 1000 5000 1000 5000 2000",
-      "door.wld");
-  Scene scene(world);
+      "door.wld"));
   SonarModel model = exact();
   model.lost_angle = model.critical_angle;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
@@ -205,9 +200,8 @@ TEST(Sonars, ArraysTakeTurns) {
 
 // The sonar before has heard a near object, and this one hears it instead of the wall.
 TEST(Sonars, TheLastFiringsEchoIsHeardNowAndThen) {
-  const World world =
-      parse_world("width 9000 height 9000 2000 -5000 2000 5000 -5000 -1000 1000 -1000", "wall.wld");
-  Scene scene(world);
+  WorldScene scene(parse_world("width 9000 height 9000 2000 -5000 2000 5000 -5000 -1000 1000 -1000",
+                               "wall.wld"));
   RobotParameters parameters = one_sonar();
   parameters.sonars.push_back({1, {0.0, 0.0, radians(-90.0)}});
   parameters.sonar_arrays = 2;

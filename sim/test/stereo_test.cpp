@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "world_scene.hpp"
+
 namespace saphira::sim {
 namespace {
 
@@ -106,9 +108,8 @@ bool fits(const StereoRig& rig, double range, double truth) {
 
 TEST(Stereo, CensusFindsAPersonsBandsAtTorsoHeight) {
   for (const double away : {1.5, 2.5, 4.0}) {
-    const World it =
-        world("person ann " + std::to_string(static_cast<int>(2000 + 1000 * away)) + " 3000");
-    Scene scene(it);
+    WorldScene scene(
+        world("person ann " + std::to_string(static_cast<int>(2000 + 1000 * away)) + " 3000"));
     scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
     const StereoRig rig;
     Random random(5);
@@ -156,8 +157,7 @@ TEST(Stereo, CensusFindsAPersonsBandsAtTorsoHeight) {
 }
 
 TEST(Stereo, TheFloorsDisparityIsThatOfItsDistance) {
-  const World it = world("");
-  Scene scene(it);
+  WorldScene scene(world(""));
   scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
   const StereoRig rig;
   Random random(5);
@@ -205,8 +205,8 @@ TEST(Stereo, ABoxIsSeenWithItsLidAndHidesWhatIsBehind) {
 // From 1.35 to 1.45 m above the floor, with the far wall below it.
 TEST(Stereo, AnArmIsABarBesideThePerson) {
   for (const double side : {1.0, -1.0}) {
-    const World it = world("person ann 4000 3000 point " + std::to_string(90 * int(side)) + " 100");
-    Scene scene(it);
+    WorldScene scene(
+        world("person ann 4000 3000 point " + std::to_string(90 * int(side)) + " 100"));
     scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
     const StereoRig rig;
     Random random(5);
@@ -230,8 +230,7 @@ TEST(Stereo, AnArmIsABarBesideThePerson) {
 }
 
 TEST(Stereo, ASeedDecidesThePicture) {
-  const World it = world("person ann 5000 3000 post can 4000 3500 100");
-  Scene scene(it);
+  WorldScene scene(world("person ann 5000 3000 post can 4000 3500 100"));
   scene.add_robot({}, {2.0, 3.0, 0.1}, 1);
   const StereoRig rig;
   const auto picture = [&](std::uint64_t seed) {

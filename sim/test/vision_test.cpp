@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "world_scene.hpp"
+
 namespace saphira::sim {
 namespace {
 
@@ -64,9 +66,8 @@ TEST(Blobs, TheLargestCounts) {
 }
 
 TEST(Bands, ShowAPersonAtThreeHeights) {
-  const World it =
-      world("person ann 8000 5000 0 0 0 19000 20000 0 20000 20000 12000 0 12000 20000");
-  Scene scene(it);
+  WorldScene scene(
+      world("person ann 8000 5000 0 0 0 19000 20000 0 20000 20000 12000 0 12000 20000"));
   scene.add_robot({}, {5.0, 5.0, 0.0}, 1);
   StereoCamera camera;
   camera.noise = camera.dropout = 0.0;
@@ -87,8 +88,7 @@ TEST(Bands, ShowAPersonAtThreeHeights) {
 }
 
 TEST(Bands, LowThingsAreBelowThemAndMatchesFail) {
-  const World it = world("post bin 7000 5000 300 tall 900 10000 0 10000 20000");
-  Scene scene(it);
+  WorldScene scene(world("post bin 7000 5000 300 tall 900 10000 0 10000 20000"));
   scene.add_robot({}, {5.0, 5.0, 0.0}, 1);
   StereoCamera camera;
   camera.dropout = 0.2;

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "process.hpp"
 
@@ -30,6 +31,12 @@ class SupervisorTest : public testing::Test {
     };
   }
 
+  Supervisor& start(std::vector<ChildSpec> children) {
+    supervisor_.emplace(std::move(children), keep());
+    supervisor_->start();
+    return *supervisor_;
+  }
+
   static bool run_until(Supervisor& supervisor, const std::function<bool()>& condition) {
     const auto end = Clock::now() + std::chrono::seconds(30);
     while (!condition() && Clock::now() < end)
@@ -48,13 +55,12 @@ class SupervisorTest : public testing::Test {
   }
 
   std::vector<std::string> lines_;
+  std::optional<Supervisor> supervisor_;
 };
 
 TEST_F(SupervisorTest, PrintsEachLineWithItsName) {
-  Supervisor supervisor(
-      {shell("a", "echo one; echo two >&2; exec sleep 60"), shell("b", "printf 'without an end'")},
-      keep());
-  supervisor.start();
+  Supervisor& supervisor = start(
+      {shell("a", "echo one; echo two >&2; exec sleep 60"), shell("b", "printf 'without an end'")});
   EXPECT_TRUE(run_until(supervisor, [&] {
     return said("a|one") && said("a|two") && said("b|without an end");
   })) << all();
@@ -63,21 +69,19 @@ TEST_F(SupervisorTest, PrintsEachLineWithItsName) {
 TEST_F(SupervisorTest, GivesTheEnvironment) {
   ChildSpec child = shell("a", "echo \"$SAPHIRA_TEST_WORD\"; exec sleep 60");
   child.environment["SAPHIRA_TEST_WORD"] = "hello";
-  Supervisor supervisor({child}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({child});
   EXPECT_TRUE(run_until(supervisor, [&] { return said("a|hello"); })) << all();
 }
 
 TEST_F(SupervisorTest, KillsWhatHangsAndStartsItAgainWithTheReason) {
   // A node's heartbeats, and then none.
-  Supervisor supervisor({shell("a",
-                               "echo \"again: $SAPHIRA_STARTED_AGAIN\"\n"
-                               "fd=${SAPHIRA_HEARTBEAT%%:*}\n"
-                               "for i in 1 2 3 4 5 6; do head -c 32 /dev/zero >/dev/fd/$fd; done\n"
-                               "exec sleep 1000"),
-                         shell("b", "exec sleep 1000")},
-                        keep());
-  supervisor.start();
+  Supervisor& supervisor =
+      start({shell("a",
+                   "echo \"again: $SAPHIRA_STARTED_AGAIN\"\n"
+                   "fd=${SAPHIRA_HEARTBEAT%%:*}\n"
+                   "for i in 1 2 3 4 5 6; do head -c 32 /dev/zero >/dev/fd/$fd; done\n"
+                   "exec sleep 1000"),
+             shell("b", "exec sleep 1000")});
   const pid_t other = supervisor.children()[1].pid;
   EXPECT_TRUE(run_until(supervisor, [&] {
     return said("a|again: it hung: no sign of life for 10 s");
@@ -88,8 +92,7 @@ TEST_F(SupervisorTest, KillsWhatHangsAndStartsItAgainWithTheReason) {
 }
 
 TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
-  Supervisor supervisor({shell("a", "exec sleep 60")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "exec sleep 60")});
   const auto starts = [&] { return supervisor.children().at(0).starts; };
   for (int round = 1; round <= 3; ++round) {
     const pid_t pid = supervisor.children().at(0).pid;
@@ -104,8 +107,7 @@ TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
 }
 
 TEST_F(SupervisorTest, AnotherChildGoesOnMeanwhile) {
-  Supervisor supervisor({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")});
   const pid_t other = supervisor.children().at(1).pid;
   kill(supervisor.children().at(0).pid, SIGKILL);
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
@@ -127,8 +129,7 @@ TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
     children.back().robot = "pioneer";
   }
   children.push_back({"sim", {write("sim", "old")}, {}, true});
-  Supervisor supervisor(children, keep());
-  supervisor.start();
+  Supervisor& supervisor = start(children);
   const auto pid = [&](std::size_t i) { return supervisor.children()[i].pid; };
   // All children, since a shell reads its script only after its start.
   EXPECT_TRUE(run_until(supervisor, [&] {
@@ -192,8 +193,7 @@ TEST_F(SupervisorTest, HandsItsChildrenOver) {
 }
 
 TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {
-  Supervisor supervisor({shell("a", "echo bad option; exit 2")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "echo bad option; exit 2")});
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.misused().has_value(); }));
   EXPECT_EQ(supervisor.misused(), "a");
   EXPECT_TRUE(supervisor.finished());
@@ -228,8 +228,7 @@ class NoMoreFiles {
 };
 
 TEST_F(SupervisorTest, TriesAgainWhatCannotBeStartedNow) {
-  Supervisor supervisor({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")});
   const pid_t other = supervisor.children().at(1).pid;
   const std::string words = "|a cannot be started, no pipe: Too many open files; tried again in ";
   {
@@ -247,26 +246,22 @@ TEST_F(SupervisorTest, TriesAgainWhatCannotBeStartedNow) {
 TEST_F(SupervisorTest, DoesNotStartAgainWhatMayEnd) {
   ChildSpec once = shell("a", "exit 0");
   once.restart = false;
-  Supervisor supervisor({once}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({once});
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.finished(); }));
   EXPECT_FALSE(supervisor.misused().has_value());
 }
 
 TEST_F(SupervisorTest, SaysWhatCannotRun) {
-  Supervisor supervisor({{"a", {"/no/such/program"}, {}, false}}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({{"a", {"/no/such/program"}, {}, false}});
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.finished(); }));
   EXPECT_TRUE(said("a|cannot run /no/such/program: No such file or directory")) << all();
 }
 
 TEST_F(SupervisorTest, TellsACrashFromBeingKilled) {
-  Supervisor supervisor(
-      {shell("killed", "kill -TERM $$"), shell("crashed",
-                                               "trap 'kill -ABRT $$' TERM; echo up; "
-                                               "while :; do sleep 0.01; done")},
-      keep());
-  supervisor.start();
+  Supervisor& supervisor =
+      start({shell("killed", "kill -TERM $$"), shell("crashed",
+                                                     "trap 'kill -ABRT $$' TERM; echo up; "
+                                                     "while :; do sleep 0.01; done")});
   EXPECT_TRUE(run_until(supervisor, [&] { return said("crashed|up"); })) << all();
   supervisor.stop();
   EXPECT_FALSE(supervisor.children()[0].crashed);
@@ -275,8 +270,7 @@ TEST_F(SupervisorTest, TellsACrashFromBeingKilled) {
 
 TEST_F(SupervisorTest, StopsInReverseOrder) {
   const std::string script = "trap 'echo bye; exit 0' TERM; echo up; while :; do sleep 0.01; done";
-  Supervisor supervisor({shell("a", script), shell("b", script), shell("c", script)}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", script), shell("b", script), shell("c", script)});
   ASSERT_TRUE(run_until(supervisor, [&] { return said("a|up") && said("b|up") && said("c|up"); }));
   lines_.clear();
   supervisor.stop(std::chrono::seconds(20));
@@ -285,8 +279,7 @@ TEST_F(SupervisorTest, StopsInReverseOrder) {
 }
 
 TEST_F(SupervisorTest, KillsWhatDoesNotEnd) {
-  Supervisor supervisor({shell("a", "trap '' TERM; echo up; while :; do sleep 1; done")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "trap '' TERM; echo up; while :; do sleep 1; done")});
   ASSERT_TRUE(run_until(supervisor, [&] { return said("a|up"); }));
   const auto begin = Clock::now();
   supervisor.stop(milliseconds(300));
@@ -296,8 +289,7 @@ TEST_F(SupervisorTest, KillsWhatDoesNotEnd) {
 }
 
 TEST_F(SupervisorTest, EndsAlsoWhatWasStopped) {
-  Supervisor supervisor({shell("a", "exec sleep 60")}, keep());
-  supervisor.start();
+  Supervisor& supervisor = start({shell("a", "exec sleep 60")});
   kill(supervisor.children().at(0).pid, SIGSTOP);
   supervisor.stop(std::chrono::seconds(20));
   EXPECT_EQ(supervisor.children().at(0).ended, "killed by SIGTERM");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "only.hpp"
 #include "saphira/mcp/session.hpp"
 
 /// A session whose client and robot are the test.
@@ -33,6 +34,9 @@ struct Client {
     EXPECT_EQ(all.size(), 1U) << line;
     return all.empty() ? Json() : all.front();
   }
+  /// The only line, and the only call, since the last time.
+  Line only() { return saphira::test::only(session.take_lines()); }
+  Call called() { return saphira::test::only(session.take_calls()); }
   Session session{"saphira", "1", "a robot"};
 };
 
@@ -40,6 +44,14 @@ struct Client {
 inline std::string line(int id, const std::string& method,
                         const Json& parameters = Json::object()) {
   return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump();
+}
+
+/// A call of go_to, as the parameters of a request.
+inline const Json kGo{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+
+/// A request is given up.
+inline std::string cancelled(const Json& id) {
+  return Json{{"method", "notifications/cancelled"}, {"params", {{"requestId", id}}}}.dump();
 }
 
 /// A request of the newer era.

@@ -5,6 +5,7 @@
 
 #include "door.hpp"
 #include "node_options.hpp"
+#include "only.hpp"
 #include "saphira/bus/agent.hpp"
 
 namespace saphira::mcp {
@@ -72,6 +73,11 @@ class DoorInMemory : public testing::Test {
     const auto found = results.find(id);
     return found == results.end() ? Json() : found->second;
   }
+  /// The result of a call that is answered at once.
+  Json answer(const std::string& tool, const Json& arguments = Json::object()) {
+    call(--answered, tool, arguments);
+    return result(answered);
+  }
   /// Asks for an action that is not done at once; its handle.
   std::string begin_sweep() {
     call(1, "sweep", {{"room", "kitchen"}, {"wait_s", 0}});
@@ -136,6 +142,7 @@ class DoorInMemory : public testing::Test {
   Robot robot{node};
   std::unique_ptr<Door> door = std::make_unique<Door>(node, robot, session, "model");
   std::map<int, Json> results;
+  int answered = 0;  ///< the id of the newest such call
   double now = 100.0;
 };
 
@@ -177,10 +184,8 @@ TEST_F(DoorInMemory, TheProgressOfAnActionIsTold) {
   turn();
   session.take_lines();
   say(heard(), v1::ANSWER_UNDERWAY, "half of it is clean");
-  const auto lines = session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(Json::parse(lines[0].text)["params"]["message"],
-            "underway: sweeper: half of it is clean");
+  const auto told = saphira::test::only(session.take_lines());
+  EXPECT_EQ(Json::parse(told.text)["params"]["message"], "underway: sweeper: half of it is clean");
 }
 
 TEST_F(DoorInMemory, AnActionIsCanceledByItsHandle) {
@@ -193,10 +198,8 @@ TEST_F(DoorInMemory, AnActionIsCanceledByItsHandle) {
   EXPECT_TRUE(result(2).is_null()) << "it has not ended yet";
   say(request, v1::ANSWER_GIVEN_UP, "half of it is clean");
   EXPECT_EQ(result(2)["content"][0]["text"], "withdrawn; the robot stands");
-  call(3, "goal", {{"goal", handle}});
-  EXPECT_EQ(result(3)["structuredContent"]["state"], "canceled");
-  call(4, "cancel", {{"goal", "7:1"}});
-  EXPECT_EQ(result(4)["isError"], true);
+  EXPECT_EQ(answer("goal", {{"goal", handle}})["structuredContent"]["state"], "canceled");
+  EXPECT_EQ(answer("cancel", {{"goal", "7:1"}})["isError"], true);
 }
 
 TEST_F(DoorInMemory, TheGoalOfAnotherClientEndsAfterAQuestion) {
@@ -208,30 +211,27 @@ TEST_F(DoorInMemory, TheGoalOfAnotherClientEndsAfterAQuestion) {
             "person; after a yes call cancel again with sure: true");
   EXPECT_TRUE(goals.take().empty());
   call(2, "cancel", {{"goal", id}, {"sure", true}});
-  const auto samples = goals.take();
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.id.number, 77U);
-  EXPECT_EQ(samples[0].data.withdrawn, "model was sure, after a question");
+  const auto sample = saphira::test::only(goals.take());
+  EXPECT_EQ(sample.data.id.number, 77U);
+  EXPECT_EQ(sample.data.withdrawn, "model was sure, after a question");
   EXPECT_TRUE(result(2).is_null()) << "it has not ended yet";
   tell_goal(v1::GOAL_CANCELED);
   EXPECT_EQ(result(2)["content"][0]["text"], "withdrawn; the robot stands");
-  call(3, "cancel", {{"goal", id}, {"sure", true}});
-  EXPECT_EQ(result(3)["isError"], true) << "it has ended";
+  EXPECT_EQ(answer("cancel", {{"goal", id}, {"sure", true}})["isError"], true) << "it has ended";
 }
 
 TEST_F(DoorInMemory, NobodyEndsTheGoalOfAnotherProgram) {
   v1::GoalStatus status{.id = {other.instance(), 77}, .state = v1::GOAL_UNDERWAY};
   statuses.write(status);
-  call(1, "cancel", {{"goal", bus::describe(status.id)}, {"sure", true}});
-  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_EQ(answer("cancel", {{"goal", bus::describe(status.id)}, {"sure", true}})["isError"],
+            true);
   EXPECT_TRUE(goals.take().empty());
 }
 
 TEST_F(DoorInMemory, EachGoalNamesItsClient) {
   tell_goal(v1::GOAL_UNDERWAY);
   begin_sweep();
-  call(2, "robot_status", Json::object());
-  const Json all = result(2)["structuredContent"]["goals"];
+  const Json all = answer("robot_status")["structuredContent"]["goals"];
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0]["asked_by"], "rover 2");
   EXPECT_EQ(all[0]["yours"], false);
@@ -247,9 +247,9 @@ TEST_F(DoorInMemory, AGoalBehindThatOfAnotherClientSaysHowToEndIt) {
   waits.state = v1::GOAL_WAITING;
   statuses.write(waits);
   turn();
-  call(1, "goal", {{"goal", bus::describe(waits.id)}, {"wait_s", 0}});
-  EXPECT_NE(result(1)["content"][0]["text"].get<std::string>().find("the tool cancel ends " +
-                                                                    bus::describe(waits.waits_for)),
+  EXPECT_NE(answer("goal", {{"goal", bus::describe(waits.id)}, {"wait_s", 0}})["content"][0]["text"]
+                .get<std::string>()
+                .find("the tool cancel ends " + bus::describe(waits.waits_for)),
             std::string::npos);
 }
 
@@ -298,8 +298,7 @@ TEST_F(DoorInMemory, TheGoalsOfAClientThatIsNotThereEndOnceAndItMayComeBack) {
   EXPECT_EQ(heard().functor, bus::kWithdraw);
   door->close("there is no sign of its client");
   EXPECT_TRUE(solve.take().empty());
-  call(2, "robot_status", Json::object());
-  EXPECT_EQ(result(2)["structuredContent"]["goals"][0]["yours"], true);
+  EXPECT_EQ(answer("robot_status")["structuredContent"]["goals"][0]["yours"], true);
 }
 
 // The dialogue ends the tasks of a program whose writer is gone.
@@ -445,8 +444,7 @@ TEST_F(DoorInMemory, AnActionIsATaskForAClientThatKnowsTasks) {
   EXPECT_EQ(ended["status"], "completed");
   EXPECT_EQ(ended["result"]["structuredContent"]["results"], Json({{"dust", 3.0}}));
   // The same id is a handle for the tools.
-  call(4, "goal", {{"goal", begun["taskId"]}});
-  EXPECT_EQ(result(4)["structuredContent"]["state"], "succeeded");
+  EXPECT_EQ(answer("goal", {{"goal", begun["taskId"]}})["structuredContent"]["state"], "succeeded");
 }
 
 TEST_F(DoorInMemory, ACanceledTaskIsCanceledWhenTheRobotStands) {
@@ -481,9 +479,8 @@ TEST_F(DoorInMemory, ASubscriberHearsThatAnActionGoesOn) {
   begin_sweep();
   turn(1.0);
   turn(1.0);
-  const auto lines = session.take_lines();
-  ASSERT_EQ(lines.size(), 1U) << "the second reading is the same";
-  EXPECT_EQ(Json::parse(lines[0].text)["method"], "notifications/resources/updated");
+  const auto told = saphira::test::only(session.take_lines());  // the second reading is the same
+  EXPECT_EQ(Json::parse(told.text)["method"], "notifications/resources/updated");
 }
 
 TEST_F(DoorInMemory, TheToolsOfAnAgentThatIsKilledEnd) {
@@ -524,8 +521,10 @@ TEST_F(DoorInMemory, AClientWaitsForAnEvent) {
 TEST_F(DoorInMemory, AClientWaitsForABelief) {
   believe("at-rest", "t");
   call(1, "wait_for", {{"belief", "at-rest"}});
-  call(2, "wait_for", {{"belief", "at-rest"}, {"value", "t"}});
-  EXPECT_EQ(result(2)["structuredContent"]["happened"], true) << "it is so already";
+  EXPECT_EQ(
+      answer("wait_for", {{"belief", "at-rest"}, {"value", "t"}})["structuredContent"]["happened"],
+      true)
+      << "it is so already";
   EXPECT_TRUE(result(1).is_null());
   believe("at-rest", "nil");
   EXPECT_EQ(result(1)["structuredContent"],
@@ -595,9 +594,8 @@ TEST_F(DoorInMemory, TheFirstListWaitsUntilTheAnnouncementsRest) {
   agents.write({.id = 8, .name = "cook", .capabilities = {bus::action("cook", "cooks", {})}});
   EXPECT_TRUE(young.at(now + 0.45).empty());
   EXPECT_TRUE(young.at(now + 0.9).empty());
-  const auto lines = young.at(now + 1.0);
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_NE(lines[0].text.find("\"cook\""), std::string::npos);
+  const auto told = saphira::test::only(young.at(now + 1.0));
+  EXPECT_NE(told.text.find("\"cook\""), std::string::npos);
 }
 
 TEST_F(DoorInMemory, TheFirstListWaitsThreeSecondsForAnAgentThatIsThereAndSaysNothing) {
@@ -672,8 +670,7 @@ TEST_F(DoorInMemory, AnActionIsWithdrawnAndAnsweredAtTheEndOfTheInput) {
   turn(1.0);
   EXPECT_FALSE(result(1).is_null());
   EXPECT_FALSE(door->leave());
-  call(2, "sweep", {{"room", "kitchen"}});
-  EXPECT_EQ(result(2)["isError"], true) << "nothing begins any more";
+  EXPECT_EQ(answer("sweep", {{"room", "kitchen"}})["isError"], true) << "nothing begins any more";
 }
 
 // SDKs of clients refuse a result without the declared form.
@@ -700,12 +697,12 @@ TEST_F(DoorInMemory, APersonsNameGoesWithWhatTheyAskFor) {
   EXPECT_EQ(request.person.name, "anna");
   EXPECT_EQ(request.person.role, "agent");
   call(2, "say", {{"text", "Flakey, turn left"}});
-  const auto said = words.take();
-  ASSERT_EQ(said.size(), 1U);
-  EXPECT_EQ(said[0].data.person.name, "anna");
+  const auto said = saphira::test::only(words.take());
+  EXPECT_EQ(said.data.person.name, "anna");
   const v1::GoalStatus other_goal = tell_goal(v1::GOAL_UNDERWAY);
-  call(3, "cancel", {{"goal", bus::describe(other_goal.id)}, {"sure", true}});
-  EXPECT_EQ(result(3)["isError"], true) << "it needs the right to operate";
+  EXPECT_EQ(answer("cancel", {{"goal", bus::describe(other_goal.id)}, {"sure", true}})["isError"],
+            true)
+      << "it needs the right to operate";
   EXPECT_TRUE(goals.take().empty());
 }
 
@@ -713,23 +710,18 @@ TEST_F(DoorInMemory, AKeyToWatchReadsAndStops) {
   door = std::make_unique<Door>(node, robot, session, "model",
                                 security::DoorKey{"anna", security::DoorRight::watch, 0, ""});
   auto stops = other.reader<v1::Request>(bus::topics::kDriveStop);
-  call(1, "sweep", {{"room", "kitchen"}, {"wait_s", 0}});
-  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_EQ(answer("sweep", {{"room", "kitchen"}, {"wait_s", 0}})["isError"], true);
   EXPECT_TRUE(solve.take().empty());
-  call(2, "say", {{"text", "Flakey, turn left"}});
-  EXPECT_EQ(result(2)["isError"], true);
+  EXPECT_EQ(answer("say", {{"text", "Flakey, turn left"}})["isError"], true);
   EXPECT_TRUE(words.take().empty());
-  call(3, "robot_status", Json::object());
-  EXPECT_EQ(result(3)["isError"], false);
+  EXPECT_EQ(answer("robot_status")["isError"], false);
   call(4, "stop", Json::object());
-  const auto stop = stops.take();
-  ASSERT_EQ(stop.size(), 1U);
-  EXPECT_EQ(stop[0].data.person.name, "anna");
+  const auto stop = saphira::test::only(stops.take());
+  EXPECT_EQ(stop.data.person.name, "anna");
 }
 
 TEST_F(DoorInMemory, ALookHasThePictureOfACameraThatIsThere) {
-  call(1, "look", {});
-  EXPECT_EQ(result(1)["content"].size(), 1U) << "there is no camera";
+  EXPECT_EQ(answer("look", {})["content"].size(), 1U) << "there is no camera";
 
   bus::Node camera(test::memory_options("camera"), memory);
   auto pictures = camera.writer(bus::topics::kCameraPictures);

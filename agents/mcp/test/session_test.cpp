@@ -4,8 +4,10 @@
 namespace saphira::mcp {
 namespace {
 
+using test::cancelled;
 using test::Client;
 using test::go_to;
+using test::kGo;
 using test::line;
 using test::modern;
 
@@ -21,13 +23,13 @@ TEST(McpSession, BeginsWithTheRevisionOfTheClientWhereItIsKnown) {
           ["result"]["protocolVersion"],
       "2025-11-25");
   EXPECT_TRUE(client.say(R"({"jsonrpc":"2.0","method":"notifications/initialized"})").empty());
-  EXPECT_EQ(client.one(R"({"jsonrpc":"2.0","id":2,"method":"ping"})")["result"], Json::object());
+  EXPECT_EQ(client.one(line(2, "ping"))["result"], Json::object());
 }
 
 TEST(McpSession, ListsItsToolsAndTellsWhenTheyChange) {
   Client client;
-  client.say(R"({"jsonrpc":"2.0","id":1,"method":"initialize"})");
-  const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
+  client.say(line(1, "initialize"));
+  const Json list = client.one(line(2, "tools/list"));
   ASSERT_EQ(list["result"]["tools"].size(), 1U);
   EXPECT_EQ(list["result"]["tools"][0]["name"], "go_to");
   EXPECT_EQ(list["result"]["tools"][0]["inputSchema"]["required"][0], "x");
@@ -49,7 +51,7 @@ TEST(McpSession, ToolsThatAreApartAreListedAndCalledByOne) {
         .input = Json::parse(R"({"type":"object","properties":{"name":{"type":"string"},
                                  "arguments":{"type":"object"}},"additionalProperties":false})")},
        apart});
-  const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
+  const Json list = client.one(line(2, "tools/list"));
   EXPECT_EQ(list["result"]["tools"].size(), 2U);
   const auto call = [&](const std::string& arguments) {
     return client.say(
@@ -78,18 +80,17 @@ TEST(McpSession, ACallIsAnsweredLaterAndTellsOfItsProgress) {
           .say(
               R"({"jsonrpc":"2.0","id":7,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1.5},"_meta":{"progressToken":"p"}}})")
           .empty());
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
-  EXPECT_EQ(calls[0].arguments["x"], 1.5);
-  client.session.progress(calls[0].number, 0.5, "half");
+  const Call call = client.called();
+  EXPECT_EQ(call.arguments["x"], 1.5);
+  client.session.progress(call.number, 0.5, "half");
   EXPECT_EQ(client.heard().at(0)["params"]["progressToken"], "p");
-  client.session.answer(calls[0].number, {"there", {{"state", "succeeded"}}, false});
+  client.session.answer(call.number, {"there", {{"state", "succeeded"}}, false});
   const Json answer = client.heard().at(0);
   EXPECT_EQ(answer["id"], 7);
   EXPECT_EQ(answer["result"]["content"][0]["text"], "there");
   EXPECT_EQ(answer["result"]["structuredContent"]["state"], "succeeded");
   EXPECT_EQ(answer["result"]["isError"], false);
-  client.session.answer(calls[0].number, {"again", nullptr, false});
+  client.session.answer(call.number, {"again", nullptr, false});
   EXPECT_TRUE(client.heard().empty());
 }
 
@@ -104,10 +105,9 @@ TEST(McpSession, ResultsHaveTheirStructureWhereTheRevisionHasIt) {
     client.session.set_tools({tool});
     client.one(R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":")" +
                std::string(revision) + R"("}})");
-    const Json list = client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})");
+    const Json list = client.one(line(2, "tools/list"));
     EXPECT_EQ(list["result"]["tools"][0].contains("outputSchema"), structured) << revision;
-    client.say(
-        R"({"jsonrpc":"2.0","id":3,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1}}})");
+    client.say(line(3, "tools/call", kGo));
     client.session.answer(client.session.take_calls().at(0).number,
                           {"there", {{"state", "succeeded"}}, false});
     const Json answer = client.heard().at(0)["result"];
@@ -142,7 +142,7 @@ TEST(McpSession, ACallThatIsGivenUpIsNotAnswered) {
   client.say(
       R"({"jsonrpc":"2.0","id":"c","method":"tools/call","params":{"name":"go_to","arguments":{"x":1}}})");
   const auto calls = client.session.take_calls();
-  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":"c"}})");
+  client.say(cancelled("c"));
   EXPECT_EQ(client.session.take_given_up(), std::vector<std::uint64_t>{calls.at(0).number});
   client.session.answer(calls[0].number, {"late", nullptr, false});
   EXPECT_TRUE(client.heard().empty());
@@ -200,19 +200,17 @@ TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {
 TEST(McpSession, ABatchIsAnsweredInOneMessageInTheRevisionThatHasThem) {
   Client client;
   const std::string batch =
-      "[" + line(1, "ping") + "," +
-      line(2, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}) +
+      "[" + line(1, "ping") + "," + line(2, "tools/call", kGo) +
       R"(,{"jsonrpc":"2.0","method":"notifications/initialized"},{"id":9,"result":{}},3])";
   EXPECT_EQ(client.one(batch)["error"]["code"], -32600) << "no revision is agreed upon";
   client.say(line(0, "initialize", {{"protocolVersion", "2025-03-26"}}));
   EXPECT_TRUE(client.session.take(batch, 7));
   EXPECT_TRUE(client.session.take_lines().empty());
   client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
-  const auto lines = client.session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].exchange, 7U);
-  EXPECT_TRUE(lines[0].last);
-  const Json answers = Json::parse(lines[0].text);
+  const Line said = client.only();
+  EXPECT_EQ(said.exchange, 7U);
+  EXPECT_TRUE(said.last);
+  const Json answers = Json::parse(said.text);
   ASSERT_EQ(answers.size(), 3U);
   EXPECT_EQ(answers[0]["id"], 1);
   EXPECT_EQ(answers[1]["error"]["code"], -32600);
@@ -227,10 +225,9 @@ TEST(McpSession, ABatchIsAnsweredInOneMessageInTheRevisionThatHasThem) {
 TEST(McpSession, ABatchWaitsForNoCallThatWasGivenUp) {
   Client client;
   client.say(line(0, "initialize", {{"protocolVersion", "2025-03-26"}}));
-  const Json call{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+  const Json& call = kGo;
   client.say("[" + line(1, "ping") + "," + line(2, "tools/call", call) + "]");
-  const auto answers = client.say(
-      R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":2}})");
+  const auto answers = client.say(cancelled(2));
   ASSERT_EQ(answers.size(), 1U);
   ASSERT_EQ(answers[0].size(), 1U);
   EXPECT_EQ(answers[0][0]["id"], 1);
@@ -240,9 +237,8 @@ TEST(McpSession, AnOptionalArgumentMayBeNull) {
   Client client;
   client.say(
       line(1, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}, {"frame", nullptr}}}}));
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
-  EXPECT_EQ(calls[0].arguments, Json({{"x", 1}}));
+  const Call call = client.called();
+  EXPECT_EQ(call.arguments, Json({{"x", 1}}));
   client.say(line(2, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", nullptr}}}}));
   client.say(line(3, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}, {"y", nullptr}}}}));
   EXPECT_TRUE(client.session.take_calls().empty()) << "needed, and unknown";
@@ -269,14 +265,13 @@ TEST(McpSession, TheNewerEraNeedsNoBeginning) {
   EXPECT_FALSE(list["tools"][0].contains("outputSchema")) << "none is declared";
   EXPECT_EQ(list["ttlMs"], 0);
   EXPECT_EQ(list["cacheScope"], "private");
-  client.say(modern("c", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
+  client.say(modern("c", "tools/call", kGo));
   client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
   const Json answer = client.heard().at(0)["result"];
   EXPECT_EQ(answer["resultType"], "complete");
   EXPECT_EQ(answer["content"][0]["text"], "there");
   // The older era on the same stream is not affected.
-  EXPECT_FALSE(client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})")["result"].contains(
-      "resultType"));
+  EXPECT_FALSE(client.one(line(2, "tools/list"))["result"].contains("resultType"));
 }
 
 TEST(McpSession, TheNewerEraRefusesByItsOwnCodes) {
@@ -292,10 +287,9 @@ TEST(McpSession, TheNewerEraRefusesByItsOwnCodes) {
   EXPECT_EQ(client.one(other.dump())["error"]["code"], -32602);
   for (const char* method : {"initialize", "ping", "logging/setLevel", "prompts/list"}) {
     client.session.take(modern("m", method), 7);
-    const auto lines = client.session.take_lines();
-    ASSERT_EQ(lines.size(), 1U) << method;
-    EXPECT_EQ(lines[0].status, 404);
-    EXPECT_EQ(Json::parse(lines[0].text)["error"]["code"], -32601);
+    const Line said = client.only();
+    EXPECT_EQ(said.status, 404);
+    EXPECT_EQ(Json::parse(said.text)["error"]["code"], -32601);
   }
 }
 
@@ -310,14 +304,13 @@ TEST(McpSession, AListenerHearsThatTheToolsChange) {
   const Json changed = client.heard().at(0);
   EXPECT_EQ(changed["method"], "notifications/tools/list_changed");
   EXPECT_EQ(changed["params"]["_meta"]["io.modelcontextprotocol/subscriptionId"], "l1");
-  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":"l1"}})");
+  client.say(cancelled("l1"));
   client.session.set_tools({go_to()});
   EXPECT_TRUE(client.heard().empty());
 }
 
 TEST(McpSession, HeadersHaveToSayWhatTheMessageSays) {
-  const std::string call =
-      modern("c", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}});
+  const std::string call = modern("c", "tools/call", kGo);
   struct Case {
     Headers headers;
     const char* names;  // empty: it fits
@@ -344,13 +337,13 @@ TEST(McpSession, HeadersHaveToSayWhatTheMessageSays) {
   }
   Client client;
   const Headers unknown{"1999-01-01", "", ""};
-  client.session.take(R"({"jsonrpc":"2.0","id":1,"method":"ping"})", 1, &unknown);
+  client.session.take(line(1, "ping"), 1, &unknown);
   EXPECT_EQ(client.session.take_lines().at(0).status, 400);
 }
 
 TEST(McpSession, AConnectionThatClosesEndsTheCallsOfTheNewerEraAlone) {
   Client client;
-  client.session.take(modern("a", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}), 1);
+  client.session.take(modern("a", "tools/call", kGo), 1);
   // Another client may have chosen the same id.
   client.session.take(modern("a", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 2}}}}), 2);
   client.session.take(
@@ -362,18 +355,16 @@ TEST(McpSession, AConnectionThatClosesEndsTheCallsOfTheNewerEraAlone) {
   client.session.close(3);
   EXPECT_EQ(client.session.take_given_up(), std::vector<std::uint64_t>{calls[0].number});
   client.session.answer(calls[1].number, {"there", nullptr, false});
-  const auto lines = client.session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].exchange, 2U);
-  EXPECT_TRUE(lines[0].last);
+  const Line said = client.only();
+  EXPECT_EQ(said.exchange, 2U);
+  EXPECT_TRUE(said.last);
 }
 
 TEST(McpSession, AFloodIsHeldBackAndAStopIsNot) {
   Client client;
   const Tool stop{"stop", "stops", {{"type", "object"}}, false, true};
   client.session.set_tools({go_to(), stop});
-  const std::string go =
-      R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1}}})";
+  const std::string go = line(1, "tools/call", kGo);
   const auto send = [&](const std::string& text) {
     client.session.take(text);
     for (const Call& call : client.session.take_calls()) {
@@ -408,8 +399,7 @@ TEST(McpSession, ListsAndCallsWaitUntilTheToolsAreKnown) {
   EXPECT_TRUE(client.say(line(4, "tools/list")).empty());
   EXPECT_TRUE(client.say(modern("m", "tools/list")).empty());
   EXPECT_TRUE(client.say(line(5, "resources/list")).empty());
-  EXPECT_TRUE(
-      client.say(line(6, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}})).empty());
+  EXPECT_TRUE(client.say(line(6, "tools/call", kGo)).empty());
   EXPECT_TRUE(client.session.take_calls().empty());
 
   // The client has no list yet, so it is not notified of a change.
@@ -423,9 +413,8 @@ TEST(McpSession, ListsAndCallsWaitUntilTheToolsAreKnown) {
   EXPECT_EQ(answers[1]["id"], "m");
   EXPECT_EQ(answers[1]["result"]["tools"].size(), 2U);
   EXPECT_EQ(answers[2]["id"], 5);
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
-  EXPECT_EQ(calls[0].tool, "go_to");
+  const Call call = client.called();
+  EXPECT_EQ(call.tool, "go_to");
   client.session.wait_for_tools(false);
   EXPECT_TRUE(client.heard().empty());
 }
@@ -442,14 +431,13 @@ TEST(McpSession, AWaitingRequestThatIsGivenUpIsNotAnswered) {
   Client client;
   client.session.wait_for_tools(true);
   client.say(line(1, "tools/list"));
-  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":1}})");
+  client.say(cancelled(1));
   client.session.take(modern("a", "tools/list"), 1);
   client.session.take(modern("a", "tools/list"), 2);
   client.session.close(1);
   client.session.wait_for_tools(false);
-  const auto lines = client.session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].exchange, 2U);
+  const Line said = client.only();
+  EXPECT_EQ(said.exchange, 2U);
 }
 
 TEST(McpSession, AClientThatLeavesGetsItsAnswersAndBeginsNothing) {
@@ -462,7 +450,7 @@ TEST(McpSession, AClientThatLeavesGetsItsAnswersAndBeginsNothing) {
   client.session.wait_for_tools(true);
   client.say(line(1, "tools/call", {{"name", "drive"}, {"arguments", {{"x", 1}}}}));
   client.say(line(2, "tools/list"));
-  client.say(line(3, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
+  client.say(line(3, "tools/call", kGo));
   EXPECT_TRUE(client.session.leave());
   client.session.wait_for_tools(false);
   const auto answers = client.heard();
@@ -470,10 +458,9 @@ TEST(McpSession, AClientThatLeavesGetsItsAnswersAndBeginsNothing) {
   EXPECT_EQ(answers[0]["result"]["isError"], true);
   EXPECT_EQ(answers[1]["id"], 2);
   EXPECT_TRUE(client.session.leave()) << "a call is not answered yet";
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
-  EXPECT_EQ(calls[0].tool, "go_to");
-  client.session.answer(calls[0].number, {"there", nullptr, false});
+  const Call call = client.called();
+  EXPECT_EQ(call.tool, "go_to");
+  client.session.answer(call.number, {"there", nullptr, false});
   EXPECT_FALSE(client.session.leave());
 }
 
@@ -498,11 +485,11 @@ TEST(McpSession, EachCallHasAnOutcomeForTheLog) {
   Client client;
   client.say(line(1, "tools/call", {{"name", "go"}}));
   client.say(line(2, "tools/call", {{"name", "go_to"}}));
-  const Json fits{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+  const Json& fits = kGo;
   client.say(line(3, "tools/call", fits));
   client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
   client.say(line(4, "tools/call", fits));
-  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":4}})");
+  client.say(cancelled(4));
   const auto outcomes = client.session.take_outcomes();
   ASSERT_EQ(outcomes.size(), 4U);
   EXPECT_EQ(outcomes[0].text, "there is no tool \"go\": did you mean go_to?");
@@ -548,10 +535,9 @@ TEST(McpSession, ASenderIsKnownByTheToolThatItCalls) {
 TEST(McpSession, APingIsAnsweredByAClientThatIsThere) {
   Client client;
   client.session.ping();
-  const auto lines = client.session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].exchange, 0U);
-  const Json ping = Json::parse(lines[0].text);
+  const Line said = client.only();
+  EXPECT_EQ(said.exchange, 0U);
+  const Json ping = Json::parse(said.text);
   EXPECT_EQ(ping["method"], "ping");
   const std::string answer =
       Json{{"jsonrpc", "2.0"}, {"id", ping["id"]}, {"result", Json::object()}}.dump();
@@ -565,7 +551,7 @@ TEST(McpSession, ReadsAResourceByItsTool) {
   const Tool why{"why", "why it does that",
                  Json{{"type", "object"}, {"properties", Json::object()}}, true};
   client.session.set_tools({go_to(), why});
-  const Json list = client.one(R"({"jsonrpc":"2.0","id":1,"method":"resources/list"})")["result"];
+  const Json list = client.one(line(1, "resources/list"))["result"];
   ASSERT_EQ(list["resources"].size(), 1U);
   EXPECT_EQ(list["resources"][0]["uri"], "saphira://robot/why");
   EXPECT_FALSE(list.contains("ttlMs"));
@@ -574,10 +560,9 @@ TEST(McpSession, ReadsAResourceByItsTool) {
           .say(
               R"({"jsonrpc":"2.0","id":2,"method":"resources/read","params":{"uri":"saphira://robot/why"}})")
           .empty());
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
-  EXPECT_EQ(calls.front().tool, "why");
-  client.session.answer(calls.front().number, {"nobody drives", nullptr, false});
+  const Call call = client.called();
+  EXPECT_EQ(call.tool, "why");
+  client.session.answer(call.number, {"nobody drives", nullptr, false});
   EXPECT_EQ(client.heard().front()["result"],
             Json::parse(R"({"contents":[{"uri":"saphira://robot/why","mimeType":"text/plain",
                             "text":"nobody drives"}]})"));

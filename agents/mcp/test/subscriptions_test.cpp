@@ -4,6 +4,7 @@
 namespace saphira::mcp {
 namespace {
 
+using test::cancelled;
 using test::Client;
 using test::go_to;
 using test::line;
@@ -55,11 +56,10 @@ TEST(McpSubscriptions, AResourceIsToldOfWhenItsTextChangesAndAtMostOnceASecond) 
 TEST(McpSubscriptions, AnAgentThatAnswersSlowlyIsNotAskedAgainMeanwhile) {
   Watching client;
   client.say(line(1, "resources/subscribe", kWhy));
-  const auto calls = client.session.take_calls();
-  ASSERT_EQ(calls.size(), 1U);
+  const Call call = client.called();
   client.session.turn(5.0);
   EXPECT_TRUE(client.session.take_calls().empty());
-  client.session.answer(calls[0].number, {"late", nullptr, false});
+  client.session.answer(call.number, {"late", nullptr, false});
   EXPECT_EQ(client.pass(5.9, ""), 0U);
   EXPECT_EQ(client.pass(6.0, ""), 1U);
 }
@@ -102,7 +102,7 @@ TEST(McpSubscriptions, AListenerHearsOfTheResourcesThatItNames) {
   // The tools of the robot change, which it does not want to hear.
   client.session.set_tools({resource("why")});
   EXPECT_TRUE(client.heard().empty());
-  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":"l1"}})");
+  client.say(cancelled("l1"));
   EXPECT_EQ(client.pass(2.0, "it stands"), 0U);
 }
 

@@ -1,15 +1,16 @@
 // Calls that outlast their request.
 #include "client.hpp"
+#include "only.hpp"
 
 namespace saphira::mcp {
 namespace {
 
 using test::Client;
+using test::kGo;
 using test::line;
 using test::modern;
 
 const Json kKnowsTasks = Json::parse(R"({"extensions":{"io.modelcontextprotocol/tasks":{}}})");
-const Json kGo{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
 
 /// A client that knows tasks, in the year 2026, and a goal tool.
 struct Tasks : Client {
@@ -39,16 +40,15 @@ struct Tasks : Client {
 TEST(McpTasks, ACallIsATaskAtOnceAndIsPolledToItsEnd) {
   Tasks client;
   const std::uint64_t call = client.begin("1f:2");
-  const auto lines = client.session.take_lines();
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_TRUE(lines[0].last) << "it ends the request";
-  EXPECT_EQ(lines[0].exchange, 5U);
+  const auto said = saphira::test::only(client.session.take_lines());
+  EXPECT_TRUE(said.last) << "it ends the request";
+  EXPECT_EQ(said.exchange, 5U);
   Json expected = Json::parse(R"({
       "resultType":"task","taskId":"1f:2","status":"working","statusMessage":"asked for",
       "createdAt":"2026-11-26T12:30:07.250Z","lastUpdatedAt":"2026-11-26T12:30:07.250Z",
       "ttlMs":900000,"pollIntervalMs":500,
       "_meta":{"io.modelcontextprotocol/serverInfo":{"name":"saphira","version":"1"}}})");
-  EXPECT_EQ(Json::parse(lines[0].text)["result"], expected);
+  EXPECT_EQ(Json::parse(said.text)["result"], expected);
 
   client.session.close(5);  // of no consequence to the task
   client.session.turn(101.0, 1795696208.25);

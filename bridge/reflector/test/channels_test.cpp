@@ -21,6 +21,14 @@ Setpoints speed(double v) {
   return {v, false, 0.0, 0.0};
 }
 
+/// Connected, with the zero setpoints sent.
+Channels at_zero() {
+  Channels channels;
+  channels.connect();
+  channels.due(100.0);
+  return channels;
+}
+
 TEST(Channels, ZeroSetpointsComeFirst) {
   Channels channels;
   channels.connect();
@@ -32,9 +40,7 @@ TEST(Channels, ZeroSetpointsComeFirst) {
 }
 
 TEST(Channels, AChangeGoesOutAtOnceAndOnceACycle) {
-  Channels channels;
-  channels.connect();
-  channels.due(100.0);
+  Channels channels = at_zero();
   channels.cycle({});
   EXPECT_TRUE(channels.due(100.1).empty()) << "shown: nothing to say";
   channels.want(speed(0.3), 0.0);
@@ -51,9 +57,7 @@ TEST(Channels, AnEmergencyStopIsSentBehindZeroSetpoints) {
   const std::vector<Order> brake{{protocol::Number::kVelocity, 0},
                                  {protocol::Number::kRotationVelocity, 0},
                                  {protocol::Number::kEmergencyStop, 0}};
-  Channels channels;
-  channels.connect();
-  channels.due(100.0);
+  Channels channels = at_zero();
   channels.want(speed(0.3), 0.0);
   channels.due(100.1);
   channels.cycle({0.3, 0.0, 0.0});
@@ -75,9 +79,7 @@ TEST(Channels, AnEmergencyStopIsSentBehindZeroSetpoints) {
 }
 
 TEST(Channels, RepeatsUntilShownAndThenEveryHalfSecond) {
-  Channels channels;
-  channels.connect();
-  channels.due(100.0);
+  Channels channels = at_zero();
   channels.cycle({});
   channels.want(speed(0.3), 0.0);
   int sent = 0;
@@ -110,18 +112,14 @@ TEST(Channels, OrdersAreWholeInThePacket) {
 }
 
 TEST(Channels, BeatsWithoutPackets) {
-  Channels channels;
-  channels.connect();
-  channels.due(100.0);
+  Channels channels = at_zero();
   EXPECT_FALSE(channels.pending(100.4));
   EXPECT_TRUE(channels.pending(100.5));
   EXPECT_EQ(channels.due(100.5).size(), 2U);
 }
 
 TEST(Channels, HeadingsAreTheServersDegrees) {
-  Channels channels;
-  channels.connect();
-  channels.due(100.0);
+  Channels channels = at_zero();
   channels.cycle({});
   channels.want({0.0, true, radians(-30.0), 0.0}, radians(10.0));
   EXPECT_EQ(channels.due(100.1), (std::vector<Order>{{kHead, 320}}));

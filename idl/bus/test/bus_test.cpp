@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "harness.hpp"
+#include "only.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "trouble.hpp"
 
@@ -28,11 +29,10 @@ TEST_P(Bus, WhatIsWrittenIsRead) {
   state.sonars[1].range = 0.5F;
   state.battery = 12.5;
   ASSERT_TRUE(writer.write(state));
-  const auto samples = take_at_least(*b, reader, 1);
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_TRUE(samples[0].data == state);
-  EXPECT_FALSE(samples[0].info.disposed);
-  EXPECT_NE(samples[0].info.writer, WriterId{});
+  const auto sample = saphira::test::only(take_at_least(*b, reader, 1));
+  EXPECT_TRUE(sample.data == state);
+  EXPECT_FALSE(sample.info.disposed);
+  EXPECT_NE(sample.info.writer, WriterId{});
 }
 
 TEST_P(Bus, NewestOfWhatHasCome) {
@@ -107,10 +107,9 @@ TEST_P(Bus, DisposeTellsWhatWasWithdrawn) {
   writer.write(goal(2, "two"));
   take_at_least(*b, reader, 2);
   ASSERT_TRUE(writer.dispose(goal(1)));
-  const auto gone = take_at_least(*b, reader, 1);
-  ASSERT_EQ(gone.size(), 1U);
-  EXPECT_TRUE(gone[0].info.disposed);
-  EXPECT_EQ(gone[0].data.functor, "one");
+  const auto gone = saphira::test::only(take_at_least(*b, reader, 1));
+  EXPECT_TRUE(gone.info.disposed);
+  EXPECT_EQ(gone.data.functor, "one");
   // It may be asked for again.
   writer.write(goal(1, "again"));
   const auto again = take_at_least(*b, reader, 1);
@@ -126,9 +125,8 @@ TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
   writer.write(goal(2));
   auto b = node("b");
   auto reader = b->reader(topics::kGoals);
-  const auto samples = take_at_least(*b, reader, 1);
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.id.number, 2U);
+  const auto sample = saphira::test::only(take_at_least(*b, reader, 1));
+  EXPECT_EQ(sample.data.id.number, 2U);
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -173,9 +171,8 @@ TEST_P(Bus, WriterThatEndsIsLostByItsName) {
   {
     auto writer = a->writer(topics::kGoals);
     writer.write(goal(1));
-    const auto samples = take_at_least(*b, reader, 1);
-    ASSERT_EQ(samples.size(), 1U);
-    id = samples[0].info.writer;
+    const auto sample = saphira::test::only(take_at_least(*b, reader, 1));
+    id = sample.info.writer;
     EXPECT_TRUE(reader.take_lost().empty());
   }
   std::vector<WriterId> lost;
@@ -191,9 +188,8 @@ TEST(MemoryBus, AProgramThatIsSilentForAWhileIsLostAndReturns) {
   auto reader = b.reader(topics::kGoals);
   auto writer = a.writer(topics::kGoals);
   writer.write(goal(1));
-  const auto samples = reader.take();
-  ASSERT_EQ(samples.size(), 1U);
-  const std::vector<WriterId> id{samples[0].info.writer};
+  const auto sample = saphira::test::only(reader.take());
+  const std::vector<WriterId> id{sample.info.writer};
   set_silent(*bus, "a", true);
   EXPECT_EQ(reader.matched(), 0U);
   EXPECT_EQ(reader.take_lost(), id);
@@ -201,10 +197,9 @@ TEST(MemoryBus, AProgramThatIsSilentForAWhileIsLostAndReturns) {
   set_silent(*bus, "a", false);
   EXPECT_EQ(reader.matched(), 1U);
   EXPECT_TRUE(reader.take_lost().empty());
-  const auto again = reader.take();
-  ASSERT_EQ(again.size(), 1U) << "it declares its goal once more";
-  EXPECT_EQ(again[0].data, samples[0].data);
-  EXPECT_EQ(again[0].info.writer, id[0]);
+  const auto again = saphira::test::only(reader.take());  // it declares its goal once more
+  EXPECT_EQ(again.data, sample.data);
+  EXPECT_EQ(again.info.writer, id[0]);
   EXPECT_TRUE(reader.take().empty());
   // A loss that nobody has noticed is none.
   set_silent(*bus, "a", true);
@@ -244,9 +239,8 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
   }));
   std::sort(heard.begin(), heard.end());
   EXPECT_EQ(heard, (std::vector<std::uint64_t>{1, 2}));
-  const auto samples = take_at_least(*b, reader_b, 1);
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.id.number, 2U);
+  const auto at_b = saphira::test::only(take_at_least(*b, reader_b, 1));
+  EXPECT_EQ(at_b.data.id.number, 2U);
   EXPECT_EQ(reader_b.matched(), 1U);
 }
 
@@ -261,9 +255,8 @@ TEST_P(Bus, CommandsAreNotForLateReaders) {
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
   command.number = 2;
   writer.write(command);
-  const auto samples = take_at_least(*b, reader, 1);
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.number, 2U);
+  const auto sample = saphira::test::only(take_at_least(*b, reader, 1));
+  EXPECT_EQ(sample.data.number, 2U);
 }
 
 TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {

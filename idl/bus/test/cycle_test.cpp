@@ -50,6 +50,10 @@ class Cycles : public OnEachBus {
     cycle_->done();
     return result->robot.stamp.cycle;
   }
+  std::uint64_t step(std::uint64_t epoch, std::uint64_t number) {
+    send(epoch, number);
+    return step();
+  }
   bool no_step() { return !next(absence()).has_value(); }
 
   // Live samples are read one by one: they are not kept for a reader that is behind.
@@ -104,8 +108,7 @@ TEST_P(Cycles, LiveStepsOnEachStateWithTheInputOfTheCycleBefore) {
 
 TEST_P(Cycles, LiveGoesOnWithAnOldInputAndSaysSo) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send_intentions(1, 1);
   for (std::uint64_t number = 2; number <= 4; ++number) {
     send(1, number);
@@ -123,8 +126,7 @@ TEST_P(Cycles, LiveGoesOnWithAnOldInputAndSaysSo) {
 
 TEST_P(Cycles, LiveNeverReadsTheCycleThatIsBeingComputed) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send_intentions(1, 1);
   send_intentions(1, 2);
   send(1, 2);
@@ -135,8 +137,7 @@ TEST_P(Cycles, LiveNeverReadsTheCycleThatIsBeingComputed) {
 
 TEST_P(Cycles, LiveSkipsToTheNewestAndCounts) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   for (std::uint64_t number = 2; number <= 6; ++number)
     send(1, number);
   std::uint64_t number = 1;
@@ -155,8 +156,7 @@ TEST_P(Cycles, LiveSkipsToTheNewestAndCounts) {
 
 TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send(2, 1);
   const auto fresh = next(milliseconds(10000));
   ASSERT_TRUE(fresh);
@@ -176,8 +176,7 @@ TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
 
 TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   auto stray = node("stray");
   auto writer = stray->writer(topics::kRobotState);
   ASSERT_TRUE(eventually(*stray, [&] { return writer.matched() == 1; }));
@@ -201,8 +200,7 @@ TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
 
 TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   auto second = node("second-bridge");
   auto describes = second->writer(topics::kRobotDescription);
   auto writer = second->writer(topics::kRobotState);
@@ -215,8 +213,7 @@ TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
     next(milliseconds(1));
     return service_->status().refused_samples > 0;
   }));
-  send(1, 2);
-  EXPECT_EQ(step(), 2U);
+  EXPECT_EQ(step(1, 2), 2U);
   EXPECT_EQ(service_->status().state, v1::SERVICE_DEGRADED);
   EXPECT_NE(service_->status().reason.find("second-bridge"), std::string::npos)
       << service_->status().reason;
@@ -274,17 +271,13 @@ TEST_P(Cycles, OfTwoServicesOfOneNameOneWaitsUntilTheOtherIsGone) {
 
 TEST_P(Cycles, OneWrongNumberOfTheBridgeDoesNotMakeItDeaf) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
-  send(1, 1000000);
-  EXPECT_EQ(step(), 1000000U);
+  EXPECT_EQ(step(1, 1), 1U);
+  EXPECT_EQ(step(1, 1000000), 1000000U);
   send(1, 2);
   send(1, 3);
   EXPECT_TRUE(no_step());
-  send(1, 4);
-  EXPECT_EQ(step(), 4U);
-  send(1, 5);
-  EXPECT_EQ(step(), 5U);
+  EXPECT_EQ(step(1, 4), 4U);
+  EXPECT_EQ(step(1, 5), 5U);
 }
 
 TEST_P(Cycles, StateWithoutEpochIsRefused) {
@@ -296,8 +289,7 @@ TEST_P(Cycles, StateWithoutEpochIsRefused) {
 
 TEST_P(Cycles, LockstepWaitsForItsInput) {
   start(true);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send(1, 2);
   EXPECT_TRUE(no_step());
   intentions_->write(intentions(1, 1));
@@ -327,8 +319,7 @@ TEST_P(Cycles, LockstepStepsEveryStateInOrder) {
 
 TEST_P(Cycles, LockstepKeepsTheInputsOfAnEpochThatIsNotKnownYet) {
   start(true);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send_intentions(2, 1);  // the other service was faster
   EXPECT_TRUE(no_step());
   send(2, 1);
@@ -341,8 +332,7 @@ TEST_P(Cycles, LockstepKeepsTheInputsOfAnEpochThatIsNotKnownYet) {
 
 TEST_P(Cycles, LockstepSaysWhatItWaitsFor) {
   start(true);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   send(1, 2);
   EXPECT_FALSE(next(milliseconds(2500)).has_value());
   EXPECT_EQ(service_->status().state, v1::SERVICE_WAITING);
@@ -386,8 +376,7 @@ TEST_P(Cycles, LockstepBeginsWithoutAnInputThatNobodyHas) {
 
 TEST_P(Cycles, QuietBridgeIsSaid) {
   start(false);
-  send(1, 1);
-  EXPECT_EQ(step(), 1U);
+  EXPECT_EQ(step(1, 1), 1U);
   robot_.reset();
   EXPECT_FALSE(next(milliseconds(1200)).has_value());
   EXPECT_EQ(service_->status().state, v1::SERVICE_WAITING);

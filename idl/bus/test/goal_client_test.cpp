@@ -5,6 +5,7 @@
 #include <set>
 
 #include "node_options.hpp"
+#include "only.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -220,18 +221,16 @@ TEST_F(GoalClients, ATerminalGetsNoControlCharactersOfOthers) {
                          "31m")};
   goal.person.name = "\x7f";
   client.ask(goal);
-  const auto raw = goals_.take();
-  ASSERT_EQ(raw.size(), 1U);
-  EXPECT_EQ(raw[0].data.functor, "go\r\n\tto");
-  const auto shown = reader.take();
-  ASSERT_EQ(shown.size(), 1U);
-  EXPECT_EQ(shown[0].data.requester, "an?[2Jagent");
-  EXPECT_EQ(shown[0].data.functor, "go?\n\tto");
-  EXPECT_EQ(shown[0].data.arguments.at(0).name, "place?");
-  EXPECT_EQ(shown[0].data.arguments.at(0).text, "\?\?31m");
-  EXPECT_EQ(shown[0].data.person.name, "?");
-  EXPECT_EQ(shown[0].data.id, raw[0].data.id);
-  EXPECT_EQ(shown[0].info.writer, raw[0].info.writer);
+  const auto raw = saphira::test::only(goals_.take());
+  EXPECT_EQ(raw.data.functor, "go\r\n\tto");
+  const auto shown = saphira::test::only(reader.take());
+  EXPECT_EQ(shown.data.requester, "an?[2Jagent");
+  EXPECT_EQ(shown.data.functor, "go?\n\tto");
+  EXPECT_EQ(shown.data.arguments.at(0).name, "place?");
+  EXPECT_EQ(shown.data.arguments.at(0).text, "\?\?31m");
+  EXPECT_EQ(shown.data.person.name, "?");
+  EXPECT_EQ(shown.data.id, raw.data.id);
+  EXPECT_EQ(shown.info.writer, raw.info.writer);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "harness.hpp"
+#include "only.hpp"
 #include "saphira/bus/introspect.hpp"
 
 namespace saphira::bus::test {
@@ -52,13 +53,12 @@ TEST_F(Processes, AnyOrderOfStart) {
 TEST_F(Processes, WriterThatIsKilledIsLostWithinASecond) {
   auto goals = node_->reader(topics::kGoals);
   auto writer = peer("writer");
-  const auto got = take_at_least(*node_, goals, 1);
-  ASSERT_EQ(got.size(), 1U);
+  const auto got = saphira::test::only(take_at_least(*node_, goals, 1));
   writer.signal(SIGKILL);
   const auto killed = Clock::now();
   std::vector<WriterId> lost;
   EXPECT_TRUE(eventually(*node_, [&] { return !(lost = goals.take_lost()).empty(); }));
-  EXPECT_EQ(lost, std::vector<WriterId>{got[0].info.writer});
+  EXPECT_EQ(lost, std::vector<WriterId>{got.info.writer});
   EXPECT_LT(seconds_since(killed), 10.0);  // far from the lease of discovery, on a busy machine
   EXPECT_EQ(goals.matched(), 0U);
   // The goal was not withdrawn: its reader decides about it.
@@ -98,9 +98,9 @@ TEST_F(Processes, WriterThatNappedIsThereAgainWithoutAnotherMatch) {
   EXPECT_EQ(after.at(0).info.writer, before.at(0).info.writer);
   EXPECT_TRUE(eventually(*node_, [&] { return goals.matched() == 1; }));
   EXPECT_TRUE(goals.take_lost().empty());
-  const auto again = take_at_least(*node_, goals, 1);
-  ASSERT_EQ(again.size(), 1U) << "it declares its goal once more";
-  EXPECT_EQ(again[0].info.writer, lost.at(0));
+  const auto again =
+      saphira::test::only(take_at_least(*node_, goals, 1));  // it declares its goal once more
+  EXPECT_EQ(again.info.writer, lost.at(0));
 }
 
 TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
@@ -134,9 +134,8 @@ TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
   ASSERT_TRUE(eventually(*node_, [&] { return read_wishes.matched() == 1 && log.matched() == 1; }));
   wishes.write(goal(2));
   said.write(v1::Message());
-  const auto next = take_at_least(*node_, read_wishes, 1);
-  ASSERT_EQ(next.size(), 1U);
-  EXPECT_EQ(next[0].data.id.number, 2U);
+  const auto next = saphira::test::only(take_at_least(*node_, read_wishes, 1));
+  EXPECT_EQ(next.data.id.number, 2U);
   EXPECT_EQ(take_at_least(*node_, log, 1).size(), 1U);
 }
 
@@ -159,12 +158,10 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   message.text = "two";
   said.write(message);
   wishes.write(goal(6));
-  const auto heard = take_at_least(sleeper, hears, 1);
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.text, "two");
-  const auto read = take_at_least(sleeper, reads, 1);
-  ASSERT_EQ(read.size(), 1U);
-  EXPECT_EQ(read[0].data.id.number, 6U);
+  const auto heard = saphira::test::only(take_at_least(sleeper, hears, 1));
+  EXPECT_EQ(heard.data.text, "two");
+  const auto read = saphira::test::only(take_at_least(sleeper, reads, 1));
+  EXPECT_EQ(read.data.id.number, 6U);
   EXPECT_TRUE(eventually(sleeper, [&] { return reads.take_lost().size() == 1; }));
   EXPECT_TRUE(reads.take().empty());
 }

@@ -8,11 +8,7 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr double kUnlimited = 1e12;
-constexpr EnumPairs<TriggerKind, v1::TriggerKind, 3> kKinds{{{
-    {TriggerKind::time, v1::TRIGGER_TIME},
-    {TriggerKind::data, v1::TRIGGER_DATA},
-    {TriggerKind::event, v1::TRIGGER_EVENT},
-}}};
+constexpr auto kKinds = pairs_by_name<TriggerKind, v1::TriggerKind>();
 
 Parameter from_bus(const v1::CapabilityParameter& parameter) {
   Parameter result;

@@ -23,9 +23,7 @@ TEST_F(DialogueTest, ADoubtIsItsOwnSpeakersAndEndsWithTheirNextSentenceOrInTime)
   situation.asked_about = "given";
   EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"), doubt);
   EXPECT_EQ(said("yes", "John"), "thank you");
-  ASSERT_EQ(last.claims.size(), 1u);
-  EXPECT_EQ(last.claims[0].name, "given");
-  EXPECT_EQ(last.claims[0].value, "yes");
+  EXPECT_EQ(claims(), "given=yes");
   // Thanks are for the task. They end the doubt.
   EXPECT_EQ(said("here you are", "Bob"), "thank you");
   EXPECT_EQ(last.claims.at(0).name, "given");
@@ -48,9 +46,7 @@ TEST_F(DialogueTest, RepliesAreClaimedAsWhatWasAskedFor) {
   EXPECT_EQ(said("in EJ-233", "John"), "");
   situation.asked_about = "answer";
   EXPECT_EQ(said("she is in EJ-233", "John"), "thank you");
-  ASSERT_EQ(last.claims.size(), 1u);
-  EXPECT_EQ(last.claims[0].name, "answer");
-  EXPECT_EQ(last.claims[0].value, "EJ-233");
+  EXPECT_EQ(claims(), "answer=EJ-233");
   hear("no, sorry");
   EXPECT_EQ(last.claims.at(0).value, "no");
   EXPECT_EQ(said("good morning"), "");
@@ -62,11 +58,7 @@ TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   situation.asked_about = "answer";
   situation.asked_for = "Karen";
   EXPECT_EQ(said("she is in EJ-233", "John"), "thank you");
-  ASSERT_EQ(last.claims.size(), 2u);
-  EXPECT_EQ(last.claims[0].name, "answer");
-  EXPECT_EQ(last.claims[0].value, "EJ-233");
-  EXPECT_EQ(last.claims[1].name, "place-of-karen");
-  EXPECT_EQ(last.claims[1].value, "EJ-233");
+  EXPECT_EQ(claims(), "answer=EJ-233; place-of-karen=EJ-233");
   EXPECT_EQ(said("Flakey, where is Karen?"), "John said that karen is at EJ-233");
   EXPECT_EQ(dialogue.knowledge().all().at(0).time, now);
   hear("Flakey, Bob is in EJ-231");
@@ -89,25 +81,18 @@ TEST_F(DialogueTest, AReplyAboutAnotherPersonIsNoAnswer) {
   situation.asked_for = "john";
   EXPECT_EQ(said("Alice is in EJ-233", "Bob"),
             "I know now that alice is at EJ-233, and still ask for john");
-  ASSERT_EQ(last.claims.size(), 1u);
-  EXPECT_EQ(last.claims[0].name, "place-of-alice");
+  EXPECT_EQ(claims(), "place-of-alice=EJ-233");
   EXPECT_EQ(said("John is in EJ-231", "Bob"), "thank you");
-  EXPECT_EQ(last.claims.at(0).name, "answer");
-  EXPECT_EQ(last.claims.at(0).value, "EJ-231");
-  EXPECT_EQ(last.claims.at(1).name, "place-of-john");
+  EXPECT_EQ(claims(), "answer=EJ-231; place-of-john=EJ-231");
 }
 
 TEST_F(DialogueTest, WithTheKeywordAFactIsAFactAndMayAnswerTheQuestion) {
   situation.asked_about = "answer";
   situation.asked_for = "john";
   EXPECT_EQ(said("Flakey, Karen is in EJ-231"), "I know now that karen is at EJ-231");
-  ASSERT_EQ(last.claims.size(), 1u);
-  EXPECT_EQ(last.claims[0].name, "place-of-karen");
+  EXPECT_EQ(claims(), "place-of-karen=EJ-231");
   EXPECT_EQ(said("Flakey, John is in EJ-233"), "I know now that john is at EJ-233");
-  ASSERT_EQ(last.claims.size(), 2u);
-  EXPECT_EQ(last.claims[0].name, "place-of-john");
-  EXPECT_EQ(last.claims[1].name, "answer");
-  EXPECT_EQ(last.claims[1].value, "EJ-233");
+  EXPECT_EQ(claims(), "place-of-john=EJ-233; answer=EJ-233");
   EXPECT_EQ(said("Flakey, Karen knows where John is"), "I know now that karen knows where john is");
   EXPECT_EQ(last.claims.at(1).value, "karen");
 }
@@ -373,9 +358,7 @@ TEST_F(DialogueTest, APlaceAloneIsOneToGoTo) {
 
 TEST_F(DialogueTest, ItGoesSlowlyUntilItMayGoFasterAgain) {
   EXPECT_EQ(said("Flakey, slower please"), "I go slowly");
-  ASSERT_EQ(last.claims.size(), 1U);
-  EXPECT_EQ(last.claims[0].name, "pace");
-  EXPECT_EQ(last.claims[0].value, "slow");
+  EXPECT_EQ(claims(), "pace=slow");
   situation.is_slow = true;
   EXPECT_EQ(said("Flakey, go faster"), "I go as fast as before");
   EXPECT_EQ(last.claims.at(0).value, "");

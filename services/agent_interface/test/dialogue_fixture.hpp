@@ -54,6 +54,13 @@ struct DialogueTest : testing::Test {
       all += (all.empty() ? "" : "; ") + goal.functor + " " + describe(goal.arguments);
     return all;
   }
+  /// The newest claims.
+  std::string claims() const {
+    std::string all;
+    for (const Claimed& claim : last.claims)
+      all += (all.empty() ? "" : "; ") + claim.name + "=" + (claim.nil ? "nil" : claim.value);
+    return all;
+  }
 
   Situation situation;
   Dialogue dialogue{grammar()};

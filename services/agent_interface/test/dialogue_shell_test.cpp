@@ -7,6 +7,7 @@
 
 #include "agent_interface/shell/facilitator_shell.hpp"
 #include "node_options.hpp"
+#include "only.hpp"
 #include "process.hpp"
 
 namespace saphira::agent_interface {
@@ -72,9 +73,8 @@ class DialogueOnTheBus : public testing::Test {
 TEST_F(DialogueOnTheBus, ALongNameOfASpeakerIsCutBehindALetter) {
   const std::string letters = "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaa";  // 30 bytes
   say("Flakey, turn left", letters + "\u00fc");
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.requester, letters + " (by words)");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.requester, letters + " (by words)");
 }
 
 TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
@@ -113,14 +113,13 @@ TEST_F(DialogueOnTheBus, ARefusalIsMarked) {
 
 TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.functor, "turn_to");
-  EXPECT_EQ(asked[0].data.requester, "Alice (by words)");
-  tell(asked[0].data.id, v1::GOAL_SUSPENDED, "a more important goal");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.functor, "turn_to");
+  EXPECT_EQ(asked.data.requester, "Alice (by words)");
+  tell(asked.data.id, v1::GOAL_SUSPENDED, "a more important goal");
   EXPECT_EQ(say("Flakey, why are you standing?"),
             "the turn for Alice is suspended: a more important goal");
-  EXPECT_EQ(tell(asked[0].data.id, v1::GOAL_SUCCEEDED, "turned"), "done: turned");
+  EXPECT_EQ(tell(asked.data.id, v1::GOAL_SUCCEEDED, "turned"), "done: turned");
 }
 
 TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNothing) {
@@ -156,18 +155,16 @@ TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
   EXPECT_EQ(answers(), "");
   dialogue->step(kTakenUp);
   EXPECT_EQ(answers(), std::string("I could not: ") + kNotTakenUp);
-  const auto withdrawn = goals.take();
-  ASSERT_EQ(withdrawn.size(), 1u);
-  EXPECT_TRUE(withdrawn[0].info.disposed);
+  const auto withdrawn = test::only(goals.take());
+  EXPECT_TRUE(withdrawn.info.disposed);
 }
 
 TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
   say("Flakey, John usually knows where Karen is");
-  const auto claimed = claims.take();
-  ASSERT_EQ(claimed.size(), 1u);
-  EXPECT_EQ(claimed[0].data.name, "knows-where-karen");
-  EXPECT_EQ(claimed[0].data.value, "(\"john\")");
-  EXPECT_EQ(claimed[0].data.source, "Alice said \"Flakey, John usually knows where Karen is\"");
+  const auto claimed = test::only(claims.take());
+  EXPECT_EQ(claimed.data.name, "knows-where-karen");
+  EXPECT_EQ(claimed.data.value, "(\"john\")");
+  EXPECT_EQ(claimed.data.source, "Alice said \"Flakey, John usually knows where Karen is\"");
   start();
   const auto known = knows.take_newest();
   ASSERT_TRUE(known);
@@ -178,21 +175,19 @@ TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
 
 TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].data.writer_lost, v1::WRITER_LOST_KEEP);
-  tell(asked[0].data.id, v1::GOAL_UNDERWAY);
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.writer_lost, v1::WRITER_LOST_KEEP);
+  tell(asked.data.id, v1::GOAL_UNDERWAY);
   EXPECT_EQ(message(40, "Is anybody here?"), "Is anybody here?");
   // The writer keeps earlier sentences.
   start();
   EXPECT_EQ(message(52, "Please give me the mail"), "Please give me the mail");
-  statuses.write({.id = asked[0].data.id, .state = v1::GOAL_SUCCEEDED, .reason = "brought"});
+  statuses.write({.id = asked.data.id, .state = v1::GOAL_SUCCEEDED, .reason = "brought"});
   dialogue->step();
-  const auto told = said.take();
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].data.text, "done: brought");
-  EXPECT_EQ(told[0].data.listener, "Alice");
-  EXPECT_EQ(told[0].data.answers.number, number);
+  const auto told = test::only(said.take());
+  EXPECT_EQ(told.data.text, "done: brought");
+  EXPECT_EQ(told.data.listener, "Alice");
+  EXPECT_EQ(told.data.answers.number, number);
   // Its end is not reported again.
   start();
   dialogue->step();
@@ -202,32 +197,29 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
 // Otherwise nobody would hold the goal, and a restart of the intentions would lose it.
 TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsAskedForAgainWhileItIsUnderway) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
-  const auto first = goals.take();
-  ASSERT_EQ(first.size(), 1u);
+  const auto first = test::only(goals.take());
   start();
   dialogue->step();
   const auto unknown = goals.take();
   EXPECT_TRUE(std::all_of(unknown.begin(), unknown.end(), [](const auto& sample) {
     return sample.info.disposed;
   })) << "a goal that nobody knows may be from yesterday";
-  tell(first[0].data.id, v1::GOAL_UNDERWAY);
-  const auto again = goals.take();
-  ASSERT_EQ(again.size(), 1u);
-  EXPECT_EQ(again[0].data, first[0].data);
-  tell(first[0].data.id, v1::GOAL_UNDERWAY);
+  tell(first.data.id, v1::GOAL_UNDERWAY);
+  const auto again = test::only(goals.take());
+  EXPECT_EQ(again.data, first.data);
+  tell(first.data.id, v1::GOAL_UNDERWAY);
   EXPECT_TRUE(goals.take().empty());
 }
 
 TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   say("Flakey, take the mail from EJ-231 to EJ-233");
-  const auto first = goals.take();
-  ASSERT_EQ(first.size(), 1u);
+  const auto first = test::only(goals.take());
   start();
   goals.take();
   say("Flakey, stop");
   const auto then = goals.take();
   EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
-    return sample.info.disposed && sample.data.id == first[0].data.id;
+    return sample.info.disposed && sample.data.id == first.data.id;
   }));
 }
 
@@ -256,10 +248,9 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   writer.reset();
   dialogue->step();
   EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
-  const auto ended = goals.take();
-  ASSERT_EQ(ended.size(), 1u);
-  EXPECT_TRUE(ended[0].info.disposed);
-  EXPECT_EQ(ended[0].data.id, asked[1].data.id);
+  const auto ended = test::only(goals.take());
+  EXPECT_TRUE(ended.info.disposed);
+  EXPECT_EQ(ended.data.id, asked[1].data.id);
 }
 
 // The words of a program may come in the same moment as the news of its end.
@@ -302,10 +293,8 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
 TEST_F(DialogueOnTheBus, TheNextStepBeginsWhereTheOneBeforeHasEnded) {
   EXPECT_EQ(say("Flakey, turn left and go forward"),
             "I turn 90 degrees to the left, and then I go forward 1 m");
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(tell(asked[0].data.id, v1::GOAL_SUCCEEDED, "turned"),
-            "done: turned / I go forward 1 m");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(tell(asked.data.id, v1::GOAL_SUCCEEDED, "turned"), "done: turned / I go forward 1 m");
   const auto next = goals.take();
   ASSERT_FALSE(next.empty());
   EXPECT_EQ(next.back().data.functor, "go_to");
@@ -318,10 +307,9 @@ TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
   asked.beliefs[0].value = "\"given\"";
   beliefs.write(asked);
   EXPECT_EQ(say("here you are"), "thank you");
-  const auto claimed = claims.take();
-  ASSERT_EQ(claimed.size(), 1u);
-  EXPECT_EQ(claimed[0].data.name, "given");
-  EXPECT_EQ(claimed[0].data.value, "\"yes\"");
+  const auto claimed = test::only(claims.take());
+  EXPECT_EQ(claimed.data.name, "given");
+  EXPECT_EQ(claimed.data.value, "\"yes\"");
 }
 
 TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt) {
@@ -480,11 +468,10 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
 TEST_F(DialogueOnTheBus, AGoalByWordsNamesTheMemberWhoseProgramSaidThem) {
   heard.set_sender({"flakey", "operator"});
   say("Flakey, turn left", "Bob");
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1U);
-  EXPECT_EQ(asked[0].data.person.name, "flakey");
-  EXPECT_EQ(asked[0].data.person.role, "operator");
-  EXPECT_EQ(asked[0].data.requester, "Bob (by words)");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.person.name, "flakey");
+  EXPECT_EQ(asked.data.person.role, "operator");
+  EXPECT_EQ(asked.data.requester, "Bob (by words)");
   heard.set_sender({"planner", "agent"});
   say("Flakey, turn right", "Bob");
   EXPECT_TRUE(refused);
@@ -502,10 +489,9 @@ TEST_F(DialogueOnTheBus, AGoalByWordsNamesThePersonAtADoor) {
   utterance.person = {"anna", "agent"};
   heard.write(utterance);
   dialogue->step();
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1U);
-  EXPECT_EQ(asked[0].data.person.name, "anna at flakey");
-  EXPECT_EQ(asked[0].data.person.role, "agent");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.person.name, "anna at flakey");
+  EXPECT_EQ(asked.data.person.role, "agent");
 }
 
 TEST_F(DialogueOnTheBus, ARequestOfTheRobotBecomesAGoalOfItsAsker) {
@@ -526,11 +512,10 @@ TEST_F(DialogueOnTheBus, ARequestOfTheRobotBecomesAGoalOfItsAsker) {
   writer.write(request);
   facilitator.step(now += 0.01);
   facilitator.step(now += 0.01);
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1U);
-  EXPECT_EQ(asked[0].data.person.name, "planner");
-  EXPECT_EQ(asked[0].data.person.role, "agent");
-  EXPECT_EQ(asked[0].data.requester, "planner (agent), karen");
+  const auto asked = test::only(goals.take());
+  EXPECT_EQ(asked.data.person.name, "planner");
+  EXPECT_EQ(asked.data.person.role, "agent");
+  EXPECT_EQ(asked.data.requester, "planner (agent), karen");
 }
 
 }  // namespace

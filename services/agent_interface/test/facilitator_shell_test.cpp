@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "node_options.hpp"
+#include "only.hpp"
 #include "process.hpp"
 #include "saphira/bus/agent.hpp"
 
@@ -299,10 +300,9 @@ TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
   v1::Request request{.functor = "explore", .deadline = 1.5};
   asker.send(request);
   turn();
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_NEAR(asked[0].data.deadline, 1.0, 1e-9);
-  v1::GoalStatus status{.id = asked[0].data.id,
+  const auto asked = test::only(goals.take());
+  EXPECT_NEAR(asked.data.deadline, 1.0, 1e-9);
+  v1::GoalStatus status{.id = asked.data.id,
                         .state = v1::GOAL_SUCCEEDED,
                         .reason = "drove 0.10 m until the deadline"};
   now += 1.2;  // its deadline, and the way of the status
@@ -316,15 +316,13 @@ TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   v1::Request request{.functor = "explore"};
   asker->send(request);
   turn();
-  const auto asked = goals.take();
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_FALSE(asked[0].info.disposed);
+  const auto asked = test::only(goals.take());
+  EXPECT_FALSE(asked.info.disposed);
   asker.reset();
   turn();
-  const auto ended = goals.take();
-  ASSERT_EQ(ended.size(), 1u);
-  EXPECT_TRUE(ended[0].info.disposed);
-  EXPECT_EQ(ended[0].data.id, asked[0].data.id);
+  const auto ended = test::only(goals.take());
+  EXPECT_TRUE(ended.info.disposed);
+  EXPECT_EQ(ended.data.id, asked.data.id);
 }
 
 }  // namespace

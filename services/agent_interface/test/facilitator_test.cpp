@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "only.hpp"
 #include "saphira/base/archive.hpp"
 #include "saphira/base/random.hpp"
 
@@ -118,10 +119,9 @@ TEST_F(Facilitation, AsksTheCheapestAgentAndSaysWhichOneAnswered) {
   ASSERT_EQ(asked.requests.size(), 1u);
   EXPECT_EQ(asked.requests[0].service, "address of badge reader");
   EXPECT_EQ(asked.requests[0].asker, kPerson);
-  const auto solved = hear("badge reader", place_of(5), library()).solved;
-  ASSERT_EQ(solved.size(), 1u);
-  EXPECT_EQ(solved[0].service, "badge reader");
-  EXPECT_EQ(solved[0].answer, library());
+  const auto solved = test::only(hear("badge reader", place_of(5), library()).solved);
+  EXPECT_EQ(solved.service, "badge reader");
+  EXPECT_EQ(solved.answer, library());
   EXPECT_EQ(facilitator.open(), 0u);
 }
 
@@ -145,10 +145,9 @@ TEST_F(Facilitation, CollectsAnswersOfAllWithTheirOrigin) {
   const auto asked = ask(request);
   ASSERT_EQ(asked.requests.size(), 2u);
   EXPECT_EQ(find(asked.requests[0].arguments, "answers"), nullptr);
-  const auto first = hear("b", request, library()).solved;
-  ASSERT_EQ(first.size(), 1u);
-  EXPECT_EQ(first[0].service, "b");
-  EXPECT_EQ(first[0].answer.code, AnswerCode::underway);
+  const auto first = test::only(hear("b", request, library()).solved);
+  EXPECT_EQ(first.service, "b");
+  EXPECT_EQ(first.answer.code, AnswerCode::underway);
   const auto last = hear("a", request, library()).solved;
   ASSERT_EQ(last.size(), 2u);
   EXPECT_EQ(last[1].answer.code, AnswerCode::done);
@@ -208,10 +207,9 @@ TEST_F(Facilitation, AsksAgainUntilSomethingIsHeardAndEndsAtTheDeadline) {
   hear("a", request, {AnswerCode::underway, "", {}});
   EXPECT_EQ(*facilitator.due(), 102.0);
   now = 102.0;
-  const auto end = facilitator.step(now).solved;
-  ASSERT_EQ(end.size(), 1u);
-  EXPECT_EQ(end[0].answer.code, AnswerCode::too_late);
-  EXPECT_EQ(end[0].answer.text, "a did not answer in time");
+  const auto end = test::only(facilitator.step(now).solved);
+  EXPECT_EQ(end.answer.code, AnswerCode::too_late);
+  EXPECT_EQ(end.answer.text, "a did not answer in time");
 }
 
 TEST_F(Facilitation, ARepeatedRequestIsAnsweredAgainAndAskedOnce) {
@@ -257,9 +255,8 @@ TEST_F(Facilitation, AWithdrawalIsRepeatedInsteadOfTheRequest) {
   ask(place_of(5));
   ask(withdrawal(5));
   now += 0.4;
-  const auto again = facilitator.step(now).requests;
-  ASSERT_EQ(again.size(), 1u);
-  EXPECT_EQ(again[0].functor, kWithdraw);
+  const auto again = test::only(facilitator.step(now).requests);
+  EXPECT_EQ(again.functor, kWithdraw);
 }
 
 TEST_F(Facilitation, AnAgentThatKnowsNoWithdrawalEndsItsAction) {
@@ -380,9 +377,8 @@ TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
   other.functor = "weather";
   facilitator.ask(other, 101.5);
   EXPECT_TRUE(facilitator.step(101.9).solved.empty());
-  const auto none = facilitator.step(102.0).solved;
-  ASSERT_EQ(none.size(), 1u);
-  EXPECT_EQ(none[0].answer.code, AnswerCode::nobody);
+  const auto none = test::only(facilitator.step(102.0).solved);
+  EXPECT_EQ(none.answer.code, AnswerCode::nobody);
   facilitator.leave(1);
   other.number = 9;
   facilitator.ask(other, 103.0);
@@ -502,10 +498,9 @@ TEST_F(Facilitation, TheActionOfATriggerEndsWithTheTrigger) {
       facilitator.miss({1, 4});
     else
       facilitator.take_back({1, 4});
-    const auto told = facilitator.step(now).requests;
-    ASSERT_EQ(told.size(), 1u) << lost;
-    EXPECT_EQ(told[0].functor, kWithdraw);
-    EXPECT_EQ(told[0].number, action.number);
+    const auto told = test::only(facilitator.step(now).requests);
+    EXPECT_EQ(told.functor, kWithdraw);
+    EXPECT_EQ(told.number, action.number);
     facilitator.hear(action.service, kSelf, action.number, {AnswerCode::given_up, "stopped"}, now);
     facilitator.step(now);
   }
@@ -527,10 +522,9 @@ struct FacilitationAgain : Facilitation {
 TEST_F(FacilitationAgain, ABegunActionIsAskedOfItsAgentAlone) {
   EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the agent may come yet";
   facilitator.announce(agent(2, "sweeper", true));
-  const auto asked = facilitator.step(now).requests;
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].service, "address of sweeper");
-  EXPECT_EQ(asked[0].number, 5u) << "by which the agent knows it";
+  const auto asked = test::only(facilitator.step(now).requests);
+  EXPECT_EQ(asked.service, "address of sweeper");
+  EXPECT_EQ(asked.number, 5u) << "by which the agent knows it";
   const auto end = hear("sweeper", place_of(5), library());
   EXPECT_EQ(end.solved.at(0).answer, library());
   EXPECT_EQ(ask(place_of(6)).requests.at(0).service, "address of a cheaper one") << "a new one";
@@ -551,10 +545,9 @@ TEST_F(FacilitationAgain, ABegunActionIsWithdrawnFromItsAgent) {
   ask(withdrawal(5));
   EXPECT_TRUE(ask(withdrawal(5)).solved.empty()) << "whether it was done is not known yet";
   facilitator.announce(agent(2, "sweeper", true));
-  const auto told = facilitator.step(now).requests;
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].service, "address of sweeper");
-  EXPECT_EQ(told[0].functor, kWithdraw);
+  const auto told = test::only(facilitator.step(now).requests);
+  EXPECT_EQ(told.service, "address of sweeper");
+  EXPECT_EQ(told.functor, kWithdraw);
   EXPECT_EQ(hear("sweeper", place_of(5), {AnswerCode::given_up, "stopped"}).solved.size(), 1u);
 }
 
@@ -568,10 +561,10 @@ TEST_F(Facilitation, AnActionThatAnAgentRefusedMayBeBegunByAnother) {
 TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
   facilitator.announce(agent(1, "robot", true));
   ask(place_of(5));
-  const auto told = hear("robot", place_of(5), {AnswerCode::underway, "on its way"}).solved;
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].answer.text, "on its way");
-  EXPECT_EQ(told[0].service, "robot");
+  const auto told =
+      test::only(hear("robot", place_of(5), {AnswerCode::underway, "on its way"}).solved);
+  EXPECT_EQ(told.answer.text, "on its way");
+  EXPECT_EQ(told.service, "robot");
   Request short_one = place_of(6);
   short_one.deadline = 20.0;
   ask(short_one);
@@ -585,9 +578,8 @@ TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
     hear("robot", short_one, {AnswerCode::underway, ""});
   }
   EXPECT_EQ(late, std::vector<std::uint64_t>{6}) << "the one with a deadline";
-  const auto solved = hear("robot", place_of(5), library()).solved;
-  ASSERT_EQ(solved.size(), 1u);
-  EXPECT_EQ(solved[0].answer, library());
+  const auto solved = test::only(hear("robot", place_of(5), library()).solved);
+  EXPECT_EQ(solved.answer, library());
 }
 
 TEST_F(Facilitation, ARequiredArgumentIsNotLeftOpen) {
@@ -675,16 +667,15 @@ TEST_F(Conjunctions, AnAnswerOfThePartBeforeIsUsedInTheNext) {
   EXPECT_EQ(sent(ask(go_to_karen(5))), "a: place_of person=\"karen\" place=?");
   EXPECT_TRUE(ask(go_to_karen(5)).requests.empty()) << "the request once more";
   EXPECT_EQ(sent(answer(at("library"))), "robot: go place=\"library\"");
-  const auto underway = answer({AnswerCode::underway, "on its way"}).solved;
-  ASSERT_EQ(underway.size(), 1u);
-  EXPECT_EQ(underway[0].number, 5u);
-  EXPECT_EQ(underway[0].answer.text, "on its way");
-  const auto end = answer({AnswerCode::done, "arrived", {number("metres", 3.0)}}).solved;
-  ASSERT_EQ(end.size(), 1u);
-  EXPECT_EQ(end[0].asker, kPerson);
-  EXPECT_EQ(end[0].number, 5u);
-  EXPECT_EQ(end[0].service, "robot");
-  EXPECT_EQ(end[0].answer,
+  const auto underway = test::only(answer({AnswerCode::underway, "on its way"}).solved);
+  EXPECT_EQ(underway.number, 5u);
+  EXPECT_EQ(underway.answer.text, "on its way");
+  const auto end =
+      test::only(answer({AnswerCode::done, "arrived", {number("metres", 3.0)}}).solved);
+  EXPECT_EQ(end.asker, kPerson);
+  EXPECT_EQ(end.number, 5u);
+  EXPECT_EQ(end.service, "robot");
+  EXPECT_EQ(end.answer,
             (Answer{AnswerCode::done, "arrived", {text("P", "library"), number("metres", 3.0)}}));
   EXPECT_EQ(facilitator.open(), 0u);
   EXPECT_EQ(ask(go_to_karen(5)).solved.at(0).answer.text, "arrived") << "told again";
@@ -699,10 +690,9 @@ TEST_F(Conjunctions, WhereAPartHasNoAnswerTheNextAnswerOfTheOneBeforeIsTried) {
   EXPECT_EQ(sent(answer({AnswerCode::refused, "no such place"})),
             "b: place_of person=\"karen\" place=?");
   EXPECT_EQ(sent(answer(at("lift"))), "robot: go place=\"lift\"");
-  const auto end = answer({AnswerCode::refused, "too narrow"}).solved;
-  ASSERT_EQ(end.size(), 1u);
-  EXPECT_EQ(end[0].service, "robot");
-  EXPECT_EQ(end[0].answer,
+  const auto end = test::only(answer({AnswerCode::refused, "too narrow"}).solved);
+  EXPECT_EQ(end.service, "robot");
+  EXPECT_EQ(end.answer,
             (Answer{AnswerCode::refused, "part 2 of 2, go place=\"lift\": too narrow"}));
 }
 
@@ -723,21 +713,18 @@ TEST_F(Conjunctions, AnActionThatMayHaveBegunIsNotTriedWithOtherValues) {
 TEST_F(Conjunctions, TheRefusalSaysWhichPartFailed) {
   sent(ask(go_to_karen(5)));
   sent(answer({AnswerCode::refused, "no idea"}));
-  const auto end = answer({AnswerCode::refused, "nor I"}).solved;
-  ASSERT_EQ(end.size(), 1u);
-  EXPECT_EQ(end[0].service, "b");
-  EXPECT_EQ(end[0].answer,
+  const auto end = test::only(answer({AnswerCode::refused, "nor I"}).solved);
+  EXPECT_EQ(end.service, "b");
+  EXPECT_EQ(end.answer,
             (Answer{AnswerCode::refused, "part 1 of 2, place_of person=\"karen\" place=?: nor I"}));
 
   Request unknown = go_to_karen(6);
   unknown.arguments[2] = text(kAnd, "fly");
   sent(ask(unknown));
   sent(answer(at("library")));  // b may know a place to which it can fly
-  const auto none = answer({AnswerCode::refused, "no idea"}).solved;
-  ASSERT_EQ(none.size(), 1u);
-  EXPECT_EQ(
-      none[0].answer,
-      (Answer{AnswerCode::nobody, "part 2 of 2, fly place=\"library\": no agent can do \"fly\""}));
+  const auto none = test::only(answer({AnswerCode::refused, "no idea"}).solved);
+  EXPECT_EQ(none.answer, (Answer{AnswerCode::nobody,
+                                 "part 2 of 2, fly place=\"library\": no agent can do \"fly\""}));
 
   Request malformed = go_to_karen(7);
   malformed.arguments[2] = number(kAnd, 1.0);
@@ -796,9 +783,8 @@ TEST_F(Conjunctions, TheDeadlineIsOfTheWhole) {
   answer({AnswerCode::underway, ""});
   now += 1.0;
   EXPECT_EQ(facilitator.due(), now);
-  const auto end = facilitator.step(now).solved;
-  ASSERT_EQ(end.size(), 1u);
-  EXPECT_EQ(end[0].answer,
+  const auto end = test::only(facilitator.step(now).solved);
+  EXPECT_EQ(end.answer,
             (Answer{AnswerCode::too_late,
                     "part 2 of 2, go place=\"library\": robot did not answer in time"}));
 }
@@ -810,9 +796,8 @@ TEST_F(Conjunctions, AWithdrawalReachesThePartAtWork) {
   Request withdrawal = place_of(5);
   withdrawal.functor = kWithdraw;
   EXPECT_EQ(sent(ask(withdrawal)), "robot: withdraw");
-  const auto stopped = answer({AnswerCode::given_up, "stopped"}).solved;
-  ASSERT_EQ(stopped.size(), 1u);
-  EXPECT_EQ(stopped[0].answer.code, AnswerCode::given_up);
+  const auto stopped = test::only(answer({AnswerCode::given_up, "stopped"}).solved);
+  EXPECT_EQ(stopped.answer.code, AnswerCode::given_up);
   sent(ask(go_to_karen(6)));
   withdrawal.number = 6;
   EXPECT_EQ(ask(withdrawal).solved.at(0).answer,
@@ -939,9 +924,8 @@ TEST_F(Facilitation, AnActionIsItsAskersOverARestart) {
     back();
     Request ends = withdrawal(5);
     ends.person = who;
-    const auto told = ask(ends).requests;
-    ASSERT_EQ(told.size(), 1U) << who.name;
-    EXPECT_EQ(told[0].functor, kWithdraw);
+    const auto told = test::only(ask(ends).requests);
+    EXPECT_EQ(told.functor, kWithdraw);
   }
 }
 

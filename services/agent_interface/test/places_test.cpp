@@ -11,9 +11,7 @@ TEST_F(DialogueTest, ThisOfficeIsTheNearestDoorway) {
   ASSERT_EQ(dialogue.knowledge().all().size(), 1u);
   EXPECT_EQ(dialogue.knowledge().all()[0].artifact, 1231u);
   EXPECT_EQ(dialogue.knowledge().all()[0].speaker, "Alice");
-  ASSERT_EQ(last.claims.size(), 1u);
-  EXPECT_EQ(last.claims[0].name, "place-of-karen");
-  EXPECT_EQ(last.claims[0].value, "EJ-231");
+  EXPECT_EQ(claims(), "place-of-karen=EJ-231");
   situation.pose_in_map = Pose{7.5, 4.0, 0.0};
   EXPECT_EQ(said("Flakey, this is John's office"), "I know now that EJ-233 is john's office");
 }

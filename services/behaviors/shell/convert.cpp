@@ -15,13 +15,7 @@ constexpr std::size_t kMostParameters = 16;
 constexpr std::size_t kMostChoices = 16;
 constexpr std::size_t kMostSchemas = 1024;
 
-constexpr EnumPairs<Action, v1::ControlAction, 5> kActions{{{
-    {Action::speed, v1::CONTROL_SPEED},
-    {Action::turn_left, v1::CONTROL_TURN_LEFT},
-    {Action::turn_right, v1::CONTROL_TURN_RIGHT},
-    {Action::accelerate, v1::CONTROL_ACCELERATE},
-    {Action::decelerate, v1::CONTROL_DECELERATE},
-}}};
+constexpr auto kActions = pairs_by_name<Action, v1::ControlAction>();
 
 }  // namespace
 

@@ -30,6 +30,11 @@ class Bench {
   void ask(std::uint64_t number, std::string functor, Arguments arguments, int priority = 0) {
     write(goal(number, std::move(functor), std::move(arguments), priority));
   }
+  /// Asks, and steps.
+  void begin(std::uint64_t number, std::string functor, Arguments arguments, int priority = 0) {
+    ask(number, std::move(functor), std::move(arguments), priority);
+    step();
+  }
   void write(const Goal& made) { events.push_back({GoalEvent::Kind::kWritten, made}); }
   void dispose(std::uint64_t number) { event(GoalEvent::Kind::kDisposed, number); }
   void lose_writer(std::uint64_t number) { event(GoalEvent::Kind::kWriterLost, number); }

@@ -30,8 +30,7 @@ TEST(Executor, RefusesWithAReason) {
   EXPECT_EQ(bench.status(1).code, v1::CODE_UNKNOWN_FUNCTOR);
   EXPECT_EQ(bench.status(1).reason,
             "there is no activity \"fly\": saphira goal activities lists the 6 that there are");
-  bench.ask(4, "go_too", {});
-  bench.step();
+  bench.begin(4, "go_too", {});
   EXPECT_EQ(bench.status(4).reason,
             "there is no activity \"go_too\": did you mean go_to? saphira goal activities lists "
             "the 6 that there are");
@@ -43,13 +42,11 @@ TEST(Executor, RefusesWithAReason) {
 TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   Bench bench;
   const Arguments wrong{text("position", std::string(300, 'x'))};
-  bench.ask(1, "go_to", wrong);
-  bench.step();
+  bench.begin(1, "go_to", wrong);
   const std::string whole = bench.status(1).reason;
   ASSERT_GT(whole.size(), kLongestReason);
   Bench again(bench.memory());
-  again.ask(1, "go_to", wrong);
-  again.step();
+  again.begin(1, "go_to", wrong);
   EXPECT_EQ(again.state(1), v1::GOAL_REFUSED);
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
 }
@@ -79,8 +76,7 @@ TEST(Executor, RefusesWhatIsTooMany) {
 TEST(Executor, OfEqualsTheFirstIsUnderway) {
   Bench bench;
   bench.ask(2, "drive", kSlow);
-  bench.ask(1, "go_to", kFar);
-  bench.step();
+  bench.begin(1, "go_to", kFar);
   EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.state(1), v1::GOAL_WAITING);
   EXPECT_EQ(bench.status(1).reason,
@@ -99,11 +95,9 @@ TEST(Executor, OfEqualsTheFirstIsUnderway) {
 
 TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
   Bench bench;
-  bench.ask(1, "go_to", kFar);
+  bench.begin(1, "go_to", kFar);
   bench.step();
-  bench.step();
-  bench.ask(2, "turn_to", {number("heading", 1.0)}, 5);
-  bench.step();
+  bench.begin(2, "turn_to", {number("heading", 1.0)}, 5);
   EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(bench.status(1).code, v1::CODE_PREEMPTED);
   EXPECT_EQ(bench.status(1).reason,
@@ -122,10 +116,8 @@ TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
 TEST(Executor, AChangedPriorityCounts) {
   Bench bench;
   bench.ask(1, "drive", kSlow);
-  bench.ask(2, "drive", kSlow);
-  bench.step();
-  bench.ask(2, "drive", kSlow, 1);
-  bench.step();
+  bench.begin(2, "drive", kSlow);
+  bench.begin(2, "drive", kSlow, 1);
   EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(bench.state(2), v1::GOAL_UNDERWAY);
 }
@@ -134,13 +126,11 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   Bench bench;
   bench.ask(1, "drive", kSlow);
   bench.ask(2, "go_to", kFar);
-  bench.ask(3, "drive", kSlow, 1000);
-  bench.step();
+  bench.begin(3, "drive", kSlow, 1000);
   bench.step();
   ASSERT_EQ(bench.state(3), v1::GOAL_UNDERWAY);
   bench.ask(4, "stop", {}, -1000);
-  bench.ask(5, "go_to", kFar);
-  bench.step();
+  bench.begin(5, "go_to", kFar);
   for (const std::uint64_t stopped : {1U, 2U, 3U}) {
     EXPECT_EQ(bench.state(stopped), v1::GOAL_CANCELED);
     EXPECT_EQ(bench.status(stopped).code, v1::CODE_STOPPED);
@@ -149,14 +139,12 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   }
   EXPECT_EQ(bench.state(5), v1::GOAL_UNDERWAY) << "it came after the stop";
   EXPECT_EQ(bench.state(4), v1::GOAL_WAITING);
-  bench.ask(6, "stop", {});
-  bench.step();
+  bench.begin(6, "stop", {});
   EXPECT_EQ(bench.state(5), v1::GOAL_CANCELED);
   bench.step(20);
   EXPECT_EQ(bench.state(6), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(bench.state(4), v1::GOAL_SUCCEEDED);  // a stop does not end another
-  bench.ask(7, "go_to", kFar);
-  bench.step();
+  bench.begin(7, "go_to", kFar);
   EXPECT_EQ(bench.state(7), v1::GOAL_UNDERWAY);
 }
 
@@ -166,8 +154,7 @@ constexpr StopId kSecond{7, 2};
 TEST(Executor, AStopOfTheBridgeEndsAllGoalsThatDrive) {
   Bench bench;
   bench.ask(1, "drive", kSlow);
-  bench.ask(2, "go_to", kFar, 9);
-  bench.step();
+  bench.begin(2, "go_to", kFar, 9);
   bench.stop = kFirst;
   bench.step();
   for (const std::uint64_t stopped : {1U, 2U}) {
@@ -177,8 +164,7 @@ TEST(Executor, AStopOfTheBridgeEndsAllGoalsThatDrive) {
   }
   EXPECT_TRUE(bench.out.behaviors.empty());
   EXPECT_EQ(bench.executor.heeds(), kFirst);
-  bench.ask(3, "drive", kSlow);
-  bench.step();
+  bench.begin(3, "drive", kSlow);
   EXPECT_EQ(bench.state(3), v1::GOAL_UNDERWAY) << "the same stop ends nothing later";
   bench.stop = kSecond;
   bench.step();
@@ -215,8 +201,7 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
   bench.confirms_stops = true;
   bench.ask(1, "drive", kSlow);
   bench.step(5);
-  bench.ask(2, "stop", {});
-  bench.step();
+  bench.begin(2, "stop", {});
   EXPECT_EQ(bench.state(1), v1::GOAL_CANCELED);
   ASSERT_EQ(bench.out.stop, "somebody");
   bench.executor.heed(kFirst);
@@ -238,8 +223,7 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
 TEST(Executor, AnOverdueConfirmationDoesNotTakeBackALaterStop) {
   Bench bench;
   for (const StopId& own : {kFirst, kSecond}) {
-    bench.ask(own.number, "stop", {});
-    bench.step();
+    bench.begin(own.number, "stop", {});
     bench.executor.heed(own);
   }
   bench.stop = kFirst;
@@ -261,8 +245,7 @@ TEST(Executor, AGoalStopThatNoBridgeConfirmsFails) {
   bench.confirms_stops = true;
   bench.stop = kFirst;
   bench.stop_was_before = true;
-  bench.ask(2, "stop", {});
-  bench.step();
+  bench.begin(2, "stop", {});
   bench.executor.heed(kSecond);
   bench.run(2, 1000);
   EXPECT_EQ(bench.state(2), v1::GOAL_FAILED);
@@ -272,24 +255,20 @@ TEST(Executor, AGoalStopThatNoBridgeConfirmsFails) {
 
 TEST(Executor, AStopEndsWhatAPersonHasInterrupted) {
   Bench bench;
-  bench.ask(1, "drive", kSlow, 5);
-  bench.step();
+  bench.begin(1, "drive", kSlow, 5);
   ASSERT_TRUE(bench.executor.interrupt(bench.out.nodes.at(0).id));
   bench.step();
-  bench.ask(2, "stop", {});
-  bench.step();
+  bench.begin(2, "stop", {});
   EXPECT_EQ(bench.state(1), v1::GOAL_CANCELED);
 }
 
 TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
   Bench bench;
   bench.ask(1, "go_to", kFar, 7);
-  bench.ask(2, "drive", kSlow);
-  bench.step();
+  bench.begin(2, "drive", kSlow);
   bench.estop = "button";
   bench.step();
-  bench.ask(3, "go_to", kFar, 9);
-  bench.step();
+  bench.begin(3, "go_to", kFar, 9);
   for (const std::uint64_t ended : {1U, 2U, 3U}) {
     EXPECT_EQ(bench.state(ended), v1::GOAL_CANCELED);
     EXPECT_EQ(bench.status(ended).code, v1::CODE_STOPPED);
@@ -300,8 +279,7 @@ TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
   bench.estop.clear();
   bench.step();
   EXPECT_TRUE(bench.out.behaviors.empty()) << "nothing goes on by itself";
-  bench.ask(4, "drive", kSlow);
-  bench.step();
+  bench.begin(4, "drive", kSlow);
   EXPECT_EQ(bench.state(4), v1::GOAL_UNDERWAY);
 }
 
@@ -340,12 +318,10 @@ TEST(Executor, TheLossOfItsWriterEndsAGoalUnlessItIsToBeKept) {
 TEST(Executor, ARepetitionChangesNothing) {
   Bench bench;
   bench.world.held = true;
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   const std::vector<IntendedBehavior> before = bench.out.behaviors;
   bench.world.robot.pose_in_odom = {1.0, 0.0, 0.0};
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   EXPECT_EQ(bench.out.behaviors, before);
   EXPECT_EQ(bench.status(1).code, v1::CODE_NONE);
 }
@@ -355,8 +331,7 @@ TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
   bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0})});
   bench.step(10);
   const std::vector<IntendedBehavior> before = bench.out.behaviors;
-  bench.ask(1, "go_to", {point("position", {0.0, 3.0, 0.0}), number("speed", 0.2)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {0.0, 3.0, 0.0}), number("speed", 0.2)});
   EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).code, v1::CODE_CHANGED);
   EXPECT_EQ(bench.status(1).step, "driving to (0.00, 3.00)");
@@ -372,10 +347,8 @@ TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
 
 TEST(Executor, AChangeOfTheFunctorBeginsAnew) {
   Bench bench;
-  bench.ask(1, "go_to", kFar);
-  bench.step();
-  bench.ask(1, "drive", kSlow);
-  bench.step();
+  bench.begin(1, "go_to", kFar);
+  bench.begin(1, "drive", kSlow);
   EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).functor, "drive");
   EXPECT_EQ(bench.out.behaviors.at(1).schema, "ConstantVelocity");
@@ -388,8 +361,7 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
       "the change was refused: argument \"position\": expected a point x,y or x,y,heading, such as "
       "3,1, within 10000 m, got 3";
   bench.ask(1, "go_to", kFar);
-  bench.ask(2, "go_to", kFar);
-  bench.step();
+  bench.begin(2, "go_to", kFar);
   const std::vector<IntendedBehavior> before = bench.out.behaviors;
   for (const std::uint64_t id : {1U, 2U})
     bench.ask(id, "go_to", {number("position", 3.0)});
@@ -411,8 +383,7 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
   EXPECT_EQ(bench.status(2).code, v1::CODE_NO_ROBOT);
   EXPECT_EQ(bench.status(2).waits_for, GoalId{});
   bench.ask(1, "go_to", kFar);
-  bench.ask(2, "drive", kSlow);
-  bench.step();
+  bench.begin(2, "drive", kSlow);
   EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is");
   EXPECT_EQ(bench.status(2).reason, "waits for the robot");
 }
@@ -427,8 +398,7 @@ TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   bench.step();
   EXPECT_EQ(bench.statuses.count(1), 0U);
   // Its id stays used after that.
-  bench.ask(1, "drive", kSlow);
-  bench.step();
+  bench.begin(1, "drive", kSlow);
   EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(bench.out.behaviors.empty());
 }
@@ -498,8 +468,7 @@ TEST(Executor, HearingBetweenCyclesOrWithThemIsTheSame) {
 TEST(Executor, GoalsWaitForARobotThatIsGone) {
   Bench bench;
   bench.ask(1, "go_to", kFar);
-  bench.ask(2, "drive", kSlow);
-  bench.step();
+  bench.begin(2, "drive", kSlow);
   bench.note(bench.executor.robot_gone());
   EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(bench.status(1).code, v1::CODE_NO_ROBOT);
@@ -515,8 +484,7 @@ TEST(Executor, GoalsWaitForARobotThatIsGone) {
 
 TEST(Executor, NothingIsIntendedForARobotThatIsNotConnected) {
   Bench bench;
-  bench.ask(1, "go_to", kFar);
-  bench.step();
+  bench.begin(1, "go_to", kFar);
   bench.world.robot.connected = false;
   bench.step();
   EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
@@ -531,8 +499,7 @@ TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
   bench.ask(1, "go_to", kFar);
   bench.ask(2, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.ask(3, "turn_to", {number("heading", 1.0)});
-  bench.ask(4, "drive", kSlow);
-  bench.step();
+  bench.begin(4, "drive", kSlow);
   bench.note(bench.executor.robot_gone());
   bench.ask(5, "go_to", kFar);  // odom is still the old one for all programs
   bench.ask(6, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
@@ -576,21 +543,17 @@ TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
 
 TEST(Executor, ARestartKnowsThatThePositionIsLost) {
   Bench bench;
-  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   Bench again(bench.memory());
   again.world.robot.odom = 2;
-  again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
-  again.step();
+  again.begin(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   EXPECT_EQ(again.state(1), v1::GOAL_FAILED);
 }
 
 TEST(Executor, TheTreeShowsWhatServesWhichGoal) {
   Bench bench;
-  bench.ask(1, "drive", kSlow);
-  bench.step();
-  bench.ask(2, "drive", kSlow, 1);
-  bench.step();
+  bench.begin(1, "drive", kSlow);
+  bench.begin(2, "drive", kSlow, 1);
   ASSERT_EQ(bench.out.nodes.size(), 5U);
   EXPECT_EQ(bench.out.nodes[0].state, IntentionState::kSuspended);
   EXPECT_EQ(bench.out.nodes[0].goal, (GoalId{1, 1}));

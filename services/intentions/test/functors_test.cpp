@@ -19,8 +19,7 @@ std::vector<std::string> schemas(const std::vector<IntendedBehavior>& behaviors)
 
 TEST(GoTo, IntendsTheBehaviorsAndArrives) {
   Bench bench;
-  bench.ask(1, "go_to", {point("position", {2.0, 1.0, 0.0}), number("speed", 0.4)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {2.0, 1.0, 0.0}), number("speed", 0.4)});
   EXPECT_EQ(schemas(bench.out.behaviors),
             (std::vector<std::string>{"AvoidCollision/0", "KeepOff/1", "GoToPos/2", "Stop/3"}));
   const Arguments parameters = bench.out.behaviors[2].parameters;
@@ -80,8 +79,7 @@ TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
 TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
   Bench bench;
   bench.world.robot.pose_in_odom = {1.0, 1.0, kPi / 2};
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   for (int i = 0; i < 20; ++i) {
     const Argument* const goal = find(bench.out.behaviors.at(2).parameters, "goal");
     EXPECT_NEAR(goal->point.x, 1.0, 1e-12);
@@ -94,8 +92,7 @@ TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
 TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{10.0, 5.0, kPi / 2};
-  bench.ask(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::map)});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::map)});
   const auto goal = [&] {
     for (const IntendedBehavior& behavior : bench.out.behaviors)
       if (behavior.schema == "GoToPos")
@@ -117,8 +114,8 @@ TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
 TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{};
-  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
-  bench.step();
+  bench.begin(1, "go_to",
+              {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
   bench.world.robot.odom_in_map.reset();
   bench.step();
@@ -137,8 +134,8 @@ TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
 TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{};
-  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
-  bench.step();
+  bench.begin(1, "go_to",
+              {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
   const auto wait = [&](int cycles, bool known) {
     bench.world.held = true;
     bench.world.robot.odom_in_map = known ? std::optional(Pose{}) : std::nullopt;
@@ -167,8 +164,7 @@ TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
     bench.world.robot.odom_in_map = Pose{};
     bench.registration.state = v1::REGISTRATION_TRACKING;
     bench.registration.confidence = 0.5;
-    bench.ask(1, "go_to", {point("position", {1.0, 0.0, 0.0}, Frame::map)});
-    bench.step();
+    bench.begin(1, "go_to", {point("position", {1.0, 0.0, 0.0}, Frame::map)});
     for (int i = 0; i < 100 && bench.status(1).step != "moving about to confirm where it is"; ++i)
       bench.step();
     bench.step(50);
@@ -207,8 +203,7 @@ TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
 TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
   for (const char* const missing : {"AvoidCollision", "ConstantVelocity", "Stop"}) {
     Bench bench;
-    bench.ask(1, "drive", {number("speed", 0.2)});
-    bench.step();
+    bench.begin(1, "drive", {number("speed", 0.2)});
     for (const IntendedBehavior& behavior : bench.out.behaviors)
       if (behavior.schema == missing)
         bench.troubles.push_back({behavior.name, "its file is broken"});
@@ -238,8 +233,7 @@ TEST(GoTo, TimesAreToldAsCyclesOfTheRobot) {
   Bench bench;
   bench.cycle = 700;
   bench.step(20);
-  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0})});
-  bench.step();
+  bench.begin(1, "go_to", {point("position", {3.0, 0.0, 0.0})});
   const std::uint64_t begun = bench.cycle - 1;  // with the end of the cycle before
   ASSERT_FALSE(bench.out.nodes.empty());
   EXPECT_EQ(bench.executor.cycle_of(bench.out.nodes[0].since), begun);
@@ -367,8 +361,7 @@ TEST(Drive, AtNoSpeedIsNotBlocked) {
 
 TEST(TurnTo, TurnsToAHeading) {
   Bench bench;
-  bench.ask(1, "turn_to", {number("heading", 2.0)});
-  bench.step();
+  bench.begin(1, "turn_to", {number("heading", 2.0)});
   EXPECT_EQ(schemas(bench.out.behaviors), (std::vector<std::string>{"TurnTo/2", "Stop/3"}));
   const std::vector<IntendedBehavior> first = bench.out.behaviors;
   bench.step();

@@ -57,11 +57,12 @@ class Stage {
     event.goal.level = level;
     inputs.events.push_back(event);
   }
-  /// Asks for the activity :it as goal 1, and steps.
-  void begin(int cycles = 1) {
-    ask(1, "it");
+  /// Asks for an activity, and steps.
+  void begin(std::uint64_t id, const std::string& functor, int cycles = 1) {
+    ask(id, functor);
     step(cycles);
   }
+  void begin(int cycles = 1) { begin(1, "it", cycles); }
   void dispose(std::uint64_t id) {
     GoalEvent event;
     event.kind = GoalEvent::Kind::kDisposed;
@@ -69,8 +70,17 @@ class Stage {
     inputs.events.push_back(event);
   }
 
-  /// Sets the level of the behavior whose name begins so.
-  void satisfy(const std::string& name, double goal) { levels[name] = goal; }
+  /// Sets the level of the behavior whose name begins so, and steps.
+  void satisfy(const std::string& name, double goal, int cycles = 0) {
+    levels[name] = goal;
+    step(cycles);
+  }
+
+  /// Sets whether a wheel is stalled, and steps.
+  void stall(bool stalled, int cycles = 1) {
+    inputs.robot.left_stalled = stalled;
+    step(cycles);
+  }
 
   void step(int cycles = 1) {
     for (int i = 0; i < cycles; ++i) {

@@ -34,8 +34,7 @@ TEST(Activities, ParametersVariablesAndConditions) {
   stage.ask(2, "it", {number("n", 3.0)});
   stage.step(5);
   EXPECT_EQ(stage.status(2).reason, "large 6");
-  stage.ask(3, "it");
-  stage.step(5);
+  stage.begin(3, "it", 5);
   EXPECT_EQ(stage.status(3).reason, "small 2");
   stage.ask(4, "it", {number("n", 10.0)});
   stage.step();
@@ -53,15 +52,12 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   EXPECT_TRUE(stage.out.behaviors[0].blocking);
   EXPECT_EQ(find(stage.out.behaviors[0].parameters, "speed")->number, 0.3);
   EXPECT_EQ(stage.display(), "* it S2; * GoToPos B");
-  stage.satisfy("first", 0.89);
-  stage.step(5);
+  stage.satisfy("first", 0.89, 5);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  stage.satisfy("first", 0.95);
-  stage.step();
+  stage.satisfy("first", 0.95, 1);
   EXPECT_EQ(stage.behaviors(), Names({"TurnTo"})) << "in the cycle in which the first ended";
   EXPECT_EQ(stage.out.behaviors[0].priority, 1);
-  stage.satisfy("second", 1.0);
-  stage.step(3);
+  stage.satisfy("second", 1.0, 3);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(stage.out.behaviors.empty());
 }
@@ -81,14 +77,11 @@ TEST(Activities, AThresholdLetsGoOnWhileTheBehaviorLasts) {
       activity("(INTEND :follow () :blocking 0.6 :name lane)"
                "(INTEND :follow-door () :name door) (UNINTEND 'lane)"));
   stage.ask(1, "it");
-  stage.satisfy("lane", 0.5);
-  stage.step(5);
+  stage.satisfy("lane", 0.5, 5);
   EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
-  stage.satisfy("lane", 0.7);
-  stage.step();
+  stage.satisfy("lane", 0.7, 1);
   EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
-  stage.satisfy("lane", 1.0);
-  stage.step(5);
+  stage.satisfy("lane", 1.0, 5);
   EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
 }
 
@@ -98,8 +91,7 @@ TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
       "(defintention :middle :goals '((INTEND :bottom ())))"
       "(defintention :bottom :goals '((INTEND :go-to-pos () :name go)))"
       "(defintention :stop-here :goals '((INTEND :halt () :name halt)))");
-  stage.ask(1, "top");
-  stage.step();
+  stage.begin(1, "top");
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "begun at once, three levels deep";
   EXPECT_EQ(stage.display(), "* top S2; * middle END; * bottom END; * GoToPos B");
   stage.satisfy("go", 1.0);
@@ -192,15 +184,13 @@ TEST(Activities, Figure9RunsFromItsFile) {
   EXPECT_EQ(stage.display(),
             "* plan-and-execute S6; o monitor-planex CLEANUP; * follow-path END; * Follow B");
   // A signalled failure: the monitor ends the following, and the plan is made anew.
-  stage.ask(3, "spoil");
-  stage.step(4);
+  stage.begin(3, "spoil", 4);
   EXPECT_EQ(stage.messages.size(), 3U);
   EXPECT_EQ(stage.messages.back(), "Planning path to EJ-231");
   stage.step(6);
   EXPECT_EQ(stage.messages.back(), "following nil, EJ-231");
   EXPECT_TRUE(stage.belief("*failed-execution*").nil());
-  stage.satisfy("way", 1.0);
-  stage.step(8);
+  stage.satisfy("way", 1.0, 8);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
 }
 

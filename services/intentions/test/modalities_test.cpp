@@ -42,8 +42,7 @@ TEST(Modality, WaitForAConditionAndItsLimit) {
   ASSERT_TRUE(stage.loaded.troubles.empty()) << errors(stage.loaded);
   stage.begin(3);
   EXPECT_EQ(stage.status(1).step, "waits until a wheel is stalled");
-  stage.inputs.robot.left_stalled = true;
-  stage.step(2);
+  stage.stall(true, 2);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 
   stage.inputs.robot.left_stalled = false;
@@ -71,17 +70,14 @@ TEST(Modality, TimeoutsOfBehaviorsAndActivities) {
       "(defintention :a :goals '((INTEND :GoToPos () :timeout 1s)))"
       "(defintention :b :timeout 1s :goals '((WAIT-FOR stalled)))"
       "(defintention :c :goals '((INTEND :b () :timeout 0.3s)))");
-  stage.ask(1, "a");
-  stage.step(10);
+  stage.begin(1, "a", 10);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.step(2);
   EXPECT_EQ(stage.status(1).reason, "GoToPos: not satisfied in 1 s");
   EXPECT_EQ(stage.status(1).code, v1::CODE_TIMEOUT);
-  stage.ask(2, "b");
-  stage.step(12);
+  stage.begin(2, "b", 12);
   EXPECT_EQ(stage.status(2).reason, "not done in 1 s");
-  stage.ask(3, "c");
-  stage.step(5);
+  stage.begin(3, "c", 5);
   EXPECT_EQ(stage.status(3).reason, "b: not done in 0.3 s");
 }
 
@@ -130,8 +126,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
                           " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
   preserve.begin(2);
   EXPECT_EQ(preserve.behaviors(), Names({"Watch", "Follow"}));
-  preserve.inputs.robot.left_stalled = true;
-  preserve.step();
+  preserve.stall(true);
   EXPECT_EQ(preserve.messages, Names({"broken"}));
   EXPECT_TRUE(preserve.behaviors().empty());
 
@@ -140,8 +135,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
                       " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
   over.begin(2);
   EXPECT_EQ(over.behaviors(), Names({"Watch"}));
-  over.inputs.robot.left_stalled = true;
-  over.step();
+  over.stall(true);
   EXPECT_TRUE(over.behaviors().empty());
 
   Stage all(activity("(AND (SEQ " + aside + ") (SEQ " + rest +
@@ -158,11 +152,9 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
                aside + rest + ") (WAIT-FOR nil :forever t)"));
   maintain.begin(2);
   for (int i = 0; i < 2; ++i) {
-    maintain.inputs.robot.left_stalled = true;
-    maintain.step(3);
+    maintain.stall(true, 3);
     EXPECT_EQ(maintain.behaviors(), Names({"Back"}));
-    maintain.inputs.robot.left_stalled = false;
-    maintain.step(2);
+    maintain.stall(false, 2);
     EXPECT_EQ(maintain.behaviors(), Names({"Watch", "Follow"}));
   }
 }
@@ -178,8 +170,7 @@ TEST(Modality, ASplitGoesOnBehindTheGoalThatItStoodIn) {
   claim(stage, "*x*", true);
   stage.step(2);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"}));
-  stage.inputs.robot.left_stalled = true;
-  stage.step(2);
+  stage.stall(true, 2);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"})) << "they do not stand in what failed";
 }
@@ -225,8 +216,7 @@ TEST(Modality, WhatIsNotWaitedForEndsWithItsParent) {
   stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"AvoidCollision", "GoToPos"}));
   EXPECT_EQ(stage.display(), "* it END; o guard END; o AvoidCollision B; * GoToPos B");
-  stage.satisfy("go", 1.0);
-  stage.step(3);
+  stage.satisfy("go", 1.0, 3);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(stage.out.nodes.empty());
 }
@@ -269,8 +259,7 @@ TEST(Modality, PreserveEndsItsGoalsWhenTheConditionBreaks) {
                " :else (EXECUTE (say \"~a\" (reason)))) (EXECUTE (say \"on\"))"));
   stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  stage.inputs.robot.left_stalled = true;
-  stage.step();
+  stage.stall(true);
   EXPECT_TRUE(stage.behaviors().empty());
   EXPECT_EQ(stage.messages, Names({"(not stalled) does not hold any more", "on"}));
 }
@@ -283,16 +272,13 @@ TEST(Modality, MaintainRestoresAndGoesOn) {
               "(defintention :back :goals '((INTEND :ConstantVelocity ((speed . -100mm/s)))))");
   stage.begin(3);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  stage.inputs.robot.left_stalled = true;
-  stage.step();
+  stage.stall(true);
   EXPECT_EQ(stage.behaviors(), Names({"ConstantVelocity"})) << "instead of what is maintained";
   stage.step(5);
   stage.inputs.robot.left_stalled = false;
-  stage.satisfy("ConstantVelocity", 1.0);
-  stage.step(2);
+  stage.satisfy("ConstantVelocity", 1.0, 2);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "it went on where it was";
-  stage.satisfy("go", 1.0);
-  stage.step(8);
+  stage.satisfy("go", 1.0, 8);
   EXPECT_EQ(stage.messages, Names({"walked", "there"}));
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
@@ -311,12 +297,10 @@ TEST(Modality, MaintainWithinMaintainGoesOnWhenBothHold) {
   claim(stage, "*a*", false);
   EXPECT_EQ(stage.behaviors(), Names({"ByA"})) << "what restores the inner one waits too";
   claim(stage, "*a*", true);
-  stage.satisfy("ByA", 1.0);
-  stage.step(4);
+  stage.satisfy("ByA", 1.0, 4);
   EXPECT_EQ(stage.behaviors(), Names({"ByB"})) << "the inner condition does not hold yet";
   claim(stage, "*b*", true);
-  stage.satisfy("ByB", 1.0);
-  stage.step(4);
+  stage.satisfy("ByB", 1.0, 4);
   EXPECT_EQ(stage.behaviors(), Names({"Watch", "GoToPos"}));
 }
 
@@ -328,8 +312,7 @@ TEST(Modality, WhatGoesOnHasItsPointsWhereTheyAreNow) {
   stage.inputs.robot.odom_in_map = Pose{};
   stage.ask(1, "it", {point("p", {3.0, 0.0, 0.0}, Frame::map)});
   stage.step(2);
-  stage.inputs.robot.left_stalled = true;
-  stage.step(2);
+  stage.stall(true, 2);
   EXPECT_TRUE(stage.behaviors().empty());
   stage.inputs.robot.left_stalled = false;
   stage.inputs.robot.odom_in_map = Pose{1.0, 0.0, 0.0};
@@ -342,8 +325,7 @@ TEST(Modality, MaintainFailsWhereItCannotRestore) {
       activity("(MAINTAIN (not stalled) :by (EXECUTE (say \"trying\"))"
                " (INTEND :GoToPos ()))"));
   stage.begin(3);
-  stage.inputs.robot.left_stalled = true;
-  stage.step();
+  stage.stall(true);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).reason, "(not stalled) could not be restored");
   EXPECT_EQ(stage.messages, Names({"trying"}));
@@ -360,12 +342,10 @@ TEST(Modality, AnInterruptedGoalGoesOnWhereItWas) {
   stage.step(50);
   EXPECT_EQ(stage.behaviors(), Names({"TurnTo"}));
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUSPENDED);
-  stage.satisfy("turn", 1.0);
-  stage.step(2);
+  stage.satisfy("turn", 1.0, 2);
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "no timeout has run meanwhile";
   EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
-  stage.satisfy("go", 1.0);
-  stage.step(6);
+  stage.satisfy("go", 1.0, 6);
   EXPECT_EQ(stage.messages, Names({"begun", "part", "over"})) << "nothing is done twice";
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
@@ -395,8 +375,7 @@ TEST(Modality, LevelsAndTrends) {
   Stage stage(activity("(INTEND :GoToPos () :name go)"));
   stage.begin(4);
   for (int i = 0; i < 20; ++i) {
-    stage.satisfy("go", 0.03 * i);
-    stage.step();
+    stage.satisfy("go", 0.03 * i, 1);
   }
   EXPECT_NEAR(stage.status(1).level, 0.5, 0.1);
   EXPECT_EQ(stage.status(1).trend, v1::TREND_RISING);
@@ -407,11 +386,9 @@ TEST(Modality, LevelsAndTrends) {
   // A goal with a lower level.
   stage.satisfy("go", 0.4);
   stage.level = 0.5;
-  stage.ask(2, "it");
-  stage.step(10);
+  stage.begin(2, "it", 10);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_UNDERWAY);
-  stage.satisfy("go", 0.6);
-  stage.step(2);
+  stage.satisfy("go", 0.6, 2);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(2).reason, "satisfied to 0.6, 0.5 was asked for");
 }
@@ -433,13 +410,11 @@ TEST(Modality, BehaviorControlIsBackWhenNobodyWantsItOff) {
       " :goals '((EXECUTE (setq *behavior-control* nil)) (WAIT-FOR *x* :forever t)"
       "          (EXECUTE (setq *behavior-control* t)) (WAIT-FOR nil :forever t)))");
   stage.begin();
-  stage.ask(2, "it");
-  stage.step();
+  stage.begin(2, "it");
   stage.dispose(2);
   stage.step();
   EXPECT_FALSE(stage.out.behavior_control);
-  stage.ask(3, "it");
-  stage.step();
+  stage.begin(3, "it");
   claim(stage, "*x*", true);
   stage.step(2);
   EXPECT_TRUE(stage.out.behavior_control);
@@ -462,15 +437,13 @@ TEST(Modality, ABeliefWhileAnIntentionLastsEndsWithIt) {
   EXPECT_EQ(stage.belief("kept"), Value("y"));
   // The end of its goal.
   stage.dispose(1);
-  stage.ask(2, "it");
-  stage.step(3);
+  stage.begin(2, "it", 3);
   EXPECT_EQ(stage.belief("asking"), Value("x"));
   stage.dispose(2);
   stage.step();
   EXPECT_TRUE(stage.belief("asking").nil());
   // As set afterwards for good.
-  stage.ask(3, "other");
-  stage.step(5);
+  stage.begin(3, "other", 5);
   EXPECT_EQ(stage.belief("asking"), Value("all"));
 }
 
@@ -535,8 +508,7 @@ TEST(Modality, ConcurrentGoalsAreUnderwayBesideTheOneThatDrives) {
   stage.step();
   for (const std::uint64_t id : {1U, 2U, 3U})
     EXPECT_EQ(stage.status(id).state, v1::GOAL_UNDERWAY) << id;
-  stage.inputs.robot.left_stalled = true;
-  stage.step();
+  stage.stall(true);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_UNDERWAY);
 }
@@ -550,8 +522,7 @@ TEST(Modality, AConcurrentActivityDoesNotDrive) {
   stage.ask(1, "behavior");
   stage.ask(2, "within");
   stage.ask(3, "functor");
-  stage.ask(4, "drives");
-  stage.step(3);
+  stage.begin(4, "drives", 3);
   EXPECT_EQ(stage.status(1).reason, "a concurrent activity does not drive");
   EXPECT_EQ(stage.status(2).reason, "drives: a concurrent activity does not drive");
   EXPECT_EQ(stage.status(3).reason, "drive: a concurrent activity does not drive");
@@ -563,10 +534,8 @@ TEST(Modality, TheEndOfAConcurrentGoalIsNoStepForTheOneThatDrives) {
   Stage stage(activity("(:again (EXECUTE (say \"tick\")) (GOTO :again))") +
               "(defintention :watch :concurrent t :goals '((WAIT-FOR stalled :forever t)))");
   stage.ask(1, "it");
-  stage.ask(2, "watch");
-  stage.step(3);
-  stage.inputs.robot.left_stalled = true;
-  stage.step();
+  stage.begin(2, "watch", 3);
+  stage.stall(true);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED);
   EXPECT_EQ(stage.messages.size(), 4U);
 }
@@ -583,11 +552,9 @@ TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
     stage.executor->add(schema);
   stage.step(2);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
-  stage.inputs.robot.left_stalled = true;
-  stage.step(3);
+  stage.stall(true, 3);
   EXPECT_EQ(stage.status(1).reason, "part: new part") << "what it begins anew is the new one";
-  stage.ask(2, "it");
-  stage.step(3);
+  stage.begin(2, "it", 3);
   EXPECT_EQ(stage.status(2).reason, "new");
 }
 
@@ -596,8 +563,7 @@ TEST(Modality, HowMuchIsDoneIsItsOwnOrTheLevel) {
               "(defintention :with :level 0.25 :progress (/ nothing 2) :concurrent t"
               " :goals '((= nothing 1.5) (WAIT-FOR stalled :forever t)))");
   stage.ask(1, "it");
-  stage.ask(2, "with");
-  stage.step(12);
+  stage.begin(2, "with", 12);
   EXPECT_EQ(stage.status(1).progress, 0.25);
   EXPECT_EQ(stage.status(2).level, 0.25);
   EXPECT_EQ(stage.status(2).progress, 0.75);

@@ -215,8 +215,7 @@ TEST(RandomActivities, DependOnNothingButTheirWorld) {
         if (random.chance(0.1))
           stage.ask(static_cast<std::uint64_t>(cycle) + 1,
                     "s" + std::to_string(random.next() % kSchemas));
-        stage.satisfy("n1", random.uniform(0.0, 1.0));
-        stage.step();
+        stage.satisfy("n1", random.uniform(0.0, 1.0), 1);
         seen.push_back(stage.display());
       }
     }

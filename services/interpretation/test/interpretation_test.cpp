@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "only.hpp"
 #include "saphira/base/random.hpp"
 
 namespace saphira::interpretation {
@@ -154,13 +155,12 @@ TEST(Interpretation, AWallThatBendsIsNoLongerThanItIsStraight) {
 TEST(Interpretation, AClosedDoorThatStandsBackIsADoor) {
   for (const double depth : {0.15, 0.2, 0.26, 0.35}) {
     Corridor corridor(recess(2.0, 2.9, depth), nothing);
-    const auto doors = of(corridor.drive(4.5), PointType::door);
-    ASSERT_EQ(doors.size(), 1U) << depth;
-    EXPECT_TRUE(doors[0].is_closed());
-    EXPECT_NEAR(doors[0].length, depth, 0.02);
-    EXPECT_NEAR(doors[0].pose_in_odom.x, 2.45, 0.06);
-    EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
-    EXPECT_NEAR(doors[0].width, 0.9, 0.1);
+    const auto found = test::only(of(corridor.drive(4.5), PointType::door));
+    EXPECT_TRUE(found.is_closed());
+    EXPECT_NEAR(found.length, depth, 0.02);
+    EXPECT_NEAR(found.pose_in_odom.x, 2.45, 0.06);
+    EXPECT_NEAR(found.pose_in_odom.y, 1.0, 0.02);
+    EXPECT_NEAR(found.width, 0.9, 0.1);
     // The place is no end of a wall.
     EXPECT_TRUE(of(corridor.drive(4.6), PointType::breach).empty());
   }
@@ -174,12 +174,11 @@ TEST(Interpretation, SeesAnOpenDoorInItsFrameOrNiche) {
        {Case{2.9, 0.2, 2.05, 2.85}, Case{3.3, 0.25, 2.1, 3.0}, Case{3.6, 0.15, 2.6, 3.5}}) {
     Corridor corridor(niche(2.0, each.to, each.depth, each.door_from, each.door_to), nothing);
     const Output output = corridor.drive(5.5);
-    const auto doors = of(output, PointType::door);
-    ASSERT_EQ(doors.size(), 1U) << each.to;
-    EXPECT_FALSE(doors[0].is_closed());
-    EXPECT_NEAR(doors[0].pose_in_odom.x, (each.door_from + each.door_to) / 2, 0.06) << each.to;
-    EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
-    EXPECT_NEAR(doors[0].width, each.door_to - each.door_from, 0.1) << each.to;
+    const auto found = test::only(of(output, PointType::door));
+    EXPECT_FALSE(found.is_closed());
+    EXPECT_NEAR(found.pose_in_odom.x, (each.door_from + each.door_to) / 2, 0.06) << each.to;
+    EXPECT_NEAR(found.pose_in_odom.y, 1.0, 0.02);
+    EXPECT_NEAR(found.width, each.door_to - each.door_from, 0.1) << each.to;
     EXPECT_TRUE(of(output, PointType::breach).empty());
     EXPECT_TRUE(of(output, PointType::junction).empty());
   }
@@ -200,40 +199,36 @@ TEST(Interpretation, SeesOneEndAtOnceAndTheDoorWhenItIsPassed) {
   Corridor corridor(opening(2.0, 2.9), nothing);
   const Output early = corridor.drive(2.6);
   EXPECT_TRUE(of(early, PointType::door).empty());
-  const auto ends = of(early, PointType::breach);
-  ASSERT_EQ(ends.size(), 1U);
-  EXPECT_NEAR(ends[0].pose_in_odom.x, 2.0, 0.1);
+  const auto end = test::only(of(early, PointType::breach));
+  EXPECT_NEAR(end.pose_in_odom.x, 2.0, 0.1);
   // The normal, towards the robot.
-  EXPECT_NEAR(ends[0].pose_in_odom.th, -kPi / 2.0, radians(1.0));
+  EXPECT_NEAR(end.pose_in_odom.th, -kPi / 2.0, radians(1.0));
 
   const Output late = corridor.drive(4.0);
-  const auto doors = of(late, PointType::door);
-  ASSERT_EQ(doors.size(), 1U);
-  EXPECT_NEAR(doors[0].pose_in_odom.x, 2.45, 0.06);
-  EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
-  EXPECT_NEAR(doors[0].pose_in_odom.th, -kPi / 2.0, radians(1.0));
-  EXPECT_NEAR(doors[0].width, 0.9, 0.1);
-  EXPECT_EQ(doors[0].side, Side::left);
+  const auto found = test::only(of(late, PointType::door));
+  EXPECT_NEAR(found.pose_in_odom.x, 2.45, 0.06);
+  EXPECT_NEAR(found.pose_in_odom.y, 1.0, 0.02);
+  EXPECT_NEAR(found.pose_in_odom.th, -kPi / 2.0, radians(1.0));
+  EXPECT_NEAR(found.width, 0.9, 0.1);
+  EXPECT_EQ(found.side, Side::left);
   EXPECT_TRUE(of(late, PointType::breach).empty());
   EXPECT_EQ(of(late, PointType::wall).size(), 2U);
 }
 
 TEST(Interpretation, AWiderOpeningIsAJunction) {
   Corridor corridor(nothing, opening(2.0, 4.0));
-  const auto junctions = of(corridor.drive(5.2), PointType::junction);
-  ASSERT_EQ(junctions.size(), 1U);
-  EXPECT_NEAR(junctions[0].width, 2.0, 0.1);
-  EXPECT_NEAR(junctions[0].pose_in_odom.th, kPi / 2.0, radians(1.0));
-  EXPECT_EQ(junctions[0].side, Side::right);
+  const auto found = test::only(of(corridor.drive(5.2), PointType::junction));
+  EXPECT_NEAR(found.width, 2.0, 0.1);
+  EXPECT_NEAR(found.pose_in_odom.th, kPi / 2.0, radians(1.0));
+  EXPECT_EQ(found.side, Side::right);
 }
 
 TEST(Interpretation, TwoParallelWallsAreACorridor) {
   Corridor corridor(wall, [](double) { return 0.8; });
-  const auto corridors = of(corridor.drive(3.5), PointType::corridor);
-  ASSERT_EQ(corridors.size(), 1U);
-  EXPECT_NEAR(corridors[0].pose_in_odom.y, 0.1, 0.01);
-  EXPECT_NEAR(corridors[0].width, 1.8, 0.02);
-  EXPECT_TRUE(corridors[0].is_hypothesis());
+  const auto found = test::only(of(corridor.drive(3.5), PointType::corridor));
+  EXPECT_NEAR(found.pose_in_odom.y, 0.1, 0.01);
+  EXPECT_NEAR(found.width, 1.8, 0.02);
+  EXPECT_TRUE(found.is_hypothesis());
 }
 
 // A box before the wall, or a person: the wall there is unseen.
@@ -278,10 +273,9 @@ TEST(Interpretation, IdsStayWhileTheSameThingIsSeenAndEndWithTheAperture) {
   Corridor corridor(opening(2.0, 2.9), nothing);
   const auto door = of(corridor.drive(4.0), PointType::door);
   ASSERT_EQ(door.size(), 1U);
-  const auto same = of(corridor.drive(6.0), PointType::door);
-  ASSERT_EQ(same.size(), 1U);
-  EXPECT_EQ(same[0].id, door[0].id);
-  EXPECT_EQ(same[0].since, door[0].since);
+  const auto same = test::only(of(corridor.drive(6.0), PointType::door));
+  EXPECT_EQ(same.id, door[0].id);
+  EXPECT_EQ(same.since, door[0].since);
   const Output far = corridor.drive(9.0);
   EXPECT_TRUE(of(far, PointType::door).empty());
   // One wall before it, one behind it, an end and the door.

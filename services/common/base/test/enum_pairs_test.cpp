@@ -27,6 +27,11 @@ static_assert(kEnumerators<Lamp>.back() == Lamp::broken);
 static_assert(std::string_view(word_of(Lamp::on, {"off", "on", "broken"})) == "on");
 static_assert(std::string_view(word_of(static_cast<Lamp>(3), {"off", "on", "broken"})) == "?");
 
+enum OnTheBus : unsigned char { LAMP_BROKEN, LAMP_OFF, LAMP_ON };
+constexpr auto kByName = pairs_by_name<Lamp, OnTheBus>();
+static_assert(kByName.theirs(Lamp::off) == LAMP_OFF && kByName.theirs(Lamp::on) == LAMP_ON);
+static_assert(kByName.ours(LAMP_BROKEN, Lamp::off) == Lamp::broken);
+
 /// True where a table with a pair for each of these compiles.
 template <Sky... with>
 concept Compiles = requires {

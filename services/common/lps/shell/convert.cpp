@@ -22,11 +22,7 @@ constexpr EnumPairs<PointType, v1::ArtifactType, 11> kTypes{{{
     {PointType::object, v1::ARTIFACT_OBJECT},
     {PointType::zone, v1::ARTIFACT_ZONE},
 }}};
-constexpr EnumPairs<Side, v1::Side, 3> kSides{{{
-    {Side::none, v1::SIDE_NONE},
-    {Side::left, v1::SIDE_LEFT},
-    {Side::right, v1::SIDE_RIGHT},
-}}};
+constexpr auto kSides = pairs_by_name<Side, v1::Side>();
 
 }  // namespace
 

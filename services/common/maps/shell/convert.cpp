@@ -6,12 +6,7 @@
 namespace saphira::maps {
 namespace {
 
-constexpr EnumPairs<ZoneRule, v1::ZoneRule, 4> kRules{{{
-    {ZoneRule::keep_out, v1::ZONE_KEEP_OUT},
-    {ZoneRule::slow, v1::ZONE_SLOW},
-    {ZoneRule::one_way, v1::ZONE_ONE_WAY},
-    {ZoneRule::preferred, v1::ZONE_PREFERRED},
-}}};
+constexpr auto kRules = pairs_by_name<ZoneRule, v1::ZoneRule>();
 
 }  // namespace
 

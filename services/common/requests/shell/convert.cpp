@@ -7,30 +7,9 @@
 namespace saphira {
 namespace {
 
-constexpr EnumPairs<ArgumentKind, v1::ArgumentKind, 5> kKinds{{{
-    {ArgumentKind::number, v1::ARGUMENT_NUMBER},
-    {ArgumentKind::text, v1::ARGUMENT_TEXT},
-    {ArgumentKind::point, v1::ARGUMENT_POINT},
-    {ArgumentKind::truth, v1::ARGUMENT_TRUTH},
-    {ArgumentKind::unbound, v1::ARGUMENT_UNBOUND},
-}}};
-constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
-    {Frame::robot, v1::FRAME_ROBOT},
-    {Frame::odom, v1::FRAME_ODOM},
-    {Frame::map, v1::FRAME_MAP},
-}}};
-constexpr EnumPairs<AnswerCode, v1::AnswerCode, 10> kCodes{{{
-    {AnswerCode::underway, v1::ANSWER_UNDERWAY},
-    {AnswerCode::done, v1::ANSWER_DONE},
-    {AnswerCode::sent, v1::ANSWER_SENT},
-    {AnswerCode::refused, v1::ANSWER_REFUSED},
-    {AnswerCode::unknown_functor, v1::ANSWER_UNKNOWN_FUNCTOR},
-    {AnswerCode::bad_argument, v1::ANSWER_BAD_ARGUMENT},
-    {AnswerCode::nobody, v1::ANSWER_NOBODY},
-    {AnswerCode::too_late, v1::ANSWER_TOO_LATE},
-    {AnswerCode::given_up, v1::ANSWER_GIVEN_UP},
-    {AnswerCode::lost, v1::ANSWER_LOST},
-}}};
+constexpr auto kKinds = pairs_by_name<ArgumentKind, v1::ArgumentKind>();
+constexpr auto kFrames = pairs_by_name<Frame, v1::Frame>();
+constexpr auto kCodes = pairs_by_name<AnswerCode, v1::AnswerCode>();
 
 }  // namespace
 

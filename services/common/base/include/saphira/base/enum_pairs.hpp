@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <initializer_list>
+#include <string_view>
 #include <utility>
 
 #include "saphira/base/enumerators.hpp"
@@ -57,5 +58,27 @@ class EnumPairs {
 
   std::array<std::pair<Ours, Theirs>, size> pairs_;
 };
+
+/// The table of two enumerations with the same names: `keep_out` is their ZONE_KEEP_OUT.
+template <class Ours, class Theirs>
+consteval auto pairs_by_name() {
+  constexpr auto& names = kEnumeratorNames<Theirs>;
+  constexpr std::size_t size = kEnumerators<Ours>.size();
+  std::array<std::pair<Ours, Theirs>, size> pairs{};
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::string_view ours = kEnumeratorNames<Ours>[i];
+    const auto same = [&](std::string_view theirs) {
+      theirs.remove_prefix(theirs.find('_') + 1);
+      return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                        [](char a, char b) { return a == b || a - 'a' == b - 'A'; });
+    };
+    const auto found = std::find_if(names.begin(), names.end(), same);
+    if (found == names.end())
+      throw "an enumerator of ours has no namesake";
+    pairs[i] = {kEnumerators<Ours>[i],
+                kEnumerators<Theirs>[static_cast<std::size_t>(found - names.begin())]};
+  }
+  return EnumPairs<Ours, Theirs, size>(pairs);
+}
 
 }  // namespace saphira
