@@ -105,11 +105,10 @@ TEST(Navigation, AtItsEndItFacesAsAsked) {
       Whole whole(office());
       const saphira::Argument heading = saphira::number("facing", radians(facing));
       const auto status =
-          by_route
-              ? whole.achieve("go-to-place", {text("place", "EJ-231"), heading}, 1200)
-              : whole.achieve("go_to",
-                              {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map), heading},
-                              700);
+          by_route ? whole.achieve("go-to-place", {text("place", "EJ-231"), heading}, 1200)
+                   : whole.achieve(
+                         "go_to",
+                         {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map), heading}, 700);
       EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
       EXPECT_NEAR(degrees(norm2_angle(whole.truth().th - radians(facing))), 0.0, 9.0) << by_route;
       EXPECT_TRUE(whole.at_rest());
