@@ -34,6 +34,6 @@ inline constexpr double kNoSuchBattery = 0.75;   // of it: the robot has another
 inline constexpr double kLowCharge = 0.2;        // [0..1]
 // A motor that starts draws the voltage down for a moment.
 inline constexpr unsigned kLowBatteryCycles = 100;
-inline constexpr unsigned kConfigCycles = 30;    // then its configuration should be known
+inline constexpr unsigned kConfigCycles = 30;  // then its configuration should be known
 
 }  // namespace saphira::bridge
