@@ -1,7 +1,6 @@
 #include "endpoints.hpp"
 
 #include <string_view>
-#include <utility>
 
 #include "convert.hpp"
 

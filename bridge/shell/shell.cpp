@@ -35,9 +35,7 @@ double look_around(bus::Profile profile) {
 }
 
 std::uint64_t milliseconds_since_1970() {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
-                                        std::chrono::system_clock::now().time_since_epoch())
-                                        .count());
+  return static_cast<std::uint64_t>(unix_time() * 1e3);
 }
 
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {

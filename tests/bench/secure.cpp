@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 
 #include "bench.hpp"
 #include "intruders.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
@@ -108,16 +108,10 @@ class RoundTrip {
   std::vector<double> times_;
 };
 
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 /// Makes a site in that folder.
 security::Authority site_in(const std::string& folder) {
   const std::string roles = config_folder() + "/security/roles.yaml";
-  return security::Authority::make(folder, "bench", read_file(roles), roles, now());
+  return security::Authority::make(folder, "bench", read_file(roles), roles, unix_seconds());
 }
 
 /// 10,000 forged announcements within 10 s, and then a member who joins. `programs`: so many that
@@ -151,7 +145,7 @@ void attack(security::Authority& site, const std::string& self, const std::strin
   std::size_t escapes = 0;
   int aborts = 0;
   std::vector<std::string> misnamed;  // nobody named, or an intruder not named
-  for (const bench::Intrusion& one : bench::intrude(site, folder, self, kDomain, now())) {
+  for (const bench::Intrusion& one : bench::intrude(site, folder, self, kDomain, unix_seconds())) {
     result["intruders"].push_back(to_json(one));
     escapes += one.got.size();
     aborts += one.aborted ? 1 : 0;
@@ -229,7 +223,7 @@ int main(int argc, char** argv) {
   const test::TempDir folder;
   security::Authority site = site_in(folder.path("site"));
   const std::string credentials =
-      site.add("bench", {"bridge", "services", "operator"}, "", 1, now());
+      site.add("bench", {"bridge", "services", "operator"}, "", 1, unix_seconds());
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   nlohmann::json result;
   {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "cli_fixture.hpp"
@@ -122,19 +121,15 @@ TEST_F(Answers, UpInTheBackgroundIsRefusedASecondTime) {
       write("twice.yaml",
             "programs:\n"
             "  - {name: a, program: sh, bus: false, arguments: [-c, exec sleep 600]}\n");
-  const Outcome first = run({"up", file, "-d"});
-  EXPECT_EQ(first.code, 0) << first.text;
-  const Outcome again = run({"up", file, "-d"});
-  EXPECT_EQ(again.code, 3) << again.text;
-  EXPECT_TRUE(has(again.text, "saphira: this deployment is running already: ")) << again.text;
+  expect({"up", file, "-d"}, 0);
+  expect({"up", file, "-d"}, 3, {"saphira: this deployment is running already: "});
   const std::string other = "other-" + robot_;
   const Outcome spared = test::run({"saphira", "--robot", other, "stop"});
   EXPECT_EQ(spared.code, 1) << spared.text;
   EXPECT_TRUE(has(spared.text, "saphira: no deployment of robot " + other)) << spared.text;
   EXPECT_TRUE(has(spared.text, " runs; there are: ")) << spared.text;
   EXPECT_TRUE(has(spared.text, "twice-" + robot_)) << spared.text;
-  const Outcome stopped = run({"stop"});
-  EXPECT_EQ(stopped.code, 0) << stopped.text;
+  expect({"stop"}, 0);
 }
 
 TEST_F(Answers, AnAuthorityThatIsNamedWinsOverTheOneOfTheEnvironment) {
@@ -160,9 +155,7 @@ TEST_F(Answers, RecordSparesAFileWithOtherContent) {
 
 TEST_F(Answers, UpNamesTheMistakeInADeployment) {
   const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
-  const Outcome outcome = run({"up", file});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "bad.yaml:3:5: unknown key \"argments\"")) << outcome.text;
+  expect({"up", file}, 2, {"bad.yaml:3:5: unknown key \"argments\""});
 }
 
 TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
@@ -179,23 +172,15 @@ TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
 
 // The programs read the files that a deployment gives them, and nothing is started.
 TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
-  const Outcome good = run({"check", "office"});
-  EXPECT_EQ(good.code, 0) << good.text;
-  EXPECT_TRUE(has(good.text, "office.yaml would start")) << good.text;
+  expect({"check", "office"}, 0, {"office.yaml would start"});
 
   const std::string map = write("wrong.map", "CORRIDOR (1) 0, 0, 0\n");
   const std::string grammar = write("wrong.grammar", "keyword: robot\ngo(\n");
-  const Outcome bad =
-      run({"check", "office", "--set", "map=" + map, "--set", "grammar=" + grammar});
-  EXPECT_EQ(bad.code, 2);
-  EXPECT_TRUE(has(bad.text, "wrong.map:1:")) << bad.text;
-  EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
-  EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
-  EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
+  expect({"check", "office", "--set", "map=" + map, "--set", "grammar=" + grammar}, 2,
+         {"wrong.map:1:", "wrong.grammar:2:", "would not start: 2 of its programs"});
+  expect({"check", "demo", "--set", "world=nowhere"}, 2);
   const std::string robot = write("wrong.p", "Class Pioneer\nRobotRadus 250\n");
-  const Outcome wrong = run({"check", "pioneer", "--set", "base=" + robot});
-  EXPECT_EQ(wrong.code, 2);
-  EXPECT_TRUE(has(wrong.text, "did you mean RobotRadius?")) << wrong.text;
+  expect({"check", "pioneer", "--set", "base=" + robot}, 2, {"did you mean RobotRadius?"});
 
   const Outcome speech = run({"check", "office", "--set", "speech=on", "--set",
                               "microphone=no-microphone", "--set", "loudspeaker=no-loudspeaker"});
@@ -209,34 +194,25 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
     EXPECT_TRUE(has(speech.text, "speech is left out: ")) << speech.text;
   }
   EXPECT_EQ(run({"check", "office", "--set", "speech=perhaps"}).code, 2);
-  const Outcome line = run({"check", "pioneer", "--set", "device=/dev/ttyNone"});
-  EXPECT_EQ(line.code, 0) << line.text;
-  EXPECT_TRUE(has(line.text, "/dev/ttyNone: cannot be opened: No such file")) << line.text;
+  expect({"check", "pioneer", "--set", "device=/dev/ttyNone"}, 0,
+         {"/dev/ttyNone: cannot be opened: No such file"});
 
   // A mistake that a running program would only report.
   std::filesystem::create_directory(folder_.path("my"));
   write("my/wrong.beh", "BeginBehavior\n");
-  const Outcome behaviors = run({"check", "demo", "--set", "behaviors=" + folder_.path("my")});
-  EXPECT_EQ(behaviors.code, 2) << behaviors.text;
-  EXPECT_TRUE(has(behaviors.text, "wrong.beh:")) << behaviors.text;
+  expect({"check", "demo", "--set", "behaviors=" + folder_.path("my")}, 2, {"wrong.beh:"});
 
   // Of a program that lacks something the supervisor tries again; the others run on.
   std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),
                                std::filesystem::perms::owner_all);
-  const Outcome lacking =
-      run({"check", write("lacking.yaml", "programs: [{program: ./saphira-lacking}]\n")});
-  EXPECT_EQ(lacking.code, 2);
-  EXPECT_TRUE(has(lacking.text, "no model")) << lacking.text;
-  EXPECT_TRUE(has(lacking.text, "would start, but 1 of its programs would not run"))
-      << lacking.text;
+  expect({"check", write("lacking.yaml", "programs: [{program: ./saphira-lacking}]\n")}, 2,
+         {"no model", "would start, but 1 of its programs would not run"});
   EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 
 TEST_F(Answers, TheDemoSaysWhatIsWrongWithAWorld) {
   const std::string file = write("bad.wld", "wdith 3\n");
-  const Outcome outcome = run({"demo", "--headless", "--world", file});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "bad.wld:1:1: expected")) << outcome.text;
+  expect({"demo", "--headless", "--world", file}, 2, {"bad.wld:1:1: expected"});
 }
 
 }  // namespace

@@ -229,8 +229,7 @@ TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
 }
 
 TEST_F(CliTest, TalkSaysThatNobodyListens) {
-  const Outcome outcome = run({"talk", "--grammar", "nothing"});
-  EXPECT_EQ(outcome.code, 2) << outcome.text;
+  expect({"talk", "--grammar", "nothing"}, 2);
   test::Process talk({"/bin/sh", "-c",
                       "echo stop | " + test::program("saphira") + " --robot " + robot_ +
                           " --domain " + test::domain() + " talk"},
@@ -248,20 +247,14 @@ TEST_F(CliTest, AskForProgramsSaysThatNobodyAnswers) {
 }
 
 TEST_F(CliTest, StatusOfAnEmptyBusSaysSo) {
-  const Outcome outcome = run({"status"});
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.text, "no program is on the bus (robot " + robot_)) << outcome.text;
+  expect({"status"}, 1, {"no program is on the bus (robot " + robot_});
 }
 
 TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
   const Scripted scripted(robot_);
-  const Outcome outcome = run({"status"});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_TRUE(has(outcome.text, "bridge")) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "running")) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, std::to_string(getpid()))) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "drive: nobody drives: nobody asked")) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "trouble: behaviors and intentions are not heard")) << outcome.text;
+  expect({"status"}, 0,
+         {"bridge", "running", std::to_string(getpid()), "drive: nobody drives: nobody asked",
+          "trouble: behaviors and intentions are not heard"});
 }
 
 TEST_F(CliTest, WatchShowsWhoIsLost) {
@@ -350,20 +343,14 @@ TEST_F(CliTest, ListShowsEndpointsAndMismatches) {
 TEST_F(CliTest, LogShowsWhatAProgramSays) {
   bus::Node node(test::node_options("speaker", robot_));
   node.warn("the kettle boils");
-  const Outcome outcome = run({"log", "-n", "1"});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_TRUE(has(outcome.text, "warning  speaker  the kettle boils")) << outcome.text;
+  expect({"log", "-n", "1"}, 0, {"warning  speaker  the kettle boils"});
 }
 
 TEST_F(CliTest, AGoalIsFollowedToItsEnd) {
   const Scripted scripted(robot_);
-  const Outcome done = run({"goal", "go", "-3", "1"});
-  EXPECT_EQ(done.code, 0) << done.text;
-  EXPECT_TRUE(has(done.text, "go_to(position=(-3, 1) in odom)")) << done.text;
-  EXPECT_TRUE(has(done.text, "succeeded: it is there")) << done.text;
-  const Outcome refused = run({"goal", "fly", "height=2"});
-  EXPECT_EQ(refused.code, 1) << refused.text;
-  EXPECT_TRUE(has(refused.text, "refused: no wings")) << refused.text;
+  expect({"goal", "go", "-3", "1"}, 0,
+         {"go_to(position=(-3, 1) in odom)", "succeeded: it is there"});
+  expect({"goal", "fly", "height=2"}, 1, {"refused: no wings"});
 }
 
 TEST_F(CliTest, CtrlCWithdrawsTheGoal) {

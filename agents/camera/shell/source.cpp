@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <stdexcept>
-#include <utility>
 
 #include "saphira/base/local_socket.hpp"
 #include "saphira/base/text.hpp"

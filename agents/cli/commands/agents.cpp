@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "commands.hpp"
@@ -126,11 +127,10 @@ int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptio
                      const bus::Stop& stop) {
   const auto id =
       words.size() == 2 && words[0] == "withdraw" ? bus::parse_goal_id(words[1]) : std::nullopt;
-  if (!id) {
-    std::cerr << "saphira: expected agents, or agents withdraw ID, such as 1f3a:2 (saphira agents "
-                 "lists the triggers)\n";
-    return bus::kExitUsage;
-  }
+  if (!id)
+    throw std::invalid_argument(
+        "expected agents, or agents withdraw ID, such as 1f3a:2 (saphira agents lists the "
+        "triggers)");
   const std::string name = bus::describe(*id);
   bus::Node node(options);
   Processes processes(node);
@@ -141,21 +141,15 @@ int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptio
                        5.0, stop, processes);
   };
   v1::Answer answer = live();
-  if (answer.code != v1::ANSWER_DONE) {
-    std::cerr << "saphira: " << answer.text << '\n';
-    return bus::kExitFailed;
-  }
-  if (!is_among(name, bus::text_of(answer.results, "live"))) {
-    std::cerr << "saphira: no trigger " << name << " can fire: saphira agents lists them\n";
-    return bus::kExitFailed;
-  }
+  if (answer.code != v1::ANSWER_DONE)
+    return failed(answer.text);
+  if (!is_among(name, bus::text_of(answer.results, "live")))
+    return failed("no trigger " + name + " can fire: saphira agents lists them");
   v1::Trigger withdrawn{.id = *id};
   const auto begin = Clock::now();
   while (is_among(name, bus::text_of(answer.results, "live"))) {
-    if (stop.requested() || seconds_since(begin) > 5.0) {
-      std::cerr << "saphira: the facilitator has not taken the withdrawal\n";
-      return bus::kExitFailed;
-    }
+    if (stop.requested() || seconds_since(begin) > 5.0)
+      return failed("the facilitator has not taken the withdrawal");
     triggers.dispose(withdrawn);
     node.wait(milliseconds(50), &stop);
     answer = live();

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "environment.hpp"
@@ -36,17 +37,13 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
       std::cout << known << '\n';
     if (!names.empty())
       return bus::kExitOk;
-    std::cerr << "saphira: no benchmarks are built here (./saphira bench builds them)\n";
-    return bus::kExitFailed;
+    return failed("no benchmarks are built here (./saphira bench builds them)");
   }
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    std::cerr << "saphira: no benchmark \"" << name << '"' << did_you_mean(name, names, ":")
-              << (names.empty()
-                      ? " none is built here (./saphira bench, in the source tree, builds them)"
-                      : " expected one of " + joined(names, " "))
-              << '\n';
-    return bus::kExitUsage;
-  }
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw std::invalid_argument(
+        "no benchmark \"" + name + '"' + did_you_mean(name, names, ":") +
+        (names.empty() ? " none is built here (./saphira bench, in the source tree, builds them)"
+                       : " expected one of " + joined(names, " ")));
   std::vector<std::string> words{bin + "/" + kPrefix + name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   setenv("SAPHIRA_BIN_DIR", bin.c_str(), 0);  // the benchmarks start our programs

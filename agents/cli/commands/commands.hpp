@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -74,6 +75,12 @@ inline CLI::Validator number_in_unit(const std::string& unit) {
             return value ? std::string() : "expected a number in " + unit + ", found " + found;
           },
           ""};
+}
+
+/// Says why the command has failed; its exit code.
+inline int failed(const std::string& why) {
+  std::fprintf(stderr, "saphira: %s\n", why.c_str());
+  return bus::kExitFailed;
 }
 
 /// Adds a subcommand to the parser.

@@ -38,11 +38,10 @@ void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* su
 /// A file's name is its time and the event: 2026-05-04-101530-goal-failed.mcap.
 int box() {
   const std::vector<std::string> files = box_files();
-  if (files.empty()) {
-    std::cerr << "saphira: nothing is kept yet: saphira up keeps the last minute after a stop, a "
-                 "failed goal, or the loss of a program, the robot or its place\n";
-    return bus::kExitFailed;
-  }
+  if (files.empty())
+    return failed(
+        "nothing is kept yet: saphira up keeps the last minute after a stop, a failed goal, or the "
+        "loss of a program, the robot or its place");
   for (const std::string& file : files)
     std::cout << file << '\n';
   return bus::kExitOk;

@@ -1,6 +1,5 @@
 // The command `saphira device`: the state of the robot's devices, and requests to them.
 #include <cstdio>
-#include <iostream>
 #include <set>
 
 #include "commands.hpp"
@@ -43,8 +42,7 @@ class Watch {
 };
 
 int nobody(const Watch& watch) {
-  std::cerr << "saphira: no robot: " << who_is_there(watch.processes) << '\n';
-  return bus::kExitFailed;
+  return failed("no robot: " + who_is_there(watch.processes));
 }
 
 int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -120,10 +118,8 @@ int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus
       bridge.ask(to_bus(command.request), kDevicePatience, &stop, [&] { watch.poll(); });
   if (answer.code == v1::ANSWER_NOBODY && answer.service.empty())
     return nobody(watch);
-  if (answer.code == v1::ANSWER_TOO_LATE && answer.service.empty()) {
-    std::cerr << "saphira: " << answer.text << "; " << who_is_there(watch.processes) << '\n';
-    return bus::kExitFailed;
-  }
+  if (answer.code == v1::ANSWER_TOO_LATE && answer.service.empty())
+    return failed(answer.text + "; " + who_is_there(watch.processes));
   std::printf("%s\n", answer.text.c_str());
   if (!bus::well(answer.code))
     return bus::kExitFailed;

@@ -2,7 +2,7 @@
 #include "direct.hpp"
 
 #include <algorithm>
-#include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "saphira/base/guess.hpp"
@@ -15,21 +15,18 @@ namespace saphira::cli {
 
 namespace {
 
-using std::chrono::milliseconds;
-
 constexpr double kStuck = 5.0;  ///< [s] without any progress
 
 }  // namespace
 
-std::optional<std::string> unknown_topic(const std::string& topic) {
+void expect_topic(const std::string& topic) {
   std::vector<std::string> names;
   for (const bus::TopicEntry& entry : bus::known_topics())
     names.push_back(entry.name);
-  if (std::find(names.begin(), names.end(), topic) != names.end())
-    return std::nullopt;
-  return "no topic \"" + topic.substr(0, 200) + '"' +
-         did_you_mean(topic, names, ": expected one such as robot/state;") +
-         " saphira wiring shows all, saphira list those of what runs";
+  if (std::find(names.begin(), names.end(), topic) == names.end())
+    throw std::invalid_argument("no topic \"" + topic.substr(0, 200) + '"' +
+                                did_you_mean(topic, names, ": expected one such as robot/state;") +
+                                " saphira wiring shows all, saphira list those of what runs");
 }
 
 std::string qos_of(const std::string& topic) {
@@ -112,10 +109,8 @@ CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, 
   chosen.when(command, [=](const bus::NodeOptions& node, const bus::Stop& stop) -> int {
     const double wish = kind == Move::Kind::turn ? radians(options->value) : options->value;
     const Move wanted{kind, name, wish, options->speed};
-    if (const std::string wrong = trouble_of(wanted); !wrong.empty()) {
-      std::cerr << "saphira: " << wrong << '\n';
-      return bus::kExitUsage;
-    }
+    if (const std::string wrong = trouble_of(wanted); !wrong.empty())
+      throw std::invalid_argument(wrong);
     return move(wanted, options->seconds, node, stop);
   });
   return command;

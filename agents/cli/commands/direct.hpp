@@ -56,8 +56,8 @@ class DirectDriver {
   std::string told_;
 };
 
-/// An error for an unknown topic name, with a guess; nothing: the topic exists.
-std::optional<std::string> unknown_topic(const std::string& topic);
+/// Throws std::invalid_argument, with a guess, where there is no such topic.
+void expect_topic(const std::string& topic);
 /// The name of its QoS.
 std::string qos_of(const std::string& topic);
 

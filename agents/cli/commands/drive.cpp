@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "saphira/base/boot_clock.hpp"
@@ -465,14 +465,10 @@ class Teleop {
 };
 
 int drive(const std::string& joystick, const bus::NodeOptions& options, const bus::Stop& stop) {
-  if (joystick != kJoystick && access(joystick.c_str(), R_OK) != 0) {
-    std::cerr << "saphira: " << cannot_be(joystick, "read") << '\n';
-    return bus::kExitUsage;
-  }
-  if (isatty(STDIN_FILENO) == 0) {
-    std::cerr << "saphira: drive needs a terminal for its keys\n";
-    return bus::kExitUsage;
-  }
+  if (joystick != kJoystick && access(joystick.c_str(), R_OK) != 0)
+    throw std::invalid_argument(cannot_be(joystick, "read"));
+  if (isatty(STDIN_FILENO) == 0)
+    throw std::invalid_argument("drive needs a terminal for its keys");
   return Teleop(options, joystick).run(stop);
 }
 

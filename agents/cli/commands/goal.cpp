@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "bridges.hpp"
@@ -190,11 +191,10 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
 int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
            const bus::Stop& stop) {
   const auto id = options.words.size() == 2 ? bus::parse_goal_id(options.words[1]) : std::nullopt;
-  if (!id) {
-    std::cerr << "saphira: expected goal cancel ID, such as 1f3a:2 (saphira goal list)"
-              << (options.words.size() < 2 ? "" : ", found \"" + options.words[1] + "\"") << '\n';
-    return bus::kExitUsage;
-  }
+  if (!id)
+    throw std::invalid_argument(
+        "expected goal cancel ID, such as 1f3a:2 (saphira goal list)" +
+        (options.words.size() < 2 ? "" : ", found \"" + options.words[1] + "\""));
   bus::Node node(node_options);
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
@@ -264,10 +264,8 @@ void print_schema(const v1::ActivitySchema& schema) {
 /// Prints the activities that a goal can name: all of them, or the given one.
 int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
             const bus::Stop& stop) {
-  if (options.words.size() > 2) {
-    std::cerr << "saphira: expected goal activities [ACTIVITY]\n";
-    return bus::kExitUsage;
-  }
+  if (options.words.size() > 2)
+    throw std::invalid_argument("expected goal activities [ACTIVITY]");
   bus::Node node(node_options);
   Processes processes(node);
   auto reader = node.reader(bus::topics::kActivitySchemas);
@@ -278,10 +276,8 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
     processes.poll();
     known = reader.take_newest();
   }
-  if (!known) {
-    std::cerr << "saphira: nobody said what can be asked for; " << who_is_there(processes) << '\n';
-    return bus::kExitFailed;
-  }
+  if (!known)
+    return failed("nobody said what can be asked for; " + who_is_there(processes));
   bool any = false;
   std::vector<std::string> names;
   for (const v1::ActivitySchema& schema : known->schemas) {

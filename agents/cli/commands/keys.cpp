@@ -106,10 +106,8 @@ int audit(const AuditWords& words) {
   if (!words.check)
     for (const std::string& line : record.lines)
       std::cout << line << '\n';
-  if (!record.trouble.empty()) {
-    std::cerr << "saphira: the audit was changed or cut: " << record.trouble << '\n';
-    return bus::kExitFailed;
-  }
+  if (!record.trouble.empty())
+    return failed("the audit was changed or cut: " + record.trouble);
   if (words.check)
     std::cout
         << record.lines.size() << (record.lines.size() == 1 ? " entry" : " entries") << ", whole"

@@ -74,10 +74,7 @@ int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
 /// `once`: without a timeout, an empty bus is given up.
 int echo(const std::string& topic, std::uint64_t count, bool once, double timeout,
          const bus::NodeOptions& options, const bus::Stop& stop) {
-  if (const auto unknown = unknown_topic(topic)) {
-    std::cerr << "saphira: " << *unknown << '\n';
-    return bus::kExitUsage;
-  }
+  expect_topic(topic);
   bus::Node node(options);
   bus::Echo reader(node, topic);
   Processes processes(node);

@@ -139,10 +139,8 @@ int write_out(const std::string& path, const std::string& text) {
     std::fputs(text.c_str(), stdout);
     return bus::kExitOk;
   }
-  if (!replace_file(path, text, true)) {
-    std::cerr << "saphira: " << cannot_be(path, "written") << '\n';
-    return bus::kExitFailed;
-  }
+  if (!replace_file(path, text, true))
+    return failed(cannot_be(path, "written"));
   std::printf("written to %s\n", path.c_str());
   return bus::kExitOk;
 }
@@ -348,10 +346,8 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
     settings.needs_width = maps::needed_width(*view.radius);
   settings.zones = maps::all_zones(view.map, topology, view.hazards.value, view.hazards.said_by);
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
-  if (!found.route) {
-    std::cerr << "saphira: " << found.reason << '\n';
-    return bus::kExitFailed;
-  }
+  if (!found.route)
+    return failed(found.reason);
   std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
   if (const std::string remark = found.remark(); !remark.empty())
     std::printf("it goes %s\n", remark.c_str());

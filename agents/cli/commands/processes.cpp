@@ -1,6 +1,7 @@
 // processes: the micro-tasks of the services (manual 2.3.7 and 6.5).
 #include <cstdio>
 #include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "mind.hpp"
@@ -57,12 +58,9 @@ int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bu
     names += (names.empty() ? "" : ", ") + service.service;
     there = there || service.service == request.service;
   }
-  std::cerr << "saphira: "
-            << (there ? answer.text
+  return failed(there ? answer.text
                       : "no service " + request.service + " with processes; there are " +
-                            (names.empty() ? "none" : names))
-            << '\n';
-  return bus::kExitFailed;
+                            (names.empty() ? "none" : names));
 }
 
 int processes(const ProcessesOptions& asked, const bus::NodeOptions& options,
@@ -71,15 +69,12 @@ int processes(const ProcessesOptions& asked, const bus::NodeOptions& options,
   if (words.empty())
     return list_processes(options, stop);
   const bool action = words[0] == "interrupt" || words[0] == "resume" || words[0] == "suspend";
-  if (!action || words.size() != 3) {
-    std::cerr << "saphira: expected processes, or processes interrupt | resume | suspend SERVICE "
-                 "PROCESS"
-              << (action ? ""
-                         : ", found " + words[0] +
-                               did_you_mean(words[0], {"interrupt", "resume", "suspend"}))
-              << '\n';
-    return bus::kExitUsage;
-  }
+  if (!action || words.size() != 3)
+    throw std::invalid_argument(
+        "expected processes, or processes interrupt | resume | suspend SERVICE PROCESS" +
+        (action
+             ? ""
+             : ", found " + words[0] + did_you_mean(words[0], {"interrupt", "resume", "suspend"})));
   return ask(asked, options, stop);
 }
 

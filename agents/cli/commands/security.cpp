@@ -122,11 +122,10 @@ int list(const Words& words) {
 /// A folder of credentials, or the authority's files.
 int check(const Words& words, const bus::NodeOptions& options) {
   const std::string folder = words.credentials.empty() ? options.security : words.credentials;
-  if (folder.empty() || folder == bus::kOpenBus) {
-    std::cerr << "saphira: this user and this machine have no credentials: the bus is open to all "
-                 "(docs/security.md)\n";
-    return bus::kExitFailed;
-  }
+  if (folder.empty() || folder == bus::kOpenBus)
+    return failed(
+        "this user and this machine have no credentials: the bus is open to all "
+        "(docs/security.md)");
   for (const std::string& role : security::roles_in(folder)) {
     const security::Credentials good = security::load_role(folder, role, unix_seconds());
     if (const std::string trouble = security::trouble_of_key(good); !trouble.empty())

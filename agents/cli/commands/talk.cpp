@@ -3,7 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "input_lines.hpp"
@@ -210,24 +210,22 @@ std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const 
 
 int knows(const std::vector<std::string>& words, const bus::NodeOptions& options,
           const bus::Stop& stop) {
+  char* end = nullptr;
+  const double number = words.size() == 2 ? std::strtod(words[1].c_str(), &end) : 0.0;
+  if (!words.empty() && (words[0] != "forget" || number < 1.0 || end == nullptr || *end != '\0'))
+    throw std::invalid_argument(
+        "expected knows, or knows forget NUMBER (saphira knows lists them)");
   bus::Node node(options);
   Processes processes(node);
   if (words.empty()) {
     const auto knowledge = known(node, processes, stop);
     if (!knowledge) {
       const std::string absent = absence(node, processes, kDialogue);
-      std::cerr << "saphira: nothing is said about what the robot knows; "
-                << (absent.empty() ? who_is_there(processes) : absent) << '\n';
-      return bus::kExitFailed;
+      return failed("nothing is said about what the robot knows; " +
+                    (absent.empty() ? who_is_there(processes) : absent));
     }
     std::fputs(knowledge_table(*knowledge).c_str(), stdout);
     return bus::kExitOk;
-  }
-  char* end = nullptr;
-  const double number = words.size() == 2 ? std::strtod(words[1].c_str(), &end) : 0.0;
-  if (words[0] != "forget" || number < 1.0 || end == nullptr || *end != '\0') {
-    std::cerr << "saphira: expected knows, or knows forget NUMBER (saphira knows lists them)\n";
-    return bus::kExitUsage;
   }
   bus::RequestClient client(node, bus::topics::kSolve, "saphira knows");
   const v1::Answer answer = ask_program(

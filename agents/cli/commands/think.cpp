@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 
 #include "commands.hpp"
@@ -32,9 +33,7 @@ void add_watch_options(CLI::App& command, WatchOptions& options) {
 }
 
 int nobody(const Mind& mind, const std::string& what) {
-  std::cerr << "saphira: nothing is said about " << what << "; " << who_is_there(mind.processes())
-            << '\n';
-  return bus::kExitFailed;
+  return failed("nothing is said about " + what + "; " + who_is_there(mind.processes()));
 }
 
 /// Shows the result of `draw`, once or repeatedly: `draw` returns nothing until there is something
@@ -49,10 +48,8 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
   while (!stop.requested() && !text) {
     mind.listen(milliseconds(50), stop);
     text = draw(mind);
-    if (!refused.empty()) {
-      std::cerr << "saphira: " << refused << '\n';
-      return bus::kExitFailed;
-    }
+    if (!refused.empty())
+      return failed(refused);
     if (!text && seconds_since(began) > kMindPatience)
       return nobody(mind, what);
   }
@@ -200,10 +197,9 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
     const bool negated = words.front() == "not";
     words.erase(words.begin());
     wish = negated ? parse_wish(words) : std::nullopt;
-    if (!wish) {
-      std::cerr << "saphira: expected why, or why not turn left | turn right | faster | slower\n";
-      return bus::kExitUsage;
-    }
+    if (!wish)
+      throw std::invalid_argument(
+          "expected why, or why not turn left | turn right | faster | slower");
   }
   bus::Node node(options);
   Inquiry inquiry(node, why_options.cycle);
@@ -211,10 +207,8 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
     node.wait(milliseconds(50), &stop);
   if (stop.requested())
     return bus::kExitFailed;
-  if (const std::string missing = inquiry.missing(); !missing.empty()) {
-    std::cerr << "saphira: " << missing << '\n';
-    return bus::kExitFailed;
-  }
+  if (const std::string missing = inquiry.missing(); !missing.empty())
+    return failed(missing);
   const situation::Situation known = inquiry.situation();
   const Explanation explanation = wish ? why_not(known, *wish) : situation::why(known);
   std::fputs((why_options.json ? to_json(explanation) + "\n" : to_text(explanation)).c_str(),
@@ -261,8 +255,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
     if (claimed(mind, name) == nullptr) {
       if (taken_back)
         return bus::kExitOk;
-      std::cerr << "saphira: nobody has said " << name << " with saphira beliefs set\n";
-      return bus::kExitFailed;
+      return failed("nobody has said " + name + " with saphira beliefs set");
     }
     // Repeated: a reader that discovers the writer after the disposal would get nothing.
     if (writer.matched() > 0)
@@ -320,20 +313,16 @@ int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options
             const bus::Stop& stop) {
   const auto& words = belief_options.words;
   if (!words.empty() && words[0] == "set") {
-    if (words.size() != 3) {
-      std::cerr << "saphira: expected beliefs set NAME VALUE, such as beliefs set door-open t\n";
-      return bus::kExitUsage;
-    }
+    if (words.size() != 3)
+      throw std::invalid_argument(
+          "expected beliefs set NAME VALUE, such as beliefs set door-open t");
     return claim(words[1], words[2], belief_options.hold, options, stop);
   }
   if (words.size() == 2 && words[0] == "unset")
     return unset(words[1], options, stop);
-  if (words.size() > 1) {
-    std::cerr
-        << "saphira: expected beliefs, beliefs NAME, beliefs set NAME VALUE, or beliefs unset "
-           "NAME\n";
-    return bus::kExitUsage;
-  }
+  if (words.size() > 1)
+    throw std::invalid_argument(
+        "expected beliefs, beliefs NAME, beliefs set NAME VALUE, or beliefs unset NAME");
   const std::string part = words.empty() ? "" : words[0];
   return show(options, stop, belief_options.watch, "beliefs",
               [&](const Mind& mind) -> std::optional<std::string> {

@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <pwd.h>
-#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
@@ -561,9 +560,8 @@ int stop_running(const Meant& wanted, const bus::Stop& stop) {
     }
     poll(nullptr, 0, 50);
   }
-  std::cerr << "saphira: " << running->name << " (process " << running->pid
-            << ") has not stopped within " << kStopped << " s\n";
-  return bus::kExitFailed;
+  return failed(running->name + " (process " + std::to_string(running->pid) +
+                ") has not stopped within " + plain(kStopped) + " s");
 }
 
 }  // namespace

@@ -187,18 +187,14 @@ int tell(const WriteOptions& options, const std::string& qos, const bus::NodeOpt
 }
 
 int write(const WriteOptions& options, const bus::NodeOptions& node, const bus::Stop& stop) {
-  if (const auto unknown = unknown_topic(options.topic)) {
-    std::cerr << "saphira: " << *unknown << '\n';
-    return bus::kExitUsage;
-  }
+  expect_topic(options.topic);
   // People may write commands for the wheels: the bridge judges them.
   const bool commands = options.topic.starts_with("drive/") && options.topic != "drive/grant";
   if (const std::string writer = system::only_writer(options.topic);
-      !writer.empty() && !commands && !options.force) {
-    std::cerr << "saphira: not written: " << options.topic << " is written by " << writer
-              << " alone, and two writers confuse its readers; --force writes it all the same\n";
-    return bus::kExitUsage;
-  }
+      !writer.empty() && !commands && !options.force)
+    throw std::invalid_argument(
+        "not written: " + options.topic + " is written by " + writer +
+        " alone, and two writers confuse its readers; --force writes it all the same");
   int code = bus::kExitOk;
   try {
     bus::for_each_topic([&](const auto& topic) {

@@ -13,7 +13,6 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/cli/supervisor.hpp"
 
 namespace saphira::cli {
 

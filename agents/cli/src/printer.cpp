@@ -10,7 +10,6 @@
 #include <cstdarg>
 #include <cstdio>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>

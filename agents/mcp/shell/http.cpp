@@ -8,7 +8,6 @@
 #include <array>
 #include <cstring>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>

@@ -1,6 +1,5 @@
 // Access for language models: the Model Context Protocol on standard input and output, or by HTTP.
 // README.md.
-#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 

@@ -2,8 +2,6 @@
 // that is not answered yet, under the id of its goal.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <utility>
 
 #include "protocol.hpp"

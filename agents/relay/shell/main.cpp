@@ -1,7 +1,6 @@
 // saphira-relay: access to a robot without a reachable address. README.md.
 #include <sys/stat.h>
 
-#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <sstream>

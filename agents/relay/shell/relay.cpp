@@ -11,7 +11,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "loop.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/log_line.hpp"

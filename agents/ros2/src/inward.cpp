@@ -1,6 +1,5 @@
 #include "saphira/ros2/inward.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

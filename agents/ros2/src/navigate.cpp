@@ -1,7 +1,6 @@
 #include "saphira/ros2/navigate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "geometry/shell/convert.hpp"

@@ -1,7 +1,5 @@
 #include "saphira/situation/occasions.hpp"
 
-#include <utility>
-
 namespace saphira::situation {
 
 namespace {

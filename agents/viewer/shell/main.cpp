@@ -7,7 +7,6 @@
 #include "key.hpp"
 #include "live.hpp"
 #include "saphira/base/boot_clock.hpp"
-#include "saphira/base/text.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/console/access.hpp"

@@ -1,7 +1,6 @@
 #include "saphira/authority/arbiter.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"

@@ -7,7 +7,6 @@
 
 #include "fields.hpp"
 #include "saphira/base/overloaded.hpp"
-#include "saphira/geometry/pose.hpp"
 #include "saphira/protocol/parameters.hpp"
 
 namespace saphira::protocol {

@@ -11,7 +11,6 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "saphira/base/places.hpp"

@@ -1,7 +1,6 @@
 #include "saphira/bus/agent.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 
 #include "saphira/base/format.hpp"

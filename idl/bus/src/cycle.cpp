@@ -1,6 +1,5 @@
 #include "saphira/bus/cycle.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <set>

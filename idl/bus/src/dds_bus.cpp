@@ -14,7 +14,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dds_network.hpp"
 #include "dds_presence.hpp"
 #include "dds_types.hpp"
 #include "log.hpp"

@@ -11,7 +11,6 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <shared_mutex>
 #include <string>
 #include <thread>

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <string>
 
 #include "saphira/bus/endpoint.hpp"
 

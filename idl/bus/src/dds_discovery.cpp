@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <sstream>
-#include <utility>
 
 #include "dds_convert.hpp"
 #include "saphira/base/format.hpp"

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <exception>
 #include <stdexcept>
@@ -21,19 +20,13 @@ constexpr std::int64_t kDay = 86400;
 // The time before a certificate's end at which the end is told.
 constexpr std::int64_t kSoon = 30;  // [days]
 
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 std::shared_ptr<Guard> Guard::make(const NodeOptions& options) {
   if (options.security.empty() || options.security == kOpenBus)
     return nullptr;
   security::Credentials found = security::load_credentials(
-      options.security, options.program.empty() ? options.name : options.program, now());
+      options.security, options.program.empty() ? options.name : options.program, unix_seconds());
   if (!found.robot.empty() && options.robot != found.robot)
     throw std::invalid_argument("the credentials of " + found.subject.name + " are for the robot " +
                                 found.robot + " alone, not for \"" + options.robot +
@@ -145,10 +138,10 @@ void Guard::look(const std::string& program) {
 }
 
 std::string Guard::expiry() const {
-  const std::int64_t days = (credentials_.until - now()) / kDay;
+  const std::int64_t days = (credentials_.until - unix_seconds()) / kDay;
   if (days >= kSoon)
     return {};
-  if (credentials_.until <= now())
+  if (credentials_.until <= unix_seconds())
     return "the certificate of " + own_.text() +
            " has expired: it cannot start again before saphira security renew " + own_.name;
   return "the certificate of " + own_.text() + " expires in " + std::to_string(days) +

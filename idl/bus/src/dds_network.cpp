@@ -10,16 +10,13 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <mutex>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 

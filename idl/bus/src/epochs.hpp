@@ -2,7 +2,6 @@
 
 // The choice of the bridge whose epochs a service follows. Pure.
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>

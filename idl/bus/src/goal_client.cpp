@@ -1,12 +1,9 @@
 #include "saphira/bus/goal_client.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 
 #include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"

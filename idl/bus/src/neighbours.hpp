@@ -3,7 +3,6 @@
 // The status of this robot's other programs, as a service uses it. Pure.
 
 #include <chrono>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

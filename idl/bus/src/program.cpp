@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <stdexcept>
-#include <string>
 
 #include "internal.hpp"
 #include "log.hpp"
@@ -13,7 +12,6 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::bus {
 

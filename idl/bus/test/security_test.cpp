@@ -17,6 +17,7 @@
 #include "harness.hpp"
 #include "liar.hpp"
 #include "process.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
@@ -28,25 +29,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 /// A site with a member for each role, named as the role.
 class Site {
  public:
   explicit Site(const std::string& name, const std::string& more_of_roles = {}) {
     const std::string file = config_folder() + "/security/roles.yaml";
-    authority_.emplace(security::Authority::make(folder_.path("authority"), name,
-                                                 read_file(file) + more_of_roles, file, now()));
+    authority_.emplace(security::Authority::make(
+        folder_.path("authority"), name, read_file(file) + more_of_roles, file, unix_seconds()));
     for (const security::Role& role : authority_->roles().roles)
       add(role.name, role.name);
   }
 
   void add(const std::string& name, const std::string& role, const std::string& robot = "") {
-    authority_->add(name, {role}, robot, 365, now());
+    authority_->add(name, {role}, robot, 365, unix_seconds());
   }
   security::Authority& authority() { return *authority_; }
   const security::Authority& authority() const { return *authority_; }
@@ -299,7 +294,7 @@ class Forger : public testing::Test {
   std::string forged(const std::string& member, const std::string& role,
                      const security::KeyPair& signer) const {
     const std::string folder = site_.copy_of(member);
-    security::test::forge(folder, {{member, 1, role, "forged"}, "", 0, now() + 86400},
+    security::test::forge(folder, {{member, 1, role, "forged"}, "", 0, unix_seconds() + 86400},
                           site_.authority().roles(), signer);
     return folder;
   }

@@ -3,9 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 
 #include "crypto.hpp"

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
-#include <stdexcept>
 
 #include "saphira/security/documents.hpp"
 

@@ -1,6 +1,5 @@
 #include "saphira/security/documents.hpp"
 
-#include <ctime>
 #include <string_view>
 
 #include "saphira/base/format.hpp"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <string_view>
 
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"

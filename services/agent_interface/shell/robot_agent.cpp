@@ -1,6 +1,5 @@
 #include "agent_interface/shell/robot_agent.hpp"
 
-#include <string>
 #include <utility>
 
 #include "requests/shell/convert.hpp"

@@ -1,7 +1,6 @@
 // The part of the dialogue for errands between people, and for ways back.
 #include <algorithm>
 
-#include "saphira/base/numbers.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <utility>
 
-#include "saphira/base/text.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <tuple>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/text.hpp"
 #include "words.hpp"
 
@@ -13,19 +14,7 @@ namespace {
 constexpr std::size_t kFewFacts = 3;
 
 std::string state_in_words(KnownGoal::State state) {
-  switch (state) {
-    case KnownGoal::State::waiting:
-      return "is waiting";
-    case KnownGoal::State::underway:
-      return "is underway";
-    case KnownGoal::State::suspended:
-      return "is suspended";
-    case KnownGoal::State::failed:
-      return "failed";
-    case KnownGoal::State::over:
-      return "is over";
-  }
-  return {};
+  return word_of(state, {"is waiting", "is underway", "is suspended", "failed", "is over"});
 }
 
 /// The goal that is the reason why the robot stands or drives: the newest one that is held up,

@@ -1,9 +1,5 @@
 #include "saphira/agent_interface/tasks.hpp"
 
-#include <algorithm>
-#include <array>
-#include <utility>
-
 #include "saphira/base/archive.hpp"
 #include "words.hpp"
 

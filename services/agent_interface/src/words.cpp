@@ -1,6 +1,5 @@
 #include "words.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 

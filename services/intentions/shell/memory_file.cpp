@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "saphira/base/archive.hpp"
-#include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {

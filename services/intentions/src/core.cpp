@@ -5,7 +5,6 @@
 
 #include "saphira/base/text.hpp"
 #include "saphira/intentions/language.hpp"
-#include "saphira/intentions/navigation.hpp"
 #include "saphira/maps/edit.hpp"
 #include "saphira/maps/topology.hpp"
 

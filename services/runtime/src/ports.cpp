@@ -1,6 +1,7 @@
 #include "saphira/runtime/ports.hpp"
 
 #include "requests/shell/convert.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/bus/notes.hpp"
 #include "saphira/bus/request_client.hpp"
 
@@ -12,23 +13,8 @@ constexpr int kAcknowledged = 5000;  // [ms] in lockstep, for a program that han
 }  // namespace
 
 const char* word(Port::Use use) {
-  switch (use) {
-    case Port::Use::kState:
-      return "cycle N";
-    case Port::Use::kCycle:
-      return "cycle N-1";
-    case Port::Use::kNewest:
-      return "newest";
-    case Port::Use::kEvents:
-      return "every sample";
-    case Port::Use::kEach:
-      return "each cycle";
-    case Port::Use::kChanges:
-      return "changes";
-    case Port::Use::kRecall:
-      break;
-  }
-  return "each cycle, kept for a minute";
+  return word_of(use, {"cycle N", "cycle N-1", "newest", "every sample", "each cycle", "changes",
+                       "each cycle, kept for a minute"});
 }
 
 Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {

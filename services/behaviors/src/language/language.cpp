@@ -4,7 +4,6 @@
 #include <tuple>
 
 #include "program.hpp"
-#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors {
 namespace {

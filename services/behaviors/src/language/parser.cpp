@@ -2,6 +2,7 @@
 #include <array>
 
 #include "c_parser.hpp"
+#include "saphira/base/enumerators.hpp"
 
 namespace saphira::behaviors::language {
 namespace {
@@ -424,18 +425,7 @@ class Parser {
 }  // namespace
 
 std::string named(Type type) {
-  switch (type) {
-    case Type::nothing:
-      return "nothing";
-    case Type::integer:
-    case Type::real:
-      return "a number";
-    case Type::point:
-      return "a point";
-    case Type::text:
-      return "a text";
-  }
-  return "";
+  return word_of(type, {"nothing", "a number", "a number", "a point", "a text"});
 }
 
 std::vector<ParsedBehavior> parse(const std::vector<Token>& tokens, Messages& messages) {

@@ -3,10 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <vector>
 
 #include "saphira/base/numbers.hpp"
-#include "saphira/base/text.hpp"
 
 namespace saphira {
 namespace {

@@ -1,7 +1,6 @@
 #include "saphira/base/numbers.hpp"
 
 #include <array>
-#include <charconv>
 #include <cstdio>
 
 namespace saphira {

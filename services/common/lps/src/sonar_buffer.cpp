@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "saphira/geometry/pose.hpp"
-
 namespace saphira::lps {
 
 void SonarBuffer::set_limit(std::size_t limit) {

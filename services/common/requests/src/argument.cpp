@@ -1,7 +1,6 @@
 #include "saphira/requests/argument.hpp"
 
-#include <utility>
-
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/numbers.hpp"
 
 namespace saphira {
@@ -84,19 +83,7 @@ std::string describe(const Arguments& arguments) {
 }
 
 const char* describe(ArgumentKind kind) {
-  switch (kind) {
-    case ArgumentKind::number:
-      return "a number";
-    case ArgumentKind::text:
-      return "a text";
-    case ArgumentKind::point:
-      return "a point";
-    case ArgumentKind::truth:
-      return "yes or no";
-    case ArgumentKind::unbound:
-      break;
-  }
-  return "nothing";
+  return word_of(kind, {"a number", "a text", "a point", "yes or no", "nothing"});
 }
 
 std::string quoted(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
@@ -11,15 +12,7 @@ namespace saphira {
 namespace {
 
 const char* word(Frame frame) {
-  switch (frame) {
-    case Frame::robot:
-      return "the robot's frame";
-    case Frame::odom:
-      return "odom";
-    case Frame::map:
-      break;
-  }
-  return "the map";
+  return word_of(frame, {"the robot's frame", "odom", "the map"});
 }
 
 /// The bound of a number, for people.

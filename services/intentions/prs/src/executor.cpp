@@ -1,6 +1,5 @@
 #include "saphira/intentions/executor.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>

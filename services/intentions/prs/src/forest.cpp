@@ -4,7 +4,6 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 #include "forest_handle.hpp"
 #include "saphira/intentions/beliefs.hpp"

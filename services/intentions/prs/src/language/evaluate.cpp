@@ -1,5 +1,3 @@
-#include <utility>
-
 #include "language/program.hpp"
 #include "saphira/intentions/beliefs.hpp"
 

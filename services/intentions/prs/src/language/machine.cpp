@@ -6,6 +6,7 @@
 
 #include "language/program.hpp"
 #include "saphira/base/archive.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
@@ -16,25 +17,8 @@ namespace {
 constexpr std::size_t kMostThreads = 64;  ///< of one intention
 
 const char* word(IntentionState state) {
-  switch (state) {
-    case IntentionState::kInit:
-      return "init";
-    case IntentionState::kRunning:
-    case IntentionState::kResumed:
-      return "running";
-    case IntentionState::kSuspended:
-    case IntentionState::kInterrupted:
-      return "suspended";
-    case IntentionState::kSuccess:
-      return "success";
-    case IntentionState::kFailure:
-      return "failure";
-    case IntentionState::kTimeout:
-      return "timeout";
-    case IntentionState::kRemoved:
-      return "removed";
-  }
-  return "?";
+  return word_of(state, {"init", "running", "suspended", "suspended", "running", "success",
+                         "failure", "timeout", "removed"});
 }
 
 /// An intention: an instance of a compiled schema. It has one current node, its main thread, and
