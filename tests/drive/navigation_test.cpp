@@ -454,6 +454,22 @@ TEST(Navigation, WhoIsCarriedAwayOnTheWayFindsHimselfAndArrives) {
   EXPECT_TRUE(is_in(whole, "EJ-231"));
 }
 
+// The other corridor has the same width, so that all readings of its walls fit the old place.
+TEST(Navigation, WhoWasCarriedBetweenTwoGoalsDoesNotSucceedElsewhere) {
+  constexpr int kStands = 30;  // [cycles]
+  Whole whole(office());
+  const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
+  const GoalStatus first =
+      whole.achieve("go-to-place", {saphira::point("place", {13.0, 25.0, 0.0}, Frame::map)}, 3000);
+  ASSERT_EQ(first.state, v1::GOAL_SUCCEEDED) << first.reason;
+  stand();
+  ASSERT_TRUE(whole.drive().robot().place({25.6, 17.0, kPi / 2}));
+  stand();
+  const GoalStatus second = whole.achieve("go-to-place", {text("place", "1235")}, 9000);
+  EXPECT_EQ(second.state, v1::GOAL_SUCCEEDED) << second.reason;
+  EXPECT_LT((whole.truth().position() - Vec2(18.45, 26.0)).norm(), 2.0);
+}
+
 TEST(Navigation, AMoreImportantGoalInterruptsTheJourneyWhichThenGoesOn) {
   Whole whole(office());
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});

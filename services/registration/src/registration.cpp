@@ -127,7 +127,6 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
   now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
-  now_.search.own_recent = settings_.recently_sure;
   now_.state = v1::REGISTRATION_TRACKING;
   now_.confirmed = confidence > kUnconfirmed;
   now_.doubted = now_.carried = now_.other_map = false;
@@ -430,8 +429,12 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
       };
       now_.cloud.weigh(in_robot, worth);
       const double here = worth(compose(middle, in_robot));
+      const double own = worth(compose(now_.filter->pose(), in_robot));
       now_.cloud_score += here;
-      now_.lead += here - worth(compose(now_.filter->pose(), in_robot));
+      now_.lead += here - own;
+      // Silence where no surface faces the sonar says nothing.
+      if (reading.echo || own < 0.0)
+        search_.test_own(in_robot.th, own);
     }
     now_.cloud.select();
   }
@@ -472,7 +475,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
-  now_.search.own_recent = settings_.recently_sure;
+  now_.search.against = now_.search.strange = 0.0;
   now_.done.clear();
   now_.leads = true;
   now_.led = 0.0;
@@ -554,7 +557,7 @@ bool Registration::Self::holds_again() const {
   if (now_.doubted)
     return search_.own_leads();
   return now_.search.own_score > settings_.again_sure &&
-         now_.search.own_recent > settings_.recently_again && search_.own_is_best();
+         search_.contradiction() < settings_.doubts && search_.own_is_best();
 }
 
 const Output& Registration::Self::step(const Inputs& inputs) {
@@ -572,8 +575,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     if (now_.standing.step(now_.moved, readings))
       suspect_it_was_carried();
     if (now_.state == v1::REGISTRATION_TRACKING &&
-        (now_.search.own_score < settings_.lost ||
-         now_.search.own_recent < settings_.recently_lost))
+        (now_.search.own_score < settings_.lost || search_.contradiction() >= settings_.refuted))
       now_.state = v1::REGISTRATION_LOST;
     else if (now_.state == v1::REGISTRATION_LOST && holds_again())
       now_.state = v1::REGISTRATION_TRACKING;
@@ -643,7 +645,7 @@ void Registration::Self::report() {
     };
     now_.output.confidence =
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
-                 between(now_.search.own_recent, settings_.recently_lost, settings_.recently_sure));
+                 between(search_.contradiction(), settings_.refuted, settings_.doubts));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kOpening = 3.0;   // score of a present or missing door or junction
 constexpr double kCorridor = 0.5;  // the same for a corridor
+constexpr double kDenied = 4.0;    // evidence of a missing one against the present place
+constexpr double kWall = 0.5;      // the same of a wall that the map does not have
 constexpr double kPoor = 6.0;      // evidence of the readings against a new place that prevents it
 
 bool same_place(const Pose& a, const Pose& b, double way, double turn) {
@@ -80,7 +82,6 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
-  now_.own_recent *= std::exp(-way / settings_.recent);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
     now_.travelled -= settings_.spacing;
@@ -88,7 +89,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
       if (now_.own)
-        count_own(weigh(*now_.own, reading));
+        now_.own_score += weigh(*now_.own, reading);
       now_.history.push_back(reading);
     }
     while (now_.history.size() > settings_.history)
@@ -106,7 +107,14 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     if (own != nullptr) {
       PoseFilter copy = *own;
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
-      count_own(worth(*percept, result, own->pose()));
+      const double score = worth(*percept, result, own->pose());
+      now_.own_score += score;
+      if (opening && score > 0.0)
+        support_own(score, 1.0);
+      else if (opening && score < 0.0)
+        now_.against += kDenied;
+      else if (!percept->is_hypothesis() && !result.accepted && !result.ambiguous)
+        now_.strange = std::min(now_.strange + kWall, settings_.strange);
     }
     if (opening)
       propose(*percept);
@@ -114,9 +122,18 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
   thin_out();
 }
 
-void Search::count_own(double worth) {
-  now_.own_score += worth;
-  now_.own_recent += worth;
+void Search::support_own(double evidence, double share) {
+  now_.against = std::max(0.0, now_.against - share * evidence);
+  now_.strange = std::max(0.0, now_.strange - evidence);
+}
+
+void Search::test_own(double bearing, double worth) {
+  if (worth > 0.0)
+    support_own(std::min(worth, settings_.agrees), settings_.alike);
+  else if (worth > settings_.trust * -settings_.surprise)
+    now_.strange = std::min(now_.strange - worth, settings_.strange);
+  else if (std::abs(std::sin(bearing)) > std::sin(settings_.sideways))
+    now_.against -= worth;
 }
 
 /// The score of a present or missing object, for a place.

@@ -178,6 +178,38 @@ TEST(Registration, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
     });
 }
 
+/// A door where the map has none makes the robot unsure, a third one lost; the good readings of
+/// the way before do not outweigh them, as they are the same in any other corridor.
+TEST(Registration, DoorsThatTheMapDoesNotHaveRefuteThePlace) {
+  Registration registration(settings(), kMap, Pose{10.0, 0.0, 0.0});
+  std::uint64_t cycle = 0;
+  const auto drive = [&](std::vector<lps::Percept> doors) {
+    std::vector<lps::SonarReading> readings;
+    for (int sonar = 0; sonar < kSonars; ++sonar) {
+      readings.emplace_back();
+      readings.back().sonar = sonar;
+      readings.back().echo = sonar == kSonars / 4 || sonar == 3 * kSonars / 4;
+      readings.back().range = 1.0;
+    }
+    ++cycle;
+    registration.step({cycle, 1, {0.01 * static_cast<double>(cycle), 0.0, 0.0}, doors, readings});
+  };
+  while (cycle < 300)
+    drive({});
+  EXPECT_EQ(registration.output().confidence, 1.0);
+  const auto door = [&](std::uint32_t id, double ahead) {
+    drive({percept(id, PointType::door, {0.01 * static_cast<double>(cycle) + ahead, 1.0, -kPi / 2},
+                   cycle)});
+  };
+  door(1, 0.0);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
+  EXPECT_LT(registration.output().confidence, 0.9) << "no goal succeeds";
+  door(2, 2.0);
+  EXPECT_LT(registration.output().confidence, 0.5);
+  door(3, 4.0);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_LOST);
+}
+
 TEST(Registration, OnAMapOfSomewhereElseThePlacesOfTheOldOneAreForgotten) {
   Registration registration(settings(), kMap);
   Robot robot(1);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "floors/floor.hpp"
 #include "localization/patrol.hpp"
 #include "perception/score.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/maps/topology.hpp"
 #include "support/guarded.hpp"
@@ -34,6 +36,8 @@ struct Options {
   std::string robot = "pioneer";
   std::string write_to;
   bool only_carried = false;
+  bool only_drives = false;
+  bool shipped = false;
   bool json = false;
 };
 
@@ -60,6 +64,18 @@ Site site(std::uint64_t seed) {
   return made;
 }
 
+/// A world of config/worlds with its map; `tour` as in Floor.
+Site shipped(const std::string& name, std::vector<Vec2> tour) {
+  Site made{1, {}, nullptr, nullptr, {}, {}, {}};
+  made.floor.tour = std::move(tour);
+  made.world = std::make_shared<sim::World>(
+      sim::load_world(find_file(config_folder() + "/worlds", name, ".wld")));
+  made.map = std::make_shared<maps::Map>(
+      maps::load_map(find_file(config_folder() + "/maps", name, ".map")));
+  made.open_doors = made.noticeable = *made.map;
+  return made;
+}
+
 test::DriveOptions drive_of(const Options& options, const Site& site) {
   test::DriveOptions drive;
   drive.made_world = site.world;
@@ -80,8 +96,9 @@ struct Patrolled {
   int noticed = 0;
   int recessed = 0;  ///< of these, those that stand back
   int recessed_noticed = 0;
-  int reported = 0;  ///< hypotheses of doors
-  int real = 0;      ///< of any door, also of one that is ajar
+  int reported = 0;    ///< hypotheses of doors
+  int real = 0;        ///< of any door, also of one that is ajar
+  int false_lost = 0;  ///< times that it said to be lost within 0.5 m and 20 degrees of its place
 };
 
 Patrolled patrol(const Options& options, const Site& site) {
@@ -94,6 +111,7 @@ Patrolled patrol(const Options& options, const Site& site) {
   test::Tour tour(site.floor.tour, true);
   std::size_t reached = 0;
   int since = 0;
+  bool tracked = false;
   result.cycles = static_cast<int>(options.minutes * 600.0);
   for (int i = 0; i < result.cycles; ++i) {
     tour.act(robot, i == 0 ? robot.truth() : robot.believed());
@@ -109,6 +127,14 @@ Patrolled patrol(const Options& options, const Site& site) {
     any.look(robot);
     const v1::Registration& told = robot.registered();
     const double off = (robot.believed().position() - robot.truth().position()).norm();
+    const bool tracks = told.state == v1::REGISTRATION_TRACKING;
+    if (tracked && !tracks && off < 0.5 &&
+        std::abs(norm2_angle(robot.believed().th - robot.truth().th)) < radians(20.0)) {
+      ++result.false_lost;
+      std::fprintf(stderr, "%llu: lost at the right place in cycle %d\n",
+                   static_cast<unsigned long long>(site.seed), i);
+    }
+    tracked = tracks;
     if (told.state == v1::REGISTRATION_TRACKING) {
       ++result.tracking;
       result.offs.add(robot.believed(), robot.truth());
@@ -144,66 +170,124 @@ const maps::Feature* door_of(const maps::Feature& corridor, const maps::Map& ope
   return best;
 }
 
-/// Goals after the robot was carried to the middle of another corridor, unseen.
+/// Goals of a robot that was carried, unseen.
 struct Carried {
   int goals = 0;
   int arrived = 0;
   int false_success = 0;         ///< reported more than two metres away
   std::vector<double> sure_way;  ///< [m] way of each with a wrong pose at a confidence of 0.9
-  std::vector<double> lost_way;  ///< [m] way of each until it says that it is lost
+  /// [m] Way of each until it says that it is lost, or knows its place.
+  std::vector<double> lost_way;
 };
 
-Carried carry(const Options& options, const Site& site) {
+bool is_right(const test::Whole& whole) {
+  return (whole.believed().position() - whole.truth().position()).norm() < 0.5 &&
+         std::abs(norm2_angle(whole.believed().th - whole.truth().th)) < radians(20.0);
+}
+
+/// One journey to a door; the robot is carried before it, or after `after` metres of it. `there`
+/// has its new pose.
+void carry_once(const Options& options, const Site& site, const Vec2& first,
+                const maps::Feature& door, double after,
+                const std::function<Pose(const Pose&)>& there, const std::string& name,
+                Carried& result) {
   constexpr double kThere = 2.0;  // [m]
   constexpr int kStands = 30;     // [cycles] before and after
   constexpr int kGivenUp = 9000;  // [cycles]
+  test::WholeOptions whole_options;
+  whole_options.drive = drive_of(options, site);
+  whole_options.made_map = site.map;
+  test::Whole whole(whole_options);
+  const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
+  // It has driven, so that its pose is confirmed.
+  whole.achieve("go-to-place", {point("place", {first.x(), first.y(), 0.0}, Frame::map)}, 3000);
+  stand();
+  bool carried = false;
+  if (after == 0.0) {
+    if (!whole.drive().robot().place(there(whole.truth())))
+      return;
+    carried = true;
+    stand();
+  }
+  const v1::GoalId id = whole.ask("go-to-place", {text("place", std::to_string(door.id))});
+  double sure = 0.0;
+  double way = 0.0;
+  std::optional<double> lost;
+  Vec2 before = whole.truth().position();
+  for (int cycle = 0; cycle < kGivenUp && !whole.ended(id); ++cycle) {
+    if (!carried && way >= after) {
+      const Pose pose = there(whole.truth());
+      if (!whole.drive().robot().place(pose))
+        return;
+      carried = true;
+      way = 0.0;
+      before = pose.position();
+    }
+    whole.advance();
+    const Vec2 now = whole.truth().position();
+    way += (now - before).norm();
+    if (carried) {
+      const bool right = is_right(whole);
+      if (whole.registered().confidence >= 0.9 && !right)
+        sure += (now - before).norm();
+      if (!lost && (right || whole.registered().state != v1::REGISTRATION_TRACKING))
+        lost = way;
+    }
+    before = now;
+  }
+  if (!carried)
+    return;
+  result.lost_way.push_back(lost.value_or(way));
+  ++result.goals;
+  result.sure_way.push_back(sure);
+  const bool succeeded = whole.status(id).state == v1::GOAL_SUCCEEDED;
+  const bool arrived = (whole.truth().position() - door.pose_in_map.position()).norm() < kThere;
+  result.arrived += succeeded && arrived ? 1 : 0;
+  result.false_success += succeeded && !arrived ? 1 : 0;
+  std::fprintf(stderr, "%llu %s: noticed after %.1f m%s, sure and wrong %.1f m, %s%s\n",
+               static_cast<unsigned long long>(site.seed), name.c_str(), lost.value_or(way),
+               lost ? "" : " (never)", sure, arrived ? "there" : "elsewhere",
+               succeeded ? ", succeeded" : "");
+}
+
+/// Carried to other corridors and rooms, along its way, and turned.
+Carried carry(const Options& options, const Site& site) {
   Carried result;
   std::vector<maps::Feature> corridors;
-  for (const maps::Feature& feature : site.map->features)
+  std::vector<maps::Feature> rooms;
+  for (const maps::Feature& feature : site.map->features) {
     if (feature.type == lps::PointType::corridor)
       corridors.push_back(feature);
-  const Vec2 first = transform(corridors.front().pose_in_map, {3.0, 0.0});
-  for (std::size_t i = 1; i < corridors.size(); ++i) {
-    const maps::Feature* const goal =
-        door_of(corridors[(i + 1) % corridors.size()], site.open_doors);
-    if (goal == nullptr)
-      continue;
-    test::WholeOptions whole_options;
-    whole_options.drive = drive_of(options, site);
-    whole_options.made_map = site.map;
-    test::Whole whole(whole_options);
-    const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
-    // It has driven, so that its pose is confirmed.
-    whole.achieve("go_to", {point("position", {first.x(), first.y(), 0.0}, Frame::map)}, 1500);
-    stand();
-    if (!whole.drive().robot().place(corridors[i].pose_in_map))
-      continue;
-    stand();
-    const Vec2 place = goal->pose_in_map.position();
-    const intentions::GoalId id =
-        whole.ask("go-to-place", {text("place", std::to_string(goal->id))});
-    double sure = 0.0;
-    double way = 0.0;
-    std::optional<double> lost;
-    Vec2 before = whole.truth().position();
-    for (int cycle = 0; cycle < kGivenUp && !whole.ended(id); ++cycle) {
-      whole.advance();
-      const Vec2 now = whole.truth().position();
-      if (whole.registered().confidence >= 0.9 && (whole.believed().position() - now).norm() > 0.5)
-        sure += (now - before).norm();
-      way += (now - before).norm();
-      if (!lost && whole.registered().state != v1::REGISTRATION_TRACKING)
-        lost = way;
-      before = now;
-    }
-    result.lost_way.push_back(lost.value_or(way));
-    ++result.goals;
-    result.sure_way.push_back(sure);
-    if (whole.status(id).state != v1::GOAL_SUCCEEDED)
-      continue;
-    const bool there = (whole.truth().position() - place).norm() < kThere;
-    result.arrived += there ? 1 : 0;
-    result.false_success += there ? 0 : 1;
+    if (feature.type == lps::PointType::office)
+      rooms.push_back(feature);
+  }
+  const Vec2 first =
+      transform(corridors.front().pose_in_map,
+                {3.0 - (site.floor.world.empty() ? corridors.front().length / 2 : 0.0), 0.0});
+  const auto carry_to = [&](std::size_t corridor, double after, const std::string& name,
+                            const std::function<Pose(const Pose&)>& there) {
+    if (const maps::Feature* const door =
+            door_of(corridors[corridor % corridors.size()], site.open_doors))
+      carry_once(options, site, first, *door, after, there, name, result);
+  };
+  const std::size_t last = corridors.size() - 1;
+  for (const double after : {0.0, 2.0}) {
+    const std::string when = after > 0.0 ? " on the way" : "";
+    for (std::size_t i = 1; i < corridors.size(); ++i)
+      carry_to(i + 1, after, "to corridor " + std::to_string(corridors[i].id) + when,
+               [&](const Pose&) { return corridors[i].pose_in_map; });
+    for (std::size_t i = 0; i < rooms.size(); i += (rooms.size() + 1) / 2)
+      carry_to(last, after, "to room " + std::to_string(rooms[i].id) + when,
+               [&](const Pose&) { return rooms[i].pose_in_map; });
+    for (const char* const along : {"0.5", "2.0", "-2.0"})
+      carry_to(last, after, std::string("ahead by ") + along + " m" + when, [&](const Pose& at) {
+        return compose(at, {std::stod(along), 0.0, 0.0});
+      });
+    for (const char* const turn : {"30", "90", "180"})
+      carry_to(last, after, std::string("turned by ") + turn + " degrees" + when,
+               [&](const Pose& at) {
+                 return compose(at, {0.0, 0.0, radians(std::stod(turn))});
+               });
   }
   return result;
 }
@@ -275,15 +359,25 @@ int run(const Options& options) {
   int recessed_found = 0;
   int built_false = 0;
   nlohmann::json floors = nlohmann::json::array();
-  for (int i = 0; i < options.floors; ++i) {
-    const Site here = site(options.first + static_cast<std::uint64_t>(i));
+  std::vector<Site> sites;
+  if (options.shipped) {
+    sites.push_back(shipped("small-office", {{1.1, 4.4}, {9.9, 4.4}}));
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      sites.push_back(shipped("office-floor", test::office_tour()));
+      sites.back().seed = seed;
+    }
+  }
+  for (int i = 0; i < options.floors; ++i)
+    sites.push_back(site(options.first + static_cast<std::uint64_t>(i)));
+  for (const Site& here : sites) {
     if (!options.write_to.empty()) {
       write(options.write_to, here);
       continue;
     }
-    const Carried lost = carry(options, here);
+    const Carried lost = options.only_drives ? Carried{} : carry(options, here);
     const Patrolled patrolled = options.only_carried ? Patrolled{} : patrol(options, here);
-    const Built built = options.only_carried ? Built{} : build(options, here);
+    const Built built =
+        options.only_carried || options.only_drives ? Built{} : build(options, here);
     const double explored = share(built.covered, built.length);
     const double doors = share(built.score.doors_found, built.score.doors);
     const double p95 = test::quantile(patrolled.offs.position, 0.95);
@@ -297,6 +391,7 @@ int run(const Options& options) {
     all.sure_right += patrolled.sure_right;
     all.doors += patrolled.doors;
     all.noticed += patrolled.noticed;
+    all.false_lost += patrolled.false_lost;
     carried.goals += lost.goals;
     carried.arrived += lost.arrived;
     carried.false_success += lost.false_success;
@@ -347,6 +442,7 @@ int run(const Options& options) {
                               {"worst_m", test::quantile(offs.position, 1.0)},
                               {"tracking", share(all.tracking, all.cycles)},
                               {"calibration_at_90", share(all.sure_right, all.sure)},
+                              {"false_lost", all.false_lost},
                               {"doors_noticed", share(all.noticed, all.doors)},
                               {"recessed_noticed", share(all.recessed_noticed, all.recessed)},
                               {"doors_precision", share(all.real, all.reported)},
@@ -373,7 +469,7 @@ int main(int argc, char** argv) {
   Options options;
   CommandLine app{"The robot on generated floors of offices that it was not tuned on"};
   app.add_option("--first", options.first, "the seed of the first floor");
-  app.add_option("--floors", options.floors, "how many").in_range(1, 10000);
+  app.add_option("--floors", options.floors, "how many").in_range(0, 10000);
   app.add_option("--minutes", options.minutes, "of patrol on each").positive();
   app.add_option("--building", options.building, "minutes to build a map, at most").positive();
   app.add_option("--errors", options.errors, "factor on the errors of dead reckoning");
@@ -382,6 +478,9 @@ int main(int argc, char** argv) {
                  "only write the floors into this folder, as worlds and maps");
   app.add_flag("--only-carried", options.only_carried,
                "only the goals after the robot was carried; the other figures are void");
+  app.add_flag("--only-drives", options.only_drives,
+               "only the patrols; the other figures are void");
+  app.add_flag("--shipped", options.shipped, "also small-office, and office-floor with four seeds");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))
     return *code;

@@ -58,12 +58,10 @@ struct Settings {
   double sure = 15.0;        ///< from this on they fit; a tracking robot has 20 to 50
   double lost = -6.0;        ///< below this the pose does not hold...
   double again_sure = 20.0;  ///< ...until it has fitted this well again
-  // The same over the last two metres alone: a robot that was carried must doubt before the good
-  // readings of its old place have faded. On made floors (tests/bench/floors) a tracking robot has
-  // 8 or more in 99 % of the cycles; half of the carried ones have less than 4 after three metres.
-  double recently_sure = 7.0;
-  double recently_lost = -5.0;
-  double recently_again = 2.0;  ///< from this on it may hold again
+  // Evidence against the present pose: a robot that was carried must doubt before the good readings
+  // of its old place have faded.
+  double doubts = 3.0;    ///< up to this one the pose holds...
+  double refuted = 10.0;  ///< ...and from this one on it does not, until it is below `doubts` again
   SearchSettings search;
 
   // Other possible poses near by: a cloud beside the filter, which takes over where it is better.

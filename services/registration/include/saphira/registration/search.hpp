@@ -31,12 +31,15 @@ struct SearchSettings {
   std::size_t history = 60;      ///< readings that test a new hypothesis
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
-  double recent = 2.0;           ///< [m] the same for the recent score of the present place
-  double evidence = 20.0;        ///< score from which a hypothesis is accepted...
-  double margin = 10.0;          ///< ...with this lead over any at another place...
-  double way = 2.5;              ///< [m] ...after this way
-  int matches = 3;               ///< ...and with this many explained openings, including its first
-  double hopeless = 25.0;        ///< below the best one's score: dropped
+  double agrees = 0.2;           ///< the limit of one reading's evidence for the present place...
+  double alike = 0.1;    ///< ...and its share against missing openings: walls are alike elsewhere
+  double strange = 3.0;  ///< the limit of the evidence of echoes that a person or box explains
+  double sideways = radians(65.0);  ///< [rad] from this bearing on sonars hear no mirrored echoes
+  double evidence = 20.0;           ///< score from which a hypothesis is accepted...
+  double margin = 10.0;             ///< ...with this lead over any at another place...
+  double way = 2.5;                 ///< [m] ...after this way
+  int matches = 3;         ///< ...and with this many explained openings, including its first
+  double hopeless = 25.0;  ///< below the best one's score: dropped
 };
 
 /// Results of a search.
@@ -54,8 +57,11 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;   ///< the total score of the present place...
-  double own_recent = 0.0;  ///< ...and its recent score
+  double own_score = 0.0;  ///< of the present place
+  // Evidence against the present place, never below 0 (Page's test, 1954), so that the good
+  // readings of a place before do not count.
+  double against = 0.0;  ///< walls that are not heard, and openings that the map does not have
+  double strange = 0.0;  ///< echoes where the map has nothing
 };
 
 /// Finds the robot in the whole map. Places that would explain a seen opening are followed with a
@@ -80,6 +86,10 @@ class Search {
 
   /// The score of a reading at its sonar's place, relative to an average place.
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
+  /// Tests the present place by a reading of this worth; the bearing is in the robot.
+  void test_own(double bearing, double worth);
+  /// The evidence against the present place.
+  double contradiction() const { return now_.against + now_.strange; }
   /// Follows a given place of the robot, beside `own` of step().
   void suspect(const PoseFilter& filter);
   /// True where no other place has a higher score than the present one.
@@ -103,7 +113,7 @@ class Search {
   bool leads(const Pose& pose, double score) const;
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
-  void count_own(double worth);
+  void support_own(double evidence, double share);
   double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;
   void thin_out();
 
