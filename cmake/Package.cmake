@@ -75,6 +75,8 @@ more program on the bus, for the sound card of this machine.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "saphira, jupyter-notebook, python3-matplotlib")
+# Removes the byte code that the interpreter has written beside the modules.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${package}/python/prerm")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
   "Agents for robots of Saphira in Python: programs that watch a robot, send

@@ -165,12 +165,14 @@ class Watched {
   test::Process process_;
 };
 
-/// A drive of an operator; returns the packets on the wire meanwhile.
+/// A drive of an operator, once the bridge hears it; returns the packets on the wire meanwhile.
 std::vector<Wire::Packet> drive(const Wire& wire, const std::string& credentials,
                                 std::uint32_t domain) {
   std::vector<Wire::Packet> packets;
   bus::Node node(options_of("bench", credentials, domain));
   auto commands = node.writer(bus::topics::kDriveTeleop);
+  if (!test::wait_until([&] { return commands.matched() > 0; }))
+    throw std::runtime_error("the bridge does not take an operator's commands");
   std::jthread listener([&] { packets = wire.hear(domain, seconds(4)); });
   v1::MotorCommand command;
   for (const auto end = Clock::now() + seconds(4); Clock::now() < end;) {
