@@ -227,11 +227,11 @@ class Core {
   authority::Grant grant_;
   Told told_;
   authority::Guarded guarded_;
-  bool grant_changed_ = false;
   std::set<std::string> refused_drivers_;  ///< in the audit since the driver changed
-  bool driver_spoke_ = false;              ///< the present driver, since the last answer
-  double expires_at_ = 0.0;                ///< [s] end of the present driver's lease
-  double flush_at_ = 0.0;  ///< [s] time to send without the driver's answer; 0: none
+  bool grant_changed_ = false;
+  bool driver_spoke_ = false;  ///< the present driver, since the last answer
+  double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
+  double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
   struct Stopping {
     StopId id;
     std::string stopped;      ///< the stopped drivers, in words
