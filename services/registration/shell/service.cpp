@@ -98,12 +98,6 @@ void Service::step(const runtime::Turn& turn) {
   remember();
 }
 
-void Service::archive(Archive& a) {
-  if (a.restores())
-    core_.emplace(Core::Settings{});
-  a("core", *core_);
-}
-
 void Service::between(double /*silence*/) {
   publish_map();
 }

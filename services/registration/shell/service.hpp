@@ -32,7 +32,6 @@ class Service final : public runtime::Service {
   ProcessTable& processes() override { return core_->processes(); }
   void step(const runtime::Turn& turn) override;
   void between(double silence) override;
-  void archive(Archive& a) override;
 
  private:
   void publish_map();

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "saphira/base/archive.hpp"
 #include "saphira/runtime/shell.hpp"
 
 namespace saphira::runtime {
@@ -31,11 +30,6 @@ class Composition {
     for (const Part& part : parts_)
       stepped = part.shell->advance() || stepped;
     return stepped;
-  }
-  /// Each service goes on from its saved state.
-  void save_and_restore() {
-    for (const Part& part : parts_)
-      restore(saved(part.shell->service()), part.shell->service());
   }
   /// Without due steps: requests, files and status.
   void idle() {

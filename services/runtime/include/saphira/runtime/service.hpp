@@ -8,10 +8,6 @@
 #include "saphira/base/stamp.hpp"
 #include "saphira/runtime/ports.hpp"
 
-namespace saphira {
-class Archive;
-}
-
 namespace saphira::runtime {
 
 /// The present step, for every service.
@@ -46,8 +42,6 @@ class Service {
   /// Checks the files that people edit while the robot drives. Called once a second, after a step;
   /// in lockstep, where cycles are short, every hundred.
   virtual void look() {}
-  /// Saves its state, or restores it in a new core.
-  virtual void archive(Archive& /*a*/) {}
 };
 
 }  // namespace saphira::runtime

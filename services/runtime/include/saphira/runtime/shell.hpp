@@ -37,7 +37,6 @@ class Shell {
   void idle();
 
   const Ports& ports() const { return ports_; }
-  Service& service() { return *service_; }
 
  private:
   using Clock = std::chrono::steady_clock;
