@@ -1,13 +1,21 @@
 #include "saphira/speech/conversation.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
+
+#include "saphira/base/text.hpp"
 
 namespace saphira::speech {
 namespace {
 
 constexpr double kEcho = 0.3;       // [s] of a room, after the robot has spoken
 constexpr double kPatience = 20.0;  // [s] for a reply; as in the dialogue
+/// Words behind "stop" that make it something else.
+constexpr std::array<std::string_view, 9> kOtherStops{
+    "talking", "laughing", "crying", "shouting", "smoking", "sign", "signs", "light", "lights"};
+constexpr std::size_t kMostAround = 3;  // words of a stop by itself that the grammar does not know
 
 }  // namespace
 
@@ -49,12 +57,32 @@ void Conversation::listen() {
   listens_for_replies_ = replies;
 }
 
+/// A stop by itself needs no keyword. The words around it are often misheard, and may not turn its
+/// meaning: it would be a stop behind the keyword, too. Returns its word; empty: it is none.
+std::string Conversation::lone_stop(const Heard& heard) const {
+  if (heard.spotted.empty())
+    return {};
+  const auto word = std::find_first_of(heard.freely.begin(), heard.freely.end(),
+                                       heard.spotted.begin(), heard.spotted.end());
+  if (word == heard.freely.end())  // "y'all to" is "halt"
+    return heard.spotted.front() != "stop" && heard.freely.size() < kMostAround
+               ? heard.spotted.front()
+               : std::string();
+  if (grammar_.urgent(joined(heard.freely, " ")).alone)
+    return *word;
+  if (heard.freely.size() > kMostAround || grammar_.keywords().empty() ||
+      std::find(kOtherStops.begin(), kOtherStops.end(), heard.freely.back()) != kOtherStops.end())
+    return {};
+  const std::string named = grammar_.keywords().front() + " " + joined(heard.freely, " ");
+  return grammar_.urgent(named).meaning ? *word : std::string();
+}
+
 Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
   Outputs out;
   for (const Event& event : events) {
     Heard heard = event.heard;
-    if (grammar_.urgent(heard.freely).alone)  // a stop by itself needs no keyword
-      heard = {Outcome::command, heard.freely, kCertain};
+    if (const std::string stop = lone_stop(heard); !stop.empty())
+      heard = {Outcome::command, stop, kCertain};
     if (event.kind != Event::Kind::heard || heard.outcome == Outcome::not_for_it)
       continue;
     out.um = true;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <iterator>
 #include <map>
 #include <set>
@@ -21,8 +22,11 @@ namespace {
 
 // Phones after the keyword that are no word: breath, or room noise.
 constexpr int kBreath = 4;
-constexpr double kAddressed = 0.5;     // confidence of a keyword alone
-constexpr const char* kFree = "free";  // the search of the second decoder without a grammar
+constexpr double kAddressed = 0.5;       // confidence of a keyword alone
+constexpr const char* kFree = "free";    // the search of the second decoder without a grammar
+constexpr const char* kSpots = "spots";  // its search for single words
+constexpr const char* kSpotted =
+    "1e-1";  // likelihood ratio of a spotted word; README.md, "Measured"
 constexpr std::array<std::string_view, 3> kAtOnce{"stop", "halt", "freeze"};
 constexpr double kMostDifference = 0.45;  // README.md, "Measured"
 constexpr const char* kPhone = "p_";      // begins the token of a phone; words are w0, w1, ...
@@ -51,6 +55,18 @@ bool is_at_once(const std::string& command) {
   return std::any_of(kAtOnce.begin(), kAtOnce.end(), [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   });
+}
+
+/// Adds the search for the words of kAtOnce, which the library reads from a file.
+bool add_spots(ps_decoder_t* decoder) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
+  if (!file)
+    return false;
+  for (const std::string_view word : kAtOnce)
+    std::fprintf(file.get(), "%s /%s/\n", std::string(word).c_str(), kSpotted);
+  std::fflush(file.get());
+  const std::string path = "/proc/self/fd/" + std::to_string(fileno(file.get()));
+  return ps_set_kws(decoder, kSpots, path.c_str()) == 0;
 }
 
 struct FreeDecoder {
@@ -90,9 +106,9 @@ struct Recognizer::Self {
   Heard result(ps_decoder_t* from) const;
   /// The second decoder hears the utterance once more.
   bool hears_again() const;
+  /// The words that it hears with another of its searches.
+  std::vector<std::string> heard_by(const char* search) const;
   bool is_sure(const Heard& heard) const;
-  /// The words that a decoder without a grammar hears, which knows every English word.
-  std::vector<std::string> heard_freely() const;
   bool is_doubted(const std::string& command) const;
   void finish(std::vector<Event>& events);
   void give_up_attention(std::vector<Event>& events);
@@ -116,7 +132,8 @@ Recognizer::Recognizer(RecognizerSettings settings, std::string_view text, const
   self_->decoder.reset(decoder_with("yes"));
   self_->second.reset(decoder_with("no"));
   if (!self_->decoder || !self_->second ||
-      ps_set_lm_file(self_->second.get(), kFree, (model + "/en-us.lm.bin").c_str()) < 0)
+      ps_set_lm_file(self_->second.get(), kFree, (model + "/en-us.lm.bin").c_str()) < 0 ||
+      !add_spots(self_->second.get()))
     throw std::runtime_error("the model of speech in " + model +
                              " cannot be read: install the Debian package pocketsphinx-en-us");
   ps_decoder_t* const decoder = self_->decoder.get();
@@ -276,20 +293,20 @@ bool Recognizer::Self::is_sure(const Heard& heard) const {
   return again.outcome == heard.outcome && again.text == heard.text && !is_doubted(heard.text);
 }
 
-std::vector<std::string> Recognizer::Self::heard_freely() const {
+std::vector<std::string> Recognizer::Self::heard_by(const char* search) const {
   ps_decoder_t* const from = second.get();
   const std::string before = ps_get_search(from);
-  ps_set_search(from, kFree);
+  ps_set_search(from, search);
   const char* const hypothesis = hears_again() ? ps_get_hyp(from, nullptr) : nullptr;
-  std::vector<std::string> freely = words_of(hypothesis == nullptr ? "" : hypothesis);
+  std::vector<std::string> heard = words_of(hypothesis == nullptr ? "" : hypothesis);
   ps_set_search(from, before.c_str());
-  return freely;
+  return heard;
 }
 
 /// Without the grammar it is something else.
 bool Recognizer::Self::is_doubted(const std::string& command) const {
   ps_decoder_t* const from = second.get();
-  const std::vector<std::string> freely = heard_freely();
+  const std::vector<std::string> freely = heard_by(kFree);
   std::vector<std::string> said = words_of(command);
   if (!said.empty() && keywords.contains(said.front()))
     said.erase(said.begin());
@@ -320,7 +337,8 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   const std::vector<std::string> said = words_of(heard.text);
   const bool is_named = !keyword.empty() || (!said.empty() && keywords.contains(said.front()));
   if (!is_named && seconds(recent) < settings.longest_alone)
-    heard.freely = joined(heard_freely(), " ");
+    if (heard.spotted = heard_by(kSpots); !heard.spotted.empty())
+      heard.freely = heard_by(kFree);
   if (heard.outcome == Outcome::command)
     heard.confidence = is_at_once(heard.text) || is_sure(heard) ? kCertain : kUncertain;
   recent.clear();

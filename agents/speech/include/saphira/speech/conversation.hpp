@@ -33,6 +33,7 @@ class Conversation {
 
  private:
   void listen();
+  std::string lone_stop(const Heard& heard) const;
   Outputs take(const std::vector<Event>& events);
 
   Recognizer& recognizer_;

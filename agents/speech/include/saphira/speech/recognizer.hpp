@@ -26,7 +26,10 @@ struct Heard {
   Outcome outcome = Outcome::not_for_it;
   std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
   double confidence = 0.0;  ///< [0..1] kCertain: a second hearing has the same text
-  std::string freely{};     ///< short, and without the keyword: the words heard without the grammar
+  /// Of a short utterance without the keyword: orders such as "stop" that its sound contains,
+  std::vector<std::string> spotted{};
+  /// and then its words, heard without the grammar.
+  std::vector<std::string> freely{};
 };
 
 /// The result for a stretch of sound.
