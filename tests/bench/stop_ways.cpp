@@ -165,6 +165,7 @@ struct Move {
 struct Stop {
   const char* name;
   std::function<bool(Site&)> stop;  ///< true where it reports success
+  bool claims_rest = true;          ///< its success means that the robot stands; else the latch
 };
 
 Mover started(Process process) {
@@ -244,9 +245,9 @@ std::vector<Stop> stops() {
          return status && status->state == v1::GOAL_SUCCEEDED;
        }},
       {"MCP stop", [](Site& site) { return site.tool("stop", Json::object()); }},
-      {"MCP emergency_stop",
-       [](Site& site) { return site.tool("emergency_stop", Json::object()); }},
-      {"saphira estop", command({"estop"})},
+      {"MCP emergency_stop", [](Site& site) { return site.tool("emergency_stop", Json::object()); },
+       false},
+      {"saphira estop", command({"estop"}), false},
   };
 }
 
@@ -276,7 +277,7 @@ Result stop(Site& site, const Move& move, const Stop& way) {
   });
   if (!result.stopped)
     return result;
-  result.false_success = result.success && claimed < *stood;
+  result.false_success = way.claims_rest && result.success && claimed < *stood;
   result.still = kCycle * static_cast<double>(*stood - *site.arrived());
   const test::Truth at = site.system().truth();
   site.until([&] { return site.system().truth().cycle >= at.cycle + kWatched; });

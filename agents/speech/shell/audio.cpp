@@ -140,7 +140,7 @@ void Microphone::read_once() {
     if (source_ == "-")
       read_pipe(STDIN_FILENO);
     else
-      put(read_wav(read_bytes(source_), source_), true);
+      put(read_sound(read_bytes(source_), source_), true);
     const std::lock_guard lock(mutex_);
     at_end_ = true;
   } else if (fs::is_fifo(source_)) {

@@ -1,24 +1,61 @@
 #include "saphira/speech/sound.hpp"
 
+#include <sndfile.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 
 #include "saphira/base/text.hpp"
 
 namespace saphira::speech {
 namespace {
 
-std::uint32_t number(const std::string& bytes, std::size_t at, std::size_t count) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes.at(at + i))) << (8 * i);
-  return value;
+/// A file in memory, for libsndfile.
+struct Memory {
+  std::string bytes;
+  sf_count_t at = 0;
+};
+
+SF_VIRTUAL_IO io_of_memory() {
+  SF_VIRTUAL_IO io{};
+  io.get_filelen = [](void* user) {
+    return static_cast<sf_count_t>(static_cast<Memory*>(user)->bytes.size());
+  };
+  io.seek = [](sf_count_t offset, int whence, void* user) {
+    auto& memory = *static_cast<Memory*>(user);
+    const auto size = static_cast<sf_count_t>(memory.bytes.size());
+    const sf_count_t from = whence == SEEK_CUR ? memory.at : whence == SEEK_END ? size : 0;
+    memory.at = std::clamp<sf_count_t>(from + offset, 0, size);
+    return memory.at;
+  };
+  io.read = [](void* to, sf_count_t count, void* user) {
+    auto& memory = *static_cast<Memory*>(user);
+    const auto rest = static_cast<sf_count_t>(memory.bytes.size()) - memory.at;
+    count = std::min(count, rest);
+    memory.bytes.copy(static_cast<char*>(to), static_cast<std::size_t>(count),
+                      static_cast<std::size_t>(memory.at));
+    memory.at += count;
+    return count;
+  };
+  io.write = [](const void* from, sf_count_t count, void* user) {
+    auto& memory = *static_cast<Memory*>(user);
+    const auto end = static_cast<std::size_t>(memory.at + count);
+    memory.bytes.resize(std::max(memory.bytes.size(), end));
+    memory.bytes.replace(static_cast<std::size_t>(memory.at), static_cast<std::size_t>(count),
+                         static_cast<const char*>(from), static_cast<std::size_t>(count));
+    memory.at += count;
+    return count;
+  };
+  io.tell = [](void* user) { return static_cast<Memory*>(user)->at; };
+  return io;
 }
 
-void put(std::string& bytes, std::uint32_t value, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i)
-    bytes += static_cast<char>((value >> (8 * i)) & 0xffU);
-}
+struct Close {
+  void operator()(SNDFILE* file) const { sf_close(file); }
+};
+using File = std::unique_ptr<SNDFILE, Close>;
 
 }  // namespace
 
@@ -41,59 +78,47 @@ Sound resampled(const Sound& sound, int rate) {
   return out;
 }
 
-Sound read_wav(const std::string& bytes, const std::string& file) {
-  const auto fail = [&](const std::string& what) {
-    throw UnusableFile(file + ": " + what + " (expected a WAV file with 16 bits a sample)");
-  };
-  if (bytes.size() < 12 || bytes.compare(0, 4, "RIFF") != 0 || bytes.compare(8, 4, "WAVE") != 0)
-    fail("it does not begin as a WAV file");
-  std::uint32_t channels = 0;
-  std::uint32_t rate = 0;
-  for (std::size_t at = 12; at + 8 <= bytes.size();) {
-    const std::string chunk = bytes.substr(at, 4);
-    // A stream of unknown length has a length beyond its end.
-    const std::size_t length =
-        std::min<std::size_t>(number(bytes, at + 4, 4), bytes.size() - at - 8);
-    at += 8;
-    if (chunk == "fmt " && length >= 16) {
-      channels = number(bytes, at + 2, 2);
-      rate = number(bytes, at + 4, 4);
-      if (number(bytes, at, 2) != 1 || number(bytes, at + 14, 2) != 16)
-        fail("its samples are of another kind");
-      if (channels < 1 || channels > 16 || rate < 4000 || rate > 200000)
-        fail("its number of channels or its rate makes no sense");
-    } else if (chunk == "data") {
-      if (channels == 0)
-        fail("samples come before their form is told");
-      Sound sound;
-      const std::size_t frame = 2 * static_cast<std::size_t>(channels);
-      for (std::size_t i = 0; i + frame <= length; i += frame)
-        sound.push_back(static_cast<std::int16_t>(number(bytes, at + i, 2)));
-      return resampled(sound, static_cast<int>(rate));
+Sound read_sound(const std::string& bytes, const std::string& file) {
+  Memory memory{bytes};
+  SF_VIRTUAL_IO io = io_of_memory();
+  SF_INFO info{};
+  const File opened(sf_open_virtual(&io, SFM_READ, &info, &memory));
+  if (!opened)
+    throw UnusableFile(file + ": " + sf_strerror(nullptr) + " Expected sound, such as WAV or FLAC");
+  if (info.samplerate < 4000 || info.samplerate > 200'000)
+    throw UnusableFile(file + ": expected 4000 to 200000 samples a second, found " +
+                       std::to_string(info.samplerate));
+  const auto channels = static_cast<std::size_t>(info.channels);
+  std::vector<Sound> all(channels);
+  std::vector<double> loudness(channels);
+  constexpr std::size_t kBlock = 4096;
+  std::vector<float> block(kBlock * channels);
+  while (const auto frames = static_cast<std::size_t>(
+             sf_readf_float(opened.get(), block.data(), static_cast<sf_count_t>(kBlock))))
+    for (std::size_t i = 0; i < frames * channels; ++i) {
+      constexpr float kFull = 32768.0F;
+      all[i % channels].push_back(
+          static_cast<std::int16_t>(std::clamp(std::lround(kFull * block[i]), -32768L, 32767L)));
+      loudness[i % channels] += std::abs(block[i]);
     }
-    at += length + length % 2;
-  }
-  fail("it has no samples");
-  return {};
+  const auto loudest = std::max_element(loudness.begin(), loudness.end()) - loudness.begin();
+  if (all.empty() || all.front().empty())
+    throw UnusableFile(file + ": it has no samples");
+  return resampled(all[static_cast<std::size_t>(loudest)], info.samplerate);
 }
 
 std::string wav(const Sound& sound) {
-  const auto length = static_cast<std::uint32_t>(2 * sound.size());
-  std::string bytes = "RIFF";
-  put(bytes, 36 + length, 4);
-  bytes += "WAVEfmt ";
-  put(bytes, 16, 4);
-  put(bytes, 1, 2);
-  put(bytes, 1, 2);
-  put(bytes, kRate, 4);
-  put(bytes, 2 * kRate, 4);
-  put(bytes, 2, 2);
-  put(bytes, 16, 2);
-  bytes += "data";
-  put(bytes, length, 4);
-  for (const std::int16_t sample : sound)
-    put(bytes, static_cast<std::uint16_t>(sample), 2);
-  return bytes;
+  Memory memory;
+  SF_VIRTUAL_IO io = io_of_memory();
+  SF_INFO info{};
+  info.samplerate = kRate;
+  info.channels = 1;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
+  {
+    const File opened(sf_open_virtual(&io, SFM_WRITE, &info, &memory));
+    sf_writef_short(opened.get(), sound.data(), static_cast<sf_count_t>(sound.size()));
+  }
+  return memory.bytes;
 }
 
 }  // namespace saphira::speech

@@ -102,7 +102,7 @@ Sound Voice::say(const std::string& text) const {
     for (const char c : words)
       safe +=
           is_safe(c) || c == '\'' || c == ',' || c == '.' || c == '?' ? (c == '\'' ? ' ' : c) : ' ';
-    return read_wav(
+    return read_sound(
         output_of("espeak-ng -v " + self_->espeak + " --stdout -- '" + safe + "' 2>/dev/null"),
         "espeak-ng");
   }

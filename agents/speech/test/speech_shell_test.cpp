@@ -49,7 +49,7 @@ TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
   person.writer(bus::topics::kSaid).write(answer);
   const auto spoken = [&](const char* file) {
     try {
-      return seconds(read_wav(read_bytes(folder.path(file)), file)) > 0.3;
+      return seconds(read_sound(read_bytes(folder.path(file)), file)) > 0.3;
     } catch (const std::runtime_error&) {
       return false;  // not written yet
     }

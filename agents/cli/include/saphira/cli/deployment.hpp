@@ -43,7 +43,7 @@ struct Program {
 /// The advice where saphira-speech is missing.
 inline constexpr const char* kInstallSpeech =
     "install the package saphira-speech, or build where Debian's libpocketsphinx-dev, "
-    "pocketsphinx-en-us, flite1-dev and libasound2-dev are installed";
+    "pocketsphinx-en-us, flite1-dev, libasound2-dev and libsndfile1-dev are installed";
 
 /// The programs that run together, from config/deployments/*.yaml. The format is in
 /// config/deployments/README.md.

@@ -16,9 +16,9 @@ double seconds(const Sound& sound);
 /// From another rate, with linear interpolation: enough for speech.
 Sound resampled(const Sound& sound, int rate);
 
-/// Sound of a RIFF file with 16 bits, any rate and any number of channels; the first channel
-/// counts. std::runtime_error gives the error.
-Sound read_wav(const std::string& bytes, const std::string& file);
+/// A file of sound as libsndfile reads it: WAV of any kind, FLAC, Ogg and others. Of several
+/// channels it takes the loudest. UnusableFile gives the error.
+Sound read_sound(const std::string& bytes, const std::string& file);
 std::string wav(const Sound& sound);
 
 }  // namespace saphira::speech
