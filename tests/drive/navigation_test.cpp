@@ -402,6 +402,10 @@ TEST(Zones, NoGoalEntersAKeepOut) {
   EXPECT_EQ(inside.state, v1::GOAL_FAILED);
   EXPECT_EQ(inside.code, v1::CODE_NO_ROUTE);
   EXPECT_EQ(inside.reason, "(17.50, 10.00) on the map is in keep-out zone \"lab\"");
+  const GoalStatus outside =
+      whole.achieve("go_to", {saphira::point("position", {-5.0, 0.0, 0.0}, Frame::map)}, 100);
+  EXPECT_EQ(outside.code, v1::CODE_NO_ROUTE);
+  EXPECT_EQ(outside.reason, "(-5.00, 0.00) on the map is in no room or corridor of the map");
 }
 
 TEST(Navigation, ToAPointOfTheMapByARoute) {

@@ -21,9 +21,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kAgain = 0.2;            ///< [s] between two requests, until one is answered
-constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
-constexpr double kUnanswered = 15.0;      ///< [s] until a goal without any answer is given up
+constexpr double kAgain = 0.2;             ///< [s] between two requests, until one is answered
+constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
+constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
+constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
 
 struct GoalOptions {
   std::vector<std::string> words;
@@ -222,6 +223,23 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
   return bus::kExitFailed;
 }
 
+int approve(const GoalOptions& options, const bus::NodeOptions& node_options,
+            const bus::Stop& stop) {
+  if (options.words.size() != 2 || !bus::parse_goal_id(options.words[1]))
+    throw std::invalid_argument("expected goal approve ID, such as 1f3a:2 (saphira goal list)");
+  bus::Node node(node_options);
+  Processes processes(node);
+  bus::RequestClient services(node, bus::topics::kProcessRequest, person("saphira goal approve"));
+  const v1::Answer answer =
+      services.ask(bus::request("resume", {bus::text("process", options.words[1])}, "intentions"),
+                   kApprovalPatience, &stop, [&] { processes.poll(); });
+  if (bus::well(answer.code)) {
+    print("goal %s is approved\n", options.words[1].c_str());
+    return bus::kExitOk;
+  }
+  return failed(answer.service.empty() ? "no answer; " + who_is_there(processes) : answer.text);
+}
+
 int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
@@ -304,9 +322,10 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
 void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
-  command->add_option("words", options->words,
-                      "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "
-                      "ACTIVITY name=value... | list | cancel ID | activities [ACTIVITY]");
+  command->add_option(
+      "words", options->words,
+      "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "
+      "ACTIVITY name=value... | list | cancel ID | approve ID | activities [ACTIVITY]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
       ->check(at_least_zero())
@@ -324,6 +343,8 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
     if (!options->words.empty() && options->words[0] == "cancel")
       return cancel(*options, node, stop);
+    if (!options->words.empty() && options->words[0] == "approve")
+      return approve(*options, node, stop);
     if (options->words == std::vector<std::string>{"list"})
       return list_goals(node, stop);
     if (!options->words.empty() &&

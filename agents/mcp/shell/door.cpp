@@ -65,7 +65,8 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       person_(person ? v1::Person{person->name, security::role_of(person->right)} : v1::Person{}),
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
-      stops_(node, bus::topics::kDriveStop, who) {
+      stops_(node, bus::topics::kDriveStop, who),
+      approvals_(node, bus::topics::kProcessRequest, who) {
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
@@ -85,9 +86,36 @@ void Door::hear_reply(const v1::Utterance& reply) {
     take_back_words();
 }
 
+/// Asks the client's person for goals that need an approval, where the key may give it. The page
+/// and the command line can approve them, too.
+void Door::ask_for_approval() {
+  approvals_.poll();
+  for (Own& each : own_) {
+    const auto known = goals_.status(each.id);
+    const bool needs = known && known->code == v1::CODE_APPROVAL && !bus::ended(known->state);
+    if (!needs)
+      each.question = 0;
+    else if (each.question == 0 && right_ == DoorRight::operate)
+      each.question = session_.ask_person("The model wants the robot to do this: " + each.text +
+                                          ". May it begin?");
+  }
+  for (const auto& [question, yes] : session_.take_consents()) {
+    const auto of = [number = question](const Own& each) { return each.question == number; };
+    const auto found = std::find_if(own_.begin(), own_.end(), of);
+    if (found == own_.end())
+      continue;
+    if (yes)
+      approvals_.send(
+          bus::request("resume", {bus::text("process", bus::describe(found->id))}, "intentions"));
+    else
+      withdraw(*found, "the person at " + who_ + " did not approve it");
+  }
+}
+
 /// Takes sentences of the robot, and events and answers of agents.
 void Door::hear() {
   goals_.poll();
+  ask_for_approval();
   picture_ = picture_reader_ ? picture_reader_->take_newest() : std::nullopt;
   for (const auto& sample : said_reader_.take())
     if (sample.data.answers.writer == node_.instance())
@@ -321,7 +349,11 @@ void Door::request(const Call& call, const v1::Capability& capability) {
 
 /// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
 void Door::follow(const Call& call, const v1::GoalId& id) {
-  own_.push_back({id});
+  Json asked = call.arguments;
+  asked.erase("wait_s");
+  own_.push_back(
+      {.id = id,
+       .text = call.tool + " " + asked.dump(-1, ' ', false, Json::error_handler_t::replace)});
   const double wait = call.as_task ? kDeadline + kGrace : call.arguments.value("wait_s", kWait);
   waiting_[call.number] = {.goal = id, .until = now_ + wait, .is_task = call.as_task};
   if (call.as_task)

@@ -141,10 +141,13 @@ class Door {
   struct Own {
     v1::GoalId id;
     bool withdrawn = false;
+    std::string text = {};       ///< as it was asked for
+    std::uint64_t question = 0;  ///< to the client's person, whether it may begin; 0: none
   };
 
   void hear();
   void hear_reply(const v1::Utterance& reply);
+  void ask_for_approval();
   void begin(const Call& call);
   bool is_allowed(const Call& call);
   bool is_mine(const v1::GoalStatus& status) const;
@@ -181,6 +184,7 @@ class Door {
   bus::GoalClient goals_;
   bus::RequestClient requests_;
   bus::RequestClient stops_;
+  bus::RequestClient approvals_;
   bus::Reader<v1::Utterance> said_reader_ = node_.reader(bus::topics::kSaid);
   bus::Reader<v1::AgentEvent> event_reader_ = node_.reader(bus::topics::kAgentEvents);
   std::optional<bus::Reader<v1::CameraPicture>> picture_reader_;  ///< while a call waits for one

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "prompts.hpp"
 #include "protocol.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/mcp/results.hpp"
 
@@ -22,6 +24,7 @@ constexpr int kBadHeader = -32020;
 constexpr int kBadVersion = -32022;
 constexpr std::size_t kDeepest = 16;
 constexpr std::size_t kLongestName = 40;
+const std::string kQuestion = "question ";  // begins the id of a question to a person
 
 bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
@@ -91,6 +94,38 @@ bool Session::leave() {
 
 void Session::ping() {
   send({{"jsonrpc", "2.0"}, {"id", "ping " + std::to_string(++pings_)}, {"method", "ping"}}, 0);
+}
+
+std::uint64_t Session::ask_person(const std::string& question) {
+  if (!elicits_ || asked_.size() >= kMostOpen)
+    return 0;
+  asked_.insert(++questions_);
+  const Json yes{{"type", "boolean"}, {"title", "Yes, let the robot begin"}, {"default", false}};
+  send({{"jsonrpc", "2.0"},
+        {"id", kQuestion + std::to_string(questions_)},
+        {"method", "elicitation/create"},
+        {"params",
+         {{"message", question},
+          {"requestedSchema",
+           {{"type", "object"}, {"properties", {{"yes", yes}}}, {"required", {"yes"}}}}}}},
+       0);
+  return questions_;
+}
+
+std::vector<std::pair<std::uint64_t, bool>> Session::take_consents() {
+  return std::exchange(consents_, {});
+}
+
+void Session::take_answer(const Json& message) {
+  const Json id = member(message, "id");
+  if (!id.is_string() || !id.get<std::string>().starts_with(kQuestion))
+    return;
+  const auto number = number_in<std::uint64_t>(id.get<std::string>().substr(kQuestion.size()));
+  if (!number || asked_.erase(*number) == 0)
+    return;
+  const Json result = member(message, "result");
+  consents_.emplace_back(*number, member(result, "action") == "accept" &&
+                                      member(member(result, "content"), "yes") == true);
 }
 
 /// A stop is never held back.
@@ -209,8 +244,10 @@ bool Session::take_message(const Json& message, Request request, const Headers* 
     request.id = id;
   const bool has_id = message.is_object() && message.contains("id");
   if (!method.is_string()) {
-    if (is_answer(message))
+    if (is_answer(message)) {
+      take_answer(message);
       return false;
+    }
     return wrong(kBadRequest,
                  message.is_array()
                      ? std::string("a batch of messages is of the revision ") + kBatches + " alone"
@@ -283,6 +320,7 @@ void Session::ask(const std::string& method, const Request& request, const Json&
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     older().tools = true;
+    elicits_ = member(member(parameters, "capabilities"), "elicitation").is_object();
     revision_ = known ? asked.get<std::string>() : kLegacy;
     return reply(request, {{"protocolVersion", revision_},
                            {"capabilities", capabilities(false)},
@@ -305,6 +343,15 @@ void Session::ask_either(const std::string& method, const Request& request,
     return call(request, parameters);
   if (method == "resources/list")
     return list_resources(request);
+  if (method == "prompts/list")
+    return list(request, prompts());
+  if (method == "prompts/get") {
+    Json arguments = member(parameters, "arguments");
+    Json got =
+        prompt(member(parameters, "name"), arguments.is_object() ? arguments : Json::object());
+    return got.is_string() ? error(request, kBadParameters, got.get<std::string>())
+                           : reply(request, std::move(got));
+  }
   if (method == "resources/templates/list")
     return list(request, {{"resourceTemplates", Json::array()}});
   if (method == "resources/read")
@@ -339,7 +386,9 @@ void Session::ask_modern(const std::string& method, const Request& request,
 }
 
 Json Session::capabilities(bool modern) const {
-  Json all{{"tools", {{"listChanged", true}}}, {"resources", {{"subscribe", true}}}};
+  Json all{{"tools", {{"listChanged", true}}},
+           {"resources", {{"subscribe", true}}},
+           {"prompts", Json::object()}};
   if (modern)
     all["extensions"][kTasks] = Json::object();
   return all;

@@ -745,5 +745,58 @@ TEST_F(DoorInMemory, ALookHasThePictureOfACameraThatIsThere) {
   EXPECT_EQ(result(3)["content"].size(), 1U) << "a camera that sends nothing";
 }
 
+// The person at the client is asked outside of the model's arguments.
+TEST_F(DoorInMemory, AGoalThatNeedsAnApprovalIsPutToTheClientsPerson) {
+  bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
+  session.take(
+      R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":"2025-06-18",)"
+      R"("capabilities":{"elicitation":{}},"clientInfo":{"name":"c","version":"1"}}})");
+  schemas.write({.schemas = {{.name = "patrol"}}});
+  turn();
+  const auto question = [&] {
+    for (const Line& line : session.take_lines())
+      if (const Json message = Json::parse(line.text); message.contains("method"))
+        return message;
+    return Json();
+  };
+  const auto reply = [&](const Json& asked, const Json& result) {
+    session.take(Json{{"jsonrpc", "2.0"}, {"id", asked["id"]}, {"result", result}}.dump());
+    turn();
+  };
+  const auto waiting = [&](int call_number) {
+    call(call_number, "patrol", {{"wait_s", 20}});
+    v1::GoalStatus status{.id = saphira::test::only(goals.take()).data.id,
+                          .functor = "patrol",
+                          .state = v1::GOAL_WAITING,
+                          .code = v1::CODE_APPROVAL};
+    session.take_lines();
+    statuses.write(status);
+    turn();
+    return status.id;
+  };
+  const v1::GoalId first = waiting(2);
+  const Json asked = question();
+  EXPECT_EQ(asked["method"], "elicitation/create");
+  turn(1.0);
+  EXPECT_TRUE(question().is_null()) << "once";
+  reply(asked, {{"action", "accept"}, {"content", {{"yes", true}}}});
+  const v1::Request approval = saphira::test::only(approvals.take()).data;
+  EXPECT_EQ(approval.functor, "resume");
+  EXPECT_EQ(approval.service, "intentions");
+  EXPECT_EQ(bus::text_of(approval.arguments, "process"), bus::describe(first));
+  reply(asked, {{"action", "accept"}, {"content", {{"yes", true}}}});
+  EXPECT_TRUE(approvals.take().empty()) << "answered before";
+
+  for (const Json& no : {Json{{"action", "accept"}, {"content", {{"yes", false}}}},
+                         Json{{"action", "decline"}}, Json{{"action", "cancel"}}}) {
+    const v1::GoalId id = waiting(3);
+    reply(question(), no);
+    const auto withdrawn = saphira::test::only(goals.take());
+    EXPECT_EQ(withdrawn.data.id, id);
+    EXPECT_FALSE(withdrawn.data.withdrawn.empty());
+    EXPECT_TRUE(approvals.take().empty());
+  }
+}
+
 }  // namespace
 }  // namespace saphira::mcp

@@ -39,6 +39,31 @@ TEST(McpSession, ListsItsToolsAndTellsWhenTheyChange) {
   EXPECT_EQ(client.heard().at(0)["method"], "notifications/tools/list_changed");
 }
 
+TEST(McpSession, PromptsOfTheUsualJobsAreFilledIn) {
+  Client client;
+  const Json all = client.one(line(1, "prompts/list"))["result"]["prompts"];
+  ASSERT_FALSE(all.empty());
+  for (const Json& each : all) {
+    Json arguments = Json::object();
+    for (const Json& argument : each["arguments"])
+      arguments[argument["name"].get<std::string>()] = "N2 $place";
+    const auto get = [&](const Json& given) {
+      return client.one(Json{{"jsonrpc", "2.0"},
+                             {"id", 2},
+                             {"method", "prompts/get"},
+                             {"params", {{"name", each["name"]}, {"arguments", given}}}}
+                            .dump());
+    };
+    const Json content = get(arguments)["result"]["messages"][0]["content"];
+    const std::string text = content["text"];
+    EXPECT_EQ(text.find("N2 $place") == std::string::npos, arguments.empty()) << text;
+    if (!arguments.empty()) {
+      EXPECT_EQ(get(Json::object())["error"]["code"], -32602);
+    }
+  }
+  EXPECT_EQ(client.one(line(3, "prompts/get"))["error"]["code"], -32602);
+}
+
 TEST(McpSession, ToolsThatAreApartAreListedAndCalledByOne) {
   Client client;
   Tool apart = go_to();
@@ -186,7 +211,7 @@ TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {
   EXPECT_EQ(client.one("[]")["error"]["code"], -32600);
   EXPECT_EQ(client.one(R"({"id":1})")["error"]["code"], -32600);
   EXPECT_EQ(client.one(R"({"id":{},"method":"ping"})")["error"]["code"], -32600);
-  EXPECT_EQ(client.one(R"({"id":1,"method":"prompts/list"})")["error"]["code"], -32601);
+  EXPECT_EQ(client.one(R"({"id":1,"method":"roots/list"})")["error"]["code"], -32601);
   EXPECT_EQ(client.one(R"({"id":1,"method":"ping","params":3})")["error"]["code"], -32602);
   EXPECT_EQ(client.one(R"({"id":1,"method":"tools/call","params":{"name":"rm"}})")["error"]["code"],
             -32602);
@@ -285,7 +310,7 @@ TEST(McpSession, TheNewerEraRefusesByItsOwnCodes) {
   other["params"]["_meta"].erase("io.modelcontextprotocol/clientCapabilities");
   other["params"]["_meta"]["io.modelcontextprotocol/protocolVersion"] = Session::kModern;
   EXPECT_EQ(client.one(other.dump())["error"]["code"], -32602);
-  for (const char* method : {"initialize", "ping", "logging/setLevel", "prompts/list"}) {
+  for (const char* method : {"initialize", "ping", "logging/setLevel", "roots/list"}) {
     client.session.take(modern("m", method), 7);
     const Line said = client.only();
     EXPECT_EQ(said.status, 404);
@@ -395,7 +420,7 @@ TEST(McpSession, ListsAndCallsWaitUntilTheToolsAreKnown) {
   EXPECT_EQ(client.one(line(1, "initialize"))["id"], 1);
   EXPECT_EQ(client.one(line(2, "ping"))["id"], 2);
   EXPECT_EQ(client.one(modern("d", "server/discover"))["id"], "d");
-  EXPECT_EQ(client.one(line(3, "prompts/list"))["error"]["code"], -32601);
+  EXPECT_EQ(client.one(line(3, "roots/list"))["error"]["code"], -32601);
   EXPECT_TRUE(client.say(line(4, "tools/list")).empty());
   EXPECT_TRUE(client.say(modern("m", "tools/list")).empty());
   EXPECT_TRUE(client.say(line(5, "resources/list")).empty());

@@ -14,6 +14,7 @@ _REMEDIES = {
     v1.GoalCode.CODE_NO_ROUTE: "`saphira map list` shows the map; another place may be reachable",
     v1.GoalCode.CODE_TIMEOUT: "ask again, or ask for less at once",
     v1.GoalCode.CODE_PREEMPTED: "ask again, perhaps with a greater priority",
+    v1.GoalCode.CODE_APPROVAL: "`saphira goal approve ID` by a person lets it begin",
     v1.GoalCode.CODE_STOPPED: "ask again to have it done",
 }
 

@@ -35,10 +35,6 @@ struct Options {
   bool last_minute = false;
 };
 
-std::int64_t now_ns() {
-  return static_cast<std::int64_t>(unix_time() * 1e9);
-}
-
 std::string usual_name(const std::string& robot) {
   return robot + local_text(std::time(nullptr), "-%Y-%m-%d-%H%M%S.mcap");
 }
@@ -86,7 +82,7 @@ int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& fil
   while (!stop.requested() && Clock::now() - began < kListen) {
     node.wait(kTurn, &stop);
     node.publish_status();
-    minute.poll(now_ns());
+    minute.poll(unix_nanoseconds());
   }
   recorder::Writer writer(out);
   if (!minute.write(node, writer)) {
@@ -131,14 +127,14 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
           Clock::now() - began < std::chrono::duration<double>(options.seconds))) {
     node.wait(kTurn, &stop);
     node.publish_status();
-    recorder.poll(now_ns());
+    recorder.poll(unix_nanoseconds());
     if (Clock::now() - flushed >= kFlush) {
       flushed = Clock::now();
       if (!writer.flush())
         return failed(bus::kExitFailed);
     }
   }
-  recorder.poll(now_ns());
+  recorder.poll(unix_nanoseconds());
   if (!writer.close())
     return failed(bus::kExitFailed);
   const std::chrono::duration<double> lasted = Clock::now() - began;

@@ -43,12 +43,8 @@ bus::Foreign::Options with_enclave(const Options& options) {
   return ros;
 }
 
-std::int64_t now_ns() {
-  return static_cast<std::int64_t>(unix_time() * 1e9);
-}
-
 std::int64_t written_ns(const bus::SampleInfo& info) {
-  return now_ns() - static_cast<std::int64_t>(info.age * 1e9);
+  return unix_nanoseconds() - static_cast<std::int64_t>(info.age * 1e9);
 }
 
 template <class Info, class Gid>
@@ -199,7 +195,7 @@ void RosRobot::take_robot() {
   each(sonars_);
   each(perceptions_);
   tiles_.visit([this](const v1::GridTile& tile, const bus::SampleInfo& info) {
-    put(outward_.take(tile, info.disposed, now_ns()));
+    put(outward_.take(tile, info.disposed, unix_nanoseconds()));
   });
 }
 
@@ -272,7 +268,7 @@ void RosRobot::serve() {
   in.goals.poll();
   bool changed = false;
   in.send_goal.take([&](const SendRequest& request, const Ticket& ticket) {
-    Navigate::Sent sent = in.navigate.send(request, now_ns());
+    Navigate::Sent sent = in.navigate.send(request, unix_nanoseconds());
     if (sent.goal)
       in.navigate.asked(in.goals.ask(std::move(*sent.goal)));
     for (const v1::GoalId& id : sent.replaced)
@@ -308,7 +304,7 @@ void RosRobot::serve() {
 }
 
 void RosRobot::tell_slowly() {
-  const std::int64_t now = now_ns();
+  const std::int64_t now = unix_nanoseconds();
   const situation::Situation situation = mind_.situation(mind_.newest_cycle(), false);
   put(Outward::diagnostics(situation, now));
   if (situation.robot)

@@ -47,10 +47,9 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
   look_at_keys();
   const auto poll = [&] {
     live.poll(
-        static_cast<std::int64_t>(unix_time() * 1e9),
-        [&](std::size_t channel) { return server->wants(channel); },
+        unix_nanoseconds(), [&](std::size_t channel) { return server->wants(channel); },
         [&](std::size_t channel, const std::string& json) {
-          server->offer(channel, static_cast<std::int64_t>(unix_time() * 1e9), json);
+          server->offer(channel, unix_nanoseconds(), json);
         });
   };
   server.emplace(options, live.channels(),

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus {
@@ -14,9 +15,7 @@ constexpr double kMinute = 60.0;  // [s]
 }  // namespace
 
 v1::AuditEntry timed(v1::AuditEntry entry) {
-  entry.time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                      std::chrono::system_clock::now().time_since_epoch())
-                      .count();
+  entry.time_ns = unix_nanoseconds();
   return entry;
 }
 

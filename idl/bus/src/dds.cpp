@@ -32,16 +32,11 @@
 #include "dds_types.hpp"
 #include "internal.hpp"
 #include "kept.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 
 namespace saphira::bus::internal {
 namespace {
-
-std::int64_t nanoseconds_since_1970() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
@@ -423,7 +418,7 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
   }
   /// [s]
   static double age_of(std::int64_t written) {
-    return 1e-9 * static_cast<double>(nanoseconds_since_1970() - written);
+    return 1e-9 * static_cast<double>(unix_nanoseconds() - written);
   }
 
   // Writers come and go for months. A forgotten writer costs at most a sample that comes twice.

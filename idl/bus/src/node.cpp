@@ -15,6 +15,7 @@
 #include "heartbeat.hpp"
 #include "internal.hpp"
 #include "log.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/status_words.hpp"
 
 namespace saphira::bus {
@@ -137,9 +138,7 @@ struct Node::Impl {
     log_writer->write({.instance = status.instance,
                        .name = options.name,
                        .level = level,
-                       .time_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                      std::chrono::system_clock::now().time_since_epoch())
-                                      .count(),
+                       .time_ns = unix_nanoseconds(),
                        .stamp = status.stamp,
                        .text = text});
   }

@@ -31,8 +31,10 @@ std::vector<std::string> folders(const Options& options) {
 }
 
 Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
-                        std::shared_ptr<const Functions> functions) {
-  return {built_in(), memory.memory(), memory.keeps(), ports.lockstep(), std::move(functions)};
+                        std::shared_ptr<const Functions> functions,
+                        const std::vector<std::string>& approval) {
+  return {built_in(),       memory.memory(), memory.keeps(),
+          ports.lockstep(), approval,        std::move(functions)};
 }
 
 /// Nodes and beliefs as on the bus.
@@ -74,7 +76,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       memory_(options.memory_file, kMostEndings, ports.files()),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
-      core_(settings(ports, memory_, functions_)) {
+      core_(settings(ports, memory_, functions_, options.approval)) {
   Notes notes;
   for (const std::string& trouble : memory_.troubles())
     notes.warn(trouble);
@@ -389,6 +391,11 @@ runtime::Component component() {
                      "there is a vision service: wait for it in lockstep");
         app.add_option("--activities", options->folder,
                        "folder of activity files; they cover shipped ones of the same name");
+        app.add_option(
+               "--approval", options->approval,
+               "role, or beginning of an asker's name such as \"language model\": its goals "
+               "wait until a person approves them (saphira goal approve)")
+            .one_value_each();
       },
       [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
 }

@@ -24,6 +24,7 @@ struct Options {
   bool vision = false;
   /// Activities that cover shipped ones of the same name; empty: none.
   std::string folder;
+  std::vector<std::string> approval;  ///< Core::Settings
 };
 
 runtime::Component component();

@@ -37,6 +37,7 @@ std::string why_to_wait(const Core::Heard::Grant& grant) {
 
 Core::Core(Settings settings)
     : lockstep_(settings.lockstep),
+      approval_(std::move(settings.approval)),
       remembers_(settings.memory.condition == Memory::Condition::kWhole),
       memory_damaged_(settings.memory.condition == Memory::Condition::kDamaged),
       executor_(
@@ -275,6 +276,11 @@ Notes Core::know_activities(const ActivityFolders::News& news) {
 
 std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,
                                      std::uint32_t cycles) {
+  if (const auto goal =
+          std::find_if(logged_.begin(), logged_.end(),
+                       [&](const auto& each) { return describe(each.first) == name; });
+      goal != logged_.end() && action == ProcessAction::resume)
+    return executor_.approve(goal->first) ? "" : "goal " + name + " waits for no approval";
   auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
     return one.name == name || std::to_string(one.id) == name ||
            "I" + std::to_string(one.id) == name;
@@ -343,8 +349,11 @@ template <class Out>
 bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Out& out) {
   const GoalId& id = event.goal.id;
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
-  const std::string who = named(event.goal.requester, goal.person);
+  const std::string says = event.goal.requester;
+  const std::string who = named(says, goal.person);
   event.goal.requester = who;
+  if (writes && event.by.empty())
+    event.needs_approval = needs_approval(says, goal.person);
   const auto note = [&](v1::AuditAct act, const std::string& text) {
     if (!is_old)
       out.audit.push_back({.act = act,
@@ -376,6 +385,7 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, O
   }
   if (goal.person && owner.person && goal.person->name != owner.person->name && !by_its_program) {
     event.by = goal.person->name.empty() ? "a stranger" : goal.person->name;
+    event.needs_approval = false;
     event.goal.requester = owner.goal.requester;
   }
   if (!writes)
@@ -385,6 +395,12 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, O
   if (writes)
     owner.goal = event.goal;
   return true;
+}
+
+bool Core::needs_approval(const std::string& says, const Checked& who) const {
+  return std::any_of(approval_.begin(), approval_.end(), [&](const std::string& one) {
+    return !one.empty() && (says.starts_with(one) || (who && who->role == one));
+  });
 }
 
 std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {

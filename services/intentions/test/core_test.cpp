@@ -17,7 +17,8 @@ constexpr Core::Writer kJohn{2};
 
 class CoreTest : public testing::Test {
  protected:
-  explicit CoreTest(bool lockstep = false) : core_(settings(lockstep)) {
+  explicit CoreTest(bool lockstep = false) : CoreTest(settings(lockstep)) {}
+  explicit CoreTest(Core::Settings settings) : core_(std::move(settings)) {
     inputs_.stamp.epoch = 7;
     inputs_.robot.connected = true;
     inputs_.robot.odom = 1;
@@ -254,6 +255,71 @@ TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
   hear(by(kOperator, kDisposed));
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by john");
+}
+
+// Goals of a model wait until a person approves them.
+class ApprovedGoal : public CoreTest {
+ protected:
+  ApprovedGoal() : CoreTest(asking()) {}
+  static Core::Settings asking() {
+    Core::Settings made = settings(false);
+    made.approval = {"", "language model", "guest"};
+    return made;
+  }
+  static Core::Heard::Goal of(const std::string& asker, std::uint64_t number) {
+    Core::Heard::Goal heard = written(number, kKaren);
+    heard.event.goal.requester = asker;
+    return heard;
+  }
+  const GoalStatus& status(std::uint64_t number) { return statuses_.at({5, number}); }
+  std::optional<std::string> approve(const std::string& goal) {
+    return core_.ask(goal, ProcessAction::resume, 0);
+  }
+};
+
+TEST_F(ApprovedGoal, WaitsForItsApprovalAndOthersDoNotWaitForIt) {
+  ask({of("language model (by words)", 1), of("a program", 2)});
+  EXPECT_EQ(state(1), v1::GOAL_WAITING);
+  EXPECT_EQ(status(1).code, v1::CODE_APPROVAL);
+  EXPECT_EQ(status(1).reason, "waits for a person's approval: saphira goal approve 5:1");
+  EXPECT_EQ(state(2), v1::GOAL_UNDERWAY) << "it is behind nobody";
+  EXPECT_EQ(approve("5:2"), "goal 5:2 waits for no approval");
+  EXPECT_EQ(approve("5:1"), "");
+  Core::Heard::Goal second = of("a program", 2);
+  second.event.kind = GoalEvent::Kind::kDisposed;
+  ask({second});
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
+}
+
+TEST_F(ApprovedGoal, NeedsAnotherApprovalForAnotherPlace) {
+  ask({of("language model", 1)});
+  EXPECT_EQ(approve("5:1"), "");
+  step();
+  ASSERT_EQ(state(1), v1::GOAL_UNDERWAY);
+  ask({of("language model", 1)});
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY) << "the same once more";
+  Core::Heard::Goal farther = of("language model", 1);
+  farther.event.goal.arguments[0].point.x = 9.0;
+  ask({farther});
+  EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(status(1).code, v1::CODE_APPROVAL);
+  EXPECT_TRUE(step().intended.behaviors.empty());
+  EXPECT_EQ(approve("5:1"), "");
+  step();
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
+}
+
+TEST_F(ApprovedGoal, ByRoleAndNeverAStop) {
+  Core::Heard::Goal guest = of("a program", 1);
+  guest.person = Identity{"ann", "guest"};
+  ask({guest});
+  EXPECT_EQ(status(1).code, v1::CODE_APPROVAL);
+  Core::Heard::Goal stop = of("language model", 2);
+  stop.event.goal.functor = "stop";
+  stop.event.goal.arguments.clear();
+  ask({stop});
+  EXPECT_EQ(state(2), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(state(1), v1::GOAL_CANCELED);
 }
 
 // The dialogue asks for those whose words it has heard, and knows when their goals end.

@@ -240,7 +240,7 @@ void Executor::take_written(const GoalEvent& event) {
     if (!open(entry.status))
       return;  // an ended goal stays ended: its id is not used again
     if (goal != entry.goal)
-      change(entry, goal, event.by);
+      change(entry, event);
     else
       entry.refusal.clear();  // taken back
     return;
@@ -278,6 +278,10 @@ void Executor::take_written(const GoalEvent& event) {
     return;
   }
   put_up(entry, goal, std::move(complete));
+  // A stop is anybody's at once. Begun work was approved before a restart of the service.
+  entry.unapproved = event.needs_approval && !entry.schema->replaces &&
+                     std::none_of(remembered_work_.goals.begin(), remembered_work_.goals.end(),
+                                  [&](const GoalWork& work) { return work.id == goal.id; });
   if (!robot_here_)
     wait(entry, v1::CODE_NO_ROBOT, "accepted; waits for the robot");
   else
@@ -310,7 +314,8 @@ bool Executor::depends_on_odom(const Entry& entry, bool placed) {
   });
 }
 
-void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
+void Executor::change(Entry& entry, const GoalEvent& event) {
+  const Goal& goal = event.goal;
   GoalCode code = v1::CODE_NONE;
   Arguments complete;
   const std::string wrong = complaint(goal, code, complete);
@@ -335,13 +340,14 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
     remembered_places_.erase(goal.id);
     put_up(entry, goal, std::move(complete));
     entry.changed = entry.node != 0;
+    entry.unapproved = event.needs_approval && !entry.schema->replaces;
   } else {
     entry.goal = goal;
     entry.status.requester = goal.requester;
   }
   entry.status.code = v1::CODE_CHANGED;
   entry.status.waits_for = {};
-  entry.status.reason = "changed by " + (by.empty() ? "its requester" : by);
+  entry.status.reason = "changed by " + (event.by.empty() ? "its requester" : event.by);
 }
 
 /// A number alone is nobody's name for a place.
@@ -600,9 +606,18 @@ bool Executor::drives(const Entry& entry) {
   return !entry.schema->concurrent && !entry.schema->replaces;
 }
 
-/// A goal that drives, while a person has the robot. A stop and concurrent goals go on.
-bool Executor::waits_for_person(const Entry& entry) const {
-  return !person_.empty() && drives(entry);
+bool Executor::approve(const GoalId& id) {
+  const auto found = entries_.find(id);
+  return found != entries_.end() && open(found->second.status) &&
+         std::exchange(found->second.unapproved, false);
+}
+
+/// Why the goal waits for a person: it is not approved, or it drives while a person has the robot.
+/// Empty: it does not. A stop and concurrent goals go on beside a person.
+std::string Executor::why_to_wait(const Entry& entry) const {
+  if (entry.unapproved)
+    return "waits for a person's approval: saphira goal approve " + describe(entry.goal.id);
+  return drives(entry) ? person_ : std::string();
 }
 
 Executor::Entry* Executor::best() {
@@ -611,7 +626,7 @@ Executor::Entry* Executor::best() {
   };
   Entry* best = nullptr;
   for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && !entry.schema->concurrent && !waits_for_person(entry) &&
+    if (open(entry.status) && !entry.schema->concurrent && why_to_wait(entry).empty() &&
         (best == nullptr || rank(entry) < rank(*best)))
       best = &entry;
   }
@@ -621,19 +636,21 @@ Executor::Entry* Executor::best() {
 /// Gives the robot to the best goal; returns the goal that is underway now, nullptr: none.
 Executor::Entry* Executor::arbitrate(const World& world) {
   for (auto& [id, entry] : entries_) {
-    if (!open(entry.status) || !waits_for_person(entry))
+    const std::string why = open(entry.status) ? why_to_wait(entry) : std::string();
+    if (why.empty())
       continue;
+    const GoalCode code = entry.unapproved ? v1::CODE_APPROVAL : v1::CODE_NONE;
     if (entry.status.state == v1::GOAL_WAITING)
-      wait(entry, v1::CODE_NONE, person_);
+      wait(entry, code, why);
     else
-      suspend(entry, v1::CODE_PREEMPTED, person_);
+      suspend(entry, entry.unapproved ? code : v1::CODE_PREEMPTED, why);
   }
   Entry* const chosen = best();
   if (chosen == nullptr)
     return nullptr;
   for (auto& [id, entry] : entries_) {
     if (open(entry.status) && &entry != chosen && !entry.schema->concurrent &&
-        !waits_for_person(entry))
+        why_to_wait(entry).empty())
       queue(entry, chosen->goal);
   }
   begin(*chosen, world);
@@ -742,7 +759,7 @@ std::optional<Work> Executor::take_work() {
 /// Goals underway beside the driving one, from the cycle of their arrival on.
 void Executor::begin_concurrent(const World& world) {
   for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && entry.schema->concurrent)
+    if (open(entry.status) && entry.schema->concurrent && !entry.unapproved)
       begin(entry, world);
   }
 }

@@ -265,7 +265,7 @@ class GoTo : public Activity {
       wait_for_position(self, waiting_since_, watchdog_.patience());
       return;
     }
-    if (const std::string why = why_kept_out(self.world(), target_.point, target_.frame);
+    if (const std::string why = why_no_goal(self.world(), target_.point, target_.frame);
         !why.empty()) {
       self.fail(v1::CODE_NO_ROUTE, format_point(target_) + " " + why);
       return;

@@ -85,13 +85,18 @@ const std::vector<maps::Zone>& zones_of(const World& world) {
   return around.zones->zones;
 }
 
-std::string why_kept_out(const World& world, const Pose& point, Frame frame) {
+std::string why_no_goal(const World& world, const Pose& point, Frame frame) {
+  const maps::Topology* const map = world.around.topology.get();
   const auto at = in_frame(point, frame, Frame::map, world.robot);
-  if (!at || world.around.topology == nullptr)
+  if (!at || map == nullptr)
     return {};
-  const maps::Zone* const zone = maps::zone_at(zones_of(world), maps::ZoneRule::keep_out,
-                                               *world.around.topology, at->position());
-  return zone == nullptr ? std::string() : zone->inside;
+  if (const maps::Zone* const zone =
+          maps::zone_at(zones_of(world), maps::ZoneRule::keep_out, *map, at->position()))
+    return zone->inside;
+  const bool outside = frame == Frame::map && !map->regions().empty() &&
+                       map->at(at->position()).empty() &&
+                       !map->region_at(at->position(), maps::RouteSettings().tolerance);
+  return outside ? "is in no room or corridor of the map" : "";
 }
 
 std::string keep_out_ahead(const World& world, bool backwards) {

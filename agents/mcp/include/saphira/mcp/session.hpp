@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace saphira::mcp {
@@ -108,6 +109,11 @@ class Session {
   void close(std::uint64_t exchange);
   /// Asks the client for a sign, outside of an answer. For the older era.
   void ping();
+  /// Has the client ask its person for a yes or no (elicitation of the older era). Returns the
+  /// number of the question; 0: the client cannot.
+  std::uint64_t ask_person(const std::string& question);
+  /// The answers since the last call, by the question. A dismissed question is a no.
+  std::vector<std::pair<std::uint64_t, bool>> take_consents();
   /// The server ends: so does each request that listens.
   void end();
 
@@ -227,6 +233,7 @@ class Session {
   Result others() const;
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
+  void take_answer(const Json& message);
   void erase(std::uint64_t call);
   void note(const std::string& tool, const std::string& text, bool is_error);
 
@@ -240,6 +247,10 @@ class Session {
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::uint64_t pings_ = 0;
+  bool elicits_ = false;  ///< the client can ask its person
+  std::uint64_t questions_ = 0;
+  std::set<std::uint64_t> asked_;  ///< questions without an answer
+  std::vector<std::pair<std::uint64_t, bool>> consents_;
   std::map<std::uint64_t, Open> open_;
   std::map<std::uint64_t, Batch> batches_;
   std::uint64_t batch_count_ = 0;

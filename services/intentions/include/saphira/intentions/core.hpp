@@ -37,6 +37,8 @@ class Core {
     Memory memory;      ///< the memory from before a restart
     bool remembers_work = false;
     bool lockstep = false;
+    /// Roles, and beginnings of askers' names, whose goals wait until a person approves them.
+    std::vector<std::string> approval{};
     std::shared_ptr<const Functions> functions;
   };
   explicit Core(Settings settings);
@@ -148,7 +150,8 @@ class Core {
   Executor& executor() { return executor_; }
   ProcessTable& processes() { return processes_; }
   /// Carries out the action on an intention by its instance, its number, or I and its number
-  /// (manual 6.5, 2.3.8): empty where done, the reason where not; nothing: no such intention.
+  /// (manual 6.5, 2.3.8), or approves a goal by resuming its id: empty where done, the reason where
+  /// not; nothing: no such intention.
   std::optional<std::string> ask(const std::string& name, ProcessAction action,
                                  std::uint32_t cycles);
 
@@ -168,7 +171,10 @@ class Core {
   void tell(const News& news, Notes& notes);
   std::string who_is_gone(const Inputs& inputs);
 
+  bool needs_approval(const std::string& says, const Checked& who) const;
+
   bool lockstep_;
+  std::vector<std::string> approval_;
   bool remembers_ = false;  ///< the memory of goals from before this start is whole
   bool memory_damaged_ = false;
   bool knows_activities_ = false;

@@ -26,9 +26,15 @@ struct BootClock {
   }
 };
 
-/// [s] since 1970, by the machine's clock.
+/// [ns] since 1970, by the machine's clock.
+inline std::int64_t unix_nanoseconds() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+/// The same in seconds.
 inline double unix_time() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return static_cast<double>(unix_nanoseconds()) * 1e-9;
 }
 
 /// The same in whole seconds, for dates.

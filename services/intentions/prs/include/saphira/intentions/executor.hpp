@@ -30,6 +30,7 @@ struct GoalEvent {
   /// The reason why an unknown goal is not carried out, since it may have been done already [empty:
   /// carry it out].
   std::string forgotten{};
+  bool needs_approval = false;  ///< waits until a person approves it (Executor::approve)
 };
 
 /// The inputs of a step.
@@ -129,6 +130,9 @@ class Executor {
         std::max<Ticks>(static_cast<Ticks>(cycle_) - awake_ + time, 0));
   }
 
+  /// Lets a goal begin that needs a person's approval. False: it waits for none.
+  bool approve(const GoalId& id);
+
   /// Interrupts an intention with its descendants, or resumes it, by the number of its node (manual
   /// 6.5, sfInterruptProcess). False: no such intention.
   bool interrupt(std::uint32_t node);
@@ -146,6 +150,7 @@ class Executor {
     bool placed = false;
     bool changed = false;               ///< begun, and its activity does not know yet
     bool replaced = false;              ///< the goals that it replaces have been ended
+    bool unapproved = false;            ///< waits for approve()
     std::optional<std::uint64_t> odom;  ///< the frame of its points; none: it has no points
     std::uint64_t order = 0;
     Ticks accepted = 0;
@@ -166,7 +171,7 @@ class Executor {
   void take_written(const GoalEvent& event);
   void put_up(Entry& entry, const Goal& goal, Arguments complete);
   static bool depends_on_odom(const Entry& entry, bool placed);
-  void change(Entry& entry, const Goal& goal, const std::string& by);
+  void change(Entry& entry, const GoalEvent& event);
   std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
   bool is_place(const std::string& functor) const;
   static void become(Entry& entry, GoalState state, GoalCode code, std::string reason);
@@ -186,7 +191,7 @@ class Executor {
   void end_driving(const std::string& why);
   std::string step_of(const IntentionNode& node) const;
   static bool drives(const Entry& entry);
-  bool waits_for_person(const Entry& entry) const;
+  std::string why_to_wait(const Entry& entry) const;
   Entry* best();
   Entry* arbitrate(const World& world);
   void queue(Entry& entry, const Goal& front);
