@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -18,6 +19,8 @@
 
 namespace saphira::cli {
 namespace {
+
+constexpr std::size_t kOtherAudits = 3;  // that are named
 
 using security::DoorKey;
 using security::DoorKeys;
@@ -99,7 +102,10 @@ int audit(const AuditWords& words) {
           "up or the service runs it");
     if (all.size() > 1)
       std::cerr << "saphira: " << all.front() << ", the newest; others: "
-                << joined(std::vector<std::string>(all.begin() + 1, all.end())) << '\n';
+                << joined(std::vector<std::string>(
+                       all.begin() + 1, all.begin() + static_cast<std::ptrdiff_t>(
+                                                          std::min(all.size(), kOtherAudits + 1))))
+                << (all.size() > kOtherAudits + 1 ? " ..." : "") << '\n';
     file = all.front();
   }
   const security::AuditRecord record = security::read_audit(file, words.known);
