@@ -475,6 +475,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
+  // What openings have said, only openings answer.
   now_.search.against = now_.search.strange = 0.0;
   now_.done.clear();
   now_.leads = true;
@@ -519,7 +520,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
       now_.state = v1::REGISTRATION_LOST;
     return;
   }
-  if (!best->sure)
+  if (!best->sure || (search_.is_own(there) && search_.contradiction() >= settings_.doubts))
     return;
   const PoseFilter found = best->hypothesis->filter;
   const double drift_variance = found.covariance()(3, 3);
@@ -549,6 +550,7 @@ void Registration::Self::look_for_news(const Inputs& inputs,
       open.push_back(match.artifact);
   now_.output.presence =
       now_.presence.step(map_, now_.cycle, now_.filter->pose().position(), looks, open);
+  search_.found_closed(now_.output.presence.closed.size());
   if (inputs.find_objects)
     now_.output.objects = now_.objects.step(map_, field_, now_.cycle, looks);
 }

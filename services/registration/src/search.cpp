@@ -82,6 +82,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
+  now_.openings *= std::exp(-way / settings_.openings_memory);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
     now_.travelled -= settings_.spacing;
@@ -109,12 +110,14 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
       const double score = worth(*percept, result, own->pose());
       now_.own_score += score;
-      if (opening && score > 0.0)
+      if (opening && score > 0.0) {
         support_own(score, 1.0);
-      else if (opening && score < 0.0)
-        now_.against += kDenied;
-      else if (!percept->is_hypothesis() && !result.accepted && !result.ambiguous)
+        now_.openings = std::max(0.0, now_.openings - score);
+      } else if (opening && score < 0.0) {
+        now_.openings += kDenied;
+      } else if (!percept->is_hypothesis() && !result.accepted && !result.ambiguous) {
         now_.strange = std::min(now_.strange + kWall, settings_.strange);
+      }
     }
     if (opening)
       propose(*percept);
@@ -134,6 +137,10 @@ void Search::test_own(double bearing, double worth) {
     now_.strange = std::min(now_.strange - worth, settings_.strange);
   else if (std::abs(std::sin(bearing)) > std::sin(settings_.sideways))
     now_.against -= worth;
+}
+
+void Search::found_closed(std::size_t doors) {
+  now_.openings += static_cast<double>(doors) * settings_.closed;
 }
 
 /// The score of a present or missing object, for a place.
@@ -207,6 +214,10 @@ void Search::thin_out() {
 
 void Search::suspect(const PoseFilter& filter) {
   now_.hypotheses.push_back({filter, 0.0, 0.0, 0, true});
+}
+
+bool Search::is_own(const Pose& pose_in_map) const {
+  return now_.own && !elsewhere(pose_in_map, *now_.own);
 }
 
 bool Search::own_is_best() const {
