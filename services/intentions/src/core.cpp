@@ -276,11 +276,10 @@ Notes Core::know_activities(const ActivityFolders::News& news) {
 
 std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,
                                      std::uint32_t cycles) {
-  if (const auto goal =
-          std::find_if(logged_.begin(), logged_.end(),
-                       [&](const auto& each) { return describe(each.first) == name; });
-      goal != logged_.end() && action == ProcessAction::resume)
-    return executor_.approve(goal->first) ? "" : "goal " + name + " waits for no approval";
+  const auto goal = std::find_if(logged_.begin(), logged_.end(),
+                                 [&](const auto& each) { return describe(each.first) == name; });
+  if (goal != logged_.end() && action == ProcessAction::resume && executor_.approve(goal->first))
+    return "";
   auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
     return one.name == name || std::to_string(one.id) == name ||
            "I" + std::to_string(one.id) == name;

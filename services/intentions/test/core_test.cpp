@@ -283,7 +283,8 @@ TEST_F(ApprovedGoal, WaitsForItsApprovalAndOthersDoNotWaitForIt) {
   EXPECT_EQ(status(1).code, v1::CODE_APPROVAL);
   EXPECT_EQ(status(1).reason, "waits for a person's approval: saphira goal approve 5:1");
   EXPECT_EQ(state(2), v1::GOAL_UNDERWAY) << "it is behind nobody";
-  EXPECT_EQ(approve("5:2"), "goal 5:2 waits for no approval");
+  EXPECT_EQ(approve("5:2"), "5:2 was not interrupted") << "its intention has its name";
+  EXPECT_EQ(approve("5:3"), std::nullopt);
   EXPECT_EQ(approve("5:1"), "");
   Core::Heard::Goal second = of("a program", 2);
   second.event.kind = GoalEvent::Kind::kDisposed;
