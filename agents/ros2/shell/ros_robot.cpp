@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "foreign_topic.hpp"
 #include "saphira/base/boot_clock.hpp"
 
 namespace saphira::ros2 {
@@ -12,20 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kDrivePeriod = cli::kDrivePeriod;
 constexpr auto kSlow = 1s;
-constexpr int kMany = 100;
 constexpr std::size_t kMostWaiting = 64;  // requests for results
 constexpr const char* kSource = "cmd_vel of ROS 2";
-
-bus::ForeignTopic foreign(const char* name, const char* type, Kind kind, const char* hash) {
-  bus::ForeignTopic topic;
-  topic.name = name;
-  topic.type = type;
-  topic.reliable = kind != Kind::wish;
-  topic.transient_local = kind == Kind::latched;
-  topic.depth = kind == Kind::many ? kMany : kind == Kind::latched ? 1 : 10;
-  topic.user_data = std::string("typehash=RIHS01_") + hash + ";";
-  return topic;
-}
 
 /// A part of a service. ROS 2 complains about an endpoint without any user data.
 bus::ForeignTopic part(const std::string& name, const char* type) {
@@ -77,8 +66,7 @@ std::string node_info(const bus::WriterId& participant, const std::string& name,
 
 template <class T>
 RosRobot::Out<T>::Out(RosRobot& robot, const Topic<T>& topic)
-    : writer_(robot.foreign_.writer(foreign(topic.name, topic.type, topic.kind, topic.hash))),
-      distribution_(robot.distribution()) {
+    : writer_(robot.foreign_.writer(foreign(topic))), distribution_(robot.distribution()) {
   robot.writer_ids_.push_back(writer_->id());
 }
 
@@ -96,7 +84,7 @@ RosRobot::Served<Request, Response>::Served(RosRobot& robot,
 
 template <class T>
 std::unique_ptr<bus::Foreign::Reader> RosRobot::reader(const Topic<T>& topic) {
-  auto made = foreign_.reader(foreign(topic.name, topic.type, topic.kind, topic.hash));
+  auto made = foreign_.reader(foreign(topic));
   reader_ids_.push_back(made->id());
   return made;
 }
