@@ -15,7 +15,7 @@ constexpr double kWayDeadband = 0.0005;     // [m]
 
 // A body elsewhere: from a command until its motion is measured, its servo's tolerance, and the
 // noise of its speeds at rest.
-constexpr double kLag = 0.5;                // [s]
+constexpr double kLag = 0.3;                // [s]
 constexpr double kBodyDeadband = 0.01;      // [rad]
 constexpr double kBodyRest = 0.01;          // [m/s]
 constexpr double kBodyRotationRest = 0.02;  // [rad/s]
