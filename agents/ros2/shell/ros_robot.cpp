@@ -233,11 +233,16 @@ void RosRobot::drive(double now) {
   }
 }
 
+PoseStamped RosRobot::placed(const PoseStamped& pose) const {
+  const auto& robot = inward_->driver.robot();
+  return robot ? in_odom(pose, robot->pose_in_odom) : pose;
+}
+
 void RosRobot::take_wishes() {
   Inward& in = *inward_;
   for (const bus::ForeignSample& sample : in.goal_pose->take()) {
     const auto pose = read<PoseStamped>(sample.bytes);
-    if (std::optional<v1::Goal> goal = pose ? goal_of(*pose) : std::nullopt)
+    if (std::optional<v1::Goal> goal = pose ? goal_of(placed(*pose)) : std::nullopt)
       in.goals.ask(std::move(*goal));
     else
       node_.warn("a pose on goal_pose is not of map, odom or base_link");
@@ -260,7 +265,9 @@ void RosRobot::serve() {
   in.goals.poll();
   bool changed = false;
   in.send_goal.take([&](const SendRequest& request, const Ticket& ticket) {
-    Navigate::Sent sent = in.navigate.send(request, now_ns());
+    SendRequest asked = request;
+    asked.goal.pose = placed(request.goal.pose);
+    Navigate::Sent sent = in.navigate.send(asked, now_ns());
     if (sent.goal)
       in.navigate.asked(in.goals.ask(std::move(*sent.goal)));
     for (const v1::GoalId& id : sent.replaced)

@@ -36,6 +36,7 @@ namespace {
 constexpr double kFirstBackoff = 0.05;  // [s]
 constexpr double kLastBackoff = 0.5;    // [s]
 constexpr int kLongestEnd = 100;        // [10 ms] of a program for ROS 2
+constexpr double kNextProgram = 5.0;    // [s] after one that ended at its start
 constexpr double kConnectTime = 3.0;    // [s] for a TCP connection to come about
 // At 9600 baud these are 0.33 s: a command that waits longer is stale.
 constexpr std::size_t kMaxWaiting = 320;
@@ -239,8 +240,10 @@ void Link::hear_program(double now) {
       trouble_ = std::exchange(line, {});
     }
   }
-  if (n == 0)
+  if (n == 0) {
     close(address_.text() + " has ended: its message is in the log", now);
+    next_try_ = now + kNextProgram;
+  }
 }
 
 void Link::reap() {
