@@ -110,7 +110,8 @@ Base::Base(const protocol::RobotParameters& robot, const std::optional<Pose>& la
       scene_(world_),
       server_(scene_, robot, {50.0, 50.0, 0.0}, named("ROS 2")),
       began_(now),
-      wrote_(now) {
+      wrote_(now),
+      rests_(kRests) {
   if (laser_in_robot)
     laser_in_robot_ = isometry(*laser_in_robot);
 }
@@ -242,7 +243,7 @@ Base::Output Base::advance(double now) {
   if (server_.is_open() || !rests)
     rests_ = kRests;
   // A stop is written at once.
-  if (rests_ == 0 || (now - wrote_ < kPeriod - 1e-9 && (!rests || written_ == twist)))
+  if (!is_heard_ || rests_ == 0 || (now - wrote_ < kPeriod - 1e-9 && (!rests || written_ == twist)))
     return output;
   if (!server_.is_open() && rests)
     --rests_;

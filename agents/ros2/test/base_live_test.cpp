@@ -132,6 +132,13 @@ TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
     test::forward(scene.command, velocity);
     return scene.until([&] { return std::abs(base.velocity) > at_least; });
   };
+  std::uint64_t epoch = scene.state.stamp.epoch;
+  const auto connected_again = [&] {
+    const std::uint64_t before = epoch;
+    const bool is_new = scene.until([&] { return scene.state.stamp.epoch > before; });
+    epoch = scene.state.stamp.epoch;
+    return is_new;
+  };
   const auto stops = [&](Clock::time_point since, double within) {
     EXPECT_TRUE(scene.until([&] { return base.velocity == 0.0; }, std::chrono::seconds(10)));
     const double after = base.stopped_after(since);
@@ -154,13 +161,14 @@ TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
   v1::MotorCommand press;
   press.source = "test";
   press.active = true;
-  press.number = 1;
-  estop.write(press);
-  stops(Clock::now(), 0.5);
-  press.active = false;
-  press.number = 2;
-  estop.write(press);
-  scene.watch(std::chrono::milliseconds(500));
+  const Clock::time_point pressed = Clock::now();
+  EXPECT_TRUE(scene.until([&] {
+    ++press.number;
+    estop.write(press);
+    return scene.grant.estopped;
+  }));
+  stops(pressed, 0.5);
+  scene.watch(std::chrono::milliseconds(500));  // until no press counts
   EXPECT_EQ(scene.ask(bus::topics::kEstopReset, "reset").code, v1::ANSWER_DONE);
 
   // The scan ends while it drives, and comes again.
@@ -169,7 +177,8 @@ TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
   stops(Clock::now(), 1.0);
   EXPECT_TRUE(reason("no scan")) << scene.status.reason;
   base.has_scan = true;
-  EXPECT_TRUE(drive(-0.2, 0.15));
+  EXPECT_TRUE(connected_again());
+  EXPECT_TRUE(drive(-0.2, 0.15)) << scene.bridge_log();
 
   // The translator is killed: the next one says at once that the robot stands.
   const std::string bridge = std::to_string(scene.bridge->pid());
@@ -182,9 +191,10 @@ TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
   }
   const Clock::time_point killed = Clock::now();
   scene.command.velocity = 0.0;
-  stops(killed, 5.0);
+  stops(killed, 2.0);
 
   // So is the bridge.
+  EXPECT_TRUE(connected_again());
   EXPECT_TRUE(drive(-0.2, 0.15));
   scene.bridge->signal(SIGKILL);
   stops(Clock::now(), 0.5);

@@ -165,8 +165,13 @@ class BaseTest : public ::testing::Test {
 };
 
 TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {
+  base.heard(false);
   run(1.0);
-  EXPECT_EQ(written, 0);  // nobody is connected
+  EXPECT_EQ(written, 0);
+  base.heard(true);
+  run(1.0);
+  EXPECT_EQ(written, 10);  // of the begin
+  EXPECT_EQ(cmd_vel, Twist{});
   pose = {1.0, -0.5, 0.3};
   velocity = 0.2;
   BatteryState battery;

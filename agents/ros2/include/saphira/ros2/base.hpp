@@ -23,6 +23,7 @@ std::vector<sim::SonarEcho> echoes(const LaserScan& scan, const Eigen::Isometry3
 /// motors are cmd_vel, and whose body is elsewhere. Times are seconds of a clock that does not
 /// jump.
 ///
+/// It begins with cmd_vel of no motion: the program before it may have been killed.
 /// While its odometry or its ranges are too old, or nobody takes cmd_vel, the robot is silent for
 /// its client, and is told to stand.
 class Base {
@@ -95,7 +96,7 @@ class Base {
   std::int64_t ticks_ = 0;
   double wrote_;
   Twist written_;
-  int rests_ = 0;  // to be written after the last motion
+  int rests_;  // to be written, at the begin and after the last motion
 };
 
 }  // namespace saphira::ros2
