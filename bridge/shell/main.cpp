@@ -51,8 +51,8 @@ int main(int argc, char** argv) {
       [&](saphira::CommandLine& app) {
         app.add_option(
             "--robot-port,--link", options.robot_port,
-            "the robot: /dev/tty...[@baud], serial:/path, unix:/path, a path of either, or "
-            "tcp:host:port");
+            "the robot: /dev/tty...[@baud], serial:/path, unix:/path, a path of either, "
+            "tcp:host:port, or ros2:NAMESPACE,OPTION=VALUE... (options of saphira-ros2-base)");
         app.add_option("--robots", options.robots_folder, "folder of robot parameter files");
         app.add_option("--robot-file", options.parameter_file,
                        "parameter file of the robot, or the name of one in that folder (usual: the "

@@ -38,6 +38,19 @@ std::uint64_t milliseconds_since_1970() {
   return static_cast<std::uint64_t>(unix_time() * 1e3);
 }
 
+/// A program that stands for the robot has to know the robot's file.
+transport::Address address_of(const BridgeOptions& options, bool lockstep) {
+  transport::Address address = transport::parse_address(options.robot_port);
+  if (address.kind != transport::Address::Kind::ros2)
+    return address;
+  if (lockstep)
+    throw std::invalid_argument("--lockstep: only a simulator can be stepped");
+  address.arguments.push_back("--robots=" + options.robots_folder);
+  if (!options.parameter_file.empty())
+    address.arguments.push_back("--robot-file=" + options.parameter_file);
+  return address;
+}
+
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
   return wanted ? std::make_unique<transport::Keeper>() : nullptr;
 }
@@ -75,7 +88,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
       stops_(node_, bus::topics::kDriveStop.answers),
       other_programs_(node_),
-      link_(transport::parse_address(options_.robot_port)),
+      link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
       devices_(node_, core_.reflector()),
       position_file_(options_.state_file, node_.options().files()),

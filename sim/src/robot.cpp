@@ -13,6 +13,13 @@ namespace {
 constexpr double kHeadingDeadband = 0.001;  // [rad]
 constexpr double kWayDeadband = 0.0005;     // [m]
 
+// A body elsewhere: from a command until its motion is measured, its servo's tolerance, and the
+// noise of its speeds at rest.
+constexpr double kLag = 0.3;                // [s]
+constexpr double kBodyDeadband = 0.01;      // [rad]
+constexpr double kBodyRest = 0.01;          // [m/s]
+constexpr double kBodyRotationRest = 0.02;  // [rad/s]
+
 // The grip of rubber on a floor: four tenths of its weight.
 constexpr double kGrip = 4.0;  // [m/s2]
 
@@ -45,10 +52,10 @@ constexpr double kContactEnds = 0.005;  // [m]
 constexpr double kLeastAcceleration = 0.001;         // [m/s2]
 constexpr double kLeastRotationAcceleration = 0.01;  // [rad/s2]
 
-// The falling side of a trapezoid: the largest speed from which, after one more tick at it, the
+// The falling side of a trapezoid: the largest speed from which, after `lag` [s] more at it, the
 // robot can still stop at the setpoint.
-double falling_speed(double left, double deceleration) {
-  return deceleration * (std::sqrt(kTick * kTick + 2.0 * left / deceleration) - kTick);
+double falling_speed(double left, double deceleration, double lag = kTick) {
+  return deceleration * (std::sqrt(lag * lag + 2.0 * left / deceleration) - lag);
 }
 
 // Approaches the target: away from zero by `up`, towards zero by `down`, and not through zero
@@ -129,6 +136,8 @@ void Robot::set_wheel_velocities(double left, double right) {
 void Robot::set_origin() {
   heading_setpoint_ = norm2_angle(heading_setpoint_ - pose_in_odom_.th);
   pose_in_odom_ = {};
+  if (body_)
+    origin_ = body_->pose;
 }
 
 void Robot::stop() {
@@ -202,11 +211,26 @@ double Robot::wheel_share(double turn) const {
 }
 
 double Robot::left_velocity() const {
-  return wheel_velocity_ - wheel_share(rotation_velocity_);
+  return (body_ ? velocity() : wheel_velocity_) - wheel_share(rotation_velocity());
 }
 
 double Robot::right_velocity() const {
-  return wheel_velocity_ + wheel_share(rotation_velocity_);
+  return (body_ ? velocity() : wheel_velocity_) + wheel_share(rotation_velocity());
+}
+
+bool Robot::body_moves() const {
+  return body_ && (std::abs(body_->velocity) > kBodyRest ||
+                   std::abs(body_->rotation_velocity) > kBodyRotationRest);
+}
+
+void Robot::measure(const Measured& body) {
+  body_ = body;
+  pose_in_odom_ = relative(origin_, body.pose);
+}
+
+void Robot::halt() {
+  stop();
+  velocity_ = wheel_velocity_ = rotation_velocity_ = 0.0;
 }
 
 double Robot::target_velocity() const {
@@ -241,10 +265,11 @@ double Robot::wanted_rotation_velocity() const {
     return target_rotation_velocity();
   const double error = norm2_angle(heading_setpoint_ - pose_in_odom_.th);
   const double size = std::abs(error);
-  if (size < kHeadingDeadband)
+  if (size < (body_ ? kBodyDeadband : kHeadingDeadband))
     return 0.0;
+  const double lag = body_ ? kLag : kTick;
   const double speed =
-      std::min({falling_speed(size, rotation_deceleration_), turn_velocity_, size / kTick});
+      std::min({falling_speed(size, rotation_deceleration_, lag), turn_velocity_, size / lag});
   return std::copysign(speed, error);
 }
 
@@ -284,6 +309,11 @@ void Robot::tick() {
   const Motion next = next_motion();
   wheel_velocity_ = next.forward;
   rotation_velocity_ = next.turn;
+  if (body_) {
+    velocity_ = wheel_velocity_;
+    emergency_ = emergency_ && moving();
+    return;
+  }
   const double pull = wheel_velocity_ - velocity_;
   velocity_ = std::abs(pull) <= kGrip * kTick ? wheel_velocity_
                                               : velocity_ + std::copysign(kGrip * kTick, pull);
@@ -410,6 +440,8 @@ std::uint8_t Robot::bumpers(int switches, bool rear) {
 }
 
 double Robot::battery() const {
+  if (body_)
+    return body_->battery;
   const double sag = moving() ? kBatterySag : 0.0;
   return full_voltage_ * (1.0 - kBatteryFall * (1.0 - charge_) - sag);
 }

@@ -91,6 +91,20 @@ void Server::advance(int ticks) {
   }
 }
 
+void Server::measure(const Measured& body) {
+  measured_ = true;
+  robot_.measure(body);
+}
+
+void Server::hear(const std::vector<SonarEcho>& echoes) {
+  for (const SonarEcho& echo : echoes) {
+    if (!is_open() || std::find(firing_.begin(), firing_.end(), echo.number) == firing_.end())
+      continue;
+    std::erase_if(readings_, [&](const RawSonar& old) { return old.number == echo.number; });
+    readings_.push_back({echo.number, to_range(echo, parameters_.range_unit)});
+  }
+}
+
 void Server::disconnect() {
   parser_.reset();
   output_.clear();
@@ -344,6 +358,7 @@ void Server::set_sonars() {
     if ((sonar_arrays_on_ >> std::min(number / kSonarsInArray, 7) & 1) != 0)
       sequence.push_back(number);
   sonars_.set_polling(sequence);
+  firing_ = sequence;
 }
 
 void Server::set_default_polling() {
@@ -426,7 +441,7 @@ void Server::begin_tick() {
 void Server::end_tick() {
   if (is_open()) {
     devices_.tick();
-    if (const auto echo = sonars_.tick(robot_.pose_in_world()))
+    if (const auto echo = measured_ ? std::nullopt : sonars_.tick(robot_.pose_in_world()))
       readings_.push_back({echo->number, to_range(*echo, parameters_.range_unit)});
     if (!readings_.empty())
       newest_[readings_.back().number] = readings_.back().range;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "foreign_topic.hpp"
 #include "saphira/base/boot_clock.hpp"
 
 namespace saphira::ros2 {
@@ -12,20 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kDrivePeriod = cli::kDrivePeriod;
 constexpr auto kSlow = 1s;
-constexpr int kMany = 100;
 constexpr std::size_t kMostWaiting = 64;  // requests for results
 constexpr const char* kSource = "cmd_vel of ROS 2";
-
-bus::ForeignTopic foreign(const char* name, const char* type, Kind kind, const char* hash) {
-  bus::ForeignTopic topic;
-  topic.name = name;
-  topic.type = type;
-  topic.reliable = kind != Kind::wish;
-  topic.transient_local = kind == Kind::latched;
-  topic.depth = kind == Kind::many ? kMany : kind == Kind::latched ? 1 : 10;
-  topic.user_data = std::string("typehash=RIHS01_") + hash + ";";
-  return topic;
-}
 
 /// A part of a service. ROS 2 complains about an endpoint without any user data.
 bus::ForeignTopic part(const std::string& name, const char* type) {
@@ -73,8 +62,7 @@ std::string node_info(const bus::WriterId& participant, const std::string& name,
 
 template <class T>
 RosRobot::Out<T>::Out(RosRobot& robot, const Topic<T>& topic)
-    : writer_(robot.foreign_.writer(foreign(topic.name, topic.type, topic.kind, topic.hash))),
-      distribution_(robot.distribution()) {
+    : writer_(robot.foreign_.writer(foreign(topic))), distribution_(robot.distribution()) {
   robot.writer_ids_.push_back(writer_->id());
 }
 
@@ -92,7 +80,7 @@ RosRobot::Served<Request, Response>::Served(RosRobot& robot,
 
 template <class T>
 std::unique_ptr<bus::Foreign::Reader> RosRobot::reader(const Topic<T>& topic) {
-  auto made = foreign_.reader(foreign(topic.name, topic.type, topic.kind, topic.hash));
+  auto made = foreign_.reader(foreign(topic));
   reader_ids_.push_back(made->id());
   return made;
 }
@@ -241,11 +229,16 @@ void RosRobot::drive(double now) {
   }
 }
 
+PoseStamped RosRobot::placed(const PoseStamped& pose) const {
+  const auto& robot = inward_->driver.robot();
+  return robot ? in_odom(pose, robot->pose_in_odom) : pose;
+}
+
 void RosRobot::take_wishes() {
   Inward& in = *inward_;
   for (const bus::ForeignSample& sample : in.goal_pose->take()) {
     const auto pose = read<PoseStamped>(sample.bytes);
-    if (std::optional<v1::Goal> goal = pose ? goal_of(*pose) : std::nullopt)
+    if (std::optional<v1::Goal> goal = pose ? goal_of(placed(*pose)) : std::nullopt)
       in.goals.ask(std::move(*goal));
     else
       node_.warn("a pose on goal_pose is not of map, odom or base_link");
@@ -268,7 +261,9 @@ void RosRobot::serve() {
   in.goals.poll();
   bool changed = false;
   in.send_goal.take([&](const SendRequest& request, const Ticket& ticket) {
-    Navigate::Sent sent = in.navigate.send(request, unix_nanoseconds());
+    SendRequest asked = request;
+    asked.goal.pose = placed(request.goal.pose);
+    Navigate::Sent sent = in.navigate.send(asked, unix_nanoseconds());
     if (sent.goal)
       in.navigate.asked(in.goals.ask(std::move(*sent.goal)));
     for (const v1::GoalId& id : sent.replaced)

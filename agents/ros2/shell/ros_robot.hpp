@@ -110,6 +110,8 @@ class RosRobot {
   void put(const Messages& messages);
   void take_robot();
   void drive(double now);
+  /// A pose of base_link in odom, if the robot's place there is known.
+  PoseStamped placed(const PoseStamped& pose) const;
   void take_wishes();
   void serve();
   void tell_slowly();

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <map>
 
+#include "saphira/geometry/pose.hpp"
+#include "saphira/ros2/outward.hpp"
+
 namespace saphira::ros2 {
 
 namespace {
@@ -66,6 +69,15 @@ std::optional<v1::Argument> argument_of(const std::string& name, const Header& h
   made.point = point;
   made.frame = frame->second;
   return made;
+}
+
+PoseStamped in_odom(const PoseStamped& pose, const v1::Pose2& robot_in_odom) {
+  const std::optional<v1::Argument> read = argument_of("", pose.header, pose.pose);
+  if (!read || read->frame != v1::FRAME_ROBOT)
+    return pose;
+  const Pose placed = compose({robot_in_odom.x, robot_in_odom.y, robot_in_odom.th},
+                              {read->point.x, read->point.y, read->point.th});
+  return {{pose.header.stamp, "odom"}, pose_of({placed.x, placed.y, placed.th})};
 }
 
 std::optional<v1::Goal> goal_of(const PoseStamped& pose) {

@@ -219,6 +219,13 @@ TEST(Inward, APoseIsAGoal) {
   EXPECT_EQ(goal_of(pose_in("odom", {}))->arguments.at(0).frame, v1::FRAME_ODOM);
   EXPECT_EQ(goal_of(pose_in("base_link", {}))->arguments.at(0).frame, v1::FRAME_ROBOT);
   EXPECT_EQ(goal_of(pose_in("base_link", {}))->arguments.size(), 1U);
+  const v1::Pose2 robot{2.0, 3.0, kHalfTurn / 2};
+  const v1::Goal placed = *goal_of(in_odom(pose_in("base_link", {1.0, 0.0, 1.0}), robot));
+  EXPECT_EQ(placed.arguments.at(0).frame, v1::FRAME_ODOM);
+  EXPECT_NEAR(placed.arguments.at(0).point.x, 2.0, 1e-12);
+  EXPECT_NEAR(placed.arguments.at(0).point.y, 4.0, 1e-12);
+  EXPECT_NEAR(placed.arguments.at(1).number, kHalfTurn / 2 + 1.0, 1e-12);
+  EXPECT_EQ(in_odom(pose_in("map", {1.0, 0.0, 1.0}), robot), pose_in("map", {1.0, 0.0, 1.0}));
   EXPECT_FALSE(goal_of(pose_in("camera", {})));
   EXPECT_FALSE(goal_of(pose_in("map", {std::nan(""), 0.0, 0.0})));
 }

@@ -4,6 +4,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
@@ -81,6 +82,22 @@ void parse_tcp(const std::string& text, Address& address) {
     throw std::invalid_argument("\"" + text + "\": expected a port in 1..65535");
 }
 
+void parse_ros2(const std::string& text, Address& address) {
+  address.kind = Address::Kind::ros2;
+  address.name = text;
+  const auto end_of = [&](std::size_t from) { return std::min(text.find(',', from), text.size()); };
+  std::size_t at = 5;
+  if (const std::size_t end = end_of(at); end > at)
+    address.arguments.push_back("--namespace=" + text.substr(at, end - at));
+  for (at = end_of(at) + 1; at <= text.size(); at = end_of(at) + 1) {
+    const std::string word = text.substr(at, end_of(at) - at);
+    if (word.find('=') == 0 || word.find('=') == std::string::npos)
+      throw std::invalid_argument(
+          "\"" + text + "\": expected ros2:NAMESPACE,OPTION=VALUE..., found \"" + word + "\"");
+    address.arguments.push_back("--" + word);
+  }
+}
+
 const char* kind_of_file(const struct stat& about) {
   return S_ISDIR(about.st_mode) ? "a folder" : S_ISREG(about.st_mode) ? "a file" : "a device";
 }
@@ -96,7 +113,7 @@ void parse_plain(const std::string& text, Address& address) {
                          text.find_first_not_of("0123456789", colon + 1) == std::string::npos;
     throw std::invalid_argument("\"" + text +
                                 "\": expected a robot's address: /dev/tty...[@baud], a path, " +
-                                "serial:/path[@baud], unix:/path or tcp:host:port" +
+                                "serial:/path[@baud], unix:/path, tcp:host:port or ros2:" +
                                 (is_host ? " (did you mean tcp:" + text + "?)" : ""));
   }
   if (is_there && !S_ISCHR(about.st_mode) && !S_ISSOCK(about.st_mode))
@@ -128,6 +145,8 @@ std::string Address::text() const {
       return "unix:" + name;
     case Kind::tcp:
       return "tcp:" + name + ":" + std::to_string(port);
+    case Kind::ros2:
+      return name;
   }
   return name;
 }
@@ -136,6 +155,10 @@ Address parse_address(const std::string& text) {
   Address address;
   if (text.starts_with("tcp:")) {
     parse_tcp(text, address);
+    return address;
+  }
+  if (text.starts_with("ros2:")) {
+    parse_ros2(text, address);
     return address;
   }
   if (text.starts_with("/dev/") || text.starts_with("serial:")) {

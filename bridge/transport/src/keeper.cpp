@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "inherited.hpp"
 #include "saphira/base/places.hpp"
 
 namespace saphira::transport {
@@ -23,31 +24,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPause{1000};  // between two starts
 constexpr int kUnanswered = 40;       // heartbeats: 2 s, by a keeper that is busy
-
-/// The keeper inherits its socket and stderr alone: an inherited pipe of the bridge would stay
-/// open.
-struct Inherited {
-  posix_spawn_file_actions_t files{};
-  posix_spawnattr_t attributes{};
-  explicit Inherited(int socket) {
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_adddup2(&files, socket, kKeeperSocket);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&files, kKeeperSocket + 1);
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  }
-  ~Inherited() {
-    posix_spawn_file_actions_destroy(&files);
-    posix_spawnattr_destroy(&attributes);
-  }
-  Inherited(const Inherited&) = delete;
-  Inherited& operator=(const Inherited&) = delete;
-};
 
 }  // namespace
 
@@ -70,7 +46,7 @@ std::string Keeper::start() {
     return std::string("keeper: no socket pair: ") + std::strerror(errno);
   std::string silence = std::to_string(silence_.count());
   std::array<char*, 3> argv{program_.data(), silence.data(), nullptr};
-  const Inherited inherited(ends[1]);
+  const Inherited inherited(ends[1], kKeeperSocket);
   const int error = ::posix_spawn(&pid_, program_.c_str(), &inherited.files, &inherited.attributes,
                                   argv.data(), environ);
   ::close(ends[1]);

@@ -9,10 +9,12 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -23,7 +25,9 @@
 #include <utility>
 
 #include "baud.hpp"
+#include "inherited.hpp"
 #include "saphira/base/local_socket.hpp"
+#include "saphira/base/places.hpp"
 
 namespace saphira::transport {
 
@@ -31,6 +35,8 @@ namespace {
 
 constexpr double kFirstBackoff = 0.05;  // [s]
 constexpr double kLastBackoff = 0.5;    // [s]
+constexpr int kLongestEnd = 100;        // [10 ms] of a program for ROS 2
+constexpr double kNextProgram = 5.0;    // [s] after one that ended at its start
 constexpr double kConnectTime = 3.0;    // [s] for a TCP connection to come about
 // At 9600 baud these are 0.33 s: a command that waits longer is stale.
 constexpr std::size_t kMaxWaiting = 320;
@@ -118,7 +124,8 @@ struct Link::LookUp {
 
 short Link::poll_events() const {
   short events = POLLIN;
-  if (state_ == State::connecting || !waiting_.empty())
+  const bool connects = state_ == State::connecting && address_.kind != Address::Kind::ros2;
+  if (connects || !waiting_.empty())
     events |= POLLOUT;
   return events;
 }
@@ -189,7 +196,65 @@ void Link::open(double now) {
       return close(address_.name + ": nobody listens there (does the simulator run?)", now);
     return fail(address_.name);
   }
+  if (address_.kind == Address::Kind::ros2)
+    return start_program(now);
   look_up(now);
+}
+
+void Link::start_program(double now) {
+  reap();
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    return close(address_.name + ": " + error_text(), now);
+  std::string program = program_folder() + "/" + kRos2Program;
+  std::vector<char*> argv{program.data()};
+  for (std::string& argument : address_.arguments)
+    argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  int pid = 0;
+  const Inherited inherited(ends[1], kRos2Socket);
+  const int error = ::posix_spawn(&pid, program.c_str(), &inherited.files, &inherited.attributes,
+                                  argv.data(), environ);
+  ::close(ends[1]);
+  fd_ = ends[0];
+  if (error != 0)
+    return close(program + ": " + std::strerror(error), now);
+  programs_.push_back(pid);
+  ::fcntl(fd_, F_SETFL, O_NONBLOCK);
+  state_ = State::connecting;
+  trouble_ = address_.name + ": looks for the robot's topics";
+  give_up_ = std::numeric_limits<double>::infinity();
+}
+
+/// The lines of the program before there is a robot.
+void Link::hear_program(double now) {
+  std::string line;
+  char letter = 0;
+  ssize_t n = 0;
+  while ((n = ::recv(fd_, &letter, 1, 0)) == 1) {
+    if (letter != '\n') {
+      line += letter;
+    } else if (line.empty()) {
+      return opened();
+    } else {
+      trouble_ = std::exchange(line, {});
+    }
+  }
+  if (n == 0) {
+    close(address_.text() + " has ended: its message is in the log", now);
+    next_try_ = now + kNextProgram;
+  }
+}
+
+void Link::reap() {
+  std::erase_if(programs_, [](int pid) { return ::waitpid(pid, nullptr, WNOHANG) != 0; });
+}
+
+/// A program ends by itself when its link is closed, after stopping the robot.
+Link::~Link() {
+  close("done");
+  for (int i = 0; i < kLongestEnd && !programs_.empty(); ++i, reap())
+    ::poll(nullptr, 0, 10);
 }
 
 /// A resolver without a network is slow, and the loop must not wait: so a thread asks it. A numeric
@@ -233,6 +298,8 @@ void Link::open_tcp(double now) {
 void Link::advance(double now) {
   if (state_ == State::closed && now >= next_try_)
     open(now);
+  if (state_ == State::connecting && address_.kind == Address::Kind::ros2)
+    return hear_program(now);
   if (state_ == State::connecting && look_up_) {
     if (!look_up_->done)
       return;

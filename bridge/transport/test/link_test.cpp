@@ -48,15 +48,41 @@ TEST(Address, IsReadInEveryForm) {
   EXPECT_EQ(parse_address("tcp:[::1]:8101").name, "::1");
 }
 
+TEST(Address, OfRos2HasTheOptionsOfItsProgram) {
+  EXPECT_TRUE(parse_address("ros2:").arguments.empty());
+  const Address address = parse_address("ros2:tb1,domain=7,laser=-0.03:0:180");
+  EXPECT_EQ(address.kind, Address::Kind::ros2);
+  EXPECT_EQ(address.text(), "ros2:tb1,domain=7,laser=-0.03:0:180");
+  EXPECT_EQ(address.arguments,
+            (std::vector<std::string>{"--namespace=tb1", "--domain=7", "--laser=-0.03:0:180"}));
+  EXPECT_EQ(parse_address("ros2:,scan=front").arguments, std::vector<std::string>{"--scan=front"});
+}
+
 std::string refused(const std::string& address) {
   return test::trouble_of<std::invalid_argument>([&] { parse_address(address); });
 }
 
 TEST(Address, SaysWhatWasExpected) {
-  for (const char* bad :
-       {"", "robot", "unix:", "tcp:", "tcp:host", "tcp::1", "tcp:host:x", "tcp:host:70000",
-        "/dev/ttyS0@fast", "/dev/ttyS0@12345", "serial:", "/tmp/no-such-line@fast", "/tmp",
-        "/dev/ttyS0@9600,7N1", "localhost:8101", "/dev/ttyS0@9600,xonxoff", "/dev/ttyS0@9600,"})
+  for (const char* bad : {"",
+                          "robot",
+                          "unix:",
+                          "tcp:",
+                          "tcp:host",
+                          "tcp::1",
+                          "tcp:host:x",
+                          "tcp:host:70000",
+                          "/dev/ttyS0@fast",
+                          "/dev/ttyS0@12345",
+                          "serial:",
+                          "/tmp/no-such-line@fast",
+                          "/tmp",
+                          "/dev/ttyS0@9600,7N1",
+                          "localhost:8101",
+                          "/dev/ttyS0@9600,xonxoff",
+                          "/dev/ttyS0@9600,",
+                          "ros2:tb1,",
+                          "ros2:tb1,domain",
+                          "ros2:,=7"})
     EXPECT_TRUE(test::has(refused(bad), "expected")) << bad;
   EXPECT_TRUE(test::has(refused("localhost:8101"), "tcp:localhost:8101"));
   EXPECT_THROW(parse_address("/" + std::string(200, 'x')), std::invalid_argument);

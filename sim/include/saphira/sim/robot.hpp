@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "saphira/base/random.hpp"
 #include "saphira/protocol/parameters.hpp"
@@ -14,6 +15,14 @@ class Scene;
 
 /// The time step of the dynamics, the same live and in single step, so their physics is the same.
 inline constexpr double kTick = 0.010;  // [s]
+
+/// The state of a body that is elsewhere, as its own sensors have measured it.
+struct Measured {
+  Pose pose;                       ///< in coordinates of its own, which do not jump
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  double battery = 0.0;            ///< [V] 0: unknown
+};
 
 /// A differential drive in a scene: a disc that is stopped by walls and by other robots.
 ///
@@ -85,6 +94,14 @@ class Robot {
 
   void tick();
 
+  /// The body is elsewhere and follows the motors, late: this is its state. From the first call on
+  /// no motion is simulated, and turns to a heading are slow enough for the lag.
+  void measure(const Measured& body);
+  /// Stops at once, without braking.
+  void halt();
+  double motor_velocity() const { return wheel_velocity_; }              ///< [m/s]
+  double motor_rotation_velocity() const { return rotation_velocity_; }  ///< [rad/s]
+
   /// A person carries the robot elsewhere; dead reckoning does not change. False without room
   /// there.
   bool place(const Pose& pose_in_world);
@@ -101,17 +118,20 @@ class Robot {
 
   // ---- State.
 
-  const Pose& pose_in_world() const { return pose_in_world_; }     ///< true
-  const Pose& pose_in_odom() const { return pose_in_odom_; }       ///< dead reckoning
-  double velocity() const { return velocity_; }                    ///< [m/s]
-  double rotation_velocity() const { return rotation_velocity_; }  ///< [rad/s]
-  double left_velocity() const;                                    ///< [m/s] of the wheel
-  double right_velocity() const;                                   ///< [m/s] of the wheel
+  const Pose& pose_in_world() const { return pose_in_world_; }  ///< true
+  const Pose& pose_in_odom() const { return pose_in_odom_; }    ///< dead reckoning
+  /// [m/s]
+  double velocity() const { return body_ ? body_->velocity : velocity_; }
+  double rotation_velocity() const {  ///< [rad/s]
+    return body_ ? body_->rotation_velocity : rotation_velocity_;
+  }
+  double left_velocity() const;   ///< [m/s] of the wheel
+  double right_velocity() const;  ///< [m/s] of the wheel
   /// Ways of the wheels [m] as the encoders have counted them since power-up.
   double left_way() const { return way_ - turned_ / rotation_per_difference_; }
   double right_way() const { return way_ + turned_ / rotation_per_difference_; }
   bool moving() const {
-    return velocity_ != 0.0 || wheel_velocity_ != 0.0 || rotation_velocity_ != 0.0;
+    return velocity_ != 0.0 || wheel_velocity_ != 0.0 || rotation_velocity_ != 0.0 || body_moves();
   }
   bool enabled() const { return enabled_; }
 
@@ -151,6 +171,7 @@ class Robot {
     double turn = 0.0;     // [rad/s]
   };
 
+  bool body_moves() const;
   bool powered() const { return enabled_ && !braked_; }
   double wanted_velocity() const;
   double wanted_rotation_velocity() const;
@@ -177,6 +198,8 @@ class Robot {
   double encode_jitter_, angle_jitter_, drift_;
   Random random_;
 
+  std::optional<Measured> body_;
+  Pose origin_;  // of dead reckoning, in the body's coordinates
   Pose pose_in_world_;
   Pose pose_in_odom_;
   double velocity_ = 0.0;        // of the robot

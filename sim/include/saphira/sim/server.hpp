@@ -62,6 +62,12 @@ class Server {
   /// Lets ticks of time pass. The world stands still while no client has opened it, except for a
   /// robot that is still coming to rest, up to the end of a cycle.
   void advance(int ticks);
+  /// The robot's body is elsewhere (Robot::measure), and so are its sonars.
+  void measure(const Measured& body);
+  /// Newer readings of them; of those that are off, none count.
+  void hear(const std::vector<SonarEcho>& echoes);
+  /// The robot stops at once, whatever was commanded.
+  void halt() { robot_.halt(); }
   /// The client is gone.
   void disconnect();
   /// The line has been silent for longer than any pause within a packet; see PacketParser::gap. In
@@ -130,6 +136,8 @@ class Server {
   Scene& scene_;
   Robot& robot_;
   Sonars sonars_;
+  bool measured_ = false;             // the body is elsewhere
+  std::vector<std::uint8_t> firing_;  // the sonars
   protocol::PacketParser parser_;
   protocol::Bytes output_;
   std::vector<TraceRow> trace_;

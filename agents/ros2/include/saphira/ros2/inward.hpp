@@ -36,7 +36,9 @@ class Wheels {
 /// be.
 std::optional<v1::Argument> argument_of(const std::string& name, const Header& header,
                                         const Pose3& pose);
-/// A goal to drive there.
+/// The same pose in odom, where it is one of base_link.
+PoseStamped in_odom(const PoseStamped& pose, const v1::Pose2& robot_in_odom);
+/// A goal to drive there, and to face as the pose does unless it is in base_link.
 std::optional<v1::Goal> goal_of(const PoseStamped& pose);
 
 }  // namespace saphira::ros2

@@ -21,6 +21,7 @@ using TFMessage = tf2_msgs::msg::dds_::TFMessage_;
 using Odometry = nav_msgs::msg::dds_::Odometry_;
 using Path = nav_msgs::msg::dds_::Path_;
 using OccupancyGrid = nav_msgs::msg::dds_::OccupancyGrid_;
+using LaserScan = sensor_msgs::msg::dds_::LaserScan_;
 using Range = sensor_msgs::msg::dds_::Range_;
 using BatteryState = sensor_msgs::msg::dds_::BatteryState_;
 using PointCloud2 = sensor_msgs::msg::dds_::PointCloud2_;
@@ -79,6 +80,9 @@ inline constexpr Topic<OccupancyGrid> kLocalMap{
 inline constexpr Topic<Range> kSonar{
     "rt/sonar", "sensor_msgs::msg::dds_::Range_",
     "b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a", Kind::many};
+inline constexpr Topic<LaserScan> kScan{
+    "rt/scan", "sensor_msgs::msg::dds_::LaserScan_",
+    "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828", Kind::wish};
 inline constexpr Topic<PointCloud2> kEchoes{
     "rt/sonar_points", "sensor_msgs::msg::dds_::PointCloud2_",
     "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"};

@@ -19,7 +19,7 @@ class Link {
   enum class State { closed, connecting, open };
 
   explicit Link(Address address) : address_(std::move(address)) {}
-  ~Link() { close("done"); }
+  ~Link();
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
@@ -52,6 +52,9 @@ class Link {
   void opened();
   bool flush(double now);
   std::size_t queued() const;
+  void start_program(double now);
+  void hear_program(double now);
+  void reap();
   std::string hung_up() const;
   std::string failure() const;  ///< of errno
 
@@ -67,6 +70,7 @@ class Link {
   std::size_t tries_ = 0;            ///< index into the addresses of the host's name, used in turn
   bool heard_ = false;               ///< bytes have arrived since it was opened
   std::vector<std::uint8_t> waiting_;
+  std::vector<int> programs_;  ///< that were started and may still run
 };
 
 }  // namespace saphira::transport
