@@ -9,6 +9,7 @@
 #include "page_files.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/situation/why.hpp"
 
@@ -77,6 +78,9 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
   if (!options.box.empty())
     box_.emplace(options.box, node);
   show_control();
+  own_page_.write({.instance = node_.instance(),
+                   .host = web::host_name(),
+                   .address = origin_ + ":" + std::to_string(server_.port()) + "/"});
   server_.watch(node_.wake_fd());
   if (options.dial)
     dialer_.emplace(
@@ -170,6 +174,7 @@ void Gateway::feed_all() {
   feed(topics::kProcesses, kMany, true);
   feed(topics::kBeliefs);
   feed(topics::kActivitySchemas);
+  robots_topic_ = board_.topic("robots");
   feed(topics::kGrid, kMany, true);
   feed(topics::kLog, kLines);
 }
@@ -190,12 +195,16 @@ void Gateway::poll() {
     take_answers(*client);
   tell_cancels();
   if (const v1::RobotState* const robot = mind_.robot()) {
+    if (robot->stamp.cycle != stamp_.cycle)
+      heard_at_ = now();
     stamp_ = robot->stamp;
     cameras_.heard(stamp_.cycle, now());
   }
   any = cameras_.poll(now()) || any;
   if (auto grant = grants_.take_newest())
     grant_ = std::move(grant);
+  if (auto map = maps_.take_newest())
+    map_ = std::move(map);
   if (any)
     server_.want_all_soon();
 }
@@ -230,6 +239,7 @@ void Gateway::tick() {
   explain();
   look_for_occasions();
   show_control();
+  show_robots();
   for (const auto& [connection, page] : pages_)
     if (!page.greeted && now() - page.opened > kGreeting)
       server_.close(connection);
@@ -255,9 +265,37 @@ void Gateway::explain() {
   if (viewers_ == 0 || now() - explained_ < kExplain || !mind_.heard())
     return;
   explained_ = now();
-  board_.put(why_topic_, "",
-             situation::to_json(situation::why(mind_.situation(mind_.newest_cycle(), false))),
-             now());
+  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
+  why_ = why.sentence;
+  board_.put(why_topic_, "", situation::to_json(why), now());
+}
+
+std::vector<RobotSeen> Gateway::robots_seen() const {
+  std::vector<RobotSeen> seen = robots_.seen(now());
+  seen.insert(seen.begin(), {.name = node_.options().robot,
+                             .own = true,
+                             .age = now() - heard_at_,
+                             .robot = mind_.robot(),
+                             .grant = grant_ ? &*grant_ : nullptr,
+                             .why = why_});
+  return seen;
+}
+
+void Gateway::show_robots() {
+  if (viewers_ > 0)
+    robots_.look(std::any_of(pages_.begin(), pages_.end(),
+                             [](const auto& each) { return each.second.robots; }),
+                 now());
+  robots_.poll(now());
+  if (now() - robots_shown_ < kExplain)
+    return;
+  robots_shown_ = now();
+  const std::string text =
+      "[" + joined(robots_seen(), ",", [](const RobotSeen& seen) { return to_json(seen); }) + "]";
+  if (text == shown_robots_)
+    return;
+  shown_robots_ = text;
+  board_.put(robots_topic_, "", text, now());
 }
 
 /// Tells the pages of an event; the last minute after it goes into the box.

@@ -1,18 +1,20 @@
 // The two connections to the gateway, and what has come by them.
 import {barrier, socketOf, store, stored, storedKey} from './address';
+import {History} from './history';
 import {notify} from './notify';
-import type {ConsoleInfo, ControlState, Goal, Grant, ServiceStatus} from './types';
+import type {ConsoleInfo, ControlState, Goal, Grant, RobotState, ServiceStatus} from './types';
 
 export interface Item<T> {
   data: T;
   at: number;   // [ms] performance.now() of when it was true, as near as the page can tell
 }
-export interface Answer { well: boolean; text: string; id: string }
+export interface Answer { well: boolean; text: string; id: string; file?: string }
 
 const retry = 1000;      // [ms]
 const furtherLanes = 2;     // for samples of driving
 const drift = 0.001;     // of two clocks, at the most
 const settled = 1000;    // [ms] after a cut, until what was on its way has come
+const pieceSize = 500;   // [letters] of a file
 const mostGoals = 200;   // that are remembered
 export const gone = 2000;   // [ms] nothing heard for so long: the connection is gone
 const operatorName = 'saphira operator';
@@ -25,12 +27,14 @@ export class Link {
   barrier = '';              // why no connection of this page gets through
   mayWatch = true;
   mayDrive = false;
+  mayOperate = false;
   id = 0;                    // of our operator, by the gateway
   operator = stored(operatorName);
   roundTrip = 0;             // [ms] [0: not known]
   refused = '';              // why the newest sample of driving did not count
   heard = -1e9;              // [ms] when the newest frame came
   stopping = false;          // an emergency stop was sent, and is not confirmed yet
+  history = new History();
   delays: number[] = [];     // [ms] from the gateway to the pixels, of the newest robot states
 
   private topics = new Map<string, Map<string, Item<unknown>>>();
@@ -117,8 +121,21 @@ export class Link {
     socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
   }
 
-  ask(message: Message): Promise<Answer> {
-    const reference = ++this.references;
+  // A file, in pieces as the gateway takes them.
+  async sendFile(type: string, name: string, text: string): Promise<Answer> {
+    const letters = [...text], reference = ++this.references;
+    for (let i = 0; ; i += pieceSize) {
+      const more = i + pieceSize < letters.length;
+      const piece = {type, name: [...name].slice(-50).join(''), text: letters.slice(i, i + pieceSize).join(''), more};
+      if (!more) return this.ask(piece, reference);
+      while (!this.send({...piece, reference})) {
+        if (!this.commanding) return {well: false, text: 'There is no connection to the console.', id: ''};
+        await new Promise(resolve => setTimeout(resolve, 20));
+      }
+    }
+  }
+
+  ask(message: Message, reference = ++this.references): Promise<Answer> {
     return new Promise(resolve => {
       if (!this.send({...message, reference}))
         return resolve({well: false, text: 'There is no connection to the console.', id: ''});
@@ -201,6 +218,10 @@ export class Link {
       if (!items) this.topics.set(t, items = new Map());
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
+      if (t === 'robot/state' && d !== null) {
+        const {stamp, motor_packets_per_s: packets, bad_packets: bad} = d as RobotState;
+        this.history.heard(now, {...stamp, packets, bad}, a + took);
+      }
       if (t === 'drive/grant' && (d as Grant | null)?.estopped) this.stopping = false;
       if (t === 'goals' && d !== null && !(d as Goal).withdrawn) this.remember(k, d as Goal);
     }
@@ -245,10 +266,12 @@ export class Link {
         this.id = message.id as number;
         this.ticket = message.ticket as string;
         this.mayDrive = message.may_drive as boolean;
+        this.mayOperate = message.may_operate as boolean;
         this.mayWatch = message.may_watch as boolean;
         break;
       case 'pong':
         this.roundTrip = performance.now() - (message.at as number);
+        this.history.trip(performance.now(), this.roundTrip);
         this.quickest = Math.min(this.quickest, this.roundTrip);
         break;
       case 'drive':
