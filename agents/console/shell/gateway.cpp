@@ -116,7 +116,7 @@ std::string Gateway::address() const {
 
 /// with_writer: an instance is there as long as its writer.
 template <class T>
-void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
+int Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
   const int rank = board_.topic(topic.name, most);
   auto reader = std::make_shared<bus::Reader<T>>(node_.reader(topic));
   feeds_.push_back([this, rank, reader, with_writer, topic] {
@@ -147,12 +147,12 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
     }
     return any;
   });
+  return rank;
 }
 
 /// The topics in the order of a page's needs: on a slow link the later ones wait.
 void Gateway::feed_all() {
-  feed(topics::kRobotState);
-  feed(topics::kGrant);
+  detoured_ = {feed(topics::kRobotState), feed(topics::kGrant)};
   control_topic_ = board_.topic("console/control");
   board_.urgent_so_far();
   feed(topics::kRobotDescription);
@@ -195,9 +195,12 @@ void Gateway::poll() {
     take_answers(*client);
   tell_cancels();
   if (const v1::RobotState* const robot = mind_.robot()) {
-    if (robot->stamp.cycle != stamp_.cycle)
-      heard_at_ = now();
+    const bool is_new = robot->stamp.cycle != stamp_.cycle;
     stamp_ = robot->stamp;
+    if (is_new) {
+      heard_at_ = now();
+      detour();
+    }
     cameras_.heard(stamp_.cycle, now());
   }
   any = cameras_.poll(now()) || any;
@@ -315,6 +318,19 @@ void Gateway::look_for_occasions() {
     if (page.channel == Channel::commands && page.greeted &&
         (page.operator_id == 0 || page.operator_id == connection))  // once to a page
       say(connection, "{\"type\":\"event\",\"text\":" + quoted(occasion->text) + "}");
+}
+
+/// The operator's connections in turn: each has an answer to a sample only.
+void Gateway::detour() {
+  if (control_.holder() == 0 || !detour_.wanted(now()))
+    return;
+  std::vector<Connection> ways;
+  for (const auto& [connection, page] : pages_)
+    if (page.operator_id == control_.holder() && page.queue.empty())
+      ways.push_back(connection);
+  if (!ways.empty())
+    say(ways[stamp_.cycle % ways.size()],
+        "{\"type\":\"state\"," + board_.members(detoured_, now()) + "}");
 }
 
 void Gateway::show_control() {

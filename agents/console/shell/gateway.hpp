@@ -18,6 +18,7 @@
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/console/board.hpp"
+#include "saphira/console/detour.hpp"
 #include "saphira/console/message.hpp"
 #include "saphira/teleop/control.hpp"
 #include "saphira/teleop/pilot.hpp"
@@ -91,7 +92,7 @@ class Gateway {
 
   Server::Events events();
   template <class T>
-  void feed(const bus::Topic<T>& topic, std::size_t most = 1, bool with_writer = false);
+  int feed(const bus::Topic<T>& topic, std::size_t most = 1, bool with_writer = false);
   void feed_all();
   void poll();
   void tick();
@@ -100,6 +101,7 @@ class Gateway {
   void explain();
   void look_for_occasions();
   void show_control();
+  void detour();
   std::vector<RobotSeen> robots_seen() const;
   void show_robots();
   void stop_robots(Connection connection, const Page& page, const StopRobots& stop);
@@ -157,6 +159,7 @@ class Gateway {
   bus::Audit audit_{node_};
 
   std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
+  std::vector<int> detoured_;                 ///< topics
   int control_topic_ = 0;
   int robots_topic_ = 0;
   int why_topic_ = 0;
@@ -177,6 +180,7 @@ class Gateway {
   bus::Writer<v1::Message> messages_ = node_.writer(bus::topics::kMessages);
   std::optional<Box> box_;
   std::string shown_control_;
+  Detour detour_;
   std::string why_;  ///< the newest sentence
   Robots robots_{node_};
   std::string shown_robots_;

@@ -300,6 +300,8 @@ void Gateway::stop_robots(Connection connection, const Page& page, const StopRob
 
 void Gateway::take_sample(Connection connection, Page& page,
                           const teleop::Control::Sample& sample) {
+  if (page.operator_id == control_.holder())
+    detour_.shows(sample.cycle, stamp_.cycle, now());
   const std::string why = control_.drive(page.operator_id, sample, now());
   // Of several connections one is quicker: an overtaken sample is not reported.
   if (why == page.refused || why == teleop::Control::kRepeated)

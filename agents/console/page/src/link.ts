@@ -2,7 +2,7 @@
 import {barrier, socketOf, store, stored, storedKey} from './address';
 import {History} from './history';
 import {notify} from './notify';
-import type {ConsoleInfo, ControlState, Goal, Grant, RobotState, ServiceStatus} from './types';
+import type {ConsoleInfo, ControlState, Goal, Grant, RobotState, ServiceStatus, Stamp} from './types';
 
 export interface Item<T> {
   data: T;
@@ -19,6 +19,7 @@ const mostGoals = 200;   // that are remembered
 export const gone = 2000;   // [ms] nothing heard for so long: the connection is gone
 const operatorName = 'saphira operator';
 
+interface Frame { now: number; items: {t: string; k: string; a: number; d: unknown}[] }
 interface Message { type: string; [member: string]: unknown }
 
 export class Link {
@@ -118,6 +119,10 @@ export class Link {
     const socket = this.lanes[i] = socketOf('saphira.commands');
     const ticket = this.ticket;
     socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator, ticket}));
+    socket.onmessage = event => {
+      const message = JSON.parse(event.data as string);
+      if (message.type === 'state') this.take(message);
+    };
     socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
   }
 
@@ -203,7 +208,8 @@ export class Link {
     this.tell();
   }
 
-  private take(frame: {now: number; items: {t: string; k: string; a: number; d: unknown}[]}) {
+  // One connection may be held up behind another: an older state of the robot, or an older grant, changes nothing.
+  private take(frame: Frame) {
     this.watch();  // as it was until now: this frame may be the first one after a cut
     const now = performance.now();
     const difference = now - 1000 * frame.now;
@@ -216,6 +222,8 @@ export class Link {
     for (const {t, k, a, d} of frame.items) {
       let items = this.topics.get(t);
       if (!items) this.topics.set(t, items = new Map());
+      const stamp = (d as {stamp?: Stamp} | null)?.stamp, had = items.get(k)?.data as {stamp: Stamp} | undefined;
+      if ((t === 'robot/state' || t === 'drive/grant') && stamp && had && stamp.epoch === had.stamp.epoch && stamp.cycle < had.stamp.cycle) continue;
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
       if (t === 'robot/state' && d !== null) {
@@ -274,6 +282,8 @@ export class Link {
         this.history.trip(performance.now(), this.roundTrip);
         this.quickest = Math.min(this.quickest, this.roundTrip);
         break;
+      case 'state':
+        return this.take(message as unknown as Frame);
       case 'drive':
         this.refused = message.refused as string;
         break;

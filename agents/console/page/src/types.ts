@@ -32,6 +32,7 @@ export interface RobotDescription {
   sonars: {sonar: number; pose_in_robot: Pose}[];
 }
 export interface Grant {
+  stamp: Stamp;
   role: string;
   source: string;
   reason: string;

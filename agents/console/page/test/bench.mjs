@@ -32,6 +32,7 @@ try {
   // The time of each picture's capture: a second reader on a good link has no way to wait for.
   const captured = new Map(), headers = {Host: `localhost:${robot.port}`, Origin: `http://localhost:${robot.port}`};
   const results = [];
+  let total = 0;   // to and fro, so that there is always room
   for (const bad of links) {
     const far = await link(robot.port, bad), near = await socketTo(robot.port, 'saphira.pictures', headers);
     near.take = bytes => {
@@ -68,7 +69,7 @@ try {
     let moving = 0, held = 0;
     for (let run = 0; run < runs; ++run) {
       await takeControl();
-      const key = run % 2 ? 'm' : 'i', press = robot.now();
+      const key = total++ % 2 ? 'm' : 'i', press = robot.now();
       await page.keyboard.down(key);
       await sleep(1000 * hold);
       const release = robot.now();
