@@ -9,6 +9,7 @@
 #include "page_files.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/situation/why.hpp"
 
@@ -77,6 +78,9 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
   if (!options.box.empty())
     box_.emplace(options.box, node);
   show_control();
+  own_page_.write({.instance = node_.instance(),
+                   .host = web::host_name(),
+                   .address = origin_ + ":" + std::to_string(server_.port()) + "/"});
   server_.watch(node_.wake_fd());
   if (options.dial)
     dialer_.emplace(
@@ -112,7 +116,7 @@ std::string Gateway::address() const {
 
 /// with_writer: an instance is there as long as its writer.
 template <class T>
-void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
+int Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
   const int rank = board_.topic(topic.name, most);
   auto reader = std::make_shared<bus::Reader<T>>(node_.reader(topic));
   feeds_.push_back([this, rank, reader, with_writer, topic] {
@@ -143,12 +147,12 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
     }
     return any;
   });
+  return rank;
 }
 
 /// The topics in the order of a page's needs: on a slow link the later ones wait.
 void Gateway::feed_all() {
-  feed(topics::kRobotState);
-  feed(topics::kGrant);
+  detoured_ = {feed(topics::kRobotState), feed(topics::kGrant)};
   control_topic_ = board_.topic("console/control");
   board_.urgent_so_far();
   feed(topics::kRobotDescription);
@@ -170,6 +174,7 @@ void Gateway::feed_all() {
   feed(topics::kProcesses, kMany, true);
   feed(topics::kBeliefs);
   feed(topics::kActivitySchemas);
+  robots_topic_ = board_.topic("robots");
   feed(topics::kGrid, kMany, true);
   feed(topics::kLog, kLines);
 }
@@ -190,12 +195,19 @@ void Gateway::poll() {
     take_answers(*client);
   tell_cancels();
   if (const v1::RobotState* const robot = mind_.robot()) {
+    const bool is_new = robot->stamp.cycle != stamp_.cycle;
     stamp_ = robot->stamp;
+    if (is_new) {
+      heard_at_ = now();
+      detour();
+    }
     cameras_.heard(stamp_.cycle, now());
   }
   any = cameras_.poll(now()) || any;
   if (auto grant = grants_.take_newest())
     grant_ = std::move(grant);
+  if (auto map = maps_.take_newest())
+    map_ = std::move(map);
   if (any)
     server_.want_all_soon();
 }
@@ -230,6 +242,7 @@ void Gateway::tick() {
   explain();
   look_for_occasions();
   show_control();
+  show_robots();
   for (const auto& [connection, page] : pages_)
     if (!page.greeted && now() - page.opened > kGreeting)
       server_.close(connection);
@@ -255,9 +268,37 @@ void Gateway::explain() {
   if (viewers_ == 0 || now() - explained_ < kExplain || !mind_.heard())
     return;
   explained_ = now();
-  board_.put(why_topic_, "",
-             situation::to_json(situation::why(mind_.situation(mind_.newest_cycle(), false))),
-             now());
+  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
+  why_ = why.sentence;
+  board_.put(why_topic_, "", situation::to_json(why), now());
+}
+
+std::vector<RobotSeen> Gateway::robots_seen() const {
+  std::vector<RobotSeen> seen = robots_.seen(now());
+  seen.insert(seen.begin(), {.name = node_.options().robot,
+                             .own = true,
+                             .age = now() - heard_at_,
+                             .robot = mind_.robot(),
+                             .grant = grant_ ? &*grant_ : nullptr,
+                             .why = why_});
+  return seen;
+}
+
+void Gateway::show_robots() {
+  if (viewers_ > 0)
+    robots_.look(std::any_of(pages_.begin(), pages_.end(),
+                             [](const auto& each) { return each.second.robots; }),
+                 now());
+  robots_.poll(now());
+  if (now() - robots_shown_ < kExplain)
+    return;
+  robots_shown_ = now();
+  const std::string text =
+      "[" + joined(robots_seen(), ",", [](const RobotSeen& seen) { return to_json(seen); }) + "]";
+  if (text == shown_robots_)
+    return;
+  shown_robots_ = text;
+  board_.put(robots_topic_, "", text, now());
 }
 
 /// Tells the pages of an event; the last minute after it goes into the box.
@@ -277,6 +318,19 @@ void Gateway::look_for_occasions() {
     if (page.channel == Channel::commands && page.greeted &&
         (page.operator_id == 0 || page.operator_id == connection))  // once to a page
       say(connection, "{\"type\":\"event\",\"text\":" + quoted(occasion->text) + "}");
+}
+
+/// The operator's connections in turn: each has an answer to a sample only.
+void Gateway::detour() {
+  if (control_.holder() == 0 || !detour_.wanted(now()))
+    return;
+  std::vector<Connection> ways;
+  for (const auto& [connection, page] : pages_)
+    if (page.operator_id == control_.holder() && page.queue.empty())
+      ways.push_back(connection);
+  if (!ways.empty())
+    say(ways[stamp_.cycle % ways.size()],
+        "{\"type\":\"state\"," + board_.members(detoured_, now()) + "}");
 }
 
 void Gateway::show_control() {

@@ -12,11 +12,13 @@
 #include "dialer.hpp"
 #include "key.hpp"
 #include "mind.hpp"
+#include "robots.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/console/board.hpp"
+#include "saphira/console/detour.hpp"
 #include "saphira/console/message.hpp"
 #include "saphira/teleop/control.hpp"
 #include "saphira/teleop/pilot.hpp"
@@ -75,6 +77,8 @@ class Gateway {
     std::uint64_t world = 0;        ///< simulator: newest version that was sent
     std::uint64_t scene = 0;        ///< likewise
     std::string refused;            ///< the newest reason for a refused sample
+    bool robots = false;            ///< it shows the list of robots
+    Upload upload;
   };
   struct Asked {
     Connection connection = 0;
@@ -88,7 +92,7 @@ class Gateway {
 
   Server::Events events();
   template <class T>
-  void feed(const bus::Topic<T>& topic, std::size_t most = 1, bool with_writer = false);
+  int feed(const bus::Topic<T>& topic, std::size_t most = 1, bool with_writer = false);
   void feed_all();
   void poll();
   void tick();
@@ -97,6 +101,10 @@ class Gateway {
   void explain();
   void look_for_occasions();
   void show_control();
+  void detour();
+  std::vector<RobotSeen> robots_seen() const;
+  void show_robots();
+  void stop_robots(Connection connection, const Page& page, const StopRobots& stop);
   void look_at_simulator();
   void look_at_cameras();
   void ask_simulator(Connection connection, const Page& page, std::string text);
@@ -113,6 +121,8 @@ class Gateway {
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const teleop::Control::Sample& sample);
   void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
+  void save_map(Connection connection, const SaveMap& save);
+  void load_map(Connection connection, Page& page, const LoadMap& piece);
   void change_map(Connection connection, const Page& page, const ChangeMap& change);
   void cancel_goal(Connection connection, const Page& page, const CancelGoal& cancel);
   void tell_cancels();
@@ -143,10 +153,15 @@ class Gateway {
   bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
   bus::Writer<v1::AgentEvent> pointed_out_ = node_.writer(bus::topics::kAgentEvents);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Writer<v1::ConsolePage> own_page_ = node_.writer(bus::topics::kPage);
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  std::optional<v1::FloorMap> map_;
   bus::Audit audit_{node_};
 
   std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
+  std::vector<int> detoured_;                 ///< topics
   int control_topic_ = 0;
+  int robots_topic_ = 0;
   int why_topic_ = 0;
   std::map<Connection, Page> pages_;
   std::map<std::uint64_t, Asked> asked_;  ///< by the number of the request
@@ -154,7 +169,9 @@ class Gateway {
   int viewers_ = 0;
   std::uint64_t events_ = 0;
 
-  v1::Stamp stamp_;  ///< of the newest robot state
+  v1::Stamp stamp_;             ///< of the newest robot state
+  double heard_at_ = -1e9;      ///< [s] likewise
+  double robots_shown_ = -1e9;  ///< [s]
   std::optional<v1::Grant> grant_;
   std::uint64_t utterances_ = 0;
   double explained_ = -1e9;  ///< [s]
@@ -163,6 +180,10 @@ class Gateway {
   bus::Writer<v1::Message> messages_ = node_.writer(bus::topics::kMessages);
   std::optional<Box> box_;
   std::string shown_control_;
+  Detour detour_;
+  std::string why_;  ///< the newest sentence
+  Robots robots_{node_};
+  std::string shown_robots_;
   Cameras cameras_{node_};
   std::optional<SimulatorLink> simulator_;
 

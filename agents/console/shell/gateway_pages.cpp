@@ -4,6 +4,7 @@
 
 #include "gateway.hpp"
 #include "key.hpp"
+#include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
@@ -163,10 +164,12 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   if (page.greeted && (page.channel == Channel::telemetry || page.channel == Channel::pictures))
     return true;
   // A page without the key gets this message, and is closed without the key in time.
-  say(connection, std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +
-                      ",\"may_watch\":" + (page.greeted ? "true" : "false") +
-                      ",\"may_drive\":" + (page.visitor.may(DoorRight::drive) ? "true" : "false") +
-                      ",\"ticket\":" + quoted(page.ticket) + "}");
+  say(connection,
+      std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +
+          ",\"may_watch\":" + (page.greeted ? "true" : "false") +
+          ",\"may_drive\":" + (page.visitor.may(DoorRight::drive) ? "true" : "false") +
+          ",\"may_operate\":" + (page.visitor.may(DoorRight::operate) ? "true" : "false") +
+          ",\"ticket\":" + quoted(page.ticket) + "}");
   return true;
 }
 
@@ -227,6 +230,12 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   if (const auto* stop = std::get_if<StopRobot>(&message))
     return send(stops_, bus::request("stop", {bus::text("by", operator_of(page.name))}), connection,
                 page, stop->reference);
+  if (const auto* show = std::get_if<ShowRobots>(&message)) {
+    page.robots = show->shown;
+    return;
+  }
+  if (const auto* stop = std::get_if<StopRobots>(&message))
+    return stop_robots(connection, page, *stop);
   const auto note = [&](const std::string& why) {
     if (!why.empty())
       say(connection, "{\"type\":\"note\",\"text\":" + quoted(why) + "}");
@@ -259,6 +268,10 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
          connection, page, process->reference);
   else if (const auto* change = std::get_if<ChangeMap>(&message))
     change_map(connection, page, *change);
+  else if (const auto* save = std::get_if<SaveMap>(&message))
+    save_map(connection, *save);
+  else if (const auto* piece = std::get_if<LoadMap>(&message))
+    load_map(connection, page, *piece);
   else if (const auto* out = std::get_if<PointOut>(&message)) {
     pointed_out_.write({.stamp = stamp_,
                         .source = operator_of(page.name),
@@ -269,8 +282,26 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   show_control();
 }
 
+void Gateway::stop_robots(Connection connection, const Page& page, const StopRobots& stop) {
+  const StopOrder order = stop_order(robots_seen(), stop.robot, page.visitor.right);
+  for (const std::string& name : order.robots) {
+    if (name != node_.options().robot)
+      robots_.stop(name, order.latched, operator_of(page.name));
+    else if (order.latched)
+      pilot_.press(operator_of(page.name));
+    else
+      send(stops_, bus::request("stop", {bus::text("by", operator_of(page.name))}), connection,
+           page, 0);
+  }
+  press_estop();
+  robots_.poll(now());
+  answer(connection, stop.reference, order.well, order.text);
+}
+
 void Gateway::take_sample(Connection connection, Page& page,
                           const teleop::Control::Sample& sample) {
+  if (page.operator_id == control_.holder())
+    detour_.shows(sample.cycle, stamp_.cycle, now());
   const std::string why = control_.drive(page.operator_id, sample, now());
   // Of several connections one is quicker: an overtaken sample is not reported.
   if (why == page.refused || why == teleop::Control::kRepeated)
@@ -299,6 +330,34 @@ void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& a
     answer(connection, ask.reference, true, cli::describe(goal), key_text({id.writer, id.number}));
   } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
     answer(connection, ask.reference, false, error.what());
+  }
+}
+
+/// The answer has the file as `file`.
+void Gateway::save_map(Connection connection, const SaveMap& save) {
+  if (!map_)
+    return answer(connection, save.reference, false, "registration is not heard: there is no map");
+  try {
+    say(connection, "{\"type\":\"answer\",\"reference\":" + std::to_string(save.reference) +
+                        ",\"well\":true,\"text\":\"\",\"id\":" + quoted(map_->source) +
+                        ",\"file\":" + quoted(maps::to_text(maps::from_bus(*map_))) + "}");
+  } catch (const std::invalid_argument& error) {  // no file could hold it
+    answer(connection, save.reference, false, error.what());
+  }
+}
+
+/// Registration reads the file, too: a bad one changes nothing.
+void Gateway::load_map(Connection connection, Page& page, const LoadMap& piece) {
+  try {
+    const auto text = page.upload.take(piece);
+    if (!text)
+      return;
+    maps::check_map(*text, piece.name);
+    send(registration_,
+         bus::request("load", {bus::text("text", *text), bus::text("name", piece.name)}),
+         connection, page, piece.reference);
+  } catch (const std::exception& error) {  // of the file, or a bus that does not take it
+    answer(connection, piece.reference, false, error.what());
   }
 }
 

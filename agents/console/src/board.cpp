@@ -62,6 +62,23 @@ void Board::forget_oldest(int topic) {
   --entry(topic).count;
 }
 
+void Board::append(std::string& items, const Place& place, double age,
+                   const std::string& json) const {
+  const std::string head = format(",\"a\":%.0f,\"d\":", 1000.0 * std::max(0.0, age));
+  items += items.empty() ? "{\"t\":" : ",{\"t\":";
+  items += quoted(topics_.at(static_cast<std::size_t>(place.first)).name);
+  items += ",\"k\":" + quoted(place.second) + head + json + '}';
+}
+
+std::string Board::members(const std::vector<int>& topics, double now) const {
+  std::string items;
+  for (const int topic : topics)
+    for (auto item = items_.lower_bound({topic, {}});
+         item != items_.end() && item->first.first == topic; ++item)
+      append(items, item->first, now - item->second.came, item->second.json);
+  return format("\"now\":%.4f,\"items\":[", now) + items + ']';
+}
+
 std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
   const std::deque<Viewer::UnderWay>& under_way = viewer.under_way;
   const bool whole = std::count_if(under_way.begin(), under_way.end(),
@@ -72,17 +89,11 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
   if (!whole && (full || under_way.size() >= settings_.most_unseen))
     return std::nullopt;
   std::string items;
-  const auto add = [&](const Place& place, double age, const std::string& json) {
-    const std::string head = format(",\"a\":%.0f,\"d\":", 1000.0 * std::max(0.0, age));
-    items += items.empty() ? "{\"t\":" : ",{\"t\":";
-    items += quoted(topics_.at(static_cast<std::size_t>(place.first)).name);
-    items += ",\"k\":" + quoted(place.second) + head + json + '}';
-  };
   for (auto had = viewer.has.begin(); had != viewer.has.end();) {
     if (items_.contains(had->first)) {
       ++had;
     } else {
-      add(had->first, 0.0, "null");
+      append(items, had->first, 0.0, "null");
       had = viewer.has.erase(had);
     }
   }
@@ -98,7 +109,7 @@ std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
       break;
     }
     has = item.version;
-    add(place, now - item.came, item.json);
+    append(items, place, now - item.came, item.json);
   }
   if (items.empty() && (!whole || now - viewer.last < settings_.silence))
     return std::nullopt;

@@ -14,6 +14,9 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kLongest = 1000;  // of a text
 constexpr std::size_t kName = 40;
+constexpr std::size_t kFileName = 200;
+constexpr std::size_t kPiece = 3000;  // of a file
+constexpr std::size_t kLargestFile = 1'000'000;
 
 const Json& member(const Json& object, const char* name) {
   const auto found = object.find(name);
@@ -78,6 +81,10 @@ Message read(const Json& json) {
     return HandBack{};
   if (type == "stop")
     return StopRobot{count(json, "reference")};
+  if (type == "robots")
+    return ShowRobots{truth(json, "shown")};
+  if (type == "stop_robots")
+    return StopRobots{count(json, "reference"), text(json, "robot")};
   if (type == "estop")
     return EmergencyStop{};
   if (type == "estop_reset")
@@ -93,6 +100,11 @@ Message read(const Json& json) {
                       text(json, "functor")};
   if (type == "map")
     return ChangeMap{count(json, "reference"), text(json, "words")};
+  if (type == "save_map")
+    return SaveMap{count(json, "reference")};
+  if (type == "load_map")
+    return LoadMap{count(json, "reference"), text(json, "name", kFileName),
+                   text(json, "text", kPiece), truth(json, "more")};
   if (type == "point_out")
     return PointOut{number(json, "x"), number(json, "y"), truth(json, "in_map")};
   return Wrong{"\"type\" is not known: " + type.substr(0, kName)};
@@ -109,6 +121,18 @@ Message parse_message(std::string_view text) {
   } catch (const std::invalid_argument& error) {
     return Wrong{error.what()};
   }
+}
+
+std::optional<std::string> Upload::take(const LoadMap& piece) {
+  if (piece.reference != reference_)  // another file
+    text_.clear();
+  reference_ = piece.reference;
+  text_ += piece.text;
+  if (text_.size() > kLargestFile) {
+    text_.clear();
+    throw std::invalid_argument(piece.name + ": expected a map file of at most 1 MB");
+  }
+  return piece.more ? std::nullopt : std::optional(std::exchange(text_, {}));
 }
 
 std::string to_json(const teleop::Control::State& state) {
@@ -158,10 +182,11 @@ security::DoorRight right_for(const Message& message) {
     return (std::holds_alternative<Kinds>(message) || ...);
   };
   if (is(std::type_identity<Ping>(), std::type_identity<Ack>(), std::type_identity<StopRobot>(),
-         std::type_identity<EmergencyStop>()))
+         std::type_identity<EmergencyStop>(), std::type_identity<ShowRobots>(),
+         std::type_identity<StopRobots>(), std::type_identity<SaveMap>()))
     return DoorRight::watch;
   return is(std::type_identity<ResetEmergencyStop>(), std::type_identity<AskProcess>(),
-            std::type_identity<ChangeMap>())
+            std::type_identity<ChangeMap>(), std::type_identity<LoadMap>())
              ? DoorRight::operate
              : DoorRight::drive;
 }

@@ -40,6 +40,19 @@ TEST(Board, ANewViewerGetsAllAndThenWhatChanged) {
   EXPECT_EQ(news["items"][0]["d"]["x"], 2);
 }
 
+TEST(Board, ItsItemsAreToldWhateverAViewerHas) {
+  Board board;
+  const int robot = board.topic("robot/state");
+  const int map = board.topic("map");
+  const int grant = board.topic("drive/grant");
+  board.put(map, "", R"({"doors":2})", 1.0);
+  board.put(robot, "", R"({"x":1})", 2.0);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(
+        Json::parse("{" + board.members({robot, grant}, 2.5) + "}"),
+        Json::parse(R"({"now":2.5,"items":[{"t":"robot/state","k":"","a":500,"d":{"x":1}}]})"));
+}
+
 TEST(Board, ASlowViewerGetsTheNewestAndNothingQueuesUp) {
   Board board;
   const int robot = board.topic("robot/state");

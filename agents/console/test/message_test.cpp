@@ -58,6 +58,16 @@ TEST(Message, EachKindIsRead) {
   EXPECT_EQ(std::get<ChangeMap>(parse_message(R"({"type":"map","reference":1,"words":"remove 3"})"))
                 .words,
             "remove 3");
+  EXPECT_TRUE(std::get<ShowRobots>(parse_message(R"({"type":"robots","shown":true})")).shown);
+  EXPECT_EQ(
+      std::get<StopRobots>(parse_message(R"({"type":"stop_robots","reference":1,"robot":"b"})"))
+          .robot,
+      "b");
+  EXPECT_EQ(std::get<SaveMap>(parse_message(R"({"type":"save_map","reference":4})")).reference, 4U);
+  const Message piece = parse_message(
+      R"({"type":"load_map","reference":5,"name":"a.map","text":"WALL\n","more":true})");
+  EXPECT_EQ(std::get<LoadMap>(piece).text, "WALL\n");
+  EXPECT_TRUE(std::get<LoadMap>(piece).more);
   EXPECT_FALSE(
       std::get<PointOut>(parse_message(R"({"type":"point_out","x":1,"y":2,"in_map":false})"))
           .in_map);
@@ -102,16 +112,35 @@ TEST(Message, ThePagesGetTheStateOfControl) {
             R"("note":"ann took control"})");
 }
 
+TEST(Upload, IsWholeWithItsLastPieceAndBeginsAnewWithAnotherFile) {
+  Upload upload;
+  EXPECT_FALSE(upload.take({1, "a.map", "lost ", true}));
+  EXPECT_FALSE(upload.take({2, "a.map", "one ", true}));
+  EXPECT_EQ(upload.take({2, "a.map", "two", false}), "one two");
+  EXPECT_EQ(upload.take({3, "a.map", "", false}), "");
+}
+
+TEST(Upload, IsBounded) {
+  Upload upload;
+  const std::string piece(3000, 'x');
+  int pieces = 0;
+  EXPECT_THROW(for (; pieces < 1000; ++pieces) upload.take({1, "a.map", piece, true}),
+               std::invalid_argument);
+  EXPECT_EQ(pieces, 333);
+  EXPECT_EQ(upload.take({1, "a.map", "rest", false}), "rest");
+}
+
 TEST(Message, WhoWatchesMayStopAndWhatConcernsOthersIsToOperate) {
   using security::DoorRight;
-  for (const Message& message : {Message(StopRobot{}), Message(EmergencyStop{}), Message(Ping{})})
+  for (const Message& message : {Message(StopRobot{}), Message(EmergencyStop{}), Message(Ping{}),
+                                 Message(ShowRobots{}), Message(StopRobots{}), Message(SaveMap{})})
     EXPECT_EQ(right_for(message), DoorRight::watch);
   for (const Message& message :
        {Message(teleop::Control::Sample{}), Message(TakeControl{}), Message(AskGoal{}),
         Message(CancelGoal{}), Message(Say{}), Message(HandBack{}), Message(PointOut{})})
     EXPECT_EQ(right_for(message), DoorRight::drive);
-  for (const Message& message :
-       {Message(ResetEmergencyStop{}), Message(AskProcess{}), Message(ChangeMap{})})
+  for (const Message& message : {Message(ResetEmergencyStop{}), Message(AskProcess{}),
+                                 Message(ChangeMap{}), Message(LoadMap{})})
     EXPECT_EQ(right_for(message), DoorRight::operate);
 }
 

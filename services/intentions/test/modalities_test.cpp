@@ -350,13 +350,36 @@ TEST(Modality, AnInterruptedGoalGoesOnWhereItWas) {
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
 }
 
+TEST(Modality, APersonSwitchesABehaviorOffAndOn) {
+  Stage stage(
+      activity("(INTEND :Stop () :blocking nil) (INTEND :GoToPos () :name go :timeout 10)"));
+  stage.begin(3);
+  ASSERT_EQ(stage.behaviors(), Names({"Stop", "GoToPos"}));
+  const std::uint32_t go = stage.out.nodes[2].id;
+  EXPECT_FALSE(stage.executor->resume(go)) << "it is not off";
+  ASSERT_TRUE(stage.executor->interrupt(go));
+  stage.step(20);
+  EXPECT_EQ(stage.behaviors(), Names({"Stop"})) << "the other goes on";
+  EXPECT_EQ(stage.out.nodes[2].state, IntentionState::kSuspended);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY) << "no timeout has run meanwhile";
+  // With its intention it is held as well: it stays off when that goes on.
+  ASSERT_TRUE(stage.executor->interrupt(stage.out.nodes[0].id));
+  stage.step(2);
+  ASSERT_TRUE(stage.executor->resume(stage.out.nodes[0].id));
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"Stop"}));
+  ASSERT_TRUE(stage.executor->resume(go));
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"Stop", "GoToPos"}));
+  EXPECT_FALSE(stage.executor->interrupt(4711));
+}
+
 TEST(Modality, APersonInterruptsAndResumesAnIntention) {
   Stage stage(activity("(INTEND :part ())") +
               "(defintention :part :goals '((INTEND :GoToPos () :name go)))"
               "(defintention :other :goals '((EXECUTE (say \"other\"))))");
   stage.begin(3);
   const std::uint32_t part = stage.out.nodes[1].id;
-  EXPECT_FALSE(stage.executor->interrupt(stage.out.nodes[2].id)) << "a behavior is none";
   ASSERT_TRUE(stage.executor->interrupt(part));
   stage.step(3);
   EXPECT_TRUE(stage.behaviors().empty());

@@ -6,16 +6,19 @@ import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
 import {Legend} from './legend';
 import {gone, Link} from './link';
+import {LinkHistory} from './link_panel';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
-import type {Sketch} from './map_edit';
+import {loadMap, saveMap, type Sketch} from './map_edit';
+import {Robots, robotsOf} from './robots_panel';
 import {strangersIn} from './strangers';
 import {TargetCard} from './target_card';
 import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
 import {doubt, type Layers, type Target, View} from './view';
-import {forPage, keyless, old, percent, seconds} from './words';
+import {driverWords, forPage, keyless, old, percent, seconds} from './words';
 
 const tabs = ['Goals', 'Why', 'Behaviors', 'Intentions', 'Programs', 'Messages'] as const;
 type Tab = typeof tabs[number];
+type Panel = '' | 'robots' | 'link';   // below the header
 const cycle = 100;           // [ms] of the robot
 const wordsPeriod = 100;     // [ms] between two looks at the words
 const noteTime = 8000;       // [ms]
@@ -45,6 +48,7 @@ export function App() {
   const [tab, setTab] = useState<Tab>('Goals');
   const [note, setNote] = useState<{text: string; well: boolean}>();
   const [goal, setGoal] = useState('');
+  const [panel, setPanel] = useState<Panel>('');
   const now = performance.now();
 
   constant.current = async () => {
@@ -82,7 +86,9 @@ export function App() {
   const state = look(link, now);
   const grant = link.data<Grant>('drive/grant');
   return <>
-    <Header link={link} drive={drive} seen={state} />
+    <Header link={link} drive={drive} seen={state} panel={panel} open={which => setPanel(which === panel ? '' : which)} />
+    {panel === 'robots' && <Robots link={link} gone={state.state === 'gone'} close={() => setPanel('')} />}
+    {panel === 'link' && <LinkHistory link={link} seen={state} close={() => setPanel('')} />}
     <main>
       <section class="picture" aria-label="Map">
         <Picture link={link} drive={drive} seen={state} />
@@ -109,10 +115,11 @@ export function App() {
 
 const linkWords = {live: 'live', old: 'old', silent: 'no robot', gone: 'link gone', locked: 'locked'};
 
-function Header({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) {
+function Header({link, drive, seen: s, panel, open}: {link: Link; drive: Drive; seen: Seen; panel: Panel; open: (panel: Panel) => void}) {
   const info = link.data<ConsoleInfo>('console');
   // A replay also plays the recorder's own status.
   const runs = (name: string) => link.all<ServiceStatus>('system/status').some(([, {data, at}]) => data.name === name && performance.now() - at < 3000);
+  const count = robotsOf(link).length;
   const strangers = strangersIn(link.all<ServiceStatus>('system/status').map(([, {data}]) => data));
   const estop = () => {
     link.estop();
@@ -120,12 +127,13 @@ function Header({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) 
   };
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
+    {(count > 1 || panel === 'robots') && <button aria-expanded={panel === 'robots'} title="the other robots on this bus" onClick={() => open('robots')}>{count} robots</button>}
     {runs('replay') ? <span class="chip warn" title="saphira replay plays it: nothing here moves">a recording</span>
       : runs('record') && <span class="chip" title="saphira record keeps what is said on the bus">is recorded</span>}
-    <span class={`chip link ${s.state}`} title="age of the picture; round trip of a command">
+    <button class={`chip link ${s.state}`} aria-expanded={panel === 'link'} title="age of the picture; round trip of a command; open: the last minutes" onClick={() => open('link')}>
       {linkWords[s.state]}{Number.isFinite(s.age) && s.state !== 'gone' && ` ${s.age < 1000 ? `${Math.max(0, Math.round(s.age / 10) * 10)} ms` : `${(s.age / 1000).toFixed(1)} s`}`}
       {link.roundTrip > 0 && s.state !== 'gone' && <span class="wide">, there and back {Math.round(link.roundTrip)} ms</span>}
-    </span>
+    </button>
     <span class="grow" />
     {strangers.length > 0 && <span class="chip bad" title="see Programs">{strangers.length === 1 ? 'a stranger is' : `${strangers.length} strangers are`} kept out</span>}
     {info?.simulator && <a class="wide" href="simulator.html">the simulator's own view</a>}
@@ -141,11 +149,6 @@ function Estopped({link, grant}: {link: Link; grant: Grant}) {
     <button disabled={!link.mayDrive} title={link.mayDrive ? 'lets the robot take goals again' : keyless} onClick={() => link.send({type: 'estop_reset'})}>Reset</button>
   </div>;
 }
-
-const driverWords: {[role: string]: string} = {
-  ROLE_NONE: 'nobody drives', ROLE_TELEOP: 'a person drives', ROLE_DIRECT: 'a program drives',
-  ROLE_BEHAVIORS: 'autonomy drives', ROLE_ESTOP: 'emergency stop',
-};
 
 // The information area (manual 2.3.3), and above it in one sentence what goes on.
 function sentence(drive: Drive, robot: RobotState, grant?: Grant, why?: Why): string {
@@ -250,8 +253,9 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
   useEffect(() => {
     const stick = document.querySelector('.stick'), v = view.current;
     if (!v) return;
-    v.bottom = stick && getComputedStyle(stick).position === 'absolute'
-      ? canvas.current!.getBoundingClientRect().bottom - stick.getBoundingClientRect().top : 0;
+    const over = stick && getComputedStyle(stick).position === 'absolute' && stick.getBoundingClientRect(), picture = canvas.current!.getBoundingClientRect();
+    v.bottom = over ? picture.bottom - over.top : 0;
+    v.left = over ? over.right - picture.left : 0;
     if (v.whole) v.fit();
   }, [driving]);
   const v = view.current;
@@ -290,10 +294,16 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
           <span class="word">Camera</span><span class="sign" aria-hidden="true">◉</span></button>}
         <Legend />
       </div>
-      {layers && <details class="layers" onToggle={() => act(() => {})}><summary>Layers</summary>
+      {layers && <details class="layers" onToggle={() => act(() => {})}><summary>Layers<span class="wide">, map</span></summary>
         {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
           <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
         <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
+        <p class="row"><button onClick={() => saveMap(link)}>Save the map</button>
+          {link.mayOperate && <label class="button">Load a map …<input type="file" accept=".map,.txt,text/plain" onChange={e => {
+            const input = e.target as HTMLInputElement, file = input.files?.[0];
+            if (file) void loadMap(link, file);
+            input.value = '';   // the same file, mended, again
+          }} /></label>}</p>
         {/* In the header where that has room. */}
         {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="simulator.html">the simulator's own view</a></p>}
       </details>}

@@ -1,22 +1,25 @@
 // The two connections to the gateway, and what has come by them.
 import {barrier, socketOf, store, stored, storedKey} from './address';
+import {History} from './history';
 import {notify} from './notify';
-import type {ConsoleInfo, ControlState, Goal, Grant, ServiceStatus} from './types';
+import type {ConsoleInfo, ControlState, Goal, Grant, RobotState, ServiceStatus, Stamp} from './types';
 
 export interface Item<T> {
   data: T;
   at: number;   // [ms] performance.now() of when it was true, as near as the page can tell
 }
-export interface Answer { well: boolean; text: string; id: string }
+export interface Answer { well: boolean; text: string; id: string; file?: string }
 
 const retry = 1000;      // [ms]
 const furtherLanes = 2;     // for samples of driving
 const drift = 0.001;     // of two clocks, at the most
 const settled = 1000;    // [ms] after a cut, until what was on its way has come
+const pieceSize = 500;   // [letters] of a file
 const mostGoals = 200;   // that are remembered
 export const gone = 2000;   // [ms] nothing heard for so long: the connection is gone
 const operatorName = 'saphira operator';
 
+interface Frame { now: number; items: {t: string; k: string; a: number; d: unknown}[] }
 interface Message { type: string; [member: string]: unknown }
 
 export class Link {
@@ -25,12 +28,14 @@ export class Link {
   barrier = '';              // why no connection of this page gets through
   mayWatch = true;
   mayDrive = false;
+  mayOperate = false;
   id = 0;                    // of our operator, by the gateway
   operator = stored(operatorName);
   roundTrip = 0;             // [ms] [0: not known]
   refused = '';              // why the newest sample of driving did not count
   heard = -1e9;              // [ms] when the newest frame came
   stopping = false;          // an emergency stop was sent, and is not confirmed yet
+  history = new History();
   delays: number[] = [];     // [ms] from the gateway to the pixels, of the newest robot states
 
   private topics = new Map<string, Map<string, Item<unknown>>>();
@@ -114,11 +119,28 @@ export class Link {
     const socket = this.lanes[i] = socketOf('saphira.commands');
     const ticket = this.ticket;
     socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator, ticket}));
+    socket.onmessage = event => {
+      const message = JSON.parse(event.data as string);
+      if (message.type === 'state') this.take(message);
+    };
     socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
   }
 
-  ask(message: Message): Promise<Answer> {
-    const reference = ++this.references;
+  // A file, in pieces as the gateway takes them.
+  async sendFile(type: string, name: string, text: string): Promise<Answer> {
+    const letters = [...text], reference = ++this.references;
+    for (let i = 0; ; i += pieceSize) {
+      const more = i + pieceSize < letters.length;
+      const piece = {type, name: [...name].slice(-50).join(''), text: letters.slice(i, i + pieceSize).join(''), more};
+      if (!more) return this.ask(piece, reference);
+      while (!this.send({...piece, reference})) {
+        if (!this.commanding) return {well: false, text: 'There is no connection to the console.', id: ''};
+        await new Promise(resolve => setTimeout(resolve, 20));
+      }
+    }
+  }
+
+  ask(message: Message, reference = ++this.references): Promise<Answer> {
     return new Promise(resolve => {
       if (!this.send({...message, reference}))
         return resolve({well: false, text: 'There is no connection to the console.', id: ''});
@@ -186,7 +208,8 @@ export class Link {
     this.tell();
   }
 
-  private take(frame: {now: number; items: {t: string; k: string; a: number; d: unknown}[]}) {
+  // One connection may be held up behind another: an older state of the robot, or an older grant, changes nothing.
+  private take(frame: Frame) {
     this.watch();  // as it was until now: this frame may be the first one after a cut
     const now = performance.now();
     const difference = now - 1000 * frame.now;
@@ -199,8 +222,14 @@ export class Link {
     for (const {t, k, a, d} of frame.items) {
       let items = this.topics.get(t);
       if (!items) this.topics.set(t, items = new Map());
+      const stamp = (d as {stamp?: Stamp} | null)?.stamp, had = items.get(k)?.data as {stamp: Stamp} | undefined;
+      if ((t === 'robot/state' || t === 'drive/grant') && stamp && had && stamp.epoch === had.stamp.epoch && stamp.cycle < had.stamp.cycle) continue;
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
+      if (t === 'robot/state' && d !== null) {
+        const {stamp, motor_packets_per_s: packets, bad_packets: bad} = d as RobotState;
+        this.history.heard(now, {...stamp, packets, bad}, a + took);
+      }
       if (t === 'drive/grant' && (d as Grant | null)?.estopped) this.stopping = false;
       if (t === 'goals' && d !== null && !(d as Goal).withdrawn) this.remember(k, d as Goal);
     }
@@ -245,12 +274,16 @@ export class Link {
         this.id = message.id as number;
         this.ticket = message.ticket as string;
         this.mayDrive = message.may_drive as boolean;
+        this.mayOperate = message.may_operate as boolean;
         this.mayWatch = message.may_watch as boolean;
         break;
       case 'pong':
         this.roundTrip = performance.now() - (message.at as number);
+        this.history.trip(performance.now(), this.roundTrip);
         this.quickest = Math.min(this.quickest, this.roundTrip);
         break;
+      case 'state':
+        return this.take(message as unknown as Frame);
       case 'drive':
         this.refused = message.refused as string;
         break;

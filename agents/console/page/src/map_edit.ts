@@ -61,3 +61,20 @@ export async function undo(link: Link): Promise<Answer> {
   return answer;
 }
 export const placeRobot = (link: Link, {x, y, th}: Pose) => change(link, `place ${x.toFixed(3)} ${y.toFixed(3)} ${th.toFixed(4)}`);
+
+// The map as a file of this browser's machine.
+export async function saveMap(link: Link) {
+  const answer = await link.ask({type: 'save_map'});
+  if (!answer.well || answer.file === undefined) return link.note(answer.text, false);
+  const way = document.createElement('a'), name = (answer.id.split('/').pop() || 'robot').replace(/\.map$/, '');
+  way.href = URL.createObjectURL(new Blob([answer.file], {type: 'text/plain'}));
+  way.download = `${name}.map`;
+  way.click();
+  setTimeout(() => URL.revokeObjectURL(way.href), 10_000);
+}
+// In the place of the running map; a bad file changes nothing.
+export async function loadMap(link: Link, file: File) {
+  const answer = await link.sendFile('load_map', file.name, await file.text());
+  if (answer.well) undos.length = 0;   // they were of the other map
+  link.note(answer.well ? `The map is ${file.name} now.` : `${answer.text.split('\n')[0]}. The map stays as it was.`, answer.well);
+}

@@ -121,21 +121,28 @@ function OfPrograms({link, now, show}: {link: Link; now: number; show: (mind: Pr
 export function BehaviorList({link, now}: {link: Link; now: number}) {
   const state = link.data<Behaviors>('behaviors/state');
   return <>
-    {state ? <BehaviorTable state={state} />
+    {state ? <BehaviorTable state={state} link={link} />
       : nothing('The program "behaviors" is silent. See Programs.')}
     <OfPrograms link={link} now={now} show={mind => <BehaviorTable state={mind.behaviors} />} />
   </>;
 }
-function BehaviorTable({state}: {state: Behaviors}) {
+// link: of the robot's own behaviors, which are switched (manual 2.3.6). One that is off is not in the blend: the tree of intentions has it.
+function BehaviorTable({state, link}: {state: Behaviors; link?: Link}) {
   const [open, setOpen] = useState('');
+  const nodes = link?.data<Intentions>('intentions')?.nodes ?? [];
+  const off = nodes.filter(n => n.label === 'B' && n.state === 'INTENTION_SUSPENDED' && !state.behaviors.some(b => b.name.endsWith(`#${n.id}`)));
+  const holder = (n: IntentionNode) => nodes.find(p => p.id === n.parent && isHeld(p));
+  const may = link?.mayOperate;
   const alone = (b: BehaviorState) => state.behaviors.every(other => other === b || other.schema !== b.schema);
   return <>
     {!state.control && <p class="told bad">Behavior control is off: the blend does not reach the robot.</p>}
     {state.trouble && <p class="told bad">{state.trouble}</p>}
-    {state.behaviors.length === 0 && nothing('No behavior is intended: the robot has no goal.')}
-    {state.behaviors.length > 0 && <table class="behaviors">
-      <thead><tr><th scope="col">Behavior</th><th scope="col">Turn, weight</th><th scope="col">Speed, weight</th></tr></thead>
-      <tbody>{state.behaviors.map(b => <BehaviorRow key={b.name} b={b} name={alone(b) ? b.schema : instanceWords(b.name)} open={open === b.name} toggle={() => setOpen(open === b.name ? '' : b.name)} />)}</tbody>
+    {state.behaviors.length + off.length === 0 && nothing('No behavior is intended: the robot has no goal.')}
+    {state.behaviors.length + off.length > 0 && <table class="behaviors">
+      <thead><tr><th scope="col">{may && 'On, '}Behavior</th><th scope="col">Turn, weight</th><th scope="col">Speed, weight</th></tr></thead>
+      <tbody>{state.behaviors.map(b => <BehaviorRow key={b.name} b={b} name={alone(b) ? b.schema : instanceWords(b.name)} open={open === b.name} toggle={() => setOpen(open === b.name ? '' : b.name)}
+        onOff={may && <Switch link={link!} id={b.name.split('#')[1]} name={b.schema} on />} />)}
+        {off.map(n => <tr key={n.id} class="faint"><th scope="row"><div class="on">{may && <Switch link={link!} id={`${n.id}`} name={n.schema} on={false} held={holder(n)?.schema} />}{n.schema}</div></th><td colSpan={2} class="small">{holder(n) ? `held with ${holder(n)!.schema}` : 'off: it is left out until somebody switches it on'}</td></tr>)}</tbody>
       <tfoot><tr><th scope="row">Together</th>
         <td><Turn says={state.turning} turn={state.turn} /></td>
         <td><Speed says={state.moving} speed={state.speed} /></td></tr></tfoot>
@@ -144,11 +151,17 @@ function BehaviorTable({state}: {state: Behaviors}) {
     {state.missing.map(m => <p class="told bad" key={m.name}>{instanceWords(m.name)}: {m.reason}</p>)}
   </>;
 }
-function BehaviorRow({b, name, open, toggle}: {b: BehaviorState; name: string; open: boolean; toggle: () => void}) {
+function Switch({link, id, name, on, held}: {link: Link; id: string; name: string; on: boolean; held?: string}) {
+  return <input type="checkbox" role="switch" checked={on} disabled={!!held} aria-label={`${name} on`} onClick={event => {
+    event.preventDefault();   // the robot decides
+    processAsk(link, 'intentions', `I${id}`, on ? 'interrupt' : 'resume', `${name} ${on ? 'off' : 'on'}`);
+  }} />;
+}
+function BehaviorRow({b, name, open, toggle, onOff}: {b: BehaviorState; name: string; open: boolean; toggle: () => void; onOff: ComponentChildren}) {
   return <>
     <tr class={b.running ? '' : 'faint'}>
-      <th scope="row"><button class="plain" aria-expanded={open} onClick={toggle}>
-        <span class="twist" aria-hidden="true">{open ? '▾' : '▸'}</span>{name}</button></th>
+      <th scope="row"><div class="on">{onOff}<button class="plain" aria-expanded={open} onClick={toggle}>
+        <span class="twist" aria-hidden="true">{open ? '▾' : '▸'}</span>{name}</button></div></th>
       <td><Turn says={b.recommends_turn} turn={b.turn} weight={b.turn_weight} /></td>
       <td><Speed says={b.recommends_speed} speed={b.speed} weight={b.speed_weight} /></td>
     </tr>
@@ -177,19 +190,20 @@ export function IntentionTree({link, now}: {link: Link; now: number}) {
     <OfPrograms link={link} now={now} show={mind => <Tree intentions={mind.intended} />} />
   </>;
 }
+const isHeld = (node: IntentionNode) => node.state === 'INTENTION_INTERRUPTED' || node.state === 'INTENTION_SUSPENDED';
 // link: of the robot's own intentions, which can be interrupted.
 function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
   if (intentions.nodes.length === 0) return nothing('The robot intends nothing: it has no goal.');
   const depths = new Map<number, number>();
   // The goal in front holds these: nobody can resume them.
   const preempted = link ? pursued(link).open.filter(g => g.status.state === 'GOAL_SUSPENDED') : [];
-  // Behaviors (B), and all that a held intention has begun, go with that.
+  // All that a held intention has begun goes with that; behaviors (B) are switched in their own table.
   const resting = new Set<number>();
-  const canAct = (node: IntentionNode) => link?.mayDrive && node.label !== 'B' && !resting.has(node.parent) && !preempted.some(g => isGoal(node.goal, g.id));
+  const canAct = (node: IntentionNode) => link?.mayOperate && node.label !== 'B' && !resting.has(node.parent) && !preempted.some(g => isGoal(node.goal, g.id));
   return <><ul class="intentions">{intentions.nodes.map(node => {
     const depth = Math.min(8, (depths.get(node.parent) ?? -1) + 1);
     depths.set(node.id, depth);
-    const held = node.state === 'INTENTION_INTERRUPTED' || node.state === 'INTENTION_SUSPENDED';
+    const held = isHeld(node);
     const button = link && canAct(node);
     if (held || resting.has(node.parent)) resting.add(node.id);
     return <li key={node.id} class={`depth-${depth} row`}><div class="grow">
@@ -200,14 +214,16 @@ function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
       {button && <Interrupt link={link} service="intentions" process={`I${node.id}`} name={node.schema} held={held} />}
     </li>;
   })}</ul>
-  {link && <p class="small faint">Interrupt holds an intention and all that it has begun, until Resume.</p>}</>;
+  {link && <p class="small faint">Interrupt holds an intention and all that it has begun, until Resume. Single behaviors are switched in Behaviors.</p>}</>;
 }
 // A micro-task or an intention: held, or let go on.
 function Interrupt({link, service, process, name, held}: {link: Link; service: string; process: string; name: string; held: boolean}) {
   const functor = held ? 'resume' : 'interrupt', label = held ? 'Resume' : 'Interrupt';
-  const ask = () => link.ask({type: 'process', service, process, functor})
-    .then(answer => link.note(`${label} ${name}: ${answer.text || (answer.well ? 'done' : 'refused')}`, answer.well));
-  return <button aria-label={`${label} ${name}`} onClick={ask}>{label}</button>;
+  return <button aria-label={`${label} ${name}`} onClick={() => processAsk(link, service, process, functor, `${label} ${name}`)}>{label}</button>;
+}
+function processAsk(link: Link, service: string, process: string, functor: string, what: string) {
+  void link.ask({type: 'process', service, process, functor})
+    .then(answer => link.note(`${what}: ${answer.text || (answer.well ? 'done' : 'refused')}`, answer.well));
 }
 
 export function WhyTree({link}: {link: Link}) {
@@ -259,13 +275,13 @@ export function Programs({link, now}: {link: Link; now: number}) {
     {programs.length === 0 && nothing('No program is on the bus.')}
     <h2>Micro-tasks: interrupt and resume</h2>
     <p class="small">A micro-task is a part of a service that runs in each cycle. Interrupt holds it until Resume.
-      {link.mayDrive ? '' : ' Both need the key.'}</p>
+      {link.mayOperate ? '' : ' Both need a key to operate.'}</p>
     {services.map(([key, {data}]) => <details key={key}><summary>{data.service} ({data.processes.length})</summary>
       <ul class="processes">{data.processes.map(p => {
         const held = p.state === 'PROCESS_SUSPENDED' || p.state === 'PROCESS_INTERRUPTED';
         return <li key={p.name} class="row"><span class="grow"><strong>{instanceWords(p.name)}</strong> <span class="chip">{word(p.state)}</span><br />
           <span class="small faint">{p.effect}</span></span>
-          {link.mayDrive && <Interrupt link={link} service={data.service} process={p.name} name={p.name} held={held} />}</li>;
+          {link.mayOperate && <Interrupt link={link} service={data.service} process={p.name} name={p.name} held={held} />}</li>;
       })}</ul></details>)}
   </>;
 }

@@ -19,6 +19,7 @@ export interface RobotState {
   motor_packets_per_s: number;
   sonar_readings_per_s: number;
   vision_packets_per_s: number;
+  bad_packets: number;
 }
 export interface RobotDescription {
   name: string;
@@ -31,6 +32,7 @@ export interface RobotDescription {
   sonars: {sonar: number; pose_in_robot: Pose}[];
 }
 export interface Grant {
+  stamp: Stamp;
   role: string;
   source: string;
   reason: string;
@@ -180,6 +182,20 @@ export interface Drawing {
   lifetime: number;
 }
 export interface ControlState { holder: number; name: string; asked: {id: number; name: string}[]; note: string; let_go: string }   // let_go: why it must be let go first [empty: it need not]
+// A robot of the list [does silent: no state is heard; trouble: why it cannot be joined].
+export interface RobotRow {
+  name: string;
+  own: boolean;
+  does: 'silent' | 'stopped' | 'drives' | 'stands';
+  trouble: string;
+  why: string;
+  host: string;
+  address: string;
+  velocity?: number;
+  battery?: number;
+  role?: string;
+  who?: string;
+}
 export interface ConsoleInfo { robot: string; host: string; simulator: boolean }
 // How old the picture is [ms]; gone: the link, silent: no robot was ever heard.
 export interface Seen { state: 'live' | 'old' | 'silent' | 'gone' | 'locked'; age: number }

@@ -50,7 +50,8 @@ export class View {
   sketch?: Sketch;           // that is being drawn
   onSketch = () => {};
   whole = false;             // all of the map is in the picture, and is to stay so
-  bottom = 0;                // [pixels] of the picture that something lies over
+  bottom = 0;                // [pixels] of the picture, from below, that something at its left lies over
+  left = 0;                  // [pixels] the same, from the left
   dirty = true;
 
   private context: CanvasRenderingContext2D;
@@ -175,10 +176,14 @@ export class View {
     const least = (values: number[]) => values.reduce((a, b) => Math.min(a, b)), most = (values: number[]) => values.reduce((a, b) => Math.max(a, b));
     const [x0, x1, y0, y1] = [least(xs), most(xs), least(ys), most(ys)];
     this.local = this.follow = false;
-    const below = Math.max(bottom, this.bottom);
-    const height = Math.max(100, this.canvas.clientHeight - top - below);
-    this.scale = Math.min(120, 0.94 * this.canvas.clientWidth / Math.max(1, x1 - x0), height / Math.max(1, y1 - y0));
-    this.center = {x: (x0 + x1) / 2, y: (y0 + y1) / 2 + (top - below) / 2 / this.scale};
+    // Above what lies over the picture, or beside it: where it is larger.
+    const fitted = (left: number, below: number) => {
+      const height = Math.max(100, this.canvas.clientHeight - top - below);
+      const scale = Math.min(120, 0.94 * (this.canvas.clientWidth - left) / Math.max(1, x1 - x0), height / Math.max(1, y1 - y0));
+      return {scale, center: {x: (x0 + x1) / 2 - left / 2 / scale, y: (y0 + y1) / 2 + (top - below) / 2 / scale}};
+    };
+    const above = fitted(0, Math.max(bottom, this.bottom)), next = fitted(this.left, bottom);
+    Object.assign(this, next.scale > above.scale ? next : above);
     this.whole = this.dirty = true;
   }
 

@@ -1,5 +1,9 @@
 // Words that several parts of the page use.
 export const keyless = 'needs the key: open the address that the console has printed';
+export const driverWords: {[role: string]: string} = {
+  ROLE_NONE: 'nobody drives', ROLE_TELEOP: 'a person drives', ROLE_DIRECT: 'a program drives',
+  ROLE_BEHAVIORS: 'autonomy drives', ROLE_ESTOP: 'emergency stop',
+};
 // Of a text of the other programs: commands that have a button here go by its name.
 export function forPage(text: string): string {
   return text.replace(/saphira estop reset/g, 'Reset').replace(/saphira drive hand-back/g, 'Hand back')

@@ -330,6 +330,40 @@ test('a behavior that is edited while it runs is seen; a broken version changes 
   await leave(page);
 });
 
+test('a behavior is switched off and on', async () => {
+  const page = await person();
+  await open(page);
+  await send(page, 'drive 0.1');
+  await moves(page);
+  await page.getByRole('tab', {name: 'Behaviors'}).click();
+  const row = page.locator('.behaviors tr', {hasText: 'ConstantVelocity'}), on = page.getByRole('switch', {name: 'ConstantVelocity on'});
+  await on.click();
+  await row.getByText('off: it is left out').waitFor();
+  assert.equal(await on.isChecked(), false);
+  await stands(page);
+  await on.click();
+  await moves(page);
+  assert.equal(await on.isChecked(), true);
+  await page.getByRole('tab', {name: 'Goals'}).click();
+  await endAll(page);
+  await leave(page);
+});
+
+test('the history of the link', async () => {
+  const page = await person({bypassCSP: true});
+  await open(page);
+  await page.locator('.link.live').click();
+  const history = page.getByRole('region', {name: 'The link over the last minutes'});
+  for (const [name, value] of [['Age of the picture', /\d ms, at most/], ['Command, there and back', /\d ms, at most/], ["The robot's own packets a second", /: \d+, at most/]])
+    await until(name, async () => value.test(await history.getByRole('img', {name}).getAttribute('aria-label')));
+  assert.ok((await history.locator('.chart-bars').first().getAttribute('d')).startsWith('M'));
+  await page.addScriptTag({content: axeSource});
+  assert.deepEqual((await page.evaluate(() => window.axe.run())).violations.map(v => v.id), []);
+  await history.getByRole('button').click();
+  await history.waitFor({state: 'detached'});
+  await leave(page);
+});
+
 test('a micro-task is held and let go on; drawings and messages of a program, and what a person says, are shown', async t => {
   const page = await person();
   await open(page);
@@ -378,6 +412,33 @@ test('reload and the back button keep the key', async () => {
   await page.goBack();
   await page.locator('.link.live').waitFor();
   await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
+  await leave(page);
+});
+
+test('the map is saved as a file, and loaded; a bad file changes nothing and says where', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByText('Layers').click();
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', {name: 'Save the map'}).click()]);
+  assert.equal(file.suggestedFilename(), 'office.map');
+  const saved = join(folder, 'saved.map');
+  await file.saveAs(saved);
+  const text = readFileSync(saved, 'utf8'), lines = text.trim().split('\n').length, map = () => page.evaluate(() => saphira.data('map'));
+  const before = await map();
+  assert.equal(before.artifacts.length, lines);
+  const choose = (name, content) => page.getByLabel('Load a map').setInputFiles({name, mimeType: 'text/plain', buffer: Buffer.from(content)});
+  await choose('bad.map', text.replace(/^(.*\n)/, '$1WALL 1, x, 3, 4\n'));
+  await page.locator('.note.bad', {hasText: /bad\.map:2:9: .*The map stays as it was/}).waitFor();
+  assert.deepEqual(await map(), before);
+  // Without the end of its last line it may be cut off.
+  await choose('cut.map', text.trimEnd().slice(0, -1));
+  await page.locator('.note.bad', {hasText: 'cut.map'}).waitFor();
+  await choose('more.map', `${text}POS (901) 1000, 1000, 0 "new place"\n`);
+  await until('the other map', async () => (await map()).artifacts.some(a => a.name === 'new place'));
+  assert.equal((await map()).source, 'more.map');
+  await choose('office.map', text);
+  await until('the first map', async () => (await map()).source === 'office.map');
+  assert.equal((await map()).artifacts.length, before.artifacts.length);
   await leave(page);
 });
 

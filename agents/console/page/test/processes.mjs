@@ -46,6 +46,7 @@ export function trace(file) {
   const rows = () => readFileSync(file, 'utf8').split('\n').slice(1, -1)
     .map(row => row.split(',').map(Number)).map(row => ({cycle: row[0], velocity: row[4], rotation: row[5]}));
   return {
+    rows,
     now: () => rows().at(-1)?.cycle ?? 0,
     speed: () => Math.abs(rows().at(-1)?.velocity ?? 0),
     // [s] from a cycle on; undefined while it moves.
@@ -59,13 +60,13 @@ export function trace(file) {
 }
 
 // A simulated robot with its bridge and gateway, and what is true of it; in `self`.
-export async function rig(self, folder, robot) {
-  const line = join(folder, robot), rows = `${line}.csv`;
+export async function rig(self, folder, robot, {camera = false} = {}) {
+  const line = join(folder, robot), rows = `${line}.csv`, lens = `${line}.camera`;
   Object.assign(self, trace(rows));
-  const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows);
+  const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows, ...(camera ? ['--camera-socket', lens] : []));
   const bridge = start('saphira-bridge', '--robot', robot, '--link', line);
   self.gateway = start('saphira-console', '--robot', robot, '--port', '0');
-  self.children = [self.gateway, bridge, simulator];
+  self.children = [self.gateway, ...(camera ? [start('saphira-camera', '--robot', robot, '--socket', lens)] : []), bridge, simulator];
   let told = '';
   self.gateway.stdout.on('data', data => { told += data; });
   const [address, port, key] = await until('the address', () => told.match(/http:\/\/localhost:(\d+)\/#(\w+)/));

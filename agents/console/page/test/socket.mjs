@@ -21,6 +21,7 @@ export function socketTo(port, protocol, headers = {}, tls = undefined, path = '
           else if (size === 127) size = rest.length >= 10 ? Number(rest.readBigUInt64BE(2)) : Infinity, at = 10;
           if (rest.length < at + size) return;
           if ((rest[0] & 15) === 1) connection.texts.push(JSON.parse(rest.subarray(at, at + size)));
+          if ((rest[0] & 15) === 9) socket.write(frame(rest.subarray(at, at + size), 10));
           if ((rest[0] & 15) === 2) connection.take?.(rest.subarray(at, at + size));
           rest = rest.subarray(at + size);
         }

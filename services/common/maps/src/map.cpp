@@ -352,13 +352,16 @@ void check_likely(const Map& map, std::string_view text, const std::string& file
 
 }  // namespace
 
-Map load_map(const std::string& path) {
-  const std::string text = read_file(path);
+Map check_map(std::string_view text, const std::string& file) {
   if (!text.ends_with('"'))  // a name is whole
-    expect_last_line_break(text, path);
-  Map map = parse_map(text, path);
-  check_likely(map, text, path);
+    expect_last_line_break(text, file);
+  Map map = parse_map(text, file);
+  check_likely(map, text, file);
   return map;
+}
+
+Map load_map(const std::string& path) {
+  return check_map(read_file(path), path);
 }
 
 std::string to_text(const Map& map) {

@@ -777,7 +777,7 @@ void Executor::know_behaviors(std::vector<BehaviorSignature> behaviors) {
 }
 
 bool Executor::interrupt(std::uint32_t node) {
-  if (!forest_.is_activity(node))
+  if (!forest_.contains(node))
     return false;
   forest_.interrupt(node, Hold::kPerson);
   return true;
@@ -788,7 +788,7 @@ const Value* Executor::variable(std::uint32_t node, std::string_view name) {
 }
 
 bool Executor::resume(std::uint32_t node) {
-  if (!forest_.is_activity(node) || !forest_.held(node, Hold::kPerson))
+  if (!forest_.held(node, Hold::kPerson))
     return false;
   forest_.resume(node, Hold::kPerson);
   return true;

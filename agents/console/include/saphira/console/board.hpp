@@ -63,6 +63,9 @@ class Board {
   /// urgent topics, and those only while the link is not full: the delay shows when frames queue
   /// up. Nothing while too many frames are on their way, or without news and with a recent frame.
   std::optional<std::string> frame(Viewer& viewer, double now) const;
+  /// The present items of these topics, whatever a viewer has: the members "now" and "items" of a
+  /// frame.
+  std::string members(const std::vector<int>& topics, double now) const;
   /// The viewer has acknowledged a frame.
   static void seen(Viewer& viewer, std::uint64_t frame, double now);
 
@@ -81,6 +84,7 @@ class Board {
 
   Topic& entry(int topic) { return topics_.at(static_cast<std::size_t>(topic)); }
   void forget_oldest(int topic);
+  void append(std::string& items, const Place& place, double age, const std::string& json) const;
 
   Settings settings_;
   std::vector<Topic> topics_;

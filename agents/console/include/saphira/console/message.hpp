@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -40,6 +41,15 @@ struct HandBack {};
 struct StopRobot {
   std::uint64_t reference = 0;
 };
+/// The page shows the list of robots, or no longer.
+struct ShowRobots {
+  bool shown = false;
+};
+/// A stop of the list of robots.
+struct StopRobots {
+  std::uint64_t reference = 0;
+  std::string robot;  ///< [empty: all]
+};
 struct EmergencyStop {};
 struct ResetEmergencyStop {};
 struct AskGoal {
@@ -64,6 +74,17 @@ struct ChangeMap {
   std::uint64_t reference = 0;
   std::string words;  ///< put, remove or place in the form of `saphira map`
 };
+/// The present map as a file.
+struct SaveMap {
+  std::uint64_t reference = 0;
+};
+/// A piece of a map file, in the place of the present map. The pieces of a file come in turn.
+struct LoadMap {
+  std::uint64_t reference = 0;
+  std::string name;  ///< of the file, for people and errors
+  std::string text;
+  bool more = false;  ///< another piece follows
+};
 /// A place to show to the programs on the bus.
 struct PointOut {
   double x = 0.0;  ///< [m] [map], or [odom] without a map
@@ -78,7 +99,8 @@ struct Wrong {
 using Message =
     std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, GiveControl, ReleaseControl,
                  teleop::Control::Sample, HandBack, StopRobot, EmergencyStop, ResetEmergencyStop,
-                 AskGoal, Say, CancelGoal, AskProcess, ChangeMap, PointOut, Rename>;
+                 AskGoal, Say, CancelGoal, AskProcess, ChangeMap, PointOut, Rename, ShowRobots,
+                 StopRobots, SaveMap, LoadMap>;
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
@@ -86,6 +108,17 @@ Message parse_message(std::string_view text);
 /// The right that a message needs. Everybody who watches may stop; a change for others is to
 /// operate.
 security::DoorRight right_for(const Message& message);
+
+/// Puts the pieces of a page's file together.
+class Upload {
+ public:
+  /// The text of the file, with its last piece. std::invalid_argument for more than 1 MB.
+  std::optional<std::string> take(const LoadMap& piece);
+
+ private:
+  std::uint64_t reference_ = 0;
+  std::string text_;
+};
 
 /// For the pages: holder, name, asked (id and name of each), note, let_go.
 std::string to_json(const teleop::Control::State& state);

@@ -54,9 +54,11 @@ struct Map {
 /// Reads the text of a map file; `file` names it in errors. FileError where it is wrong.
 Map parse_map(std::string_view text, const std::string& file);
 
-/// The same from a file. Its last line must have a line break, or end with a name: half a number
-/// would read as a whole one. FileError also for an unlikely map: no artifact, all of them smaller
-/// than a robot (in metres, not mm?), or one name for two places.
+/// The same for a whole file of a person. Its last line must have a line break, or end with a name:
+/// half a number would read as a whole one. FileError also for an unlikely map: no artifact, all of
+/// them smaller than a robot (in metres, not mm?), or one name for two places.
+Map check_map(std::string_view text, const std::string& file);
+/// check_map() of a file.
 Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.

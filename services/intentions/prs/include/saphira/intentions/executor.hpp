@@ -134,7 +134,8 @@ class Executor {
   bool approve(const GoalId& id);
 
   /// Interrupts an intention with its descendants, or resumes it, by the number of its node (manual
-  /// 6.5, sfInterruptProcess). False: no such intention.
+  /// 6.5, sfInterruptProcess); of a behavior: it is not intended meanwhile (manual 2.3.6). False:
+  /// no such intention.
   bool interrupt(std::uint32_t node);
   bool resume(std::uint32_t node);
   /// The value of a variable of an intention, by the number of its node; valid until the next step.

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mind.hpp"
+#include "saphira/bus/introspect.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "saphira/console/robots.hpp"
+#include "saphira/teleop/pilot.hpp"
+
+namespace saphira::console {
+
+/// The other robots of the bus. While a page shows the list, this program is a member of each
+/// robot: it hears what the robot does, and can stop it. Otherwise it only counts them, and costs
+/// them nothing. Times are seconds of any steady clock.
+class Robots {
+ public:
+  explicit Robots(bus::Node& own) : own_(own) {}
+
+  /// Looks for robots: each two seconds, and twice a second while the list is shown and 5 s longer,
+  /// so that an emergency stop of that time is pressed until the bridge has latched it.
+  void look(bool shown, double now);
+  /// Takes what has come, and presses emergency stops.
+  void poll(double now);
+  /// The robots but for the own one. While nobody looks, their names alone.
+  std::vector<RobotSeen> seen(double now) const;
+  void stop(const std::string& robot, bool latched, const std::string& person);
+
+ private:
+  struct Member {
+    Member(bus::NodeOptions options, const std::string& robot);
+    bus::Node node;
+    cli::Mind mind{node, false};
+    bus::Reader<v1::ConsolePage> pages = node.reader(bus::topics::kPage);
+    bus::Writer<v1::MotorCommand> estop = node.writer(bus::topics::kDriveEstop);
+    bus::RequestClient stops{node, bus::topics::kDriveStop, "console"};
+    teleop::Pilot pilot{"console"};
+    std::map<bus::WriterId, v1::ConsolePage> page;
+    std::uint64_t cycle = 0;  ///< newest
+    double came = 0.0;        ///< [s] of that cycle
+    std::string why;
+    double explained = -1e9;  ///< [s]
+  };
+  struct Robot {
+    std::unique_ptr<Member> member;  ///< none: nobody looks, or it cannot be joined
+    std::string trouble;             ///< why it cannot
+  };
+
+  bus::Node& own_;
+  std::map<std::string, Robot> robots_;
+  double looked_ = -1e9;  ///< [s]
+  double shown_ = -1e9;   ///< [s]
+};
+
+}  // namespace saphira::console
