@@ -19,6 +19,9 @@ export function isGoal(id: GoalId | undefined, key: string): boolean {
   return id?.writer === writer && id.number === number;
 }
 
+// As commands and requests name it.
+export const textOf = (key: string) => key.replace(/^0+/, '').replace(/:(.*)/, (_, digits) => `:${parseInt(digits, 16)}`);
+
 // Open goals in the order in which the robot takes them up (priority, then age); ended ones, the newest first.
 // A picture that is drawn between two frames from the gateway has them from the one before.
 interface Pursuit { open: Pursued[]; over: Pursued[] }

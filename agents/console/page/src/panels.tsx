@@ -3,7 +3,7 @@ import {strangersIn} from './strangers';
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
-import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
+import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, textOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
 import {notifies, wantNotifications} from './notify';
@@ -93,6 +93,8 @@ function GoalCard({pursued: self, many, link, now}: {pursued: Pursued; many: boo
   const age = over ? 0 : now - (link.get('goals/status', id)?.at ?? now);
   const words = over && link.mayDrive ? wordsOf(goal) : '';
   const name = nameOf({status, goal});
+  const approve = () => link.ask({type: 'process', service: 'intentions', process: textOf(id), functor: 'resume'})
+    .then(answer => setTold(answer.well ? '' : answer.text));
   const again = () => link.ask({type: 'goal', words}).then(answer => setTold(answer.well ? '' : answer.text));
   return <li class={over ? 'card over' : 'card'}>
     <div class="row top">
@@ -101,6 +103,7 @@ function GoalCard({pursued: self, many, link, now}: {pursued: Pursued; many: boo
         <span class={`chip ${status.state.toLowerCase()}`}>{word(status.state)}</span>
         {held && <span class="chip warn">{held}</span>}
         {age > stale && <span class="chip warn">{seconds(age)} ago</span>}</div>
+      {status.code === 'CODE_APPROVAL' && link.mayOperate && <button class="main" onClick={approve} aria-label={`Approve ${name}`}>Approve</button>}
       {!over && link.mayDrive && <button onClick={() => link.ask({type: 'cancel', id})} aria-label={`Cancel ${name}`}>Cancel</button>}
       {words && <button title="the same goal once more" aria-label={`Ask again: ${name}`} onClick={again}>Ask again</button>}
     </div>

@@ -90,10 +90,8 @@ function GoalButtons({link, target, facing, tell, setTold}: {link: Link; target:
     {name && buttons(`to ${name}`, `go-to-place place=${quoted(name)}`, true, 'by the route that the map gives')}
     {keepOut ? <p class="told bad">No goal leads here: {nameFor(keepOut)}.</p>
       : target.inside ? buttons('here', `go-to-place place=${at}`, !name, 'to this point, by the route that the map gives')
-      : <>
-        {target.inside === false && <p class="told bad">No room or corridor of the map has this point, so no route leads here.</p>}
-        {buttons(target.inside === false ? 'straight here' : 'here', `go_to position=${at}`, !name && target.inside !== false, 'straight to this point, around what is in the way, without a route')}
-      </>}
+      : target.inside === false ? <p class="told bad">No goal leads here: no room or corridor of the map has this point.</p>
+      : buttons('here', `go_to position=${at}`, !name, 'straight to this point, around what is in the way, without a route')}
   </>;
 }
 

@@ -287,8 +287,8 @@ test('a zone is drawn on the map, refuses goals there, is removed and undone; a 
   await until('no zone', async () => (await zones()).length === 0);
   await card.getByRole('button', {name: 'Close'}).click();
   await page.mouse.click(canvas.x + 5, middle[1]);
-  await card.getByText('No room or corridor of the map has this point, so no route leads here.').waitFor();
-  await card.getByRole('button', {name: 'Go straight here'}).waitFor();
+  await card.getByText('No goal leads here: no room or corridor of the map has this point.').waitFor();
+  assert.equal(await card.getByRole('button', {name: /^Go /}).count(), 0);
   // A goal with a heading, drawn upwards.
   await page.mouse.click(...middle);
   await card.getByRole('button', {name: 'Facing …'}).click();
