@@ -17,7 +17,8 @@ export const robot = `console-${process.pid}`;
 before(async () => {
   // Ports of its own: a restarted gateway finds its port again, whatever runs beside it.
   const port = 20_000 + process.pid % 500 * 20;
-  up = start('saphira', '--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`);
+  up = start('saphira', '--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`,
+    '--set', 'approval=saphira goal');
   address = await until('the address', () => output().match(/open (http:\S+)/)?.[1]);
   machine = await chromium.launchServer({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
   browser = await chromium.connect(machine.wsEndpoint());

@@ -403,6 +403,22 @@ test('a micro-task is held and let go on; drawings and messages of a program, an
   await leave(page);
 });
 
+test('a goal that needs an approval begins when a person gives it', async t => {
+  const [page, watcher] = [await person(), await person()];
+  await page.goto(address);
+  await watcher.goto(address.replace(/#.*/, ''));
+  const asks = start('saphira', '--robot', robot, 'goal', 'turn', 'to', '0');
+  t.after(() => end(asks));
+  const goal = page.locator('li.card', {hasText: 'turn to'}).first();
+  await goal.getByText(/waits for a person's approval/).waitFor();
+  await watcher.getByText(/waits for a person's approval/).first().waitFor();
+  assert.equal(await watcher.getByRole('button', {name: /^Approve/}).count(), 0);
+  await goal.getByRole('button', {name: /^Approve/}).click();
+  await until('its end', () => asks.exitCode !== null);
+  assert.equal(asks.exitCode, 0);
+  for (const each of [page, watcher]) await leave(each);
+});
+
 test('reload and the back button keep the key', async () => {
   const page = await person();
   await open(page);
