@@ -14,9 +14,9 @@
 
 namespace saphira::console {
 
-/// The other robots of the bus. While a page shows the list, this program is a member of each
-/// robot: it hears what the robot does, and can stop it. Otherwise it only counts them, and costs
-/// them nothing. Times are seconds of any steady clock.
+/// The other robots of the bus. While a page shows the list, this program joins the partition of
+/// each robot, reads its state and can stop it. Otherwise it only lists their names. Times are
+/// seconds of any steady clock.
 class Robots {
  public:
   explicit Robots(bus::Node& own) : own_(own) {}
@@ -24,7 +24,7 @@ class Robots {
   /// Looks for robots: each two seconds, and twice a second while the list is shown and 5 s longer,
   /// so that an emergency stop of that time is pressed until the bridge has latched it.
   void look(bool shown, double now);
-  /// Takes what has come, and presses emergency stops.
+  /// Reads the new samples, and repeats emergency stops that are not latched yet.
   void poll(double now);
   /// The robots but for the own one. While nobody looks, their names alone.
   std::vector<RobotSeen> seen(double now) const;

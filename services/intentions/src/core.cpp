@@ -351,8 +351,7 @@ bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, O
   const std::string says = event.goal.requester;
   const std::string who = named(says, goal.person);
   event.goal.requester = who;
-  if (writes && event.by.empty())
-    event.needs_approval = needs_approval(says, goal.person);
+  event.needs_approval = writes && needs_approval(says, goal.person);
   const auto note = [&](v1::AuditAct act, const std::string& text) {
     if (!is_old)
       out.audit.push_back({.act = act,

@@ -475,7 +475,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
-  // What openings have said, only openings answer.
+  // The evidence of openings stays: walls are alike in other corridors.
   now_.search.against = now_.search.strange = 0.0;
   now_.done.clear();
   now_.leads = true;

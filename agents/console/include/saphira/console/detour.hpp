@@ -4,10 +4,10 @@
 
 namespace saphira::console {
 
-/// Decides when the robot's state goes over an operator's command connections too, one cycle by
-/// each in turn. The operator's samples name the cycle on the screen. Where that is old, the link
-/// is long, or holds up the telemetry by what was lost on it; another connection is not held up by
-/// that. Times are seconds of any steady clock.
+/// Decides when the robot's state is also sent over an operator's command connections, one cycle by
+/// each in turn. A lost packet delays all later ones of its own connection, and none of another.
+/// The operator's samples name the cycle on the screen: an old one shows a long or lossy link.
+/// Times are seconds of any steady clock.
 class Detour {
  public:
   /// A sample of the operator shows this cycle, at that newest one.

@@ -44,7 +44,7 @@ class Base {
   bool take(const Range& range, double now);
   void take(const TFMessage& transforms);
   void take(const BatteryState& battery);
-  /// Whether anybody takes cmd_vel.
+  /// True: cmd_vel has a reader.
   void heard(bool is_heard) { is_heard_ = is_heard; }
 
   // ---- The client.
