@@ -41,7 +41,7 @@ class FakeBase {
     thread_ = std::thread([this] {
       while (!ends_) {
         step();
-        std::this_thread::sleep_for(kStep);
+        std::this_thread::sleep_for(kStep);  // the pace of the base, not a wait for anything
       }
     });
   }

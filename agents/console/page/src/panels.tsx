@@ -93,8 +93,7 @@ function GoalCard({pursued: self, many, link, now}: {pursued: Pursued; many: boo
   const age = over ? 0 : now - (link.get('goals/status', id)?.at ?? now);
   const words = over && link.mayDrive ? wordsOf(goal) : '';
   const name = nameOf({status, goal});
-  const approve = () => link.ask({type: 'process', service: 'intentions', process: textOf(id), functor: 'resume'})
-    .then(answer => setTold(answer.well ? '' : answer.text));
+  const approve = () => processAsk(link, 'intentions', textOf(id), 'resume', `Approve ${name}`);
   const again = () => link.ask({type: 'goal', words}).then(answer => setTold(answer.well ? '' : answer.text));
   return <li class={over ? 'card over' : 'card'}>
     <div class="row top">
