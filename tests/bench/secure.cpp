@@ -180,10 +180,13 @@ double idle_cpu_percent(const std::string& security, unsigned seconds) {
   setenv("SAPHIRA_ROBOT", "bench-secure", 1);
   setenv("SAPHIRA_SECURITY", security.c_str(), 1);
   const bench::Child up({"saphira", "up", "demo"});
+  constexpr std::size_t kPrograms = 5;
+  for (int i = 0; i < 300 && bench::family(up.pid()).size() < kPrograms; ++i)
+    usleep(100'000);
   sleep(6);  // past discovery and the connection to the robot
   const std::vector<pid_t> processes = bench::family(up.pid());
-  if (processes.size() < 5)
-    throw std::runtime_error("the demo did not come up");
+  if (processes.size() < kPrograms)
+    throw std::runtime_error("the demo did not come up within 30 s");
   const auto used = [&] {
     double sum = 0.0;
     for (const pid_t pid : processes)
