@@ -46,11 +46,14 @@ MemorySettings for_range(double range, MemorySettings settings) {
 }
 
 ObstacleMemory::ObstacleMemory(MemorySettings settings)
-    : settings_(settings), beliefs_(area(settings.cells), 0.0) {}
+    : settings_(settings),
+      beliefs_(area(settings.cells), 0.0),
+      highest_(static_cast<std::size_t>(settings.cells), 0.0) {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
   std::fill(beliefs_.begin(), beliefs_.end(), 0.0);
+  std::fill(highest_.begin(), highest_.end(), 0.0);
   points_.clear();
 }
 
@@ -58,7 +61,7 @@ void ObstacleMemory::move_to(const Pose& robot_in_odom) {
   const double way = (robot_in_odom.position() - robot_in_odom_.position()).norm();
   robot_in_odom_ = robot_in_odom;
   if (!settings_.keeps_at_rest || way > kMoved)
-    scale(beliefs_, settings_.fading);
+    fade();
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
@@ -76,10 +79,22 @@ void ObstacleMemory::move_to(const Pose& robot_in_odom) {
               beliefs_[static_cast<std::size_t>(old_row * n + old_column)];
       }
     beliefs_ = std::move(moved);
+    std::fill(highest_.begin(), highest_.end(), settings_.most);
   }
   placed_ = true;
   column0_ = column0;
   row0_ = row0;
+}
+
+void ObstacleMemory::fade() {
+  scale(beliefs_, settings_.fading);
+  scale(highest_, settings_.fading);
+}
+
+void ObstacleMemory::raise(std::size_t cell, double belief) {
+  beliefs_[cell] = belief;
+  double& highest = highest_[cell / static_cast<std::size_t>(settings_.cells)];
+  highest = std::max(highest, belief);
 }
 
 template <class F>
@@ -122,39 +137,47 @@ void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
         continue;
       const double distance = std::sqrt(along * along + across * across);
       if (distance <= range)
-        f(beliefs_[static_cast<std::size_t>(row * n + column)], distance,
-          std::abs(across) / (edge * along));
+        f(static_cast<std::size_t>(row * n + column), distance, std::abs(across) / (edge * along));
     }
   }
 }
 
+ObstacleMemory::Passing::Passing(const MemorySettings& settings, double doubt)
+    : soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
+      doubt_(doubt),
+      least_(settings.least) {}
+
+void ObstacleMemory::Passing::operator()(double& belief, double off) const {
+  const double sure = std::min((1.0 - off) / soft_, 1.0);
+  belief = std::max(belief - doubt_ * sure, least_);
+}
+
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
-  const double soft = 1.0 - std::tan(settings_.sure) / std::tan(settings_.beam);
-  for_cone(sonar_in_odom, range, [&](double& belief, double /*distance*/, double off) {
-    const double sure = std::min((1.0 - off) / soft, 1.0);
-    belief = std::max(belief - doubt * sure, settings_.least);
+  const Passing passing(settings_, doubt);
+  for_cone(sonar_in_odom, range, [&](std::size_t cell, double /*distance*/, double off) {
+    passing(beliefs_[cell], off);
   });
 }
 
 void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
-  free_before(sonar_in_odom, range);
   // The likeliest arc cell so far takes the echo in full, the others in proportion.
-  const auto on_arc = [&](double distance) {
-    return std::abs(distance - range) <= settings_.thickness;
-  };
-  const auto likely = [&](double belief, double off) {
-    return std::exp(belief) * (1.0 - 0.5 * off);
-  };
-  const double far = range + settings_.thickness;
+  const double free = range - 2.0 * settings_.thickness;
+  const Passing passing(settings_, settings_.passed);
   double likeliest = 0.0;
-  for_cone(sonar_in_odom, far, [&](double& belief, double distance, double off) {
-    if (on_arc(distance))
-      likeliest = std::max(likeliest, likely(belief, off));
-  });
-  for_cone(sonar_in_odom, far, [&](double& belief, double distance, double off) {
-    if (on_arc(distance))
-      belief = std::min(belief + settings_.seen * likely(belief, off) / likeliest, settings_.most);
-  });
+  arc_.clear();
+  for_cone(sonar_in_odom, range + settings_.thickness,
+           [&](std::size_t cell, double distance, double off) {
+             double& belief = beliefs_[cell];
+             if (distance <= free) {
+               passing(belief, off);
+             } else if (std::abs(distance - range) <= settings_.thickness) {
+               arc_.push_back({cell, std::exp(belief) * (1.0 - 0.5 * off)});
+               likeliest = std::max(likeliest, arc_.back().likely);
+             }
+           });
+  for (const Arc& arc : arc_)
+    raise(arc.cell,
+          std::min(beliefs_[arc.cell] + settings_.seen * arc.likely / likeliest, settings_.most));
 }
 
 void ObstacleMemory::free_before(const Pose& sonar_in_odom, double range) {
@@ -173,7 +196,7 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
                         (static_cast<double>(row + row0_) + 0.5) * cell);
       if ((middle - at_in_odom).norm() <= kTouched * cell)
-        beliefs_[static_cast<std::size_t>(row * n + column)] = settings_.most;
+        raise(static_cast<std::size_t>(row * n + column), settings_.most);
     }
 }
 
@@ -182,10 +205,15 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
   const ToFrame to_robot(robot_in_odom);
   const double obstacle = settings_.obstacle;
   const long n = settings_.cells;
-  // Most rows are empty, and counting a whole row is faster than searching it.
+  // Counting a whole row is faster than searching it.
   for (long row = 0; row < n; ++row) {
+    double& highest = highest_[static_cast<std::size_t>(row)];
+    if (highest < obstacle)
+      continue;
     const double* const beliefs = beliefs_.data() + row * n;
     long obstacles = count_from(obstacle, beliefs, n);
+    if (obstacles == 0)
+      highest = std::nextafter(obstacle, 0.0);
     for (long column = 0; obstacles > 0; ++column) {
       if (beliefs[column] < obstacle)
         continue;

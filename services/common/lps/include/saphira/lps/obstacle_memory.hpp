@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -62,11 +63,30 @@ class ObstacleMemory {
   const std::vector<Vec2>& points() const { return points_; }
 
  private:
-  /// Calls f(belief, distance, off) for each cell within the cone, up to `range`; off is 0 on the
+  /// A cell of the arc of an echo.
+  struct Arc {
+    std::size_t cell;
+    double likely;
+  };
+  /// Lowers beliefs along a beam.
+  class Passing {
+   public:
+    Passing(const MemorySettings& settings, double doubt);
+    void operator()(double& belief, double off) const;
+
+   private:
+    double soft_;
+    double doubt_;
+    double least_;
+  };
+
+  /// Calls f(cell, distance, off) for each cell within the cone, up to `range`; off is 0 on the
   /// axis and 1 on the rim of the cone.
   template <class F>
   void for_cone(const Pose& sonar_in_odom, double range, F&& f);
   void pass(const Pose& sonar_in_odom, double range, double doubt);
+  void fade();
+  void raise(std::size_t cell, double belief);
 
   MemorySettings settings_;
   bool placed_ = false;
@@ -74,6 +94,8 @@ class ObstacleMemory {
   long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
   std::vector<double> beliefs_;  ///< by rows
+  std::vector<double> highest_;  ///< by row: where this is below an obstacle's, none is in the row
+  std::vector<Arc> arc_;
   std::vector<Vec2> points_;
 };
 
