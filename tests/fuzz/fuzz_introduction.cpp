@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (speaks_for_itself(message.data(), message.size()))
       std::abort();
   }
+  announced(message.data(), message.size());
   Sequences sequences;
   sequences.plausible(message.data(), message.size(), {});
   return 0;

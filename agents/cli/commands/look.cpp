@@ -38,7 +38,8 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
   return text;
 }
 
-int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_topics(bus::NodeOptions options, const bus::Stop& stop) {
+  options.far = {"*"};
   bus::Node node(options);
   const bus::Census census(node);
   poll_for(node, kDiscovery, stop, [] {});

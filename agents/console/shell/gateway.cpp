@@ -40,6 +40,12 @@ AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
   return access;
 }
 
+/// The page lists the other robots: their bridges and pages.
+bus::NodeOptions among_robots(bus::NodeOptions options) {
+  options.far = {"bridge", "console"};
+  return options;
+}
+
 }  // namespace
 
 double now() {
@@ -63,7 +69,7 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
       keys_(options.person_keys),
       origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
               web::name_of(options.server.place)),
-      node_(node),
+      node_(among_robots(node)),
       server_(server_of(options, kept), access_, page_files(), events()) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);

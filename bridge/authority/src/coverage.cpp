@@ -1,5 +1,6 @@
 #include "saphira/authority/coverage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,12 +32,10 @@ void Coverage::update(std::uint64_t cycle, const Pose& robot_in_odom,
                        std::min(reading.range.value_or(range_), range_), cycle});
 }
 
-bool Coverage::is_covered(const Vec2& spot_in_odom) const {
-  return std::any_of(lobes_.begin(), lobes_.end(), [&](const Lobe& lobe) {
-    const Vec2 spot = lobe.to_sonar(spot_in_odom);
-    return spot.x() > 0.0 && std::abs(spot.y()) <= spot.x() * kTangent + kNear &&
-           spot.squaredNorm() <= lobe.range * lobe.range;
-  });
+bool Coverage::covers(const Lobe& lobe, const Vec2& spot_in_odom) {
+  const Vec2 spot = lobe.to_sonar(spot_in_odom);
+  return spot.x() > 0.0 && std::abs(spot.y()) <= spot.x() * kTangent + kNear &&
+         spot.squaredNorm() <= lobe.range * lobe.range;
 }
 
 double Coverage::way(bool forward) const {
@@ -45,11 +44,20 @@ double Coverage::way(bool forward) const {
   const double side = forward ? 1.0 : -1.0;
   const int across = static_cast<int>(std::ceil(radius_ / kAcross));
   const int steps = static_cast<int>(std::ceil((range_ - kFrom) / kStep));
+  const Vec2 ahead = robot_in_odom_.direction();
+  // The lobe of a spot often covers the next one, too.
+  auto lobe = lobes_.begin();
   for (int step = 0; step < steps; ++step) {
     const double free = kFrom + kStep * step;
     for (int i = -across; i <= across; ++i) {
       const Vec2 spot(side * (radius_ + free), radius_ * i / across);
-      if (!is_covered(transform(robot_in_odom_, spot)))
+      const Vec2 in_odom(robot_in_odom_.x + ahead.x() * spot.x() - ahead.y() * spot.y(),
+                         robot_in_odom_.y + ahead.y() * spot.x() + ahead.x() * spot.y());
+      if (lobe != lobes_.end() && covers(*lobe, in_odom))
+        continue;
+      lobe = std::find_if(lobes_.begin(), lobes_.end(),
+                          [&](const Lobe& each) { return covers(each, in_odom); });
+      if (lobe == lobes_.end())
         return free;
     }
   }

@@ -77,7 +77,8 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
                 : nullptr),
       // Each side hears of its own programs; those of this machine are heard on loopback.
       discovery(wake, peers, side == Side::network ? machines : nullptr, guard, entrance,
-                side == Side::local && options.profile == Profile::wan ? kProgramsPerPeer : 0) {
+                side == Side::local && options.profile == Profile::wan ? kProgramsPerPeer : 0),
+      options_(options) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                              std::to_string(kMaxDomain) + "]");
@@ -127,7 +128,7 @@ void Session::tell_heard(const std::string& machines) {
   if (machines == told_heard_)
     return;
   fdds::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data() = user_data(machines);
+  qos.user_data() = user_data(options_, machines);
   if (participant->set_qos(qos) == ReturnCode_t::RETCODE_OK)
     told_heard_ = machines;
 }

@@ -59,6 +59,7 @@ class Session {
  private:
   void close();
 
+  const NodeOptions& options_;
   std::string told_heard_;
   const std::shared_ptr<std::atomic<bool>> mute_ = std::make_shared<std::atomic<bool>>(false);
 };

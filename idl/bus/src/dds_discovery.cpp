@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "dds_convert.hpp"
+#include "fleet.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/printable.hpp"
 
@@ -41,15 +42,6 @@ const char* policy_name(fdds::QosPolicyId_t id) {
     if (policy == id)
       return name;
   return "another policy";
-}
-
-/// The text behind `key` in a participant's user data, up to the next semicolon.
-std::string field(const std::string& data, const std::string& key) {
-  const auto begin = data.find(key);
-  if (begin == std::string::npos)
-    return {};
-  const auto from = begin + key.size();
-  return data.substr(from, data.find(';', from) - from);
 }
 
 std::string announced_subject(const rtps::IdentityToken& token) {
@@ -164,11 +156,11 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     program.name = printable(info.info.m_participantName.to_string());
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data = printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    program.host = field(data, "host=");
+    program.host = field(data, "host");
     if (machines_)
-      machines_->tell(to_text(prefix), field(data, "hears="));
+      machines_->tell(to_text(prefix), field(data, "hears"));
     const bool joins = program.pid == 0;
-    const std::string pid = field(data, "pid=");
+    const std::string pid = field(data, "pid");
     std::from_chars(pid.data(), pid.data() + pid.size(), program.pid);
     if (joins && program.pid != 0)
       peers_.join(program_of(prefix));

@@ -38,6 +38,9 @@ constexpr int kAnnouncement = 250;
 // By unicast to every place where a peer may be: less often, to spare a radio link.
 constexpr int kPeerAnnouncement = 500;
 
+// Fast DDS's own limit is 100.
+constexpr std::uint32_t kMostPrograms = 500;
+
 /// True for a message about another program's endpoint: Discovery tells whose it is, and why.
 bool is_refusal(const std::string& message) {
   return message.starts_with("Security manager returns an error") ||
@@ -177,9 +180,9 @@ void set_up_library() {
   static_cast<void>(once);
 }
 
-fdds::UserDataQosPolicy user_data(const std::string& heard) {
+fdds::UserDataQosPolicy user_data(const NodeOptions& options, const std::string& heard) {
   const std::string text = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";" +
-                           (heard.empty() ? "" : "hears=" + heard + ";");
+                           Fleet(options).fields() + (heard.empty() ? "" : "hears=" + heard + ";");
   fdds::UserDataQosPolicy data;
   data.setValue(std::vector<rtps::octet>(text.begin(), text.end()));
   return data;
@@ -192,13 +195,15 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
                                            std::shared_ptr<Entrance> entrance) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
-  qos.user_data() = user_data("");
+  qos.user_data() = user_data(options, "");
   qos.wire_protocol().prefix = new_prefix();
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = milliseconds(1000 * static_cast<int>(kLease.count()));
   builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement);
+  // Programs of one machine on one domain: each tries the next port until one is free.
+  builtin.mutation_tries = kMostPrograms;
   std::vector<std::uint32_t> ports;
   SieveDescriptor::Ignore ignore;
   if (side == Side::local) {
@@ -228,9 +233,9 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
     }
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(
-      std::make_shared<SieveDescriptor>(udp, std::move(mute), std::move(machines), std::move(ports),
-                                        guard, std::move(entrance), std::move(ignore)));
+  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
+      udp, std::move(mute), std::move(machines), std::move(ports), guard, std::move(entrance),
+      std::move(ignore), Fleet(options)));
   if (guard) {
     guard->secure(qos);
     // Fast DDS has room for 100 handshakes, and ends by an assertion where there is none.

@@ -48,7 +48,9 @@ eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr,
     std::shared_ptr<Entrance> entrance = nullptr);
 
-/// The user data of a participant: its host, its process, and the machines that it hears.
-eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);
+/// The user data of a participant: its host, its process, its robot (Fleet), and the machines that
+/// it hears.
+eprosima::fastdds::dds::UserDataQosPolicy user_data(const NodeOptions& options,
+                                                    const std::string& heard);
 
 }  // namespace saphira::bus::internal

@@ -41,6 +41,8 @@ class Sieve : public transport::ChainingTransport {
       return true;
     if (!is_announcement(buffer, size))
       return low->send(buffer, size, begin, end, timeout);
+    if (!is_due(buffer, size))
+      return true;
     std::vector<rtps::octet> sealed(buffer, buffer + size);
     if (descriptor_.guard)
       descriptor_.guard->seal().close(sealed, seal_time());
@@ -67,6 +69,10 @@ class Sieve : public transport::ChainingTransport {
       return;
     }
     const bool announces = is_announcement(buffer, sound);
+    if (announces && !meets(buffer, sound)) {
+      hear(remote);
+      return;
+    }
     std::unique_lock<std::mutex> alone;
     if (descriptor_.guard) {
       const bool introduces = announces || is_handshake(buffer, sound);
@@ -197,6 +203,26 @@ class Sieve : public transport::ChainingTransport {
   bool plausible(const rtps::octet* buffer, std::uint32_t size) {
     const std::scoped_lock lock(mutex_);
     return sequences_.plausible(buffer, size, BootClock::now());
+  }
+
+  /// True where an own announcement is to be sent.
+  bool is_due(const rtps::octet* buffer, std::uint32_t size) {
+    const auto own = announced(buffer, size);
+    const std::scoped_lock lock(mutex_);
+    return !own || descriptor_.fleet.is_due(own->data, BootClock::now());
+  }
+
+  /// True for the announcement or farewell of a program that this one exchanges with.
+  bool meets(const rtps::octet* buffer, std::uint32_t size) {
+    const auto other = announced(buffer, size);
+    if (!other)
+      return true;
+    const std::scoped_lock lock(mutex_);
+    if (!descriptor_.fleet.meets(*other))
+      return false;
+    const auto* const prefix = reinterpret_cast<const char*>(sender_of(buffer));
+    descriptor_.fleet.hear({prefix, Entrance::Prefix{}.size()}, BootClock::now());
+    return true;
   }
 
   SieveDescriptor descriptor_;

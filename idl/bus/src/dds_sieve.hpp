@@ -13,6 +13,7 @@
 
 #include "dds_guard.hpp"
 #include "entrance.hpp"
+#include "fleet.hpp"
 #include "machines.hpp"
 
 namespace saphira::bus::internal {
@@ -29,18 +30,21 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   /// program announces itself to them, at each of these ports. With a `guard`, packets from senders
   /// with a revoked certificate are dropped, and so are farewells and introductions in another's
   /// name, which anybody can forge; the `entrance` decides which introductions pass.
+  /// Announcements of programs that the `fleet` does not meet are dropped.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
                   std::vector<std::uint32_t> the_ports = {},
                   std::shared_ptr<Guard> the_guard = nullptr,
-                  std::shared_ptr<Entrance> the_entrance = nullptr, Ignore the_ignore = nullptr)
+                  std::shared_ptr<Entrance> the_entrance = nullptr, Ignore the_ignore = nullptr,
+                  Fleet the_fleet = Fleet({}))
       : ChainingTransportDescriptor(std::move(low)),
         mute(std::move(the_mute)),
         machines(std::move(the_machines)),
         ports(std::move(the_ports)),
         guard(std::move(the_guard)),
         entrance(std::move(the_entrance)),
-        ignore(std::move(the_ignore)) {}
+        ignore(std::move(the_ignore)),
+        fleet(std::move(the_fleet)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   Mute mute;
@@ -49,6 +53,7 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   std::shared_ptr<Guard> guard;
   std::shared_ptr<Entrance> entrance;  ///< one with a guard
   Ignore ignore;
+  Fleet fleet;
 };
 
 }  // namespace saphira::bus::internal

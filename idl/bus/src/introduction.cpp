@@ -25,7 +25,9 @@ constexpr std::uint8_t kListLittle = 3;
 
 constexpr std::size_t kEnd = 0x0001;
 constexpr std::size_t kLease = 0x0002;
+constexpr std::size_t kUserData = 0x002c;
 constexpr std::size_t kParticipantGuid = 0x0050;
+constexpr std::size_t kName = 0x0062;
 constexpr std::size_t kKeyHash = 0x0070;
 constexpr std::size_t kStatus = 0x0071;
 
@@ -197,6 +199,34 @@ bool is_farewell(const std::uint8_t* message, std::size_t size) {
       return true;
   }
   return false;
+}
+
+std::optional<Announced> announced(const std::uint8_t* message, std::size_t size) {
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (!part.has_data() || !part.is_of(kParticipantWriter))
+      continue;
+    const std::size_t payload_at = payload_of(part);
+    if (payload_at == 0)
+      return std::nullopt;
+    const bool little = part.data[payload_at + 1] == kListLittle;
+    const std::string_view list(
+        reinterpret_cast<const char*>(part.data) + payload_at + kEncapsulation,
+        part.size - payload_at - kEncapsulation);
+    Announced found;
+    const std::size_t whole =
+        size_of_list(list, little, [&](std::size_t parameter, std::string_view value) {
+          Values values(value, little);
+          if (parameter == kName)
+            found.name = values.text();
+          else if (parameter == kUserData)
+            found.data = values.octets();
+          return true;
+        });
+    return whole > 0 ? std::optional(found) : std::nullopt;
+  }
+  return std::nullopt;
 }
 
 void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lease) {

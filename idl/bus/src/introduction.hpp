@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace saphira::bus::internal {
 
@@ -19,6 +21,16 @@ bool speaks_for_itself(const std::uint8_t* message, std::size_t size);
 
 /// True where a sound message says that a participant has ended.
 bool is_farewell(const std::uint8_t* message, std::size_t size);
+
+/// What an announcement says of a program: its name, and its user data ("key=value;...").
+struct Announced {
+  std::string name;
+  std::string data;
+};
+
+/// The name and the user data of the participant that a sound message announces; nothing where it
+/// announces none, or in another form than Fast DDS writes.
+std::optional<Announced> announced(const std::uint8_t* message, std::size_t size);
 
 /// In a message that speaks_for_itself(): each announcement is good for so long, from its arrival.
 void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lease);

@@ -48,13 +48,22 @@ struct Item {
   std::chrono::steady_clock::time_point written;
 };
 
-// KEEP_LAST: of each key the newest `depth`.
+// KEEP_LAST: of each key the newest `depth`. An item of that key was just added.
 void keep_last(std::deque<Item>& items, const InstanceKey& key, int depth) {
   if (static_cast<int>(items.size()) <= depth)
     return;
-  const auto same = [&](const Item& item) { return item.key == key; };
-  if (std::count_if(items.begin(), items.end(), same) > depth)
-    items.erase(std::find_if(items.begin(), items.end(), same));
+  auto oldest = items.end();
+  int older = 0;
+  for (auto item = items.begin(); item + 1 != items.end(); ++item) {
+    if (item->key != key)
+      continue;
+    if (older == 0)
+      oldest = item;
+    if (++older == depth) {
+      items.erase(oldest);
+      return;
+    }
+  }
 }
 
 // The members that readers and writers have in common, with those of their node.

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <random>
 #include <string_view>
+#include <utility>
 
 #include "heartbeat.hpp"
 #include "internal.hpp"

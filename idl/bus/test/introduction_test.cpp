@@ -115,6 +115,27 @@ TEST(Announcement, ItsTimeIsSet) {
   }
 }
 
+TEST(Announcement, TellsNameAndData) {
+  const auto said = [](const std::string& message) {
+    return announced(reinterpret_cast<const std::uint8_t*>(message.data()), message.size());
+  };
+  const auto found = said(announcement({guid_of(kJohn),
+                                        {0x0062, number(7, 4) + std::string("bridge\0\0", 8)},
+                                        {0x002c, number(10, 4) + "robot=ant;" + std::string(2, 0)},
+                                        kEndParameter}));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->name, "bridge");
+  EXPECT_EQ(found->data, "robot=ant;");
+  // Lengths beyond the parameter's end.
+  const auto cut = said(announcement(
+      {guid_of(kJohn), {0x0062, number(900, 4)}, {0x002c, number(900, 4)}, kEndParameter}));
+  ASSERT_TRUE(cut);
+  EXPECT_EQ(cut->name, "");
+  EXPECT_EQ(cut->data, "");
+  EXPECT_FALSE(said(announcement({guid_of(kJohn)})));
+  EXPECT_FALSE(said(header(kJohn)));
+}
+
 TEST(Announcement, HasNoOtherNameOfItsSender) {
   const std::pair<std::size_t, std::string> hash{0x70, guid_of(kKate).second};
   EXPECT_FALSE(good(announcement({hash, guid_of(kJohn), kEndParameter})));

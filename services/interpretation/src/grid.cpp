@@ -12,6 +12,7 @@ namespace {
 constexpr double kStep = 0.04;
 constexpr int kMost = 120;
 constexpr int kHalf = 128;
+constexpr int kFine = 256;  // of a probability
 
 double logit(double probability) {
   return std::log(probability / (1.0 - probability));
@@ -29,6 +30,21 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
     weighed = static_cast<std::int16_t>(std::lround(said / kStep));
     ++evidence;
   }
+  for (int total = -kMostTotal; total <= kMostTotal; ++total)
+    probabilities_.push_back(1.0 / (1.0 + std::exp(-prior_ - kStep * total)));
+  for (int steps = 0; steps < kMost; ++steps)
+    detections_.push_back(1.0 - std::exp(-kStep * (steps + 0.5)));
+  for (int i = 0; i <= kFine; ++i)
+    least_steps_.push_back(static_cast<int>(
+        std::upper_bound(detections_.begin(), detections_.end(), static_cast<double>(i) / kFine) -
+        detections_.begin()));
+}
+
+int Grid::free_steps(double detection) const {
+  int steps = least_steps_[static_cast<std::size_t>(detection * kFine)];
+  while (steps < kMost && detection >= detections_[static_cast<std::size_t>(steps)])
+    ++steps;
+  return steps;
 }
 
 int Grid::weighed(int said) const {
@@ -82,7 +98,7 @@ std::vector<TileKey> Grid::changed() const {
 }
 
 double Grid::probability(const Tile& tile, std::size_t cell) const {
-  return 1.0 / (1.0 + std::exp(-prior_ - kStep * tile.total[cell]));
+  return probabilities_[static_cast<std::size_t>(tile.total[cell] + kMostTotal)];
 }
 
 std::optional<double> Grid::probability(const Vec2& at) const {
@@ -185,11 +201,10 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
     }
 }
 
-void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
+void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
   std::int8_t& said = tile.bins[cell][static_cast<std::size_t>(bin)];
   const auto before = static_cast<int>(said);  // NOLINT(bugprone-signed-char-misuse): a number
-  const int after =
-      std::clamp(before + static_cast<int>(std::lround(log_odds / kStep)), -kMost, kMost);
+  const int after = std::clamp(before + steps, -kMost, kMost);
   tile.seen[cell] = true;
   tile.changed = true;
   ++updates_;
@@ -220,7 +235,7 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
     const int bin = std::min(kBins - 1, static_cast<int>(norm_angle(bearing) * bins));
     const double behind = range ? (*range - z) / spread : 4.0;
     if (behind > 3.0) {
-      evidence(tile, cell, bin, std::log(1.0 - found));
+      evidence(tile, cell, bin, -free_steps(found));
       return;
     }
     Arc arc{&tile, cell, bin, 0.0, 1.0, 0.0};
@@ -234,7 +249,8 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   for (const Arc& arc : arc_) {
     const double rest =
         settings_.false_echoes + settings_.attribution * (sum - arc.odds * arc.density);
-    evidence(*arc.tile, arc.cell, arc.bin, std::log(arc.before * arc.density / rest + arc.before));
+    const double odds = std::log(arc.before * arc.density / rest + arc.before);
+    evidence(*arc.tile, arc.cell, arc.bin, static_cast<int>(std::lround(odds / kStep)));
   }
 }
 

@@ -121,11 +121,15 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
   const bool has_regions =
       std::any_of(map.features.begin(), map.features.end(),
                   [](const Feature& f) { return is_region(f) && f.type != PointType::junction; });
+  std::vector<maps::Rectangle> regions;
+  for (const Feature& feature : map.features)
+    if (is_region(feature))
+      regions.emplace_back(feature);
   const auto inside = [&](const Vec2& p) {
     if (!has_regions)
       return p.x() > low.x() && p.y() > low.y() && p.x() < high.x() && p.y() < high.y();
-    return std::any_of(map.features.begin(), map.features.end(),
-                       [&](const Feature& f) { return is_region(f) && maps::contains(f, p); });
+    return std::any_of(regions.begin(), regions.end(),
+                       [&](const maps::Rectangle& region) { return region.contains(p); });
   };
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)

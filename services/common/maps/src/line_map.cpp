@@ -108,6 +108,7 @@ LineMap::LineMap(const Map& map) {
 
 std::vector<Edge> LineMap::edges_near(const Vec2& position, std::size_t most) const {
   std::vector<std::pair<double, std::size_t>> near;
+  near.reserve(surfaces_.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& surface = surfaces_[i];
     const Vec2 way = surface.to - surface.from;
@@ -115,8 +116,9 @@ std::vector<Edge> LineMap::edges_near(const Vec2& position, std::size_t most) co
         std::clamp((position - surface.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
     near.emplace_back((surface.from + along * way - position).norm(), i);
   }
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(near.size(), most));
+  most = std::min(near.size(), most);
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(most), near.end());
+  near.resize(most);
   std::vector<Edge> edges;
   for (const auto& [away, i] : near)
     edges.push_back({surfaces_[i].from, surfaces_[i].to});

@@ -402,9 +402,16 @@ std::vector<const Feature*> named(const Map& map, PointType type, std::string_vi
   return found;
 }
 
+Rectangle::Rectangle(const Feature& feature)
+    : to_feature_(feature.pose_in_map), half_(feature.length / 2, feature.width / 2) {}
+
+bool Rectangle::contains(const Vec2& position_in_map) const {
+  const Vec2 inside = to_feature_(position_in_map);
+  return std::abs(inside.x()) <= half_.x() && std::abs(inside.y()) <= half_.y();
+}
+
 bool contains(const Feature& feature, const Vec2& position_in_map) {
-  const Vec2 inside = to_frame(feature.pose_in_map, position_in_map);
-  return std::abs(inside.x()) <= feature.length / 2 && std::abs(inside.y()) <= feature.width / 2;
+  return Rectangle(feature).contains(position_in_map);
 }
 
 }  // namespace saphira::maps

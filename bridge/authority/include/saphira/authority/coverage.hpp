@@ -38,7 +38,7 @@ class Coverage {
     double range = 0.0;  ///< [m] up to which nothing was heard
     std::uint64_t cycle = 0;
   };
-  bool is_covered(const Vec2& spot_in_odom) const;
+  static bool covers(const Lobe& lobe, const Vec2& spot_in_odom);
 
   static constexpr double kDependable = 1.5;  ///< [m]
   double radius_;

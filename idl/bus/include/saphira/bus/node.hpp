@@ -27,7 +27,10 @@ inline constexpr const char* kOpenBus = "none";
 struct NodeOptions {
   std::string name;               ///< of the program on the bus, such as behaviors
   std::string robot = "pioneer";  ///< the partition; "*" to read every robot
-  std::uint32_t domain = 0;       ///< DDS domain [0, 231]
+  /// Names of programs of other robots that this one exchanges with [one "*": all programs]. All
+  /// others of other robots are not heard.
+  std::vector<std::string> far;
+  std::uint32_t domain = 0;  ///< DDS domain [0, 231]
   Profile profile = Profile::host;
   std::vector<std::string>
       peers;                  ///< wan: addresses of other machines; one that all name is enough

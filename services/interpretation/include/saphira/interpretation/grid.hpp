@@ -97,11 +97,18 @@ class Grid {
   void for_cone(const Pose& sonar, double range, F&& f);
   void weigh(const Pose& sonar, std::optional<double> range);
   int weighed(int said) const;
-  void evidence(Tile& tile, std::size_t cell, int bin, double log_odds);
+  /// Steps of evidence against a cell from where a beam, with this probability, would have had an
+  /// echo: rounded logarithms, from tables.
+  int free_steps(double detection) const;
+  void evidence(Tile& tile, std::size_t cell, int bin, int steps);
   double probability(const Tile& tile, std::size_t cell) const;
 
   GridSettings settings_;
+  static constexpr int kMostTotal = 128 * kBins;
   std::array<std::int16_t, 256> weighed_{};  // a bin's log odds, by its evidence
+  std::vector<double> probabilities_;        // by total log odds from -kMostTotal on
+  std::vector<double> detections_;           // that give one more step than their index
+  std::vector<int> least_steps_;             // by probability in parts of kFine
   double prior_ = 0.0;
   std::map<TileKey, Tile> tiles_;
   std::vector<TileKey> dropped_;

@@ -75,8 +75,16 @@ const Feature* find(const Map& map, std::uint32_t id);
 /// Every feature of that type and name, in the order of the file.
 std::vector<const Feature*> named(const Map& map, lps::PointType type, std::string_view name);
 
-/// True where a position lies in the rectangle of a corridor, lane, junction, office, object or
-/// zone.
+/// The rectangle of a corridor, lane, junction, office, object or zone.
+class Rectangle {
+ public:
+  explicit Rectangle(const Feature& feature);
+  bool contains(const Vec2& position_in_map) const;
+
+ private:
+  ToFrame to_feature_;
+  Vec2 half_;
+};
 bool contains(const Feature& feature, const Vec2& position_in_map);
 
 }  // namespace saphira::maps

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "introduction.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus::internal {
+
+/// The value of a key in a participant's user data; empty: it has none.
+std::string field(std::string_view data, std::string_view key);
+
+/// Keeps the programs of different robots apart in one domain. Each program takes the announcements
+/// of its own robot's programs alone, so that the programs of other robots cost it next to nothing:
+/// Fast DDS exchanges all endpoints with every participant that it hears of, and never less.
+class Fleet {
+ public:
+  using Time = BootClock::time_point;
+
+  explicit Fleet(const NodeOptions& options);
+
+  /// For the user data of this program.
+  std::string fields() const;
+  /// True for a program of this robot, a program that either names as far, and one that does not
+  /// tell its robot.
+  bool meets(const Announced& other) const;
+
+  /// An announcement of a program that this one meets has come.
+  void hear(std::string_view prefix, Time now);
+  /// True where this program's own announcement is to be sent. While nobody is new, one in
+  /// `kSeldom` is enough: whoever comes announces himself, and is answered at once.
+  bool is_due(std::string_view data, Time now);
+
+  static constexpr std::chrono::seconds kSeldom{2};
+  /// After its start and after each newcomer a program sends every announcement for this long.
+  static constexpr std::chrono::seconds kOften{3};
+  /// Fast DDS sends an announcement several times at once, to different places.
+  static constexpr std::chrono::milliseconds kOnce{50};
+
+ private:
+  std::string name_;
+  std::string robot_;
+  std::string far_;
+  std::set<std::string, std::less<>> known_;  ///< prefixes
+  bool begun_ = false;
+  Time often_until_;
+  Time sent_;
+  std::string sent_data_;
+};
+
+}  // namespace saphira::bus::internal

@@ -1,0 +1,93 @@
+// The programs of different robots in one domain: who hears whom, and how often they announce
+// themselves.
+#include "fleet.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::bus::internal {
+namespace {
+
+using namespace std::chrono_literals;
+
+Fleet fleet(const std::string& name, const std::string& robot,
+            const std::vector<std::string>& far = {}) {
+  NodeOptions options;
+  options.name = name;
+  options.robot = robot;
+  options.far = far;
+  return Fleet(options);
+}
+
+Announced announcement_of(const std::string& name, const std::string& robot,
+                          const std::vector<std::string>& far = {}) {
+  return {name, "host=here;pid=7;" + fleet(name, robot, far).fields()};
+}
+
+TEST(Fleet, ProgramsOfOneRobotMeet) {
+  const Fleet bridge = fleet("bridge", "ant");
+  EXPECT_TRUE(bridge.meets(announcement_of("behaviors", "ant")));
+  EXPECT_FALSE(bridge.meets(announcement_of("behaviors", "bee")));
+  EXPECT_FALSE(bridge.meets(announcement_of("behaviors", "ant2")));
+}
+
+TEST(Fleet, APatternMeetsItsRobots) {
+  EXPECT_TRUE(fleet("list", "*").meets(announcement_of("bridge", "ant")));
+  EXPECT_TRUE(fleet("bridge", "ant").meets(announcement_of("list", "*")));
+  EXPECT_TRUE(fleet("bridge", "ant").meets(announcement_of("agent", "a*")));
+  EXPECT_FALSE(fleet("bridge", "bee").meets(announcement_of("agent", "a*")));
+}
+
+TEST(Fleet, AProgramThatDoesNotTellItsRobotIsMet) {
+  EXPECT_TRUE(fleet("bridge", "ant").meets({"agent in C", ""}));
+  EXPECT_TRUE(fleet("bridge", "ant").meets({"agent in C", "host=there;pid=1;"}));
+  EXPECT_TRUE(fleet("agent", "").meets(announcement_of("bridge", "ant")));
+}
+
+TEST(Fleet, BothMeetWhereOneNamesTheOther) {
+  const std::vector<std::string> far{"console", "bridge"};
+  EXPECT_TRUE(fleet("console", "ant", far).meets(announcement_of("bridge", "bee")));
+  EXPECT_TRUE(fleet("bridge", "bee").meets(announcement_of("console", "ant", far)));
+  EXPECT_FALSE(fleet("console", "ant", far).meets(announcement_of("behaviors", "bee")));
+  EXPECT_FALSE(fleet("behaviors", "bee").meets(announcement_of("console", "ant", far)));
+  EXPECT_TRUE(fleet("list", "ant", {"*"}).meets(announcement_of("behaviors", "bee")));
+  EXPECT_TRUE(fleet("behaviors", "bee").meets(announcement_of("list", "ant", {"*"})));
+}
+
+TEST(Fleet, AFieldIsAWholeOne) {
+  EXPECT_EQ(field("host=a;robot=ant;far=", "robot"), "ant");
+  EXPECT_EQ(field("myrobot=ant", "robot"), "");
+  EXPECT_EQ(field("robot", "robot"), "");
+  EXPECT_EQ(field("", "robot"), "");
+}
+
+TEST(Fleet, AnnouncementsAreRareWhileNobodyIsNew) {
+  Fleet own = fleet("bridge", "ant");
+  Fleet::Time now{100s};
+  const auto sent_in = [&](std::chrono::milliseconds span) {
+    int sent = 0;
+    for (const auto end = now + span; now < end; now += 250ms)
+      sent += own.is_due("data", now) ? 1 : 0;
+    return sent;
+  };
+  EXPECT_EQ(sent_in(Fleet::kOften), 12);
+  EXPECT_EQ(sent_in(10s), 5);
+  own.hear("newcomer", now);
+  EXPECT_EQ(sent_in(Fleet::kOften), 12);
+  own.hear("newcomer", now);
+  EXPECT_EQ(sent_in(10s), 5);
+}
+
+TEST(Fleet, AChangedAnnouncementIsSentAtOnceAndToAllPlaces) {
+  Fleet own = fleet("bridge", "ant");
+  Fleet::Time now{100s};
+  EXPECT_TRUE(own.is_due("data", now));
+  now += 2 * Fleet::kOften;
+  EXPECT_TRUE(own.is_due("data", now));
+  EXPECT_TRUE(own.is_due("data", now + 1ms));
+  now += 250ms;
+  EXPECT_FALSE(own.is_due("data", now));
+  EXPECT_TRUE(own.is_due("other data", now));
+}
+
+}  // namespace
+}  // namespace saphira::bus::internal
