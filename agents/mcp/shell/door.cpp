@@ -86,18 +86,29 @@ void Door::hear_reply(const v1::Utterance& reply) {
     take_back_words();
 }
 
+/// The goal waits for a person's approval, and nobody has withdrawn it.
+bool Door::needs_approval(const Own& own) const {
+  const auto known = goals_.status(own.id);
+  return known && !own.withdrawn && known->code == v1::CODE_APPROVAL && !bus::ended(known->state);
+}
+
 /// Asks the client's person for goals that need an approval, where the key may give it. The page
 /// and the command line can approve them, too.
 void Door::ask_for_approval() {
   approvals_.poll();
   for (Own& each : own_) {
-    const auto known = goals_.status(each.id);
-    const bool needs = known && known->code == v1::CODE_APPROVAL && !bus::ended(known->state);
-    if (!needs)
-      each.question = 0;
-    else if (each.question == 0 && right_ == DoorRight::operate)
-      each.question = session_.ask_person("The model wants the robot to do this: " + each.text +
-                                          ". May it begin?");
+    if (!needs_approval(each)) {
+      session_.take_back(each.question);
+    } else if (each.question == 0 && right_ == DoorRight::operate) {
+      const auto call = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& waiting) {
+        return waiting.second.goal == each.id;
+      });
+      const std::uint64_t number = call == waiting_.end() ? 0 : call->first;
+      each.question = session_.ask_person(
+          "The model wants the robot to do this: " + each.text + ". May it begin?", number);
+      if (each.question != 0 && !session_.is_open(number))
+        waiting_.erase(number);
+    }
   }
   for (const auto& [question, yes] : session_.take_consents()) {
     const auto of = [number = question](const Own& each) { return each.question == number; };
@@ -238,6 +249,13 @@ bool Door::is_allowed(const Call& call) {
 void Door::begin(const Call& call) {
   if (!is_allowed(call))
     return;
+  if (call.question != 0) {
+    const auto asked = std::find_if(
+        own_.begin(), own_.end(), [&](const Own& each) { return each.question == call.question; });
+    return asked == own_.end()
+               ? session_.answer(call.number, {"not done: the goal has ended", nullptr, true})
+               : await(call, asked->id);
+  }
   if (call.tool == "stop") {
     v1::Request stop = bus::request("stop");
     stop.person = person_;
@@ -347,13 +365,18 @@ void Door::request(const Call& call, const v1::Capability& capability) {
   follow(call, id);
 }
 
-/// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
+/// A goal or an action that the client has just asked for.
 void Door::follow(const Call& call, const v1::GoalId& id) {
   Json asked = call.arguments;
   asked.erase("wait_s");
   own_.push_back(
       {.id = id,
        .text = call.tool + " " + asked.dump(-1, ' ', false, Json::error_handler_t::replace)});
+  await(call, id);
+}
+
+/// Answers the call at the end of its goal or action, or after `wait_s`. A task is one at once.
+void Door::await(const Call& call, const v1::GoalId& id) {
   const double wait = call.as_task ? kDeadline + kGrace : call.arguments.value("wait_s", kWait);
   waiting_[call.number] = {.goal = id, .until = now_ + wait, .is_task = call.as_task};
   if (call.as_task)
@@ -416,6 +439,12 @@ bool Door::is_busy() const {
   return has_words_underway() || !std::all_of(own_.begin(), own_.end(), [this](const Own& each) {
            return has_ended(each.id);
          });
+}
+
+bool Door::is_silent() const {
+  return std::any_of(own_.begin(), own_.end(), [this](const Own& each) {
+    return needs_approval(each) && session_.is_silent_for(each.question);
+  });
 }
 
 /// The dialogue ends what a writer's words began when that writer is gone.

@@ -96,6 +96,8 @@ class Door {
   bool is_busy() const;
   /// A call is not answered yet.
   bool is_asked() const { return !waiting_.empty() || !early_.empty(); }
+  /// A goal waits for the client's person, and the client says nothing until then.
+  bool is_silent() const;
   /// False: until further notice the client may not begin anything; others have too much underway.
   void allow(bool begins) { may_begin_ = begins; }
   const std::string& who() const { return who_; }
@@ -147,6 +149,7 @@ class Door {
 
   void hear();
   void hear_reply(const v1::Utterance& reply);
+  bool needs_approval(const Own& own) const;
   void ask_for_approval();
   void begin(const Call& call);
   bool is_allowed(const Call& call);
@@ -159,6 +162,7 @@ class Door {
   bool may_begin(const Call& call);
   bool has_room(const Call& call);
   void follow(const Call& call, const v1::GoalId& id);
+  void await(const Call& call, const v1::GoalId& id);
   Own* own(const v1::GoalId& id);
   bool has_ended(const v1::GoalId& id) const;
   bool has_words_underway() const;

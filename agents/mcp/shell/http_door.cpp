@@ -230,6 +230,7 @@ void HttpDoor::see(const std::string& id, Client& client) {
   state.streams = client.waits.contains(client.stream);
   state.waits = client.door.is_asked();
   state.busy = client.door.is_busy();
+  state.silent = client.door.is_silent();
   presence_.see(id, state, time);
   client.door.allow(presence_.may_begin(id));
 }

@@ -30,6 +30,12 @@ bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
 }
 
+/// The client can show its person a form: it says so, or says nothing of other ways.
+bool has_forms(const Json& capabilities) {
+  const Json elicitation = member(capabilities, "elicitation");
+  return elicitation.is_object() && (elicitation.contains("form") || !elicitation.contains("url"));
+}
+
 bool is_answer(const Json& message) {
   return message.is_object() && !message.contains("method") &&
          (message.contains("result") || message.contains("error"));
@@ -96,36 +102,95 @@ void Session::ping() {
   send({{"jsonrpc", "2.0"}, {"id", "ping " + std::to_string(++pings_)}, {"method", "ping"}}, 0);
 }
 
-std::uint64_t Session::ask_person(const std::string& question) {
-  if (!elicits_ || asked_.size() >= kMostOpen)
+std::uint64_t Session::ask_person(const std::string& question, std::uint64_t call) {
+  const auto found = open_.find(call);
+  const bool modern = found != open_.end() && found->second.request.modern;
+  if (modern ? !found->second.request.elicits : !elicits_)
     return 0;
-  asked_.insert(++questions_);
+  const std::uint64_t number = ++questions_;
   const Json yes{{"type", "boolean"}, {"title", "Yes, let the robot begin"}, {"default", false}};
-  send({{"jsonrpc", "2.0"},
-        {"id", kQuestion + std::to_string(questions_)},
-        {"method", "elicitation/create"},
-        {"params",
-         {{"message", question},
-          {"requestedSchema",
-           {{"type", "object"}, {"properties", {{"yes", yes}}}, {"required", {"yes"}}}}}}},
-       0);
-  return questions_;
+  Json request{{"method", "elicitation/create"},
+               {"params",
+                {{"message", question},
+                 {"requestedSchema",
+                  {{"type", "object"}, {"properties", {{"yes", yes}}}, {"required", {"yes"}}}}}}};
+  if (modern)
+    request["params"]["mode"] = "form";
+  if (asked_.size() >= kMostOpen)
+    asked_.erase(asked_.begin());
+  Question& asked = asked_[number] = {std::move(request)};
+  if (!modern) {
+    Json message = asked.request;
+    message.update({{"jsonrpc", "2.0"}, {"id", kQuestion + std::to_string(number)}});
+    // It belongs to the call, on whose connection a client without a stream hears it, too.
+    send(message, found == open_.end() ? 0 : found->second.request.exchange);
+  } else if (!found->second.task.empty()) {
+    asked.task = found->second.task;
+    tasks_[asked.task].state["inputRequests"] = {
+        {kQuestion + std::to_string(number), asked.request}};
+    change_task(asked.task, "input_required", question);
+  } else {
+    asked.tool = found->second.tool;
+    note(asked.tool, "asks the person at the client", false);
+    const Request of_call = found->second.request;
+    open_.erase(found);
+    require(of_call, number);
+  }
+  return number;
+}
+
+/// Answers a call with the question: the client repeats the call with the answer.
+void Session::require(const Request& request, std::uint64_t question) {
+  const std::string key = kQuestion + std::to_string(question);
+  reply(request, {{"resultType", "input_required"},
+                  {"inputRequests", {{key, asked_.at(question).request}}},
+                  {"requestState", key}});
+}
+
+void Session::take_back(std::uint64_t question) {
+  const auto found = asked_.find(question);
+  if (found == asked_.end() || !found->second.tool.empty())
+    return;  // the client repeats its call, and gets the newest state
+  const std::string task = found->second.task;
+  asked_.erase(found);
+  if (task.empty())
+    send({{"jsonrpc", "2.0"},
+          {"method", "notifications/cancelled"},
+          {"params", {{"requestId", kQuestion + std::to_string(question)}}}},
+         0);
+  else
+    tasks_[task].state.erase("inputRequests");
+}
+
+bool Session::is_silent_for(std::uint64_t question) const {
+  const auto found = asked_.find(question);
+  return found != asked_.end() && !found->second.tool.empty();
 }
 
 std::vector<std::pair<std::uint64_t, bool>> Session::take_consents() {
   return std::exchange(consents_, {});
 }
 
+/// The number in the name of a question; 0: it is none.
+std::uint64_t Session::question_of(const Json& name) {
+  if (!name.is_string() || !name.get<std::string>().starts_with(kQuestion))
+    return 0;
+  return number_in<std::uint64_t>(name.get<std::string>().substr(kQuestion.size())).value_or(0);
+}
+
+/// True where the question was open.
+bool Session::take_response(std::uint64_t question, const Json& response) {
+  if (asked_.erase(question) == 0)
+    return false;
+  consents_.emplace_back(question, member(response, "action") == "accept" &&
+                                       member(member(response, "content"), "yes") == true);
+  return true;
+}
+
+/// An error is nobody's answer: the question is open for the page and for commands.
 void Session::take_answer(const Json& message) {
-  const Json id = member(message, "id");
-  if (!id.is_string() || !id.get<std::string>().starts_with(kQuestion))
-    return;
-  const auto number = number_in<std::uint64_t>(id.get<std::string>().substr(kQuestion.size()));
-  if (!number || asked_.erase(*number) == 0)
-    return;
-  const Json result = member(message, "result");
-  consents_.emplace_back(*number, member(result, "action") == "accept" &&
-                                      member(member(result, "content"), "yes") == true);
+  if (message.contains("result"))
+    take_response(question_of(member(message, "id")), message["result"]);
 }
 
 /// A stop is never held back.
@@ -320,7 +385,7 @@ void Session::ask(const std::string& method, const Request& request, const Json&
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     older().tools = true;
-    elicits_ = member(member(parameters, "capabilities"), "elicitation").is_object();
+    elicits_ = has_forms(member(parameters, "capabilities"));
     revision_ = known ? asked.get<std::string>() : kLegacy;
     return reply(request, {{"protocolVersion", revision_},
                            {"capabilities", capabilities(false)},
@@ -363,8 +428,7 @@ void Session::ask_either(const std::string& method, const Request& request,
   error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
 }
 
-void Session::ask_modern(const std::string& method, const Request& request,
-                         const Json& parameters) {
+void Session::ask_modern(const std::string& method, Request request, const Json& parameters) {
   const Json meta = member(parameters, "_meta");
   const Json version = member(meta, kMeta + "protocolVersion");
   if (!version.is_string())
@@ -374,6 +438,7 @@ void Session::ask_modern(const std::string& method, const Request& request,
                  {{"supported", {kModern}}, {"requested", version}});
   if (!member(meta, kMeta + "clientCapabilities").is_object())
     return error(request, kBadParameters, "_meta: " + kMeta + "clientCapabilities is missing");
+  request.elicits = has_forms(member(meta, kMeta + "clientCapabilities"));
   if (method == "server/discover")
     return reply(request, {{"supportedVersions", {kModern}},
                            {"capabilities", capabilities(true)},
@@ -504,8 +569,23 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
       return refuse("at most 5 calls a second; again in " + Json(std::ceil(wait * 10) / 10).dump() +
                     " s");
   }
+  std::uint64_t question = 0;
+  if (const Json state = member(parameters, "requestState"); request.modern && !state.is_null()) {
+    question = question_of(state);
+    const auto asked = asked_.find(question);
+    if (asked == asked_.end() || asked->second.tool != tool->name) {
+      open_.erase(number);
+      return error(request, kBadParameters, "requestState: there is no such question of this call");
+    }
+    const Json response = member(member(parameters, "inputResponses"), state);
+    if (response.is_null()) {
+      open_.erase(number);
+      return require(request, question);
+    }
+    take_response(question, response);
+  }
   const bool as_task = tool->lasts && request.modern && has_tasks(parameters);
-  calls_.push_back({number, tool->name, std::move(arguments), as_task, !uri.is_null()});
+  calls_.push_back({number, tool->name, std::move(arguments), as_task, !uri.is_null(), question});
 }
 
 Result Session::others() const {

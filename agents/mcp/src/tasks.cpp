@@ -88,7 +88,16 @@ void Session::ask_task(const std::string& method, const Request& request, const 
   Task& task = found->second;
   if (method == "tasks/get")
     return reply(request, task.state);
-  // No task asks for anything, so an update says nothing.
+  if (const Json asked = member(task.state, "inputRequests");
+      method == "tasks/update" && !asked.is_null()) {
+    const std::string name = asked.begin().key();  // one question at a time
+    if (const Json response = member(member(parameters, "inputResponses"), name);
+        !response.is_null()) {
+      task.state.erase("inputRequests");
+      take_response(question_of(name), response);
+      change_task(task.state["taskId"], "working", "answered");
+    }
+  }
   if (method == "tasks/cancel" && task.call != 0 && !std::exchange(task.withdrawn, true))
     given_up_.push_back(task.call);
   reply(request, Json::object());
@@ -97,7 +106,8 @@ void Session::ask_task(const std::string& method, const Request& request, const 
 void Session::change_task(const std::string& id, const std::string& status,
                           const std::string& text) {
   Json& state = tasks_[id].state;
-  state["status"] = status;
+  const bool asks = status == "working" && state.contains("inputRequests");
+  state["status"] = asks ? "input_required" : status;
   state["statusMessage"] = text;
   state["lastUpdatedAt"] = stamp_of(date_);
   for (const Listener& listener : listeners_)
@@ -109,6 +119,7 @@ void Session::change_task(const std::string& id, const std::string& status,
 void Session::end_task(const std::string& id, Json json, const Result& result) {
   Task& task = tasks_[id];
   task.call = 0;
+  task.state.erase("inputRequests");
   const bool canceled = task.withdrawn && result.is_error;
   if (!canceled)
     task.state["result"] = std::move(json);

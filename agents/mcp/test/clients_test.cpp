@@ -25,6 +25,16 @@ TEST_F(McpClients, TheGoalsOfAClientEndWithItsLastConnection) {
   EXPECT_FALSE(clients.is_gone("a", 201.8)) << "it may come back, and hear of that";
 }
 
+TEST_F(McpClients, AClientThatAsksItsPersonIsSilentMeanwhile) {
+  see(200.0, 0, 0.0);
+  state.silent = true;
+  clients.see("a", state, 300.0);
+  EXPECT_FALSE(clients.loses_goals("a", 300.0));
+  EXPECT_FALSE(clients.is_gone("a", 300.0));
+  see(301.6, 0, 0.0);
+  EXPECT_TRUE(clients.loses_goals("a", 301.6)) << "approved elsewhere, and nobody is there";
+}
+
 // No end of the connection comes over a broken network.
 TEST_F(McpClients, AConnectionWhoseOtherSideAcknowledgesNothingDoesNotCount) {
   see(200.0, 1, 199.2);

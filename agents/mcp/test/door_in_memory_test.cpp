@@ -798,5 +798,42 @@ TEST_F(DoorInMemory, AGoalThatNeedsAnApprovalIsPutToTheClientsPerson) {
   }
 }
 
+TEST_F(DoorInMemory, InTheNewerEraTheRepeatedCallFollowsTheGoal) {
+  bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
+  schemas.write({.schemas = {{.name = "patrol"}}});
+  turn();
+  const auto patrol = [&](int id, Json more) {
+    more["name"] = "patrol";
+    more["_meta"] = {
+        {"io.modelcontextprotocol/protocolVersion", Session::kModern},
+        {"io.modelcontextprotocol/clientCapabilities", {{"elicitation", Json::object()}}}};
+    session.take(
+        Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", "tools/call"}, {"params", more}}.dump());
+    turn();
+    return result(id);
+  };
+  EXPECT_TRUE(patrol(1, {}).is_null());
+  v1::GoalStatus status{.id = saphira::test::only(goals.take()).data.id,
+                        .functor = "patrol",
+                        .state = v1::GOAL_WAITING,
+                        .code = v1::CODE_APPROVAL};
+  statuses.write(status);
+  turn();
+  const std::string state = result(1)["requestState"];
+  EXPECT_TRUE(door->is_silent());
+  EXPECT_FALSE(door->is_asked());
+  const Json yes{{"action", "accept"}, {"content", {{"yes", true}}}};
+  EXPECT_TRUE(patrol(2, {{"requestState", state}, {"inputResponses", {{state, yes}}}}).is_null());
+  EXPECT_TRUE(goals.take().empty()) << "the same goal";
+  EXPECT_EQ(saphira::test::only(approvals.take()).data.functor, "resume");
+  EXPECT_FALSE(door->is_silent());
+  status.state = v1::GOAL_SUCCEEDED;
+  status.code = v1::CODE_NONE;
+  statuses.write(status);
+  turn();
+  EXPECT_EQ(result(2)["structuredContent"]["goal"], bus::describe(status.id));
+  EXPECT_EQ(result(2)["structuredContent"]["state"], "succeeded");
+}
+
 }  // namespace
 }  // namespace saphira::mcp

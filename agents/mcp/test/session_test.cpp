@@ -606,5 +606,80 @@ TEST(McpSession, AResourceThatIsNotThereIsAnErrorOfItsEra) {
   EXPECT_EQ(modern["error"]["data"]["uri"], "saphira://robot/x");
 }
 
+const Json kForm = Json::parse(R"({"elicitation":{}})");
+
+TEST(McpSession, AQuestionGoesWithTheCallThatItIsAbout) {
+  Client client;
+  client.session.take(line(1, "initialize", {{"capabilities", kForm}}), 3);
+  client.session.take(line(2, "tools/call", kGo), 4);
+  client.session.take_lines();
+  const std::uint64_t call = client.called().number;
+  const std::uint64_t question = client.session.ask_person("May it?", call);
+  const Line asked = client.only();
+  EXPECT_EQ(asked.exchange, 4U);
+  EXPECT_FALSE(asked.last);
+  EXPECT_TRUE(client.session.is_open(call));
+  client.session.take_back(question);
+  const Json taken = client.heard().at(0);
+  EXPECT_EQ(taken["method"], "notifications/cancelled");
+  EXPECT_EQ(taken["params"]["requestId"], Json::parse(asked.text)["id"]);
+  client.session.take_back(question);
+  EXPECT_TRUE(client.heard().empty()) << "once";
+}
+
+TEST(McpSession, AClientThatCannotAskSaysNoNo) {
+  Client client;
+  client.say(line(1, "initialize", {{"capabilities", {{"elicitation", {{"url", kForm}}}}}}));
+  EXPECT_EQ(client.session.ask_person("May it?", 0), 0U) << "it has no forms";
+  client.say(line(2, "initialize", {{"capabilities", kForm}}));
+  client.session.ask_person("May it?", 0);
+  const Json id = client.heard().at(0)["id"];
+  client.say(Json{{"id", id}, {"error", {{"code", -32602}, {"message", "no"}}}}.dump());
+  EXPECT_TRUE(client.session.take_consents().empty());
+}
+
+TEST(McpSession, InTheNewerEraACallIsRepeatedWithThePersonsAnswer) {
+  Client client;
+  const auto call = [&](const std::string& id, const Json& more, const Json& capabilities = kForm) {
+    Json parameters = kGo;
+    parameters.update(more);
+    return client.say(modern(id, "tools/call", parameters, capabilities));
+  };
+  EXPECT_TRUE(call("a", Json::object(), Json::object()).empty());
+  EXPECT_EQ(client.session.ask_person("May it?", client.called().number), 0U) << "it cannot ask";
+  call("b", Json::object());
+  const Call first = client.called();
+  EXPECT_EQ(first.question, 0U);
+  const std::uint64_t question = client.session.ask_person("May it?", first.number);
+  EXPECT_FALSE(client.session.is_open(first.number));
+  EXPECT_TRUE(client.session.is_silent_for(question));
+  const Json message = client.heard().at(0);
+  EXPECT_EQ(message["id"], "b");
+  const Json result = message["result"];
+  EXPECT_EQ(result["resultType"], "input_required");
+  const std::string state = result["requestState"];
+  const Json form = result["inputRequests"][state];
+  EXPECT_EQ(form["method"], "elicitation/create");
+  EXPECT_EQ(form["params"]["mode"], "form");
+  EXPECT_EQ(form["params"]["message"], "May it?");
+  EXPECT_EQ(form["params"]["requestedSchema"]["properties"]["yes"]["type"], "boolean");
+  EXPECT_FALSE(form.contains("id"));
+
+  client.session.take_back(question);
+  EXPECT_TRUE(client.heard().empty()) << "the client cannot be told";
+  EXPECT_EQ(call("c", {{"requestState", "question 99"}})[0]["error"]["code"], -32602);
+  EXPECT_EQ(call("d", {{"requestState", state}})[0]["result"]["inputRequests"][state], form)
+      << "without an answer it is asked again";
+  EXPECT_TRUE(client.session.take_calls().empty());
+  const Json yes{{"action", "accept"}, {"content", {{"yes", true}}}};
+  const Json answer{{"requestState", state}, {"inputResponses", {{state, yes}}}};
+  EXPECT_TRUE(call("e", answer).empty());
+  EXPECT_EQ(client.called().question, question);
+  const auto consent = saphira::test::only(client.session.take_consents());
+  EXPECT_EQ(consent, std::pair(question, true));
+  EXPECT_FALSE(client.session.is_silent_for(question));
+  EXPECT_EQ(call("f", answer)[0]["error"]["code"], -32602) << "an answer counts once";
+}
+
 }  // namespace
 }  // namespace saphira::mcp

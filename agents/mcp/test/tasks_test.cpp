@@ -185,5 +185,47 @@ TEST(McpTasks, TheHeaderNamesTheTask) {
   EXPECT_EQ(Json::parse(lines[0].text)["error"]["code"], -32020);
 }
 
+TEST(McpTasks, ATaskThatAsksThePersonSaysSoUntilTheAnswer) {
+  Tasks client;
+  Json knows = kKnowsTasks;
+  knows["elicitation"] = Json::object();
+  client.session.take(modern("c", "tools/call", kGo, knows));
+  const std::uint64_t call = client.called().number;
+  client.session.begin_task(call, "1f:2", "asked for");
+  const auto asks = [&] {
+    const std::uint64_t number = client.session.ask_person("May it?", call);
+    client.heard();
+    return std::pair(number, client.ask("tasks/get", "1f:2")["result"]);
+  };
+  const auto [question, state] = asks();
+  EXPECT_TRUE(client.session.is_open(call));
+  EXPECT_FALSE(client.session.is_silent_for(question)) << "it polls";
+  EXPECT_EQ(state["status"], "input_required");
+  ASSERT_EQ(state["inputRequests"].size(), 1U);
+  const std::string name = state["inputRequests"].items().begin().key();
+  EXPECT_EQ(state["inputRequests"][name]["method"], "elicitation/create");
+  client.session.progress(call, 0.0, "waits for an approval");
+  EXPECT_EQ(client.ask("tasks/get", "1f:2")["result"]["status"], "input_required");
+  const auto update = [&](const Json& responses) {
+    return client.one(
+        Tasks::request("u", "tasks/update", {{"taskId", "1f:2"}, {"inputResponses", responses}}));
+  };
+  EXPECT_TRUE(update({{"other", Json::object()}}).contains("result"));
+  EXPECT_TRUE(client.session.take_consents().empty());
+  const Json yes{{"action", "accept"}, {"content", {{"yes", true}}}};
+  EXPECT_TRUE(update({{name, yes}}).contains("result"));
+  EXPECT_EQ(saphira::test::only(client.session.take_consents()), std::pair(question, true));
+  const Json after = client.ask("tasks/get", "1f:2")["result"];
+  EXPECT_EQ(after["status"], "working");
+  EXPECT_FALSE(after.contains("inputRequests"));
+
+  client.session.take_back(asks().first);
+  client.session.progress(call, 0.1, "on its way");
+  EXPECT_EQ(client.ask("tasks/get", "1f:2")["result"]["status"], "working") << "approved elsewhere";
+  asks();
+  client.session.answer(call, {"arrived", nullptr, false});
+  EXPECT_FALSE(client.ask("tasks/get", "1f:2")["result"].contains("inputRequests"));
+}
+
 }  // namespace
 }  // namespace saphira::mcp

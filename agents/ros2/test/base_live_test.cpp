@@ -3,8 +3,9 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
-#include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "cyclone_client.hpp"
 #include "ros2_cyclone.h"
@@ -15,7 +16,6 @@ namespace saphira::ros2 {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-using Clock = std::chrono::steady_clock;
 
 constexpr float kTurn = 6.2831853F;
 
@@ -24,12 +24,15 @@ class FakeBase {
  public:
   static constexpr double kWall = 2.5;  // [m]
 
-  explicit FakeBase(const std::string& space)
-      : odom_(client_.writer("rt/" + space + "/odom", nav_msgs_msg_dds__Odometry__desc)),
+  FakeBase(const std::string& space, bool stamped)
+      : stamped_(stamped),
+        odom_(client_.writer("rt/" + space + "/odom", nav_msgs_msg_dds__Odometry__desc)),
         scan_(client_.writer("rt/" + space + "/scan", sensor_msgs_msg_dds__LaserScan__desc)),
         fixed_(
             client_.writer("rt/" + space + "/tf_static", tf2_msgs_msg_dds__TFMessage__desc, true)),
-        cmd_vel_(client_.reader("rt/" + space + "/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {
+        cmd_vel_(client_.reader("rt/" + space + "/cmd_vel",
+                                stamped ? geometry_msgs_msg_dds__TwistStamped__desc
+                                        : geometry_msgs_msg_dds__Twist__desc)) {
     geometry_msgs_msg_dds__TransformStamped_ laser{};
     laser.header.frame_id = base_frame_.data();
     laser.child_frame_id = laser_frame_.data();
@@ -55,24 +58,20 @@ class FakeBase {
   std::atomic<bool> has_scan{true};
   std::atomic<double> x{0.0};
   std::atomic<double> velocity{0.0};  // that cmd_vel asked for last
-  /// [s] From that time to the first cmd_vel of no motion after it.
-  double stopped_after(Clock::time_point from) {
-    const std::lock_guard lock(mutex_);
-    return Seconds(stopped_ - from).count();
-  }
 
  private:
   static constexpr std::chrono::milliseconds kStep{20};
 
   void step() {
-    take<geometry_msgs_msg_dds__Twist_>(cmd_vel_, [this](const auto& twist) {
-      if (twist.linear.x == 0.0 && velocity != 0.0) {
-        const std::lock_guard lock(mutex_);
-        stopped_ = Clock::now();
-      }
+    const auto obey = [this](const geometry_msgs_msg_dds__Twist_& twist) {
       velocity = twist.linear.x;
       return true;
-    });
+    };
+    if (stamped_)
+      take<geometry_msgs_msg_dds__TwistStamped_>(
+          cmd_vel_, [&](const auto& each) { return obey(each.twist); });
+    else
+      take<geometry_msgs_msg_dds__Twist_>(cmd_vel_, obey);
     x = x + velocity * Seconds(kStep).count();
     nav_msgs_msg_dds__Odometry_ odometry{};
     odometry.header.frame_id = odom_frame_.data();
@@ -99,86 +98,90 @@ class FakeBase {
   }
 
   const Client client_;
+  const bool stamped_;
   std::string odom_frame_ = "odom";
   std::string base_frame_ = "base_link";
   std::string laser_frame_ = "laser";
   const dds_entity_t odom_, scan_, fixed_, cmd_vel_;
   std::vector<float> ranges_ = std::vector<float>(360);
   int steps_ = 0;
-  std::mutex mutex_;
-  Clock::time_point stopped_;
   std::atomic<bool> ends_{false};
   std::thread thread_;
 };
 
-TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
-  test::Scene scene;
-  scene.robot_port = "ros2:" + scene.robot + ",domain=" + test::domain() + ",interface=127.0.0.1";
-  scene.start_bridge();
-  const auto reason = [&](const std::string& part) {
+/// A bridge with the base as its robot, and a person who drives. Times are decided, and tested, in
+/// base_test and in the bridge's core.
+class Ros2Base : public ::testing::Test {
+ protected:
+  void start(const std::string& options = "") {
+    scene.robot_port =
+        "ros2:" + scene.robot + ",domain=" + test::domain() + ",interface=127.0.0.1" + options;
+    scene.start_bridge();
+    EXPECT_TRUE(reason("no odometry")) << scene.status.reason;
+    base.emplace(scene.robot, !options.empty());
+    ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+    epoch = scene.state.stamp.epoch;
+    scene.use(bus::topics::kDriveTeleop);
+    scene.drives = true;
+  }
+  bool reason(const std::string& part) {
     return scene.until([&] { return scene.status.reason.find(part) != std::string::npos; });
-  };
-  EXPECT_TRUE(reason("no odometry")) << scene.status.reason;
-  FakeBase base(scene.robot);
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  }
+  bool drive(double velocity) {
+    test::forward(scene.command, velocity);
+    return scene.until([&] {
+      // A person who was stopped lets go, and presses again.
+      scene.command.active = scene.grant.role != v1::ROLE_NONE || scene.command.number % 20 >= 10;
+      return std::abs(base->velocity) > 0.7 * std::abs(velocity);
+    });
+  }
+  bool stops() {
+    return scene.until([&] { return base->velocity == 0.0; });
+  }
+  bool connects_again() {
+    const std::uint64_t before = std::exchange(epoch, scene.state.stamp.epoch);
+    return scene.until([&] { return (epoch = scene.state.stamp.epoch) > before; });
+  }
+
+  test::Scene scene;
+  std::optional<FakeBase> base;
+  std::uint64_t epoch = 0;
+};
+
+TEST_F(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
+  start();
   EXPECT_EQ(scene.description->robot_subclass, "ros2");
   EXPECT_EQ(scene.description->sonars.size(), 24U);
 
-  scene.use(bus::topics::kDriveTeleop);
-  scene.drives = true;
-  const auto drive = [&](double velocity, double at_least) {
-    scene.command.active = false;  // a person who was stopped lets go first
-    scene.watch(std::chrono::milliseconds(200));
-    test::forward(scene.command, velocity);
-    return scene.until([&] { return std::abs(base.velocity) > at_least; });
-  };
-  std::uint64_t epoch = scene.state.stamp.epoch;
-  const auto connected_again = [&] {
-    const std::uint64_t before = epoch;
-    const bool is_new = scene.until([&] { return scene.state.stamp.epoch > before; });
-    epoch = scene.state.stamp.epoch;
-    return is_new;
-  };
-  const auto stops = [&](Clock::time_point since, double within) {
-    EXPECT_TRUE(scene.until([&] { return base.velocity == 0.0; }, std::chrono::seconds(10)));
-    const double after = base.stopped_after(since);
-    std::printf("stopped after %.2f s (limit %.2f)\n", after, within);
-    EXPECT_LT(after, within);
-  };
-
   // The guard holds it before the wall.
-  EXPECT_TRUE(drive(0.3, 0.25)) << scene.bridge_log();
-  EXPECT_TRUE(scene.until([&] { return base.velocity == 0.0 && base.x > 1.0; }));
-  const double free = FakeBase::kWall - base.x - 0.18;
-  std::printf("stands %.2f m before the wall\n", free);
-  EXPECT_GT(free, 0.2);
-  EXPECT_LT(free, 0.5);
+  EXPECT_TRUE(drive(0.3)) << scene.bridge_log();
+  EXPECT_TRUE(scene.until([&] { return base->velocity == 0.0 && base->x > 1.0; }));
+  EXPECT_LT(base->x, FakeBase::kWall);
 
   // The emergency stop, backward.
-  EXPECT_TRUE(drive(-0.2, 0.15));
+  EXPECT_TRUE(drive(-0.2));
   bus::Writer<v1::MotorCommand> estop = scene.node.writer(bus::topics::kDriveEstop);
-  ASSERT_TRUE(scene.until([&] { return estop.matched() > 0; }));
   v1::MotorCommand press;
   press.source = "test";
   press.active = true;
-  const Clock::time_point pressed = Clock::now();
   EXPECT_TRUE(scene.until([&] {
     ++press.number;
     estop.write(press);
     return scene.grant.estopped;
   }));
-  stops(pressed, 0.5);
-  scene.watch(std::chrono::milliseconds(500));  // until no press counts
-  EXPECT_EQ(scene.ask(bus::topics::kEstopReset, "reset").code, v1::ANSWER_DONE);
+  EXPECT_TRUE(stops());
+  EXPECT_TRUE(scene.until([&] {
+    return scene.ask(bus::topics::kEstopReset, "reset").code == v1::ANSWER_DONE;
+  })) << "once no press counts any more";
 
   // The scan ends while it drives, and comes again.
-  EXPECT_TRUE(drive(-0.2, 0.15));
-  base.has_scan = false;
-  stops(Clock::now(), 1.0);
+  EXPECT_TRUE(drive(-0.2));
+  base->has_scan = false;
+  EXPECT_TRUE(stops());
   EXPECT_TRUE(reason("no scan")) << scene.status.reason;
-  base.has_scan = true;
-  EXPECT_TRUE(connected_again());
-  EXPECT_TRUE(drive(-0.2, 0.15)) << scene.bridge_log();
+  base->has_scan = true;
+  EXPECT_TRUE(connects_again());
+  EXPECT_TRUE(drive(-0.2)) << scene.bridge_log();
 
   // The translator is killed: the next one says at once that the robot stands.
   const std::string bridge = std::to_string(scene.bridge->pid());
@@ -189,15 +192,21 @@ TEST(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
     if (name == "saphira-ros2-ba")
       ::kill(pid, SIGKILL);
   }
-  const Clock::time_point killed = Clock::now();
   scene.command.velocity = 0.0;
-  stops(killed, 2.0);
+  EXPECT_TRUE(stops());
 
   // So is the bridge.
-  EXPECT_TRUE(connected_again());
-  EXPECT_TRUE(drive(-0.2, 0.15));
+  EXPECT_TRUE(connects_again());
+  EXPECT_TRUE(drive(-0.2));
   scene.bridge->signal(SIGKILL);
-  stops(Clock::now(), 0.5);
+  EXPECT_TRUE(stops());
+}
+
+TEST_F(Ros2Base, ABaseWithStampsDrivesAndStops) {
+  start(",cmd-vel=stamped");
+  EXPECT_TRUE(drive(0.2)) << scene.bridge_log();
+  scene.command.velocity = 0.0;
+  EXPECT_TRUE(stops());
 }
 
 }  // namespace

@@ -169,6 +169,8 @@ TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {
   run(1.0);
   EXPECT_EQ(written, 0);
   base.heard(true);
+  run(0.01);
+  EXPECT_EQ(written, 1) << "at once: the program before it may have been killed";
   run(1.0);
   EXPECT_EQ(written, 10);  // of the begin
   EXPECT_EQ(cmd_vel, Twist{});
@@ -213,8 +215,9 @@ TEST_F(BaseTest, EmergencyStopIsAtOnceAndCloseEndsInSilence) {
   say(protocol::Velocity{0.3});
   run(2.0);
   say(protocol::EmergencyStop{});
-  run(0.1);
+  run(0.02);
   EXPECT_EQ(cmd_vel, Twist{});
+  run(0.08);
   const int before = written;
   run(1.0);
   EXPECT_EQ(written - before, 20);  // it holds the robot

@@ -53,7 +53,11 @@ struct Asker {
 /// A simulated robot with its services in an office, and the program for ROS 2.
 class CycloneTest : public ::testing::Test {
  protected:
-  CycloneTest() {
+  explicit CycloneTest(const std::string& distribution = "jazzy", bool stamps = false)
+      : stamped(stamps),
+        ros({"saphira-ros2", "--ros-interface", "127.0.0.1", "--distribution", distribution,
+             "--cmd-vel", stamps ? "stamped" : "twist"},
+            folder.path("ros2.log"), environment) {
     EXPECT_TRUE(comes<Odometry>(odom, [&](const Odometry& message) { return seen(message); }));
   }
 
@@ -70,11 +74,13 @@ class CycloneTest : public ::testing::Test {
   }
   /// Writes this velocity until it is as wanted.
   bool drive(double wish, const std::function<bool()>& as_wanted) {
-    geometry_msgs_msg_dds__Twist_ twist{};
-    twist.linear.x = wish;
+    std::string frame = "base_link";
+    geometry_msgs_msg_dds__TwistStamped_ command{};
+    command.header.frame_id = frame.data();
+    command.twist.linear.x = wish;
     return test::wait_until(
         [&] {
-          dds_write(cmd_vel, &twist);
+          dds_write(cmd_vel, stamped ? static_cast<const void*>(&command) : &command.twist);
           return take<Odometry>(odom, [&](const Odometry& message) { return seen(message); }) &&
                  as_wanted();
         },
@@ -89,12 +95,13 @@ class CycloneTest : public ::testing::Test {
                        "--socket", folder.path("robot")},
                       folder.path("robot.log"),
                       environment};
-  test::Process ros{{"saphira-ros2", "--ros-interface", "127.0.0.1", "--distribution", "jazzy"},
-                    folder.path("ros2.log"),
-                    environment};
+  const bool stamped;  // cmd_vel
+  test::Process ros;
   const Client client;
   const dds_entity_t odom = client.reader("rt/odom", nav_msgs_msg_dds__Odometry__desc);
-  const dds_entity_t cmd_vel = client.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+  const dds_entity_t cmd_vel =
+      client.writer("rt/cmd_vel", stamped ? geometry_msgs_msg_dds__TwistStamped__desc
+                                          : geometry_msgs_msg_dds__Twist__desc);
   double x = 0.0;
   double velocity = 0.0;
 };
@@ -191,6 +198,15 @@ TEST_F(CycloneTest, CmdVelIsObeyedAndGuarded) {
     return velocity < 0.1 && (guard == situation::name_of(v1::GUARD_SLOW) ||
                               guard == situation::name_of(v1::GUARD_STOP));
   })) << guard;
+}
+
+struct CycloneStampedTest : CycloneTest {
+  CycloneStampedTest() : CycloneTest("humble", true) {}
+};
+
+TEST_F(CycloneStampedTest, CmdVelIsObeyed) {
+  EXPECT_TRUE(drive(0.3, [&] { return velocity > 0.2; })) << ros.output();
+  EXPECT_TRUE(drives_at([&] { return velocity == 0.0; }));
 }
 
 TEST_F(CycloneTest, AnActionIsAcceptedFedBackCanceledAndSucceeds) {

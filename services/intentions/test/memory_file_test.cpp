@@ -179,7 +179,7 @@ TEST(MemoryFile, RemembersTheWorkAndSetsAsideWhatIsDamagedOfIt) {
                   12,
                   2,
                   77,
-                  {{{0xfedcba9876543210ULL, 7}, "about-turn", {"[1.5,\"a b\"]"}}},
+                  {{{0xfedcba9876543210ULL, 7}, "about-turn", {}, false, {"[1.5,\"a b\"]"}}},
                   {{"*speed*", Value(0.3), "patrol", -4}}};
   EXPECT_TRUE(MemoryFile(path).keep(work));
   EXPECT_EQ(MemoryFile(path).memory().work, work);

@@ -46,7 +46,15 @@ class Site {
         std::move(registry), memory,
         ExecutorOptions{.remembers_work = true, .functions = functions_});
     events_ = {{GoalEvent::Kind::kWritten, goal_}};
+    events_[0].needs_approval = needs_approval;
   }
+  /// Its writer changes it.
+  void change(Arguments arguments) {
+    goal_.arguments = std::move(arguments);
+    events_ = {{GoalEvent::Kind::kWritten, goal_}};
+    events_[0].needs_approval = needs_approval;
+  }
+  bool approve() { return executor_->approve(goal_.id); }
   /// Dead for so many cycles, in which the robot stands.
   void kill(int cycles) {
     for (int i = 0; i < cycles; ++i) {
@@ -86,6 +94,7 @@ class Site {
   bool over() const { return ended(status.state); }
 
   ScriptedRobot world;
+  bool needs_approval = false;  ///< the goal, from the next time on that it is heard
   std::uint64_t epoch = 100;
   std::uint64_t cycle = 0;
   std::string journal;  ///< the content of the disk
@@ -137,7 +146,11 @@ TEST(Work, ReadsWhatItWrote) {
       12,
       3,
       77,
-      {{{0xfedcba9876543210ULL, 7}, "about-turn", {"[1]"}}},
+      {{{0xfedcba9876543210ULL, 7},
+        "about-turn",
+        {number("far", 1.0 / 3.0), text("what", "a \"b\""), point("to", {1, 2, 3}, Frame::map)},
+        true,
+        {"[1]"}}},
       {{"*speed*",
         Value(Value::List{Value(1.0 / 3.0), Value("a \"b\" ; c"), Value(), Value::truth(true),
                           Value(Point{{1.5, -2.0, 3.0}, Frame::map}),
@@ -224,6 +237,45 @@ TEST(Work, WhatCannotBeTakenUpIsTold) {
     EXPECT_EQ(site.status.state, v1::GOAL_UNDERWAY);
     EXPECT_NE(site.status.note.find("begun anew"), std::string::npos) << site.status.note;
     EXPECT_NE(site.status.note.find(one.told), std::string::npos) << site.status.note;
+  }
+}
+
+// A person approves a goal as it is, and not what its writer makes of it while nobody listens.
+TEST(Work, AGoalThatWasChangedMeanwhileIsApprovedAnew) {
+  const auto far = [](double metres) { return Arguments{number("far", metres)}; };
+  const char* const kWay =
+      "(defintention :way :params ((far :number 1)) :goals '("
+      " (INTEND :GoToPos ((goal . (offset (robot) far 0)) (speed . 0.4) (radius . 0.05))"
+      "   :timeout 20s)))";
+  for (const bool changed_before : {false, true}) {
+    SCOPED_TRACE(changed_before);
+    Site site(kWay, "way", far(1.0));
+    site.needs_approval = true;
+    site.kill(0);
+    site.step();
+    EXPECT_EQ(site.status.code, v1::CODE_APPROVAL);
+    EXPECT_TRUE(site.approve());
+    for (int i = 0; i < 8; ++i)
+      site.step();
+    ASSERT_EQ(site.status.state, v1::GOAL_UNDERWAY);
+    site.kill(1);
+    site.step();
+    EXPECT_EQ(site.status.state, v1::GOAL_UNDERWAY) << "the same goal goes on";
+
+    site.change(far(2.0));
+    if (changed_before)
+      site.step();
+    site.kill(1);
+    site.step();
+    EXPECT_EQ(site.status.code, v1::CODE_APPROVAL);
+    const double driven = site.driven;
+    site.step();
+    EXPECT_EQ(site.driven, driven);
+    EXPECT_TRUE(site.approve());
+    while (!site.over())
+      site.step();
+    EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
+    EXPECT_NEAR(site.driven, driven + 2.0, 0.1) << "from its first step";
   }
 }
 

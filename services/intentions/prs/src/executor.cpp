@@ -278,10 +278,12 @@ void Executor::take_written(const GoalEvent& event) {
     return;
   }
   put_up(entry, goal, std::move(complete));
-  // A stop is anybody's at once. Begun work was approved before a restart of the service.
-  entry.unapproved = event.needs_approval && !entry.schema->replaces &&
-                     std::none_of(remembered_work_.goals.begin(), remembered_work_.goals.end(),
-                                  [&](const GoalWork& work) { return work.id == goal.id; });
+  // A stop is anybody's at once. Begun work was approved before a restart of the service, as it was
+  // asked for then.
+  entry.unapproved =
+      event.needs_approval && !entry.schema->replaces &&
+      std::none_of(remembered_work_.goals.begin(), remembered_work_.goals.end(),
+                   [&](const GoalWork& work) { return work.is_of(goal) && !work.unapproved; });
   if (!robot_here_)
     wait(entry, v1::CODE_NO_ROBOT, "accepted; waits for the robot");
   else
@@ -701,6 +703,8 @@ void Executor::take_up(Entry& entry, const World& world) {
       throw ActivityError("what had been done of it is not remembered");
     if (done == remembered_work_.goals.end() || done->functor != entry.goal.functor)
       return;  // it had not begun
+    if (!done->is_of(entry.goal))
+      throw ActivityError("it was changed meanwhile");
     if (remembered_work_.odom != world.robot.odom)
       throw ActivityError("the robot's dead reckoning has begun anew");
     forest_.restore(entry.node, done->intentions, world);
@@ -746,7 +750,8 @@ std::optional<Work> Executor::take_work() {
   });
   for (const auto& [id, entry] : entries_)
     if (entry.node != 0)
-      work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});
+      work.goals.push_back({id, entry.goal.functor, entry.goal.arguments, entry.unapproved,
+                            forest_.save(entry.node)});
   // The saved work of a goal that is not continued yet is still valid.
   for (const GoalWork& done : remembered_work_.goals) {
     const auto entry = entries_.find(done.id);

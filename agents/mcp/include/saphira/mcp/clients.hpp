@@ -18,6 +18,7 @@ class Clients {
     bool streams = false;  ///< a ping reaches it
     bool waits = false;    ///< a call is not answered yet
     bool busy = false;     ///< a goal is underway
+    bool silent = false;   ///< its person is asked if that may begin: it says nothing meanwhile
   };
 
   /// The one that gives its place to a new client: of those without a goal the longest silent,

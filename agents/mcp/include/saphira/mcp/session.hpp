@@ -33,8 +33,9 @@ struct Call {
   std::uint64_t number = 0;  ///< of this session
   std::string tool;
   Json arguments;
-  bool as_task = false;  ///< its answer is a task, at once
-  bool as_text = false;  ///< of a resource: its answer is a text, without a picture
+  bool as_task = false;        ///< its answer is a task, at once
+  bool as_text = false;        ///< of a resource: its answer is a text, without a picture
+  std::uint64_t question = 0;  ///< it repeats a call, with the person's answer to this; 0: none
 };
 
 struct Result {
@@ -109,9 +110,17 @@ class Session {
   void close(std::uint64_t exchange);
   /// Asks the client for a sign, outside of an answer. For the older era.
   void ping();
-  /// Has the client ask its person for a yes or no (elicitation of the older era). Returns the
-  /// number of the question; 0: the client cannot.
-  std::uint64_t ask_person(const std::string& question);
+  /// Has the client ask its person for a yes or no (elicitation), for a call [0: none is open]. In
+  /// the newer era that answers the call, or is a state of its task. Returns the number of the
+  /// question; 0: the client cannot.
+  std::uint64_t ask_person(const std::string& question, std::uint64_t call);
+  /// The question needs no answer any more.
+  void take_back(std::uint64_t question);
+  /// The client of the newer era repeats its call when its person has answered, and is silent
+  /// until then.
+  bool is_silent_for(std::uint64_t question) const;
+  /// The call has no answer yet.
+  bool is_open(std::uint64_t call) const { return open_.contains(call); }
   /// The answers since the last call, by the question. A dismissed question is a no.
   std::vector<std::pair<std::uint64_t, bool>> take_consents();
   /// The server ends: so does each request that listens.
@@ -151,6 +160,13 @@ class Session {
     std::uint64_t exchange = 0;
     bool modern = false;
     std::uint64_t batch = 0;  ///< the batch that it came in [0: none]
+    bool elicits = false;     ///< its client can ask its person
+  };
+  /// To the person at the client, without an answer yet.
+  struct Question {
+    Json request;           ///< elicitation/create
+    std::string tool = {};  ///< whose call is repeated with the answer; empty: none
+    std::string task = {};  ///< that waits for the answer; empty: none
   };
   /// Requests that came in one message, and are answered in one.
   struct Batch {
@@ -203,7 +219,7 @@ class Session {
   void error(const Request& request, int code, const std::string& text, Json data = nullptr);
   void ask(const std::string& method, const Request& request, const Json& parameters);
   void ask_either(const std::string& method, const Request& request, const Json& parameters);
-  void ask_modern(const std::string& method, const Request& request, const Json& parameters);
+  void ask_modern(const std::string& method, Request request, const Json& parameters);
   bool fits(const std::string& method, const Request& request, const Json& parameters,
             const Headers& headers);
   bool has_to_wait(const std::string& method, const Json& parameters) const;
@@ -233,7 +249,10 @@ class Session {
   Result others() const;
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
+  static std::uint64_t question_of(const Json& name);
   void take_answer(const Json& message);
+  bool take_response(std::uint64_t question, const Json& response);
+  void require(const Request& request, std::uint64_t question);
   void erase(std::uint64_t call);
   void note(const std::string& tool, const std::string& text, bool is_error);
 
@@ -247,9 +266,9 @@ class Session {
   std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::uint64_t pings_ = 0;
-  bool elicits_ = false;  ///< the client can ask its person
+  bool elicits_ = false;  ///< the client of the older era can ask its person
   std::uint64_t questions_ = 0;
-  std::set<std::uint64_t> asked_;  ///< questions without an answer
+  std::map<std::uint64_t, Question> asked_;  ///< by number
   std::vector<std::pair<std::uint64_t, bool>> consents_;
   std::map<std::uint64_t, Open> open_;
   std::map<std::uint64_t, Batch> batches_;

@@ -52,6 +52,11 @@ struct Argument {
   Frame frame = Frame::odom;  ///< of `point`
 
   bool operator==(const Argument&) const = default;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("name", name)("kind", kind)("number", number)("text", text)("point", point)("frame", frame);
+  }
 };
 using Arguments = std::vector<Argument>;
 

@@ -15,9 +15,16 @@ namespace saphira::intentions {
 struct GoalWork {
   GoalId id;
   std::string functor;
-  Saved intentions;  ///< of the Forest
+  Arguments arguments;      ///< as written
+  bool unapproved = false;  ///< changed since, and waits for a person's approval
+  Saved intentions;         ///< of the Forest
 
   bool operator==(const GoalWork&) const = default;
+
+  /// The goal is still what was begun.
+  bool is_of(const Goal& goal) const {
+    return id == goal.id && functor == goal.functor && arguments == goal.arguments;
+  }
 };
 
 /// The progress of all open goals, and the values set by activities: the memory for a restart of
