@@ -59,20 +59,22 @@ double Cameras::captured() const {
   return came_;
 }
 
-std::optional<std::string> Cameras::next(PictureFlow& flow, double now) const {
-  if (!picture_ || !flow.takes(number_, now))
+std::optional<std::string> Cameras::next(PictureFlow& flow, PictureFlow::Lane lane,
+                                         double now) const {
+  if (!picture_ || !flow.takes(lane, number_, now))
     return std::nullopt;
-  flow.sent(number_, now);
+  flow.sent(lane, number_, now);
   const v1::CameraPicture& picture = *picture_;
   const int quality = flow.quality();
   const std::vector<std::uint8_t> smaller =
       quality == 0 ? std::vector<std::uint8_t>() : in_quality(picture.jpeg, quality);
   const std::vector<std::uint8_t>& jpeg = quality == 0 ? picture.jpeg : smaller;
   std::string text = format(
-      "{\"number\":%llu,\"camera\":%s,\"cycle\":%llu,\"age\":%.4f,\"columns\":%u,\"rows\":%u,"
-      "\"field\":%.5f,\"x\":%.4f,\"y\":%.4f,\"th\":%.5f,\"height\":%.4f,\"tilt\":%.5f}\n",
+      "{\"number\":%llu,\"camera\":%s,\"cycle\":%llu,\"now\":%.4f,\"age\":%.4f,"
+      "\"columns\":%u,\"rows\":%u,\"field\":%.5f,\"x\":%.4f,\"y\":%.4f,\"th\":%.5f,\"height\":%.4f,"
+      "\"tilt\":%.5f}\n",
       static_cast<unsigned long long>(number_), quoted(picture.camera).c_str(),
-      static_cast<unsigned long long>(picture.stamp.cycle), std::max(0.0, now - captured()),
+      static_cast<unsigned long long>(picture.stamp.cycle), now, std::max(0.0, now - captured()),
       picture.columns, picture.rows, picture.field_of_view, picture.pose_in_robot.x,
       picture.pose_in_robot.y, picture.pose_in_robot.th, picture.height, picture.tilt);
   return text.append(jpeg.begin(), jpeg.end());

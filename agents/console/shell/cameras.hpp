@@ -22,7 +22,7 @@ class Cameras {
   /// True where a picture has come.
   bool poll(double now);
   /// The message for a page that may get a picture now: a line of JSON, and the JPEG behind it.
-  std::optional<std::string> next(PictureFlow& flow, double now) const;
+  std::optional<std::string> next(PictureFlow& flow, PictureFlow::Lane lane, double now) const;
 
  private:
   /// When the newest picture was taken, by our clock.

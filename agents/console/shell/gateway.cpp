@@ -84,16 +84,16 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
   if (!options.box.empty())
     box_.emplace(options.box, node);
   show_control();
-  own_page_.write({.instance = node_.instance(),
-                   .host = web::host_name(),
-                   .address = origin_ + ":" + std::to_string(server_.port()) + "/"});
+  show_page(origin_ + ":" + std::to_string(server_.port()) + "/");
   server_.watch(node_.wake_fd());
   if (options.dial)
     dialer_.emplace(
         DialOptions{*options.dial, options.dial_token, options.dial_authority,
                     server_.relayed_port()},
-        [host = options.dial->host, key = access_.key](int port) {
-          std::printf("open https://%s:%d/#%s\n", host.c_str(), port, key.c_str());
+        [this, host = options.dial->host, key = access_.key](int port) {
+          const std::string page = format("https://%s:%d/", host.c_str(), port);
+          show_page(page);
+          std::printf("open %s#%s\n", page.c_str(), key.c_str());
           std::fflush(stdout);
         },
         [host = options.dial->host](const std::string& why) {
@@ -118,6 +118,11 @@ Server::Events Gateway::events() {
 
 std::string Gateway::address() const {
   return origin_ + ":" + std::to_string(server_.port()) + "/#" + access_.key;
+}
+
+/// Also from the dialer's thread: people reach the page by the relay from everywhere.
+void Gateway::show_page(const std::string& address) {
+  own_page_.write({.instance = node_.instance(), .host = web::host_name(), .address = address});
 }
 
 /// with_writer: an instance is there as long as its writer.

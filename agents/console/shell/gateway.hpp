@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,12 +73,12 @@ class Gateway {
     Connection operator_id = 0;  ///< the operator of the samples of this connection [0: none]
     double opened = 0.0;         ///< [s]
     Viewer viewer;
-    PictureFlow flow;               ///< pictures
-    std::deque<std::string> queue;  ///< commands: outgoing messages
-    std::uint64_t world = 0;        ///< simulator: newest version that was sent
-    std::uint64_t scene = 0;        ///< likewise
-    std::string refused;            ///< the newest reason for a refused sample
-    bool robots = false;            ///< it shows the list of robots
+    std::shared_ptr<PictureFlow> flow;  ///< pictures
+    std::deque<std::string> queue;      ///< commands: outgoing messages
+    std::uint64_t world = 0;            ///< simulator: newest version that was sent
+    std::uint64_t scene = 0;            ///< likewise
+    std::string refused;                ///< the newest reason for a refused sample
+    bool robots = false;                ///< it shows the list of robots
     Upload upload;
   };
   struct Asked {
@@ -101,6 +102,7 @@ class Gateway {
   void explain();
   void look_for_occasions();
   void show_control();
+  void show_page(const std::string& address);
   void detour();
   std::vector<RobotSeen> robots_seen() const;
   void show_robots();
@@ -117,6 +119,7 @@ class Gateway {
   bool greet(Connection connection, Page& page, const Hello& hello);
   void name(Connection connection, Page& page, const std::string& name);
   void admit(Connection connection, Page& page, const Hello& hello);
+  void share_pictures(Connection connection, Page& page, const std::string& ticket);
   void look_at_keys();
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const teleop::Control::Sample& sample);

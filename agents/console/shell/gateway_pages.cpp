@@ -1,6 +1,7 @@
 // The pages' side: their messages, and the replies.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 
 #include "gateway.hpp"
 #include "key.hpp"
@@ -51,6 +52,8 @@ void Gateway::closed(Connection connection) {
   if (found == pages_.end())
     return;
   control_.leave(connection);
+  if (found->second.flow)
+    found->second.flow->close(connection);
   if (found->second.greeted && found->second.channel == Channel::telemetry)
     --viewers_;
   std::erase_if(asked_, [&](const auto& asked) { return asked.second.connection == connection; });
@@ -82,7 +85,7 @@ std::optional<std::string> Gateway::next(Connection connection) {
     }
   }
   if (page.channel == Channel::pictures)
-    return cameras_.next(page.flow, now());
+    return cameras_.next(*page.flow, connection, now());
   if (page.channel != Channel::telemetry)
     return std::nullopt;
   return board_.frame(page.viewer, now());
@@ -126,11 +129,15 @@ bool Gateway::came(Connection connection, const std::string& text) {
   if (!page.greeted)
     return false;
   if (const auto* ack = std::get_if<Ack>(&message)) {
-    if (page.channel == Channel::pictures)
-      page.flow.acknowledged(ack->frame, now());
-    else
+    if (page.channel != Channel::pictures) {
       Board::seen(page.viewer, ack->frame, now());
-    server_.want(connection);
+      server_.want(connection);
+      return true;
+    }
+    page.flow->acknowledged(connection, ack->frame, now());
+    for (const auto& [each, other] : pages_)
+      if (other.flow == page.flow)
+        server_.want(each);
   } else if (page.channel == Channel::commands) {
     obey(connection, page, message);
   }
@@ -161,6 +168,8 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
     ++viewers_;
   if (page.visitor.may(DoorRight::drive) && page.channel == Channel::commands)
     admit(connection, page, hello);
+  if (page.greeted && page.channel == Channel::pictures)
+    share_pictures(connection, page, hello.ticket);
   if (page.greeted && (page.channel == Channel::telemetry || page.channel == Channel::pictures))
     return true;
   // A page without the key gets this message, and is closed without the key in time.
@@ -176,6 +185,17 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
 void Gateway::name(Connection connection, Page& page, const std::string& name) {
   page.name = name;
   control_.join(connection, name.empty() ? "somebody" : name);
+}
+
+/// With the page's other connections for pictures.
+void Gateway::share_pictures(Connection connection, Page& page, const std::string& ticket) {
+  for (const auto& [other, known] : pages_)
+    if (known.flow && known.ticket == ticket && !ticket.empty())
+      page.flow = known.flow;
+  if (!page.flow)
+    page.flow = std::make_shared<PictureFlow>();
+  page.ticket = ticket;
+  page.flow->open(connection);
 }
 
 /// An operator, or a further connection of one.

@@ -19,7 +19,8 @@ namespace {
 
 using web::header;
 
-constexpr std::size_t kMostConnections = 96;  // WebSockets; a page has two, one that drives four
+constexpr std::size_t kMostConnections =
+    96;  // WebSockets; a page has 2, with the camera 5, 5 more to drive
 constexpr unsigned kMostDescriptors = 192;
 constexpr std::size_t kLongestMessage = 4096;
 constexpr int kSendBuffer = 128 * 1024;          // the kernel's buffer for a slow browser

@@ -22,35 +22,49 @@ constexpr int kBetter = 80;  // until it rises
 
 }  // namespace
 
-bool PictureFlow::is_full(double delay) const {
+bool PictureFlow::is_late(double delay) const {
   return delay > quickest_ + kFull;
 }
 
-bool PictureFlow::takes(std::uint64_t number, double now) const {
-  return number != last_ &&
-         (under_way_.empty() || (static_cast<double>(under_way_.size() + 1) <= room_ &&
-                                 !is_full(now - under_way_.front().sent)));
+bool PictureFlow::takes(Lane lane, std::uint64_t number, double now) const {
+  if (number == last_)
+    return false;
+  std::size_t all = 0;
+  std::size_t least = SIZE_MAX;  // of a lane
+  std::size_t late = 0;
+  for (const auto& [each, under_way] : lanes_) {
+    all += under_way.size();
+    if (!under_way.empty() && is_late(now - under_way.front().sent)) {
+      if (each == lane || is_full() || 2 * ++late > lanes_.size())
+        return false;
+      continue;
+    }
+    least = std::min(least, under_way.size());
+  }
+  return lanes_.at(lane).size() <= least && (all == 0 || static_cast<double>(all + 1) <= room_);
 }
 
-void PictureFlow::sent(std::uint64_t number, double now) {
+void PictureFlow::sent(Lane lane, std::uint64_t number, double now) {
   last_ = number;
-  under_way_.push_back({number, now});
+  lanes_.at(lane).push_back({number, now});
 }
 
-void PictureFlow::acknowledged(std::uint64_t number, double now) {
-  const auto found = std::find_if(under_way_.begin(), under_way_.end(),
+void PictureFlow::acknowledged(Lane lane, std::uint64_t number, double now) {
+  std::deque<UnderWay>& under_way = lanes_.at(lane);
+  const auto found = std::find_if(under_way.begin(), under_way.end(),
                                   [&](const UnderWay& each) { return each.number == number; });
-  if (found == under_way_.end())
+  if (found == under_way.end())
     return;
   const double delay = now - found->sent;
-  under_way_.erase(under_way_.begin(), found + 1);
+  under_way.erase(under_way.begin(), found + 1);
   quickest_ = std::min(kForgets * quickest_, delay);
   if (answered_ >= 0.0)
     gap_ += kMean * (now - answered_ - gap_);
   answered_ = now;
-  const bool full = is_full(delay);
+  late_ = is_late(delay) ? late_ + 1 : 0;
+  const bool full = is_full();
   room_ = std::clamp(room_ + (full ? -1.0 : kMore), 1.0,
-                     std::min(kMost, 1.0 + std::ceil(quickest_ / kPeriod)));
+                     std::min(kMost, 1.0 + std::ceil((quickest_ + kFull) / kPeriod)));
   even_ = full || gap_ > kSlow ? std::min(0, even_) - 1
           : gap_ < kQuick      ? std::max(0, even_) + 1
                                : 0;

@@ -40,6 +40,13 @@ void Control::lose_silent(double now) {
          ": the robot stands, and control is free");
 }
 
+void Control::notice_gap(double now) {
+  if (now - came_ <= settings_.hold)
+    return;
+  let_go_ = kGap;
+  held_since_ = counted_;
+}
+
 void Control::join(OperatorId id, const std::string& name) {
   operators_[id] = name;
 }
@@ -68,6 +75,7 @@ void Control::hand_to(OperatorId id, const std::string& note, double now) {
   holder_ = id;
   std::erase(asked_, id);
   came_ = now;
+  counted_ = held_since_ = 0;
   let_go_ = kHeldBefore;
 }
 
@@ -107,8 +115,11 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
     return "a number was expected";
   const double difference = now - sample.device_time;
   if (any_) {
-    if (sample.number <= newest_.number)
+    if (sample.number <= newest_.number) {
+      if (!sample.active && sample.number > held_since_ && difference - quickest_ <= settings_.late)
+        let_go_.clear();
       return kRepeated;
+    }
     if (sample.device_time < newest_.device_time)
       return "the device's time went back";
     quickest_ = std::min(difference, quickest_ + kClockDrift * (now - came_));
@@ -122,9 +133,9 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
   any_ = true;
   if (late > settings_.late)
     return "came " + seconds(late) + " late";
-  if (now - came_ > settings_.hold)
-    let_go_ = kGap;
+  notice_gap(now);
   came_ = now;
+  counted_ = sample.number;
   newest_ = sample;
   if (!sample.active)
     let_go_.clear();
@@ -137,8 +148,7 @@ Order Control::order(double now) {
   if (holder_ == 0)
     return order;
   order.source = name_of(holder_);
-  if (now - came_ > settings_.hold)
-    let_go_ = kGap;
+  notice_gap(now);
   if (!any_ || !let_go_.empty() || !newest_.active)
     return order;
   order.active = true;

@@ -71,6 +71,27 @@ TEST_F(ControlTest, AStickThatIsHeldWhenControlIsTakenMovesNothing) {
   EXPECT_TRUE(samples(true, 0.1));
 }
 
+TEST_F(ControlTest, AReleaseThatThePressHasOvertakenCounts) {
+  EXPECT_EQ(control.take(kAnn, false, now), "");
+  const Control::Sample release = sample(false);
+  EXPECT_FALSE(samples(true, 0.2));
+  EXPECT_EQ(control.drive(kAnn, release, now), "a repeated sample");
+  EXPECT_TRUE(samples(true, 0.1));
+
+  // Not one from before a gap, nor one that comes late.
+  const Control::Sample before = sample(false);
+  EXPECT_TRUE(samples(true, 0.1));
+  now += 0.5;
+  const Control::Sample late = sample(false);
+  now += 0.1;
+  EXPECT_FALSE(samples(true, 0.2));
+  control.drive(kAnn, before, now);
+  EXPECT_FALSE(samples(true, 0.2));
+  now += 0.05;
+  control.drive(kAnn, late, now);
+  EXPECT_FALSE(samples(true, 0.2));
+}
+
 TEST_F(ControlTest, SilenceStopsWithinHalfASecondAndTheStickMustBeLetGo) {
   take_and_drive();
   EXPECT_LE(silence(0.6), 0.5);

@@ -1,4 +1,5 @@
-// The camera's pictures: a connection of their own, which is there while the pictures are shown.
+// The camera's pictures: connections of their own, which are there while the pictures are shown. Each has its share of
+// the pictures: where one waits for what was lost on its way, the others go on.
 import {socketOf} from './address';
 import {compose, inverse} from './geometry';
 import type {Link} from './link';
@@ -18,40 +19,49 @@ export interface Picture {
 }
 
 const retry = 1000;             // [ms]
+const lanes = 3;
 const usualField = Math.PI / 3;
 const sonarHeight = 0.25;       // [m] of a robot's sonars, about
 
 export class Camera {
   picture?: Picture;
-  private socket?: WebSocket;
+  private sockets: WebSocket[] = [];
+  private ticket = `${Math.random()}`;
   private wanted = true;
 
-  constructor(private link: Link, private came: () => void) { this.open(); }
+  constructor(private link: Link, private came: () => void) {
+    for (let lane = 0; lane < lanes; ++lane) this.open(lane);
+  }
 
   close() {
     this.wanted = false;
-    this.socket?.close();
+    for (const socket of this.sockets) socket.close();
   }
 
-  private open() {
+  private open(lane: number) {
     if (!this.wanted) return;
-    const socket = this.socket = socketOf('saphira.pictures');
+    const socket = this.sockets[lane] = socketOf('saphira.pictures');
     socket.binaryType = 'arraybuffer';
-    socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.link.key, name: this.link.operator}));
+    socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.link.key, name: this.link.operator, ticket: this.ticket}));
     socket.onmessage = event => void this.take(socket, event.data as ArrayBuffer);
-    socket.onclose = () => setTimeout(() => this.open(), retry);
+    socket.onclose = () => setTimeout(() => this.open(lane), retry);
   }
 
-  // A line of JSON, and the JPEG behind it.
+  // A line of JSON, and the JPEG behind it. A picture that another one has overtaken is not shown.
   private async take(socket: WebSocket, message: ArrayBuffer) {
-    const bytes = new Uint8Array(message), arrived = performance.now(), end = bytes.indexOf(10);
+    const bytes = new Uint8Array(message), end = bytes.indexOf(10);
     if (end < 0) return;
-    const {number, age, ...about} = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
+    const {number, now, age, ...about} = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
+    const captured = this.link.when(now - age);
     try {
       const image = await createImageBitmap(new Blob([bytes.subarray(end + 1)], {type: 'image/jpeg'}));
-      this.picture?.image.close();
-      this.picture = {...about, image, captured: arrived - 1000 * age - this.link.roundTrip / 2};
-      this.came();
+      if (this.picture && captured < this.picture.captured) {
+        image.close();
+      } else {
+        this.picture?.image.close();
+        this.picture = {...about, image, captured};
+        this.came();
+      }
     } catch {
       // It is no JPEG: the next one may be.
     }

@@ -28,7 +28,7 @@ function Other({link, control, grant, gone}: {link: Link; control?: ControlState
   const take = (force: boolean) => {
     (document.activeElement as HTMLElement | null)?.blur();
     link.refused = '';
-    link.send({type: 'take', force});
+    void link.takeControl(force);
   };
   return <div class="drive">
     <div class="row">

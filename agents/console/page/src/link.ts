@@ -11,7 +11,8 @@ export interface Item<T> {
 export interface Answer { well: boolean; text: string; id: string; file?: string }
 
 const retry = 1000;      // [ms]
-const furtherLanes = 2;     // for samples of driving
+const furtherLanes = 5;  // for samples of driving
+const mostWait = 2000;   // [ms] for them
 const drift = 0.001;     // of two clocks, at the most
 const settled = 1000;    // [ms] after a cut, until what was on its way has come
 const pieceSize = 500;   // [letters] of a file
@@ -107,13 +108,25 @@ export class Link {
     void this.ask({type: 'stop'}).then(answer => this.note(answer.text, answer.well));
   }
 
+  // Control, once the connections for samples are there: over one alone, a packet that is lost stops the robot.
+  async takeControl(force: boolean) {
+    this.openLanes();
+    const end = performance.now() + mostWait;
+    while (this.lanes.some(lane => lane.readyState === WebSocket.CONNECTING) && performance.now() < end)
+      await new Promise(resolve => setTimeout(resolve, 20));
+    this.send({type: 'take', force});
+  }
+
   // A sample of driving, by several connections in turn: where one waits for what was lost on its way, the
   // others go on. The gateway takes the newest.
   sendSample(sample: object) {
-    if (this.ticket && this.lanes.length === 0)
-      for (let i = 0; i < furtherLanes; ++i) this.openLane(i);
+    this.openLanes();
     const free = [this.commands, ...this.lanes].filter(s => s?.readyState === WebSocket.OPEN && s.bufferedAmount < 500);
     free[++this.lane % free.length]?.send(JSON.stringify(sample));
+  }
+  private openLanes() {
+    if (this.ticket && this.lanes.length === 0)
+      for (let i = 0; i < furtherLanes; ++i) this.openLane(i);
   }
   private openLane(i: number) {
     const socket = this.lanes[i] = socketOf('saphira.commands');
@@ -208,6 +221,13 @@ export class Link {
     this.tell();
   }
 
+  // Of a time of the gateway, in ours [ms].
+  when(now: number): number {
+    return Number.isNaN(this.offset) ? performance.now() : 1000 * now + this.offset - this.way();
+  }
+  // [ms] of the quickest frame
+  private way(): number { return Number.isFinite(this.quickest) ? this.quickest / 2 : 0; }
+
   // One connection may be held up behind another: an older state of the robot, or an older grant, changes nothing.
   private take(frame: Frame) {
     this.watch();  // as it was until now: this frame may be the first one after a cut
@@ -218,7 +238,7 @@ export class Link {
     this.offsetAt = now;
     this.heard = now;
     // How long it took: what it took longer than the quickest one, and half the quickest round trip.
-    const took = difference - this.offset + (Number.isFinite(this.quickest) ? this.quickest / 2 : 0);
+    const took = difference - this.offset + this.way();
     for (const {t, k, a, d} of frame.items) {
       let items = this.topics.get(t);
       if (!items) this.topics.set(t, items = new Map());

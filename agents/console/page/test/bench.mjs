@@ -47,7 +47,7 @@ try {
     page.on('websocket', socket => socket.on('framereceived', ({payload}) => {
       if (typeof payload === 'string') return;
       const {cycle} = JSON.parse(payload.subarray(0, payload.indexOf(10)).toString());
-      pictures.push({at: performance.now(), cycle});
+      if (cycle > (pictures.at(-1)?.cycle ?? 0)) pictures.push({at: performance.now(), cycle});   // an overtaken one is not shown
     }));
     const began = performance.now();
     // The gateway's own name: the link is no proxy that it could know.

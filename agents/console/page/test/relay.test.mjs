@@ -145,6 +145,24 @@ test('the page comes by the relay, end to end encrypted', async () => {
   assert.doesNotMatch(said, /200 OK/);
 });
 
+test('the list of robots leads to the page by the relay', async () => {
+  const other = start('saphira-console', '--robot', `${robot}-other`, '--port', '0');
+  let told = '';
+  other.stdout.on('data', data => { told += data; });
+  const [, port, secret] = await until('its address', () => told.match(/http:\/\/localhost:(\d+)\/#(\w+)/));
+  const headers = {Host: `localhost:${port}`, Origin: `http://localhost:${port}`};
+  const [telemetry, commands] = [await socketTo(port, 'saphira.telemetry', headers), await socketTo(port, 'saphira.commands', headers)];
+  for (const socket of [telemetry, commands]) socket.say({type: 'hello', key: secret, name: 'bob'});
+  commands.say({type: 'robots', shown: true});
+  await until('the address in the list', () => telemetry.texts.splice(0).some(frame => {
+    if (frame.seq !== undefined) telemetry.say({type: 'ack', frame: frame.seq});
+    return frame.items?.some(({t, d}) => t === 'robots'
+      && d.some(row => row.name === robot && row.address === `https://localhost:${ports[1]}/`));
+  }));
+  for (const socket of [telemetry, commands]) socket.socket.destroy();
+  await end(other);
+});
+
 test('nobody who comes by the relay is a neighbour: without the key they see nothing', async () => {
   const headers = {Host: `localhost:${ports[1]}`, Origin: `https://localhost:${ports[1]}`};
   const stranger = await socketTo(ports[1], 'saphira.commands', headers,

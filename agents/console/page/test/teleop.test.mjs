@@ -40,7 +40,7 @@ async function operator({people, port, key}, at, name) {
     for (const socket of [telemetry, commands]) socket.say({type: 'hello', key, name});
     const {ticket} = await until('a ticket', () => commands.texts.find(text => text.type === 'hello'));
     lanes = [commands];
-    for (let i = 0; i < 2; ++i) {
+    for (let i = 0; i < 5; ++i) {
       lanes.push(await socketTo(at, 'saphira.commands', headers));
       lanes.at(-1).say({type: 'hello', key, name, ticket});
     }
@@ -56,14 +56,13 @@ async function operator({people, port, key}, at, name) {
       open().catch(() => {}).finally(() => { opening = false; });
       return;
     }
-    for (const frame of telemetry.texts.splice(0)) {
+    for (const frame of [telemetry, ...lanes].flatMap(each => each.texts.splice(0))) {
       for (const {t, d} of frame.items ?? []) {
-        if (t === 'robot/state') self.cycle = d.stamp.cycle;
+        if (t === 'robot/state') self.cycle = Math.max(self.cycle, d.stamp.cycle);
         if (t === 'console/control') self.control = d;
       }
       if (frame.seq !== undefined) telemetry.say({type: 'ack', frame: frame.seq});
     }
-    for (const lane of lanes) lane.texts.length = 0;
     lanes[number % lanes.length].say({type: 'drive', number: ++number, at: performance.now() / 1000, active: self.held, velocity: self.held ? self.velocity : 0, rotation: 0, cycle: self.cycle});
   }, period);
   people.push(self);

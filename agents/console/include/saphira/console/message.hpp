@@ -17,7 +17,8 @@ namespace saphira::console {
 struct Hello {
   std::string key;
   std::string name;  ///< of the operator, for people
-  /// Of the connection whose operator's samples come here as well [empty: its own].
+  /// Of the connection whose operator's samples come here as well [empty: its own]. Connections for
+  /// pictures with the same one share the pictures.
   std::string ticket;
 };
 struct Rename {

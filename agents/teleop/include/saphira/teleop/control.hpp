@@ -76,6 +76,7 @@ class Control {
   void drop(const std::string& note);
   void hand_to(OperatorId id, const std::string& note, double now);
   void lose_silent(double now);
+  void notice_gap(double now);
   std::string name_of(OperatorId id) const;
 
   Settings settings_;
@@ -84,10 +85,14 @@ class Control {
   std::vector<OperatorId> asked_;
   std::string note_;
   Sample newest_;
-  double came_ = 0.0;      ///< [s] of the newest sample
-  double quickest_ = 0.0;  ///< [s] the smallest difference of the two clocks
-  bool any_ = false;       ///< a sample has come since control was taken
-  std::string let_go_;     ///< why the stick must be let go first [empty: it need not]
+  double came_ = 0.0;          ///< [s] of the newest sample
+  double quickest_ = 0.0;      ///< [s] the smallest difference of the two clocks
+  bool any_ = false;           ///< a sample has come since control was taken
+  std::uint64_t counted_ = 0;  ///< the newest sample that counted
+  std::string let_go_;         ///< why the stick must be let go first [empty: it need not]
+  /// The sample since which it must be let go. A release counts also where a later press has
+  /// overtaken it, on another connection.
+  std::uint64_t held_since_ = 0;
 };
 
 }  // namespace saphira::teleop
