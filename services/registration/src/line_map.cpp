@@ -119,8 +119,9 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
     }
   }
   const bool has_regions =
-      std::any_of(map.features.begin(), map.features.end(),
-                  [](const Feature& f) { return is_region(f) && f.type != PointType::junction; });
+      std::any_of(map.features.begin(), map.features.end(), [](const Feature& f) {
+        return is_region(f) && f.type != PointType::junction && f.type != PointType::lane;
+      });
   const auto inside = [&](const Vec2& p) {
     if (!has_regions)
       return p.x() > low.x() && p.y() > low.y() && p.x() < high.x() && p.y() < high.y();
