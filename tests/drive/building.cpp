@@ -27,10 +27,12 @@ WholeOptions from_nothing(const DriveOptions& drive) {
 Building::Building(const DriveOptions& options)
     : whole(from_nothing(options)), goal_(whole.ask("build-map")) {}
 
-void Building::run(std::uint64_t limit) {
+void Building::run(std::uint64_t limit, const std::function<void()>& each) {
   for (std::uint64_t i = 0; i < limit && !whole.ended(goal_); ++i) {
     whole.advance();
     note();
+    if (each)
+      each();
   }
 }
 

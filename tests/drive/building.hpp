@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,8 @@ class Building {
   explicit Building(const DriveOptions& options);
 
   /// Runs until the map is built, for that number of cycles at most.
-  void run(std::uint64_t limit);
+  /// `each` is called after each of them.
+  void run(std::uint64_t limit, const std::function<void()>& each = {});
   bool done() const { return whole.status(goal_).state == v1::GOAL_SUCCEEDED; }
   std::string reason() const { return whole.status(goal_).reason; }
   /// The built map, moved and turned as a whole for the best fit of its way to the true one: its

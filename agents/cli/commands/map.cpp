@@ -421,7 +421,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   const int written = write_out(path, maps::to_text(view.map));
   if (written != bus::kExitOk)
     complain("saphira: the map is still on the robot: saphira map save FILE writes it\n");
-  return done && !whole ? static_cast<int>(bus::kExitFailed) : written;
+  return whole ? written : static_cast<int>(bus::kExitFailed);
 }
 
 int map(const std::vector<std::string>& words, double seconds, const bus::NodeOptions& options,

@@ -26,7 +26,7 @@ void check(const maps::Map& map) {
 
 /// True for functors that need a map, which does not exist while it is being built.
 bool needs_a_map(const std::string& functor) {
-  return functor == "put" || functor == "remove" || functor == "find" || functor == "switch";
+  return functor == "remove" || functor == "find" || functor == "switch";
 }
 
 /// The artifacts that may be put on a map, by their word there.
@@ -371,6 +371,11 @@ Arguments Core::obey(const Request& request) {
     editor.replace(what == "load" ? maps::parse_map(text_of(with, "text"), name) : maps::Map{});
     use(std::move(editor));
     begin_anew(name);
+  } else if (what == "put" && now_.building) {
+    const std::uint32_t id = now_.builder->put(artifact_of(with));
+    now_.editor.replace(now_.builder->map());
+    now_.changed = true;
+    return {number("id", id)};
   } else if (what == "put" || what == "remove") {
     auto id = static_cast<std::uint32_t>(number_of(with, "id"));
     if (what == "put")
@@ -397,6 +402,9 @@ Arguments Core::obey(const Request& request) {
   } else if (what == "switch") {
     placed();
     now_.on = truth_of(with, "on");
+  } else if (what == "snap" && now_.building) {  // what was built so far is kept
+    now_.snaps = truth_of(with, "on");
+    now_.builder->snap(now_.snaps);
   } else {
     placed();
     (what == "snap" ? now_.snaps : now_.adds_features) = truth_of(with, "on");

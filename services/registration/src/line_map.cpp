@@ -119,8 +119,9 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
     }
   }
   const bool has_regions =
-      std::any_of(map.features.begin(), map.features.end(),
-                  [](const Feature& f) { return is_region(f) && f.type != PointType::junction; });
+      std::any_of(map.features.begin(), map.features.end(), [](const Feature& f) {
+        return is_region(f) && f.type != PointType::junction && f.type != PointType::lane;
+      });
   std::vector<maps::Rectangle> regions;
   for (const Feature& feature : map.features)
     if (is_region(feature))

@@ -27,6 +27,16 @@ constexpr double kStraight = radians(10.0);
 constexpr double kNarrowest = 0.6;
 constexpr double kWidest = 1.2;
 constexpr double kWidestGap = 2.0;
+// Of a wall where none follows the grid [m]: places without corridors have furniture.
+constexpr double kShortWall = 0.7;
+constexpr double kSameWall = 0.3;
+// Single echoes of known walls there: largest distance and angle of the sonar to its normal, and
+// from the wall; one sigma.
+constexpr double kHeard = 3.5;
+constexpr double kFacing = radians(12.0);
+constexpr double kHeardOff = 0.3;
+constexpr double kHeardSigma = 0.08;
+constexpr double kAnyHeading = 0.3;  // [rad] of the start, where the grid defines it
 
 double off_grid(double heading) {
   return std::abs(heading - std::round(heading / (kPi / 2)) * (kPi / 2));
@@ -43,7 +53,15 @@ MapBuilder::MapBuilder(MapBuilderSettings settings, maps::Map known, Pose start_
   graph_.settings = settings_.graph;
   // The grid defines the map's orientation.
   if (settings_.snap_to_right_angle_grid && given_.features.empty())
-    graph_.settings.start_heading = 0.3;
+    graph_.settings.start_heading = kAnyHeading;
+}
+
+void MapBuilder::snap(bool on) {
+  settings_.snap_to_right_angle_grid = on;
+  settings_.min_wall = on ? MapBuilderSettings{}.min_wall : kShortWall;
+  settings_.same_wall = on ? MapBuilderSettings{}.same_wall : kSameWall;
+  graph_.settings.start_heading = on ? kAnyHeading : FeatureGraphSettings{}.start_heading;
+  news_ = true;
 }
 
 bool MapBuilder::step(const MapBuilderInputs& inputs) {
@@ -52,6 +70,8 @@ bool MapBuilder::step(const MapBuilderInputs& inputs) {
     if (percept.confidence >= settings_.least_confidence)
       news_ = take(percept, inputs.cycle) || news_;
   listen_ahead(inputs);
+  if (!settings_.snap_to_right_angle_grid)
+    hear_walls(inputs);
   pass();
   for (auto it = taken_.begin(); it != taken_.end();)
     it = it->second.cycle == inputs.cycle ? std::next(it) : taken_.erase(it);
@@ -300,6 +320,49 @@ bool MapBuilder::take(const lps::Percept& percept, std::uint64_t cycle) {
       return take_opening(percept, cycle);
     default:
       return false;  // ends of openings and corridors: their parts are here already
+  }
+}
+
+// Without corridors, walls are seldom beside the robot for long: single echoes of known walls
+// correct the way between, once for each place and wall.
+void MapBuilder::hear_walls(const MapBuilderInputs& inputs) {
+  const std::size_t node = graph_.nodes.size() - 1;
+  for (const lps::SonarReading& reading : inputs.readings) {
+    if (!reading.echo || reading.range > kHeard)
+      continue;
+    for (const lps::SonarMount& mount : settings_.sonars) {
+      if (mount.sonar != reading.sonar)
+        continue;
+      const Pose sonar = compose(pose_in_map_, mount.in_robot);
+      GraphLine* heard = nullptr;
+      double nearest = kHeardOff;
+      for (GraphLine& line : graph_.lines) {
+        if (line.seen.empty() || line.seen.back().node == node ||
+            -line.normal().dot(sonar.direction()) < std::cos(kFacing))
+          continue;
+        const Vec2 at = sonar.position() - reading.range * line.normal() - line.anchor;
+        const double off = std::abs(line.normal().dot(at) - line.offset);
+        const double along = line.along().dot(at);
+        if (off >= nearest)
+          continue;
+        const Stretches seen = stretches(line);
+        if (std::any_of(seen.begin(), seen.end(),
+                        [&](const auto& s) { return along > s.first && along < s.second; })) {
+          heard = &line;
+          nearest = off;
+        }
+      }
+      if (heard == nullptr)
+        continue;
+      const Vec2 at = sonar.position() - reading.range * heard->normal();
+      SeenLine seen;
+      seen.node = node;
+      seen.in_node = relative(graph_.nodes[node].in_map, {at.x(), at.y(), heard->heading});
+      seen.sigma_across = kHeardSigma;
+      seen.sigma_heading = kPi;
+      heard->seen.push_back(seen);
+      news_ = true;
+    }
   }
 }
 

@@ -347,19 +347,28 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   const Core::Outputs first = robot.step(core);
   EXPECT_EQ(first.reason, "builds the map");
   EXPECT_TRUE(core.adds_features());
-  for (const char* const action : {"put", "remove", "find", "switch"})
+  for (const char* const action : {"remove", "find", "switch"})
     EXPECT_EQ(core.act(request(action)).text,
               "the map is being built: switch that off first (features off)");
   for (int i = 0; i < 300; ++i)
     robot.step(core);
   ASSERT_FALSE(core.map().features.empty());
   EXPECT_TRUE(core.map_changed());
+  // A place that is put down meanwhile stays, and so does what was built.
+  const std::size_t built = core.map().features.size();
+  EXPECT_EQ(core.act(put(lps::PointType::position, {1.0, 0.5, 0.0})).text, "");
+  EXPECT_EQ(core.act(request("snap", false)).text, "");
+  EXPECT_EQ(core.map().features.size(), built + 1);
   // Registration uses the built map, with the robot at the same place.
   const Pose before = robot.stand(core).pose_in_map;
   EXPECT_EQ(core.act(request("add_features", false)).text, "");
   const Core::Outputs after = robot.stand(core);
   EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
   EXPECT_NE(after.reason, "builds the map");
+  EXPECT_TRUE(
+      std::any_of(core.map().features.begin(), core.map().features.end(), [](const auto& one) {
+        return one.pose_in_map == Pose{1.0, 0.5, 0.0};
+      }));
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.1);
   EXPECT_NEAR(after.pose_in_map.y, before.y, 0.1);
   // A robot that is started there again knows where it is.

@@ -20,7 +20,11 @@ constexpr double kStep = 0.8;
 // Older readings [cycles] are from another place.
 constexpr std::uint64_t kFresh = 10;
 constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
-constexpr double kHalfWidth = 1.0;           // [m] of corridors, about
+constexpr double kAtEdge = 0.35;             // [m] from a corner of the way over the free floor
+// [m/m2] Longer on the same floor, the robot's drift costs more than what it still sees is worth.
+constexpr double kWayOverFloor = 0.8;
+constexpr double kCorridors = 0.25;  // least share of a floor of corridors
+constexpr double kHalfWidth = 1.0;   // [m] of corridors, about
 
 Vec2 ahead(const Vec2& point, double heading, double far) {
   return point + far * Vec2(std::cos(heading), std::sin(heading));
@@ -28,7 +32,7 @@ Vec2 ahead(const Vec2& point, double heading, double far) {
 
 }  // namespace
 
-Explorer::Explorer(Settings settings) : settings_(std::move(settings)) {}
+Explorer::Explorer(Settings settings) : settings_(std::move(settings)), floor_(settings_.sonars) {}
 
 const Output& Explorer::step(const Inputs& inputs) {
   if (!begun_) {
@@ -36,6 +40,7 @@ const Output& Explorer::step(const Inputs& inputs) {
     start_in_map_ = inputs.pose_in_map;
   }
   listen(inputs);
+  floor_.add(inputs.pose_in_map, inputs.readings);
   if (output_.done)
     return output_;
   if (doing_ == Doing::looking)
@@ -46,6 +51,8 @@ const Output& Explorer::step(const Inputs& inputs) {
     go(inputs);
   if (doing_ == Doing::probing)
     probe(inputs);
+  if (doing_ == Doing::roaming)
+    roam(inputs);
   return output_;
 }
 
@@ -140,6 +147,15 @@ std::vector<Explorer::Lead> Explorer::wide_doors(const Inputs& inputs) const {
   return out;
 }
 
+// A corridor between a wall and boxes is no floor of corridors.
+bool Explorer::mostly_room(const maps::Map& map) const {
+  double corridors = 0.0;
+  for (const Feature& f : map.features)
+    if (f.type == PointType::corridor)
+      corridors += f.length * f.width;
+  return corridors < kCorridors * floor_.area();
+}
+
 // Dijkstra over the places that the robot has been at.
 std::vector<std::size_t> Explorer::path(const std::vector<Vec2>& way, const Vec2& to,
                                         double& length) const {
@@ -189,6 +205,11 @@ void Explorer::choose(const Inputs& inputs) {
     }
   if (open.empty())
     open = wide_doors(inputs);
+  in_room_ = in_room_ || (open.empty() && mostly_room(inputs.map));
+  if (in_room_ && !roamed_) {
+    doing_ = Doing::roaming;
+    return;
+  }
   if (open.empty() && settings_.home > 0.0) {
     // Along the first way, to see the same places again.
     std::size_t i = 0;
@@ -384,6 +405,52 @@ void Explorer::probe(const Inputs& inputs) {
   }
   const double far = (entering ? 0.8 : 2.0) * settings_.look_ahead;
   head_for(point + (at + far) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
+}
+
+// To the edges of the seen floor, the nearest first.
+void Explorer::roam(const Inputs& inputs) {
+  const Vec2 here = inputs.pose_in_map.position();
+  output_.reason = "explores the free floor";
+  roamed_way_ += std::min(0.2, (here - roamed_at_).norm());
+  roamed_at_ = here;
+  if (edge_ &&
+      ((*edge_ - here).norm() < kAtEdge || inputs.cycle > progress_cycle_ + settings_.patience)) {
+    tried_edges_.push_back(*edge_);
+    edge_.reset();
+  }
+  if (!edge_ || inputs.cycle > planned_ + kFresh) {
+    planned_ = inputs.cycle;
+    if (edge_)
+      path_ = floor_.way_to(here, *edge_);
+    if (!edge_ || path_.empty()) {
+      const double most = kWayOverFloor * floor_.area();
+      path_.clear();
+      if (roamed_way_ < 2.0 * most)
+        path_ = floor_.way_to_look(here, tried_edges_, roamed_way_ < most);
+      progress_ = kNone;
+      progress_cycle_ = inputs.cycle;
+      edge_.reset();
+      if (!path_.empty())
+        edge_ = path_.back();
+    }
+  }
+  if (!edge_) {
+    roamed_ = true;
+    doing_ = Doing::choosing;
+    output_.point_in_map.reset();
+    output_.look_at.reset();
+    return;
+  }
+  while (path_.size() > 1 && (path_.front() - here).norm() < kAtEdge)
+    path_.erase(path_.begin());
+  double left = (path_.front() - here).norm();
+  for (std::size_t i = 1; i < path_.size(); ++i)
+    left += (path_[i] - path_[i - 1]).norm();
+  if (left < progress_ - settings_.min_progress) {
+    progress_ = left;
+    progress_cycle_ = inputs.cycle;
+  }
+  head_for(path_.front(), inputs);
 }
 
 void Explorer::leave(const Lead& lead, const std::string& why) {

@@ -100,7 +100,8 @@ LineMap::LineMap(const Map& map) {
       for (const Side& side : sides(feature))
         surfaces_.push_back(surface(side.start, side.start + side.way * side.length,
                                     {side.way.y(), -side.way.x()}, i));
-    } else if (is_region(feature) && feature.type != PointType::junction) {
+    } else if (is_region(feature) && feature.type != PointType::junction &&
+               feature.type != PointType::lane) {
       add_region(map, i);
     }
   }

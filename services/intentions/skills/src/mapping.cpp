@@ -1,6 +1,7 @@
 #include "mapping.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,9 +15,11 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kRadius = 0.2;      ///< [m] the target moves on before the robot reaches it
-constexpr double kAligned = 0.05;    ///< [rad] tolerance of a heading that the explorer asks for
-constexpr double kWayStep = 0.4;     ///< [m] between stored places of the way
+constexpr double kRadius = 0.2;    ///< [m] the target moves on before the robot reaches it
+constexpr double kAligned = 0.05;  ///< [rad] tolerance of a heading that the explorer asks for
+constexpr double kWayStep = 0.4;   ///< [m] between stored places of the way
+constexpr double kOverlap = 0.2;   ///< [m] of a lane beyond its ends, with the next one
+constexpr std::size_t kMostLanes = 60;
 constexpr double kSamePoint = 0.02;  ///< [m]
 
 /// The explorer gives the target, cycle by cycle.
@@ -49,18 +52,15 @@ class ExploreUnknown : public Activity {
         explorer_->step({static_cast<std::uint64_t>(world.now), *pose_in_map, *world.around.map,
                          way_, *world.around.readings});
     self.say(next.reason);
+    if (explorer_->in_room() && !free_walls_) {
+      free_walls_ = true;
+      self.request({"snap", {truth("on", false)}});
+    }
     if (next.done) {
       stand(self);
       const std::vector<std::string> left = explorer_->left(*world.around.map);
-      const std::vector<maps::Feature>& found = world.around.map->features;
-      // The explorer follows corridors: without one it has looked nowhere.
-      if (std::none_of(found.begin(), found.end(), [](const maps::Feature& one) {
-            return one.type == lps::PointType::corridor;
-          }))
-        self.fail(v1::CODE_ACTIVITY,
-                  format("no corridor was found in %.0f m of way: the robot understands floors of "
-                         "corridors with rooms at them, and maps nothing else",
-                         way_length()));
+      if (explorer_->in_room())
+        lay_lanes(self);
       else if (left.empty())
         self.succeed(next.reason);
       else
@@ -83,6 +83,52 @@ class ExploreUnknown : public Activity {
     for (const char* const behavior : {"AvoidCollision", "KeepOff", "GoToPos", "TurnTo"})
       self.drop_behavior(behavior);
     driving_to_.reset();
+  }
+
+  /// The ways over the free floor become lanes of the map, from one place to the next: one place a
+  /// cycle.
+  void lay_lanes(Self& self) {
+    const explore::FreeFloor& floor = explorer_->floor();
+    const std::vector<explore::Lane> more = floor.next_lanes(explorer_->start(), lanes_);
+    if (more.empty() || lanes_.size() > kMostLanes) {
+      tell_floor(self, floor.area());
+      return;
+    }
+    for (const explore::Lane& lane : more) {
+      const Vec2 way = lane.to - lane.from;
+      const Vec2 middle = (lane.from + lane.to) / 2;
+      put(self, "LANE", {middle.x(), middle.y(), std::atan2(way.y(), way.x())},
+          {number("length", way.norm() + 2 * kOverlap), number("width", lane.width)});
+      lanes_.push_back(lane);
+    }
+    const Vec2& place = more.back().to;
+    put(self, "POS", {place.x(), place.y(), 0.0},
+        {text("name", "place-" + std::to_string(++places_))});
+  }
+
+  static void put(Self& self, const std::string& type, const Pose& pose_in_map, Arguments more) {
+    more.push_back(text("type", type));
+    more.push_back(saphira::point("position", pose_in_map, Frame::map));
+    more.push_back(truth("learned", true));
+    self.request({"put", std::move(more)});
+  }
+
+  void tell_floor(Self& self, double area) {
+    const auto& found = self.world().around.map->features;
+    const auto walls = std::count_if(found.begin(), found.end(), [](const maps::Feature& one) {
+      return one.type == lps::PointType::wall;
+    });
+    if (walls == 0 || lanes_.empty())
+      self.fail(
+          v1::CODE_ACTIVITY,
+          saphira::format("nothing could be mapped in %.0f m of way: no corridor and no wall was "
+                          "found, and %.0f m2 of free floor",
+                          way_length(), area));
+    else
+      self.succeed(
+          saphira::format("no corridor: a room of %.0f m2 of free floor, %d walls, %d places to go "
+                          "to and %d lanes between them",
+                          area, static_cast<int>(walls), places_, static_cast<int>(lanes_.size())));
   }
 
   void turn(Self& self, const Vec2& to) {
@@ -135,6 +181,9 @@ class ExploreUnknown : public Activity {
   std::vector<Vec2> way_;  ///< [map]
   std::optional<Pose> driving_to_;
   bool turning_ = false;
+  bool free_walls_ = false;  ///< walls need not follow a grid of right angles
+  std::vector<explore::Lane> lanes_;
+  int places_ = 0;
 };
 
 }  // namespace
@@ -166,6 +215,14 @@ void add_mapping(Functions& functions) {
   functions.add(
       "adds-features", "whether registration puts what is seen on the map",
       [](const World& world) { return Value::truth(world.around.registration.adds_features); });
+  functions.add(
+      "map-has-lanes", "whether the map has ways over free floor", [](const World& world) {
+        const maps::Map* const map = world.around.map.get();
+        return Value::truth(
+            map != nullptr &&
+            std::any_of(map->features.begin(), map->features.end(),
+                        [](const maps::Feature& one) { return one.type == lps::PointType::lane; }));
+      });
   functions.add("map-size", "how many artifacts the map has", [](const World& world) {
     return Value(
         world.around.map == nullptr ? 0.0 : static_cast<double>(world.around.map->features.size()));

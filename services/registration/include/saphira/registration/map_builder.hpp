@@ -85,6 +85,9 @@ class MapBuilder {
   /// True when the map has changed.
   bool step(const MapBuilderInputs& inputs);
 
+  /// Whether walls are put on right angles from now on, also those that are known.
+  void snap(bool on);
+
   const maps::Map& map() const { return editor_.map(); }
   /// The known map was edited before: its earlier ids are not used again.
   void take_ids(const maps::Editor& known) { editor_ = known; }
@@ -106,6 +109,7 @@ class MapBuilder {
   template <class Archive>
   void archive(Archive& a) {
     a("sonars", settings_.sonars)("snaps", settings_.snap_to_right_angle_grid)("given", given_);
+    a("min_wall", settings_.min_wall)("same_wall", settings_.same_wall);
     a("graph", graph_)("known_lines", known_lines_)("known_points", known_points_)("taken", taken_);
     a("ahead", ahead_)("driven_through", driven_through_)("editor", editor_)("own", own_);
     a("door_of", door_of_)("wall_of", wall_of_)("start_in_map", start_in_map_)("placed", placed_);
@@ -152,6 +156,7 @@ class MapBuilder {
     bool is_ambiguous = false;
   };
   Match match_opening(const SeenPoint& seen, lps::PointType type) const;
+  void hear_walls(const MapBuilderInputs& inputs);
   void listen_ahead(const MapBuilderInputs& inputs);
   void pass();
   void settle();

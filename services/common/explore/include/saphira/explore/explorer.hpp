@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/explore/free_floor.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/maps/map.hpp"
 
@@ -65,6 +66,10 @@ class Explorer {
   const Output& output() const { return output_; }
   /// Ways that were found and could not be followed, and are not on the map: each with the reason.
   std::vector<std::string> left(const maps::Map& map) const;
+  /// True where hardly a corridor was found: then the free floor is explored as well.
+  bool in_room() const { return in_room_; }
+  Vec2 start() const { return start_in_map_.position(); }
+  const FreeFloor& floor() const { return floor_; }
 
  private:
   /// A way out of the mapped area: from a point, straight on.
@@ -77,7 +82,7 @@ class Explorer {
     bool door = false;     ///< probably only a room is behind it
     bool aside = false;    ///< heard along a corridor, so its middle is unknown
   };
-  enum class Doing { choosing, going, probing, looking };
+  enum class Doing { choosing, going, probing, looking, roaming };
 
   void listen(const Inputs& inputs);
   std::vector<Lead> leads(const Inputs& inputs) const;
@@ -90,6 +95,8 @@ class Explorer {
   void begin_looking(const Inputs& inputs);
   void look(const Inputs& inputs);
   void listen_aside(const Inputs& inputs);
+  bool mostly_room(const maps::Map& map) const;
+  void roam(const Inputs& inputs);
   bool looked(double heading, const Inputs& inputs);
   void hear_aside(double range, double heading, bool narrow, const Inputs& inputs);
   double room(double side) const;
@@ -105,6 +112,7 @@ class Explorer {
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
 
   Settings settings_;
+  FreeFloor floor_;
   Output output_;
   Doing doing_ = Doing::choosing;
   Pose start_in_map_;
@@ -142,10 +150,18 @@ class Explorer {
   int reopened_ = 0;
   int stuck_ = 0;  ///< times that it was stopped on the way to this lead
   bool begun_ = false;
-  bool home_ = false;         ///< on the way home, or there
-  bool turning_ = false;      ///< towards the target, on the spot
-  bool open_ = false;         ///< it ended in an open area, with no wall ahead
-  bool in_corridor_ = false;  ///< the lead has become a corridor
+  bool home_ = false;     ///< on the way home, or there
+  bool turning_ = false;  ///< towards the target, on the spot
+  bool open_ = false;     ///< it ended in an open area, with no wall ahead
+  // In a room, without corridors.
+  bool in_room_ = false;
+  bool roamed_ = false;            ///< no edge of the seen floor is left
+  std::optional<Vec2> edge_;       ///< of the seen floor, where it drives to
+  std::vector<Vec2> tried_edges_;  ///< reached, or out of reach
+  double roamed_way_ = 0.0;        ///< [m]
+  Vec2 roamed_at_{0.0, 0.0};
+  std::uint64_t planned_ = 0;  ///< [cycle] of the way there
+  bool in_corridor_ = false;   ///< the lead has become a corridor
 };
 
 }  // namespace saphira::explore
