@@ -442,10 +442,11 @@ TEST_F(CliTest, DriveIsADeadMan) {
   }
   bus::Node bridge(test::node_options("bridge", robot_));
   auto stops = bridge.reader(bus::topics::kDriveStop);
-  EXPECT_TRUE(test::wait_until([&] { return stops.matched() > 0; }));
-  press('k');
+  // Until one is received: the other side of the match may be later than this one.
   std::string asked;
   EXPECT_TRUE(test::wait_until([&] {
+    press('k');
+    std::this_thread::sleep_for(milliseconds(50));
     if (const auto request = stops.take_newest())
       asked = request->functor;
     return !asked.empty();
