@@ -151,20 +151,6 @@ sim::PersonPlan person_at(const Vec2& at, double body, const std::string& name) 
   return person;
 }
 
-/// The world for planning: the guard keeps a larger distance from whatever may be a person, which
-/// is everything that stands still and is not on a map.
-sim::World with_distance(sim::World world) {
-  for (sim::PersonPlan& person : world.movable.persons)
-    person.radius += person.script.empty() ? kPersonRoom : 0.0;
-  for (sim::PostPlan& post : world.movable.posts)
-    post.radius += kPersonRoom;
-  for (sim::BoxPlan& box : world.movable.boxes) {
-    box.length += 2.0 * kPersonRoom;
-    box.width += 2.0 * kPersonRoom;
-  }
-  return world;
-}
-
 /// A unit vector along the way at a point of it.
 Vec2 along(const std::vector<Vec2>& way, std::size_t at) {
   const std::size_t from = at < 3 ? 0 : at - 3;
@@ -188,7 +174,11 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
     sim::World with = crossing.world;
     with.movable.persons.push_back(
         person_at(place, options.body, "standing" + std::to_string(with.movable.persons.size())));
-    Ways ways(with_distance(with), needed);
+    // The distance to people is larger than to walls.
+    sim::World wide = with;
+    for (sim::PersonPlan& person : wide.movable.persons)
+      person.radius += kPersonRoom;
+    Ways ways(wide, needed);
     const auto start = ways.cell_at(crossing.start_in_world.position());
     const auto goal = ways.cell_at(crossing.way.back());
     ways.spread(*start);
@@ -279,7 +269,9 @@ bool add_in_the_way(Crossing& crossing, const CrossingOptions& options, double n
   const Vec2 place = places[static_cast<std::size_t>(
       random.uniform(0.0, static_cast<double>(places.size()) - 1e-6))];
   crossing.world.movable.persons.push_back(person_at(place, options.body, "standing"));
-  Ways past(with_distance(crossing.world), needed);
+  sim::World wide = crossing.world;
+  wide.movable.persons.back().radius += kPersonRoom;
+  Ways past(wide, needed);
   past.spread(*past.cell_at(crossing.start_in_world.position()));
   crossing.has_way = past.length(*past.cell_at(way.back())) <= 2.0 * options.most;
   return true;
@@ -356,7 +348,7 @@ std::optional<Crossing> plan_crossing(const CrossingOptions& options,
   Crossing crossing;
   crossing.world = sim::load_world(find_file(config_folder() + "/worlds", options.world, ".wld"));
   const double needed = robot.radius + kRoom;
-  Ways ways(with_distance(crossing.world), needed);
+  Ways ways(crossing.world, needed);
   const auto start = ways.nearest(crossing.world.start.value_or(Pose{}).position());
   if (!start)
     return std::nullopt;
