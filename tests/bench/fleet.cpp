@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// The writers of one topic, by the epoch of their samples.
+/// The epochs of one topic's samples, by their writers.
 template <class T>
 class Writers {
  public:
@@ -32,13 +32,13 @@ class Writers {
   void look() {
     for (const auto& sample : reader_.take())
       if (!sample.info.disposed && sample.data.stamp.cycle > 0)
-        by_epoch_[sample.data.stamp.epoch].insert(sample.info.writer);
+        epochs_[sample.info.writer].insert(sample.data.stamp.epoch);
   }
-  const std::map<std::uint64_t, std::set<bus::WriterId>>& by_epoch() const { return by_epoch_; }
+  const std::map<bus::WriterId, std::set<std::uint64_t>>& epochs() const { return epochs_; }
 
  private:
   bus::Reader<T> reader_;
-  std::map<std::uint64_t, std::set<bus::WriterId>> by_epoch_;
+  std::map<bus::WriterId, std::set<std::uint64_t>> epochs_;
 };
 
 /// The services of every robot, heard from outside. An epoch is one robot's.
@@ -57,18 +57,21 @@ class Robots {
   std::size_t whole() {
     std::map<std::uint64_t, int> services;
     each([&](auto& writers) {
-      for (const auto& [epoch, of] : writers.by_epoch())
+      std::set<std::uint64_t> heard;
+      for (const auto& [writer, epochs] : writers.epochs())
+        heard.insert(epochs.begin(), epochs.end());
+      for (const std::uint64_t epoch : heard)
         ++services[epoch];
     });
     return static_cast<std::size_t>(std::count_if(services.begin(), services.end(),
                                                   [](const auto& s) { return s.second == 4; }));
   }
-  /// Services that stepped for another's robot.
+  /// Services that stepped for two robots.
   std::size_t mixed() {
     std::size_t count = 0;
     each([&](auto& writers) {
-      for (const auto& [epoch, of] : writers.by_epoch())
-        count += of.size() - 1;
+      for (const auto& [writer, epochs] : writers.epochs())
+        count += epochs.size() - 1;
     });
     return count;
   }
