@@ -19,8 +19,8 @@ namespace {
 
 using web::header;
 
-constexpr std::size_t kMostConnections =
-    96;  // WebSockets; a page has 2, with the camera 5, 5 more to drive
+// WebSockets. A page has 2, 3 more with the camera, and 5 more to drive.
+constexpr std::size_t kMostConnections = 96;
 constexpr unsigned kMostDescriptors = 192;
 constexpr std::size_t kLongestMessage = 4096;
 constexpr int kSendBuffer = 128 * 1024;          // the kernel's buffer for a slow browser

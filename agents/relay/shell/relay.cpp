@@ -49,17 +49,36 @@ void complain(const std::string& text) {
   say(text);
 }
 
-/// A gateway that does not trust this certificate ends the handshake with an alert.
-void note_alert(const SSL* ssl, int where, int alert) {
-  if ((where & SSL_CB_READ_ALERT) != SSL_CB_READ_ALERT || SSL_is_init_finished(ssl) != 0)
-    return;
+/// The slot of a connection's address, which is kept from the start of its handshake: a client that
+/// has gone meanwhile has none.
+int address_slot() {
+  static const int slot =
+      SSL_get_ex_new_index(0, nullptr, nullptr, nullptr,
+                           [](void* /*ssl*/, void* address, CRYPTO_EX_DATA* /*data*/, int /*slot*/,
+                              long /*number*/, void* /*more*/) {  // NOLINT(google-runtime-int)
+                             delete static_cast<std::string*>(address);
+                           });
+  return slot;
+}
+
+void keep_address(SSL* ssl) {
   std::array<char, 64> address{};
   sockaddr_storage peer{};
   socklen_t size = sizeof peer;
-  const bool is_known =
+  if (SSL_get_ex_data(ssl, address_slot()) == nullptr &&
       getpeername(SSL_get_fd(ssl), reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
-      lws_get_peer_simple_fd(SSL_get_fd(ssl), address.data(), address.size()) != nullptr;
-  complain(std::string(is_known ? address.data() : "somebody") +
+      lws_get_peer_simple_fd(SSL_get_fd(ssl), address.data(), address.size()) != nullptr)
+    SSL_set_ex_data(ssl, address_slot(), new std::string(address.data()));
+}
+
+/// A gateway that does not trust this certificate ends the handshake with an alert.
+void note_alert(const SSL* ssl, int where, int alert) {
+  if ((where & SSL_CB_HANDSHAKE_START) != 0)
+    keep_address(const_cast<SSL*>(ssl));
+  if ((where & SSL_CB_READ_ALERT) != SSL_CB_READ_ALERT || SSL_is_init_finished(ssl) != 0)
+    return;
+  const auto* const address = static_cast<const std::string*>(SSL_get_ex_data(ssl, address_slot()));
+  complain((address != nullptr ? *address : "somebody") +
            " does not accept this relay's certificate (" + SSL_alert_desc_string_long(alert) +
            "): a gateway needs it, or that of its authority, as --dial-authority, and dials the "
            "name that it has");

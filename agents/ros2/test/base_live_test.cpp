@@ -109,8 +109,8 @@ class FakeBase {
   std::thread thread_;
 };
 
-/// A bridge with the base as its robot, and a person who drives. Times are decided, and tested, in
-/// base_test and in the bridge's core.
+/// A bridge with the base as its robot, and a person who drives. The tests of times are base_test
+/// and those of the bridge's core.
 class Ros2Base : public ::testing::Test {
  protected:
   void start(const std::string& options = "") {

@@ -34,7 +34,7 @@ class Fleet {
   /// An announcement of a program that this one meets has come.
   void hear(std::string_view prefix, Time now);
   /// True where this program's own announcement is to be sent. While nobody is new, one in
-  /// `kSeldom` is enough: whoever comes announces himself, and is answered at once.
+  /// `kSeldom` is enough: a newcomer announces itself, and is answered with the next one.
   bool is_due(std::string_view data, Time now);
 
   static constexpr std::chrono::seconds kSeldom{2};

@@ -160,6 +160,33 @@ bool is_own_handshake(std::string_view payload, bool little, const std::uint8_t*
   return values.good() && permissions == participants;
 }
 
+/// The list of parameters of an announcement: its place in the message [0: there is none, or it has
+/// another form], its size, and the submessage behind it.
+struct Announcement {
+  std::size_t at = 0;
+  std::size_t size = 0;
+  bool little = true;
+  std::size_t next = 0;
+};
+
+/// The first one of a sound message, at or behind a submessage.
+Announcement announcement_in(const std::uint8_t* message, std::size_t size,
+                             std::size_t from = kHeader) {
+  std::size_t next = 0;
+  for (std::size_t at = from; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (!part.has_data() || !part.is_of(kParticipantWriter))
+      continue;
+    const std::size_t payload_at = payload_of(part);
+    if (payload_at == 0)
+      return {};
+    const std::size_t list_at = payload_at + kEncapsulation;
+    return {at + kSubmessageHeader + list_at, part.size - list_at,
+            part.data[payload_at + 1] == kListLittle, next};
+  }
+  return {};
+}
+
 }  // namespace
 
 bool speaks_for_itself(const std::uint8_t* message, std::size_t size) {
@@ -202,43 +229,31 @@ bool is_farewell(const std::uint8_t* message, std::size_t size) {
 }
 
 std::optional<Announced> announced(const std::uint8_t* message, std::size_t size) {
-  std::size_t next = 0;
-  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
-    const Submessage part = submessage(message, size, at, next);
-    if (!part.has_data() || !part.is_of(kParticipantWriter))
-      continue;
-    const std::size_t payload_at = payload_of(part);
-    if (payload_at == 0)
-      return std::nullopt;
-    const bool little = part.data[payload_at + 1] == kListLittle;
-    const std::string_view list(
-        reinterpret_cast<const char*>(part.data) + payload_at + kEncapsulation,
-        part.size - payload_at - kEncapsulation);
-    Announced found;
-    const std::size_t whole =
-        size_of_list(list, little, [&](std::size_t parameter, std::string_view value) {
-          Values values(value, little);
-          if (parameter == kName)
-            found.name = values.text();
-          else if (parameter == kUserData)
-            found.data = values.octets();
-          return true;
-        });
-    return whole > 0 ? std::optional(found) : std::nullopt;
-  }
-  return std::nullopt;
+  const Announcement announcement = announcement_in(message, size);
+  if (announcement.at == 0)
+    return std::nullopt;
+  const std::string_view list(reinterpret_cast<const char*>(message) + announcement.at,
+                              announcement.size);
+  Announced found;
+  const std::size_t whole =
+      size_of_list(list, announcement.little, [&](std::size_t parameter, std::string_view value) {
+        Values values(value, announcement.little);
+        if (parameter == kName)
+          found.name = values.text();
+        else if (parameter == kUserData)
+          found.data = values.octets();
+        return true;
+      });
+  return whole > 0 ? std::optional(found) : std::nullopt;
 }
 
 void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lease) {
-  std::size_t next = 0;
-  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
-    const Submessage part = submessage(message, size, at, next);
-    if (!part.has_data() || !part.is_of(kParticipantWriter))
-      continue;
-    const std::size_t payload_at = payload_of(part);
-    const bool little = part.data[payload_at + 1] == kListLittle;
-    auto* parameter =
-        reinterpret_cast<char*>(message + at + kSubmessageHeader + payload_at + kEncapsulation);
+  for (std::size_t from = kHeader;;) {
+    const Announcement announcement = announcement_in(message, size, from);
+    if (announcement.at == 0)
+      return;
+    const bool little = announcement.little;
+    auto* parameter = reinterpret_cast<char*>(message + announcement.at);
     for (; half(parameter, little) != kEnd; parameter += 4 + half(parameter + 2, little)) {
       if (half(parameter, little) != kLease)
         continue;
@@ -248,6 +263,7 @@ void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lea
         parameter[8 + i] = 0;  // the fraction of a second
       }
     }
+    from = announcement.next;
   }
 }
 

@@ -22,7 +22,7 @@ bool speaks_for_itself(const std::uint8_t* message, std::size_t size);
 /// True where a sound message says that a participant has ended.
 bool is_farewell(const std::uint8_t* message, std::size_t size);
 
-/// What an announcement says of a program: its name, and its user data ("key=value;...").
+/// A program as its announcement describes it: its name, and its user data ("key=value;...").
 struct Announced {
   std::string name;
   std::string data;

@@ -354,7 +354,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
     robot.step(core);
   ASSERT_FALSE(core.map().features.empty());
   EXPECT_TRUE(core.map_changed());
-  // A place that is put down meanwhile stays, and so does what was built.
+  // Building keeps the places that were put, and the walls that were built.
   const std::size_t built = core.map().features.size();
   EXPECT_EQ(core.act(put(lps::PointType::position, {1.0, 0.5, 0.0})).text, "");
   EXPECT_EQ(core.act(request("snap", false)).text, "");

@@ -22,10 +22,12 @@ function startRelay() {
   return start('saphira-relay', '--robots', file('robots'), '--dial-port', `${ports[0]}`, '--listen', '127.0.0.1',
     '--certificate', file('relay.pem'), '--certificate-key', file('relay.key'));
 }
+const gateways = [];
 function startGateway(robot, secret, ...more) {
-  return start('saphira-console', '--robot', robot, '--port', '0', '--certificate', file('robot.pem'),
+  gateways.push(start('saphira-console', '--robot', robot, '--port', '0', '--certificate', file('robot.pem'),
     '--certificate-key', file('robot.key'), '--dial', `wss://localhost:${ports[0]}/pioneer`,
-    '--dial-token-file', file(secret), ...(more.length > 0 ? more : ['--dial-authority', file('relay.pem')]));
+    '--dial-token-file', file(secret), ...(more.length > 0 ? more : ['--dial-authority', file('relay.pem')])));
+  return gateways.at(-1);
 }
 
 const robot = `relay-${process.pid}`;
@@ -44,7 +46,7 @@ before(async () => {
 });
 after(async () => {
   ann?.end();   // a test that failed leaves her at the stick
-  for (const child of [gateway, relay, bridge, simulator]) await end(child);
+  for (const child of [...gateways, relay, bridge, simulator]) await end(child);
   rmSync(folder, {recursive: true, force: true});
 });
 

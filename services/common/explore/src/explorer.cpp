@@ -286,13 +286,7 @@ void Explorer::go(const Inputs& inputs) {
     progress_ = kNone;
     return;
   }
-  double left = (path_.front() - here).norm();
-  for (std::size_t i = 1; i < path_.size(); ++i)
-    left += (path_[i] - path_[i - 1]).norm();
-  if (left < progress_ - settings_.min_progress) {
-    progress_ = left;
-    progress_cycle_ = inputs.cycle;
-  }
+  note_progress(inputs);
   if (inputs.cycle > progress_cycle_ + 2 * settings_.patience) {
     doing_ = Doing::choosing;
     output_.look_at.reset();
@@ -407,6 +401,17 @@ void Explorer::probe(const Inputs& inputs) {
   head_for(point + (at + far) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
 }
 
+// Along the path that is left.
+void Explorer::note_progress(const Inputs& inputs) {
+  double left = (path_.front() - inputs.pose_in_map.position()).norm();
+  for (std::size_t i = 1; i < path_.size(); ++i)
+    left += (path_[i] - path_[i - 1]).norm();
+  if (left < progress_ - settings_.min_progress) {
+    progress_ = left;
+    progress_cycle_ = inputs.cycle;
+  }
+}
+
 // To the edges of the seen floor, the nearest first.
 void Explorer::roam(const Inputs& inputs) {
   const Vec2 here = inputs.pose_in_map.position();
@@ -443,13 +448,7 @@ void Explorer::roam(const Inputs& inputs) {
   }
   while (path_.size() > 1 && (path_.front() - here).norm() < kAtEdge)
     path_.erase(path_.begin());
-  double left = (path_.front() - here).norm();
-  for (std::size_t i = 1; i < path_.size(); ++i)
-    left += (path_[i] - path_[i - 1]).norm();
-  if (left < progress_ - settings_.min_progress) {
-    progress_ = left;
-    progress_cycle_ = inputs.cycle;
-  }
+  note_progress(inputs);
   head_for(path_.front(), inputs);
 }
 

@@ -125,10 +125,11 @@ class ExploreUnknown : public Activity {
                           "found, and %.0f m2 of free floor",
                           way_length(), area));
     else
-      self.succeed(
-          saphira::format("no corridor: a room of %.0f m2 of free floor, %d walls, %d places to go "
-                          "to and %d lanes between them",
-                          area, static_cast<int>(walls), places_, static_cast<int>(lanes_.size())));
+      self.succeed(saphira::format(
+          "no corridor: a room of %.0f m2 of free floor, %d walls, %d places to go "
+          "to and %d lanes between them%s",
+          area, static_cast<int>(walls), places_, static_cast<int>(lanes_.size()),
+          lanes_.size() > kMostLanes ? "; the rest of the floor has no lanes" : ""));
   }
 
   void turn(Self& self, const Vec2& to) {

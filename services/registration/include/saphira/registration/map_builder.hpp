@@ -85,7 +85,7 @@ class MapBuilder {
   /// True when the map has changed.
   bool step(const MapBuilderInputs& inputs);
 
-  /// Whether walls are put on right angles from now on, also those that are known.
+  /// Puts all walls on right angles from now on, or leaves them as they are seen.
   void snap(bool on);
 
   const maps::Map& map() const { return editor_.map(); }

@@ -18,9 +18,8 @@ struct Lane {
   double width = 0.0;  ///< [m]
 };
 
-/// The floor around the start in cells, as the sonars have found it: free, occupied or not yet
-/// seen. It has the size of a large room and its neighbours; what is farther away is not seen. In
-/// the frame of the map.
+/// The floor as the sonars have found it, in cells in the frame of the map: free, occupied or not
+/// yet seen. The cells cover 32 m by 32 m around the start.
 class FreeFloor {
  public:
   explicit FreeFloor(std::vector<lps::SonarMount> sonars);

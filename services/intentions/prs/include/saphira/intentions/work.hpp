@@ -21,7 +21,7 @@ struct GoalWork {
 
   bool operator==(const GoalWork&) const = default;
 
-  /// The goal is still what was begun.
+  /// True while the goal has the functor and the arguments with which the work began.
   bool is_of(const Goal& goal) const {
     return id == goal.id && functor == goal.functor && arguments == goal.arguments;
   }
