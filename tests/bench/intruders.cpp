@@ -165,7 +165,9 @@ class Watched {
   test::Process process_;
 };
 
-/// A drive of an operator, once the bridge hears it; returns the packets on the wire meanwhile.
+/// A drive of an operator, once the bridge hears it; returns the packets on the wire meanwhile. It
+/// takes so long that at least three announcements are among them, which come every 2 s: who
+/// repeats them is known by those that are more than 2 s older than the newest.
 std::vector<Wire::Packet> drive(const Wire& wire, const std::string& credentials,
                                 std::uint32_t domain) {
   std::vector<Wire::Packet> packets;
@@ -173,9 +175,10 @@ std::vector<Wire::Packet> drive(const Wire& wire, const std::string& credentials
   auto commands = node.writer(bus::topics::kDriveTeleop);
   if (!test::wait_until([&] { return commands.matched() > 0; }))
     throw std::runtime_error("the bridge does not take an operator's commands");
-  std::jthread listener([&] { packets = wire.hear(domain, seconds(4)); });
+  constexpr seconds kDrive{8};
+  std::jthread listener([&] { packets = wire.hear(domain, kDrive); });
   v1::MotorCommand command;
-  for (const auto end = Clock::now() + seconds(4); Clock::now() < end;) {
+  for (const auto end = Clock::now() + kDrive; Clock::now() < end;) {
     ++command.number;
     commands.write(command);
     node.wait(milliseconds(20));
