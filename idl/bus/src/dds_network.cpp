@@ -63,6 +63,9 @@ class DdsLog : public fdds::LogConsumer {
 // announcements that are for other machines, and the other way round.
 constexpr std::uint16_t kLoopbackPorts = 125;
 
+// Of the standard, for announcements.
+constexpr const char* kGroup = "239.255.0.1";
+
 /// A number of this machine since its boot, or of this network namespace.
 std::uint32_t machine() {
   static const std::uint32_t number = [] {
@@ -208,7 +211,23 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
   SieveDescriptor::Ignore ignore;
   if (side == Side::local) {
     udp->interfaceWhiteList.push_back("127.0.0.1");
-    qos.wire_protocol().port.portBase += kLoopbackPorts;
+    auto& port = qos.wire_protocol().port;
+    port.portBase += kLoopbackPorts;
+    // A program hears its robot's port, and the usual one, which programs on another DDS announce
+    // themselves at: it answers these by unicast.
+    const std::uint32_t usual = port.getMulticastPort(options.domain);
+    const auto add = [&](rtps::LocatorList_t& list, const std::string& address,
+                         std::uint32_t number) {
+      rtps::Locator_t place;
+      rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, address, number, place);
+      list.push_back(place);
+    };
+    add(builtin.metatrafficUnicastLocatorList, "127.0.0.1", 0);
+    add(builtin.metatrafficMulticastLocatorList, kGroup, usual);
+    for (const std::uint16_t offset : Fleet(options).ports()) {
+      add(builtin.metatrafficMulticastLocatorList, kGroup, usual + offset);
+      add(builtin.initialPeersList, kGroup, usual + offset);
+    }
   } else {
     ignore = own_programs(guard != nullptr);
     // A packet that waits for a neighbour's address must not hold up the sender.

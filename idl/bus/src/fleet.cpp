@@ -1,9 +1,11 @@
 #include "fleet.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "internal.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus::internal {
@@ -40,6 +42,17 @@ bool Fleet::meets(const Announced& other) const {
   const std::string robot = field(other.data, "robot");
   return robot.empty() || robot_.empty() || partitions_meet(robot_, robot) ||
          has(far_, other.name) || has(field(other.data, "far"), name_);
+}
+
+std::vector<std::uint16_t> Fleet::ports() const {
+  if (!robot_.empty() && robot_.find_first_of("*?[") == std::string::npos && far_.empty()) {
+    Fnv1a hash;
+    hash.add(robot_);
+    return {static_cast<std::uint16_t>(kFirstPort + hash.value() % kPorts)};
+  }
+  std::vector<std::uint16_t> all(kPorts);
+  std::iota(all.begin(), all.end(), kFirstPort);
+  return all;
 }
 
 void Fleet::hear(std::string_view prefix, Time now) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "introduction.hpp"
 #include "saphira/base/boot_clock.hpp"
@@ -31,6 +32,11 @@ class Fleet {
   /// tell its robot.
   bool meets(const Announced& other) const;
 
+  /// The multicast ports for announcements on one machine, behind the first port of the domain.
+  /// Each robot has one of `kPorts`, so that its programs are not woken by every other robot. A
+  /// program that belongs to several robots or names others as far has all of them.
+  std::vector<std::uint16_t> ports() const;
+
   /// An announcement of a program that this one meets has come.
   void hear(std::string_view prefix, Time now);
   /// True where this program's own announcement is to be sent. While nobody is new, one in
@@ -38,6 +44,9 @@ class Fleet {
   bool is_due(std::string_view data, Time now);
 
   static constexpr std::chrono::seconds kSeldom{2};
+  /// The standard leaves these free: 0 and 1 are multicast, and those of programs begin at 10.
+  static constexpr std::uint16_t kFirstPort = 2;
+  static constexpr std::uint16_t kPorts = 8;
   /// After its start and after each newcomer a program sends every announcement for this long.
   static constexpr std::chrono::seconds kOften{3};
   /// Fast DDS sends an announcement several times at once, to different places.

@@ -53,6 +53,18 @@ TEST(Fleet, BothMeetWhereOneNamesTheOther) {
   EXPECT_TRUE(fleet("behaviors", "bee").meets(announcement_of("list", "ant", {"*"})));
 }
 
+TEST(Fleet, AProgramOfOneRobotHasOnePort) {
+  const auto ant = fleet("bridge", "ant").ports();
+  ASSERT_EQ(ant.size(), 1);
+  EXPECT_EQ(fleet("behaviors", "ant").ports(), ant);
+  EXPECT_NE(fleet("bridge", "bee").ports(), ant);
+  const std::vector<std::uint16_t> all{2, 3, 4, 5, 6, 7, 8, 9};
+  EXPECT_EQ(fleet("console", "ant", {"bridge"}).ports(), all);
+  EXPECT_EQ(fleet("list", "*").ports(), all);
+  EXPECT_EQ(fleet("agent", "a?t").ports(), all);
+  EXPECT_EQ(fleet("agent", "").ports(), all);
+}
+
 TEST(Fleet, AFieldIsAWholeOne) {
   EXPECT_EQ(field("host=a;robot=ant;far=", "robot"), "ant");
   EXPECT_EQ(field("myrobot=ant", "robot"), "");

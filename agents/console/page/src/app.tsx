@@ -398,7 +398,8 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
   }, {passive: false});
 }
 
-function Stick({drive: {active, by, hands}}: {drive: Drive}) {
+function Stick({drive}: {drive: Drive}) {
+  const {active, by, hands} = drive;
   const pad = useRef<SVGSVGElement>(null);
   const place = (event: PointerEvent) => {
     const box = pad.current!.getBoundingClientRect();
@@ -413,6 +414,7 @@ function Stick({drive: {active, by, hands}}: {drive: Drive}) {
                 e.preventDefault();
                 if (e.button !== 0) return;
                 pad.current!.setPointerCapture(e.pointerId);
+                drive.stick = pad.current!;
                 hands.grasp(e.pointerId, place(e));
               }}
               onPointerMove={e => hands.move(e.pointerId, place(e), e.buttons !== 0)}

@@ -110,7 +110,7 @@ export class Hands {
     if (pressed) this.at = at;
     else this.drop(pointer);
   }
-  drop(pointer: number) {
+  drop(pointer = this.pointer) {
     if (pointer === this.pointer) this.pointer = undefined;
   }
 
