@@ -39,7 +39,7 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
 }
 
 int list_topics(bus::NodeOptions options, const bus::Stop& stop) {
-  options.far = {"*"};
+  options.others = bus::Others::met;
   bus::Node node(options);
   const bus::Census census(node);
   poll_for(node, kDiscovery, stop, [] {});

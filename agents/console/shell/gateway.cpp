@@ -40,9 +40,9 @@ AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
   return access;
 }
 
-/// The page lists the other robots: their bridges and pages.
+/// The page lists the other robots.
 bus::NodeOptions among_robots(bus::NodeOptions options) {
-  options.far = {"bridge", "console"};
+  options.others = bus::Others::noted;
   return options;
 }
 

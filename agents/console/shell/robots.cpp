@@ -15,6 +15,7 @@ constexpr double kLinger = 5.0;        // [s]
 
 bus::NodeOptions of_robot(bus::NodeOptions options, const std::string& robot) {
   options.robot = robot;
+  options.others = bus::Others::ignored;
   return options;
 }
 
@@ -31,10 +32,9 @@ void Robots::look(bool shown, double now) {
     return;
   looked_ = now;
   std::set<std::string> partitions;
-  for (const bus::EndpointEntry& entry : bus::Census(own_).endpoints())
-    if (entry.writer &&
-        (entry.topic == bus::topics::kRobotState.name || entry.topic == bus::topics::kPage.name))
-      partitions.insert(entry.robot);
+  for (const bus::OtherProgram& program : bus::Census(own_).others())
+    if (program.name == "bridge" || program.name == "console")
+      partitions.insert(program.robot);
   std::map<std::string, Robot> robots;
   for (const std::string& name : robots_of(partitions, own_.options().robot))
     if (name != own_.options().robot)

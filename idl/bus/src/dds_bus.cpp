@@ -66,7 +66,7 @@ struct Bus::Names {
 
 Session::Session(const NodeOptions& options, Side the_side, const std::shared_ptr<Wake>& wake,
                  Peers& peers, const std::shared_ptr<Machines>& machines,
-                 const std::shared_ptr<Guard>& guard)
+                 const std::shared_ptr<Guard>& guard, const Fleet& fleet)
     : side(the_side),
       // Strangers must not know the seed: it decides which of them displace each other.
       entrance(
@@ -87,7 +87,7 @@ Session::Session(const NodeOptions& options, Side the_side, const std::shared_pt
   participant = factory->create_participant(
       options.domain,
       participant_qos(options, side, mute_, side == Side::network ? machines : nullptr, guard,
-                      entrance),
+                      entrance, fleet),
       &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
@@ -143,6 +143,7 @@ Bus::Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wak
     : wake(std::move(the_wake)),
       peers(wake),
       options_(options),
+      fleet_(options_),
       guard_(Guard::make(options)),
       machines_(options.profile == Profile::wan ? std::make_shared<Machines>() : nullptr),
       names_(options.profile == Profile::wan ? std::make_shared<Names>() : nullptr),
@@ -314,7 +315,7 @@ void Bus::give_back() {
 }
 
 std::unique_ptr<Session> Bus::make(Side side) {
-  return std::make_unique<Session>(options_, side, wake, peers, machines_, guard_);
+  return std::make_unique<Session>(options_, side, wake, peers, machines_, guard_, fleet_);
 }
 
 void Bus::renew(Side side, bool after_sleep) {

@@ -34,7 +34,8 @@ class Session {
  public:
   /// std::runtime_error where it cannot be made.
   Session(const NodeOptions& options, Side side, const std::shared_ptr<Wake>& wake, Peers& peers,
-          const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard);
+          const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard,
+          const Fleet& fleet);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -109,6 +110,8 @@ class Bus {
   void renew_soon();
   /// None on an open bus.
   const std::shared_ptr<Guard>& guard() const { return guard_; }
+  /// As Census has them.
+  std::vector<OtherProgram> others() const { return fleet_.others(BootClock::now()); }
   /// Named peers that were silent lately.
   std::vector<std::string> silent_peers() const;
   /// In words, the missing address: this machine's or that of a named peer.
@@ -134,6 +137,7 @@ class Bus {
   std::unique_ptr<Session>& session(Side side) { return sessions_[static_cast<std::size_t>(side)]; }
 
   const NodeOptions options_;
+  const Fleet fleet_;
   const std::shared_ptr<Guard> guard_;
   const std::shared_ptr<Machines> machines_;  // wan alone
   const std::shared_ptr<Names> names_;        // wan alone

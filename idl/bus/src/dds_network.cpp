@@ -195,7 +195,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
                                            std::shared_ptr<const std::atomic<bool>> mute,
                                            std::shared_ptr<Machines> machines,
                                            std::shared_ptr<Guard> guard,
-                                           std::shared_ptr<Entrance> entrance) {
+                                           std::shared_ptr<Entrance> entrance, const Fleet& fleet) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.user_data() = user_data(options, "");
@@ -224,7 +224,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
     };
     add(builtin.metatrafficUnicastLocatorList, "127.0.0.1", 0);
     add(builtin.metatrafficMulticastLocatorList, kGroup, usual);
-    for (const std::uint16_t offset : Fleet(options).ports()) {
+    for (const std::uint16_t offset : fleet.ports()) {
       add(builtin.metatrafficMulticastLocatorList, kGroup, usual + offset);
       add(builtin.initialPeersList, kGroup, usual + offset);
     }
@@ -252,9 +252,9 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
     }
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
-      udp, std::move(mute), std::move(machines), std::move(ports), guard, std::move(entrance),
-      std::move(ignore), Fleet(options)));
+  qos.transport().user_transports.push_back(
+      std::make_shared<SieveDescriptor>(udp, std::move(mute), std::move(machines), std::move(ports),
+                                        guard, std::move(entrance), std::move(ignore), fleet));
   if (guard) {
     guard->secure(qos);
     // Fast DDS has room for 100 handshakes, and ends by an assertion where there is none.

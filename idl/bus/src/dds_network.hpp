@@ -11,6 +11,7 @@
 
 #include "dds_guard.hpp"
 #include "entrance.hpp"
+#include "fleet.hpp"
 #include "machines.hpp"
 #include "saphira/bus/node.hpp"
 
@@ -42,11 +43,11 @@ std::string look_up(const std::string& host);
 void set_up_library();
 
 /// The discovery settings and addresses of one side. While `mute` is set the side sends nothing.
-/// `machines`, `guard`, `entrance`: see SieveDescriptor.
+/// `machines`, `guard`, `entrance`, `fleet`: see SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const NodeOptions& options, Side side, std::shared_ptr<const std::atomic<bool>> mute,
-    std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr,
-    std::shared_ptr<Entrance> entrance = nullptr);
+    std::shared_ptr<Machines> machines, std::shared_ptr<Guard> guard,
+    std::shared_ptr<Entrance> entrance, const Fleet& fleet);
 
 /// The user data of a participant: its host, its process, its robot (Fleet), and the machines that
 /// it hears.

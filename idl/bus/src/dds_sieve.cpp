@@ -69,7 +69,7 @@ class Sieve : public transport::ChainingTransport {
       return;
     }
     const bool announces = is_announcement(buffer, sound);
-    if (announces && !meets(buffer, sound)) {
+    if (announces && !meets(buffer, sound, !descriptor_.guard || opened.sealed)) {
       hear(remote);
       return;
     }
@@ -212,14 +212,18 @@ class Sieve : public transport::ChainingTransport {
     return !own || descriptor_.fleet.is_due(own->data, BootClock::now());
   }
 
-  /// True for the announcement or farewell of a program that this one exchanges with.
-  bool meets(const rtps::octet* buffer, std::uint32_t size) {
+  /// True for the announcement or farewell of a program that this one exchanges with. `proven`: of
+  /// a member of the site.
+  bool meets(const rtps::octet* buffer, std::uint32_t size, bool proven) {
     const auto other = announced(buffer, size);
     if (!other)
       return true;
     const std::scoped_lock lock(mutex_);
-    if (!descriptor_.fleet.meets(*other))
+    if (!descriptor_.fleet.meets(*other)) {
+      if (proven)
+        descriptor_.fleet.note(*other, BootClock::now());
       return false;
+    }
     const auto* const prefix = reinterpret_cast<const char*>(sender_of(buffer));
     descriptor_.fleet.hear({prefix, Entrance::Prefix{}.size()}, BootClock::now());
     return true;

@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::size_t kMostKnown = 1000;
 
-/// True where a list of names, with commas, has this one or stands for all.
-bool has(const std::string& list, const std::string& name) {
-  return list == "*" || ("," + list + ",").find("," + name + ",") != std::string::npos;
-}
-
 }  // namespace
 
 std::string field(std::string_view data, std::string_view key) {
@@ -30,28 +25,45 @@ std::string field(std::string_view data, std::string_view key) {
   return {};
 }
 
-Fleet::Fleet(const NodeOptions& options)
-    : name_(options.name), robot_(options.robot), far_(joined(options.far, ",")) {}
+Fleet::Fleet(const NodeOptions& options) : robot_(options.robot), others_(options.others) {}
 
 std::string Fleet::fields() const {
-  return (robot_.empty() ? "" : "robot=" + robot_ + ";") +
-         (far_.empty() ? "" : "far=" + far_ + ";");
+  return (robot_.empty() ? "" : "robot=" + robot_ + ";") + (others_ == Others::met ? "far=*;" : "");
 }
 
 bool Fleet::meets(const Announced& other) const {
   const std::string robot = field(other.data, "robot");
-  return robot.empty() || robot_.empty() || partitions_meet(robot_, robot) ||
-         has(far_, other.name) || has(field(other.data, "far"), name_);
+  return robot.empty() || robot_.empty() || others_ == Others::met ||
+         partitions_meet(robot_, robot) || !field(other.data, "far").empty();
 }
 
 std::vector<std::uint16_t> Fleet::ports() const {
-  if (!robot_.empty() && robot_.find_first_of("*?[") == std::string::npos && far_.empty()) {
+  if (others_ == Others::ignored && !robot_.empty() &&
+      robot_.find_first_of("*?[") == std::string::npos) {
     Fnv1a hash;
     hash.add(robot_);
     return {static_cast<std::uint16_t>(kFirstPort + hash.value() % kPorts)};
   }
   std::vector<std::uint16_t> all(kPorts);
   std::iota(all.begin(), all.end(), kFirstPort);
+  return all;
+}
+
+void Fleet::note(const Announced& other, Time now) {
+  if (others_ != Others::noted)
+    return;
+  const std::scoped_lock lock(noted_->mutex);
+  if (noted_->programs.size() >= kMostKnown)
+    noted_->programs.clear();
+  noted_->programs[{field(other.data, "robot"), other.name}] = now;
+}
+
+std::vector<OtherProgram> Fleet::others(Time now) const {
+  const std::scoped_lock lock(noted_->mutex);
+  std::vector<OtherProgram> all;
+  for (const auto& [program, heard] : noted_->programs)
+    if (now - heard < kForgotten)
+      all.push_back(program);
   return all;
 }
 

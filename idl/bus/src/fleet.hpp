@@ -3,6 +3,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,6 +13,7 @@
 
 #include "introduction.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus::internal {
@@ -28,14 +32,19 @@ class Fleet {
 
   /// For the user data of this program.
   std::string fields() const;
-  /// True for a program of this robot, a program that either names as far, and one that does not
-  /// tell its robot.
+  /// True for a program of this robot, one that does not tell its robot, and where either of both
+  /// meets the others.
   bool meets(const Announced& other) const;
 
   /// The multicast ports for announcements on one machine, behind the first port of the domain.
   /// Each robot has one of `kPorts`, so that its programs are not woken by every other robot. A
-  /// program that belongs to several robots or names others as far has all of them.
+  /// program of several robots, or that does not ignore the others, has all of them.
   std::vector<std::uint16_t> ports() const;
+
+  /// An announcement of a program that this one does not meet has come.
+  void note(const Announced& other, Time now);
+  /// Those noted lately; for all copies of this fleet. From any thread. Sorted.
+  std::vector<OtherProgram> others(Time now) const;
 
   /// An announcement of a program that this one meets has come.
   void hear(std::string_view prefix, Time now);
@@ -47,15 +56,22 @@ class Fleet {
   /// The standard leaves these free: 0 and 1 are multicast, and those of programs begin at 10.
   static constexpr std::uint16_t kFirstPort = 2;
   static constexpr std::uint16_t kPorts = 8;
+  /// A noted program that is silent for this long is forgotten.
+  static constexpr std::chrono::seconds kForgotten{10};
   /// After its start and after each newcomer a program sends every announcement for this long.
   static constexpr std::chrono::seconds kOften{3};
   /// Fast DDS sends an announcement several times at once, to different places.
   static constexpr std::chrono::milliseconds kOnce{50};
 
  private:
-  std::string name_;
+  struct Noted {
+    std::mutex mutex;
+    std::map<OtherProgram, Time> programs;
+  };
+
   std::string robot_;
-  std::string far_;
+  Others others_;
+  std::shared_ptr<Noted> noted_ = std::make_shared<Noted>();
   std::set<std::string, std::less<>> known_;  ///< prefixes
   bool begun_ = false;
   Time often_until_;

@@ -114,6 +114,10 @@ std::vector<EndpointEntry> Census::endpoints() const {
   return result;
 }
 
+std::vector<OtherProgram> Census::others() const {
+  return internal::transport_of(*node_).others();
+}
+
 std::vector<Mismatch> Census::mismatches() const {
   std::vector<Mismatch> result;
   const auto all = endpoints();

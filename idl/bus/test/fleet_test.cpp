@@ -9,18 +9,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Fleet fleet(const std::string& name, const std::string& robot,
-            const std::vector<std::string>& far = {}) {
+Fleet fleet(const std::string& name, const std::string& robot, Others others = Others::ignored) {
   NodeOptions options;
   options.name = name;
   options.robot = robot;
-  options.far = far;
+  options.others = others;
   return Fleet(options);
 }
 
 Announced announcement_of(const std::string& name, const std::string& robot,
-                          const std::vector<std::string>& far = {}) {
-  return {name, "host=here;pid=7;" + fleet(name, robot, far).fields()};
+                          Others others = Others::ignored) {
+  return {name, "host=here;pid=7;" + fleet(name, robot, others).fields()};
 }
 
 TEST(Fleet, ProgramsOfOneRobotMeet) {
@@ -43,14 +42,28 @@ TEST(Fleet, AProgramThatDoesNotTellItsRobotIsMet) {
   EXPECT_TRUE(fleet("agent", "").meets(announcement_of("bridge", "ant")));
 }
 
-TEST(Fleet, BothMeetWhereOneNamesTheOther) {
-  const std::vector<std::string> far{"console", "bridge"};
-  EXPECT_TRUE(fleet("console", "ant", far).meets(announcement_of("bridge", "bee")));
-  EXPECT_TRUE(fleet("bridge", "bee").meets(announcement_of("console", "ant", far)));
-  EXPECT_FALSE(fleet("console", "ant", far).meets(announcement_of("behaviors", "bee")));
-  EXPECT_FALSE(fleet("behaviors", "bee").meets(announcement_of("console", "ant", far)));
-  EXPECT_TRUE(fleet("list", "ant", {"*"}).meets(announcement_of("behaviors", "bee")));
-  EXPECT_TRUE(fleet("behaviors", "bee").meets(announcement_of("list", "ant", {"*"})));
+TEST(Fleet, AllMeetTheOneThatMeetsOthers) {
+  EXPECT_TRUE(fleet("list", "ant", Others::met).meets(announcement_of("behaviors", "bee")));
+  EXPECT_TRUE(fleet("behaviors", "bee").meets(announcement_of("list", "ant", Others::met)));
+  EXPECT_FALSE(fleet("console", "ant", Others::noted).meets(announcement_of("bridge", "bee")));
+  EXPECT_FALSE(fleet("bridge", "bee").meets(announcement_of("console", "ant", Others::noted)));
+}
+
+TEST(Fleet, NotesTheOthersUntilTheyAreSilent) {
+  Fleet console = fleet("console", "ant", Others::noted);
+  const Fleet copy = console;
+  const Fleet::Time begin{};
+  console.note(announcement_of("bridge", "bee"), begin);
+  console.note(announcement_of("bridge", "cat"), begin + 4s);
+  console.note(announcement_of("bridge", "bee"), begin + 5s);
+  const OtherProgram bee{"bee", "bridge"};
+  const OtherProgram cat{"cat", "bridge"};
+  EXPECT_EQ(copy.others(begin + 5s), (std::vector{bee, cat}));
+  EXPECT_EQ(copy.others(begin + 14s), std::vector{bee});
+  EXPECT_TRUE(copy.others(begin + 15s).empty());
+  Fleet bridge = fleet("bridge", "ant");
+  bridge.note(announcement_of("bridge", "bee"), begin);
+  EXPECT_TRUE(bridge.others(begin).empty());
 }
 
 TEST(Fleet, AProgramOfOneRobotHasOnePort) {
@@ -59,7 +72,7 @@ TEST(Fleet, AProgramOfOneRobotHasOnePort) {
   EXPECT_EQ(fleet("behaviors", "ant").ports(), ant);
   EXPECT_NE(fleet("bridge", "bee").ports(), ant);
   const std::vector<std::uint16_t> all{2, 3, 4, 5, 6, 7, 8, 9};
-  EXPECT_EQ(fleet("console", "ant", {"bridge"}).ports(), all);
+  EXPECT_EQ(fleet("console", "ant", Others::noted).ports(), all);
   EXPECT_EQ(fleet("list", "*").ports(), all);
   EXPECT_EQ(fleet("agent", "a?t").ports(), all);
   EXPECT_EQ(fleet("agent", "").ports(), all);

@@ -23,7 +23,7 @@ struct Liar::Impl {
         wake(std::make_shared<internal::Wake>()),
         peers(wake),
         session(options, internal::Side::local, wake, peers, nullptr,
-                internal::Guard::make(options)) {
+                internal::Guard::make(options), internal::Fleet(options)) {
     presence.open(session, false);
     ticks = std::jthread([this](const std::stop_token& stop) {
       std::mutex mutex;

@@ -71,7 +71,8 @@ RawWriter::RawWriter(const std::string& robot, const std::string& topic, const s
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   impl_->participant = factory->create_participant(
       options.domain, internal::participant_qos(options, internal::Side::local,
-                                                std::make_shared<std::atomic<bool>>(false)));
+                                                std::make_shared<std::atomic<bool>>(false), nullptr,
+                                                nullptr, nullptr, internal::Fleet(options)));
   fdds::TypeSupport(new AnyBytes(type, keyed)).register_type(impl_->participant);
   impl_->participant->enable();
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;

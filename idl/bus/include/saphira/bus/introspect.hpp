@@ -90,6 +90,13 @@ struct EndpointEntry {
   bool known_type = true;  ///< false: our topic with another type
 };
 
+/// A program of another robot.
+struct OtherProgram {
+  std::string robot;
+  std::string name;
+  auto operator<=>(const OtherProgram&) const = default;
+};
+
 /// Two endpoints of one topic and one robot that do not hear each other.
 struct Mismatch {
   EndpointEntry writer;
@@ -107,6 +114,9 @@ class Census {
 
   /// Sorted by topic, writers first, then program.
   std::vector<EndpointEntry> endpoints() const;
+  /// The programs of other robots that announced themselves lately, for a node that notes them.
+  /// Sorted.
+  std::vector<OtherProgram> others() const;
   /// Pairs on one topic with a common partition that cannot match, and why.
   std::vector<Mismatch> mismatches() const;
 

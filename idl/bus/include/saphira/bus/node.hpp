@@ -21,15 +21,20 @@ enum class Profile {
   wan,   ///< no multicast: the listed peers, and the machines that those hear
 };
 
+/// The programs of other robots, to a program of one robot.
+enum class Others {
+  ignored,  ///< not heard at all
+  noted,    ///< known by name (Census::others)
+  met,      ///< exchanged with, as those of the own robot
+};
+
 /// Instead of a folder of credentials.
 inline constexpr const char* kOpenBus = "none";
 
 struct NodeOptions {
   std::string name;               ///< of the program on the bus, such as behaviors
   std::string robot = "pioneer";  ///< the partition; "*" to read every robot
-  /// Names of programs of other robots that this one exchanges with [one "*": all programs]. All
-  /// others of other robots are not heard.
-  std::vector<std::string> far;
+  Others others = Others::ignored;
   std::uint32_t domain = 0;  ///< DDS domain [0, 231]
   Profile profile = Profile::host;
   std::vector<std::string>
