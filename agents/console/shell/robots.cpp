@@ -13,7 +13,9 @@ constexpr double kCountRobots = 2.0;   // [s]
 constexpr double kLookAtRobots = 0.5;  // [s]
 constexpr double kLinger = 5.0;        // [s]
 
+/// Its name tells it from the robot's own page, which ends with the robot.
 bus::NodeOptions of_robot(bus::NodeOptions options, const std::string& robot) {
+  options.name += " of " + options.robot;
   options.robot = robot;
   options.others = bus::Others::ignored;
   return options;
