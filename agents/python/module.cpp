@@ -24,6 +24,7 @@
 #include "environment.hpp"
 #include "inquiry.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/program.hpp"
@@ -79,6 +80,8 @@ class Bus {
     options.name = name;
     options.program = name;
     options.robot = robot.value_or(options.robot);
+    if (const std::string trouble = trouble_of_robot(options.robot); !trouble.empty())
+      throw py::value_error("robot: " + trouble);
     options.domain = domain.value_or(options.domain);
     if (profile)
       options.profile = bus::profile_of(*profile);

@@ -80,7 +80,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const v1::Request request = bus::request("stop");
   const std::uint64_t number = stops.send(request);
   const auto began = Clock::now();
-  const char* const robot = node_options.robot.c_str();
+  const std::string robot = called(node_options.robot);
   bool confirmed = false;
   std::size_t done = 0;  // bridges
   double again = kAgain;
@@ -91,7 +91,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     bridges.poll();
     for (const v1::Answer& answer : stops.poll()) {
       if (!std::exchange(confirmed, true))
-        print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text.c_str(),
+        print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
               seconds_since(began));
       if (!bus::ended(answer.code))
         continue;
