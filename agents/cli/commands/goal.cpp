@@ -244,16 +244,19 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
-  bus::GoalClient goals(node, "saphira goal");
+  auto statuses = node.reader(bus::topics::kGoalStatus);
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> goals;
   poll_for(node, milliseconds(1300), stop, [&] {
     deployments.poll();
-    goals.poll();
+    keep_newest(statuses, goals, [](const v1::GoalStatus& status) {
+      return std::pair(status.id.writer, status.id.number);
+    });
   });
   deployments.settle(stop);
-  for (const v1::GoalStatus& status : goals.statuses())
+  for (const auto& [id, status] : goals)
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id).c_str(), status.functor.c_str(),
                 status.requester.c_str(), bus::describe(status).c_str());
-  if (!goals.statuses().empty())
+  if (!goals.empty())
     return bus::kExitOk;
   const bool alone = processes.all().empty();
   (alone ? std::cerr << "saphira: " : std::cout) << "no goals; " << who_is_there(processes) << '\n';
