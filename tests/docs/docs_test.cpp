@@ -82,10 +82,8 @@ TEST(Docs, TheConfigurationsOfHostsStartTheServer) {
     const auto json = nlohmann::json::parse(block.text, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << block.text;
     const auto& server = json.front().at("saphira");
-    if (server.contains("url"))
-      EXPECT_EQ(server["url"], "http://127.0.0.1:8791/mcp");
-    else
-      EXPECT_EQ(server["args"].back(), "mcp");
+    EXPECT_EQ(server.contains("url") ? server["url"] : server["args"].back(),
+              server.contains("url") ? "http://127.0.0.1:8791/mcp" : "mcp");
   }
   EXPECT_EQ(hosts, 4);
 }

@@ -119,8 +119,9 @@ TEST(SecuredBus, TopicsThatTheRoleMayNotReadAreLeftOutAndNamed) {
   viewer::Live live(node);
   for (std::size_t channel = 0; channel < live.channels().size(); ++channel) {
     const std::string& topic = live.channels()[channel].topic;
-    if (topic == "robot/state" || topic == "robot/serial")
+    if (topic == "robot/state" || topic == "robot/serial") {
       EXPECT_EQ(live.subscribe(channel), topic == "robot/serial" ? denied : "");
+    }
   }
 }
 
