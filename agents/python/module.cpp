@@ -24,6 +24,7 @@
 #include "environment.hpp"
 #include "inquiry.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/program.hpp"
@@ -40,11 +41,10 @@ constexpr milliseconds kLook{100};  ///< how often a wait looks for signals
 
 /// The parts that live with the node.
 struct Parts {
-  explicit Parts(const bus::NodeOptions& options)
-      : node(options), processes(node), goals(node, options.name) {}
+  explicit Parts(const bus::NodeOptions& options) : node(options), processes(node) {}
   bus::Node node;
   cli::Processes processes;
-  bus::GoalClient goals;
+  std::optional<bus::GoalClient> goals;               ///< once one is asked for: not every role may
   std::map<std::string, bus::RequestClient> clients;  ///< by topic
   std::optional<bus::Agent> agent;
   std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
@@ -79,6 +79,8 @@ class Bus {
     options.name = name;
     options.program = name;
     options.robot = robot.value_or(options.robot);
+    if (const std::string trouble = trouble_of_robot(options.robot); !trouble.empty())
+      throw py::value_error("robot: " + trouble);
     options.domain = domain.value_or(options.domain);
     if (profile)
       options.profile = bus::profile_of(*profile);
@@ -143,7 +145,8 @@ class Bus {
   void poll() {
     Parts& own = parts();
     own.processes.poll();
-    own.goals.poll();
+    if (own.goals)
+      own.goals->poll();
     if (own.agent) {
       own.agent->poll();
       own.node.publish_status();
@@ -158,20 +161,20 @@ class Bus {
   }
 
   py::object ask_goal(py::handle goal) {
-    Parts& own = parts();
+    bus::GoalClient& own = goals();
     const auto wanted = sample_of<v1::Goal>(goal, "Goal");
-    return to_python(unlocked([&] { return own.goals.ask(wanted); }), class_of("GoalId"));
+    return to_python(unlocked([&] { return own.ask(wanted); }), class_of("GoalId"));
   }
   void cancel(py::handle id, const std::string& why) {
-    Parts& own = parts();
+    bus::GoalClient& own = goals();
     const auto goal = sample_of<v1::GoalId>(id, "GoalId");
     unlocked([&] {
-      own.goals.cancel(goal, why);
+      own.cancel(goal, why);
       return 0;
     });
   }
   py::object status(py::handle id) {
-    const auto status = parts().goals.status(sample_of<v1::GoalId>(id, "GoalId"));
+    const auto status = goals().status(sample_of<v1::GoalId>(id, "GoalId"));
     return status ? to_python(*status, class_of("GoalStatus")) : py::none();
   }
 
@@ -252,6 +255,12 @@ class Bus {
   }
   bus::Node& node() { return parts().node; }
 
+  bus::GoalClient& goals() {
+    Parts& own = parts();
+    if (!own.goals)
+      own.goals.emplace(own.node, own.node.options().name);
+    return *own.goals;
+  }
   bus::Agent& agent() {
     Parts& own = parts();
     if (!own.agent) {

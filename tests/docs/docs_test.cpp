@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <tuple>
@@ -70,6 +71,21 @@ TEST(Docs, TheBehaviorOfTheDocumentIsTaken) {
   std::ofstream(folder.path("slow-down.beh")) << test::block_of("docs/add-a-behavior.md", "");
   behaviors::Registry registry = behaviors::load_behaviors(folder.path());
   EXPECT_NE(registry.find("SlowDown"), nullptr);
+}
+
+TEST(Docs, TheConfigurationsOfHostsStartTheServer) {
+  int hosts = 0;
+  for (const test::Block& block : test::blocks_of("docs/language-models.md")) {
+    if (block.language != "json")
+      continue;
+    ++hosts;
+    const auto json = nlohmann::json::parse(block.text, nullptr, false);
+    ASSERT_FALSE(json.is_discarded()) << block.text;
+    const auto& server = json.front().at("saphira");
+    EXPECT_EQ(server.contains("url") ? server["url"] : server["args"].back(),
+              server.contains("url") ? "http://127.0.0.1:8791/mcp" : "mcp");
+  }
+  EXPECT_EQ(hosts, 4);
 }
 
 /// The name of the only activity in a text.

@@ -406,6 +406,35 @@ TEST_F(CliTest, AnEmergencyStopIsConfirmedByEachBridgeOfItsRobotsName) {
   EXPECT_EQ(estop.wait(), 0);
 }
 
+TEST_F(CliTest, AnEmergencyStopOfEveryRobotIsConfirmedByEach) {
+  Button one(robot_);
+  Button two(robot_ + "-2");
+  test::Process estop({"saphira", "--robot", "*", "--domain", test::domain(), "estop"},
+                      folder_.path("estop"));
+  EXPECT_TRUE(test::wait_until([&] {
+    one.turn();
+    two.turn();
+    return !estop.running();
+  }));
+  EXPECT_TRUE(has(estop.output(), "every robot: EMERGENCY STOP")) << estop.output();
+  EXPECT_TRUE(has(estop.output(), "confirmed by the bridge of 2 robots after")) << estop.output();
+  EXPECT_TRUE(one.latched && two.latched);
+  EXPECT_EQ(estop.wait(), 0);
+}
+
+TEST_F(CliTest, StatusShowsEachRobot) {
+  const Scripted one(robot_);
+  const Scripted two(robot_ + "-2");
+  const Outcome outcome =
+      test::run({"saphira", "status", "--domain", test::domain()}, {{"SAPHIRA_ROBOT", "*"}});
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  for (const auto* scripted : {&one, &two}) {
+    const std::size_t begins = outcome.text.find("robot " + scripted->options().robot + ":\n");
+    ASSERT_NE(begins, std::string::npos) << outcome.text;
+    EXPECT_TRUE(has(outcome.text.substr(begins), "drive: nobody drives: nobody asked"));
+  }
+}
+
 TEST_F(CliTest, DriveIsADeadMan) {
   Scripted scripted(robot_);
   int terminal = -1;

@@ -37,7 +37,12 @@ const std::vector<Mistake>& mistakes() {
       {{"--interface", "lo", "status"}, {"--interface: expected an IPv4 address", "found lo"}},
       {{"security"}, {"security: expected a command (init, add,", "found none"}},
       {{"--domain", "300", "status"}, {"300", "231"}},
-      {{"--robot", "*", "estop"}, {"saphira: --robot: expected the name of one robot", "\"*\""}},
+      {{"--robot", "*", "drive"},
+       {"saphira: every robot (*) is reached by list, status, agents, ask, goal stop and estop "
+        "alone: --robot NAME; saphira list names them\n"}},
+      {{"--robot", "*", "goal", "go", "1", "0"}, {"every robot (*) is reached by"}},
+      {{"--robot", "*", "estop", "reset"}, {"every robot (*) is reached by"}},
+      {{"--robot", "*", "status", "--json"}, {"--watch and --json are of one robot"}},
       {{"--robot", "m?st", "move", "0.1"}, {"expected the name of one robot", "found \"m?st\""}},
       {{"stop", "nothing"}, {"no deployment"}, 1},
       {{"bench", "nothing"}, {"no benchmark", "nothing"}},
@@ -322,7 +327,8 @@ TEST(EachCommand, NamesAMistakeInAVariable) {
   };
   EXPECT_EQ(said("SAPHIRA_DOMAIN", "abc"),
             "saphira: SAPHIRA_DOMAIN: expected a whole number between 0 and 231, found abc\n");
-  EXPECT_TRUE(said("SAPHIRA_ROBOT", "*").starts_with("saphira: SAPHIRA_ROBOT: expected the name"));
+  EXPECT_TRUE(
+      said("SAPHIRA_ROBOT", "a b").starts_with("saphira: SAPHIRA_ROBOT: expected the name"));
   EXPECT_TRUE(said("SAPHIRA_PROFILE", "hots").starts_with("saphira: SAPHIRA_PROFILE: expected"));
   EXPECT_TRUE(said("SAPHIRA_INTERFACE", "lo").starts_with("saphira: SAPHIRA_INTERFACE: expected"));
 }

@@ -38,13 +38,14 @@ constexpr double kTold = 1.0;      // [s] for the list of live triggers
 
 /// The robots with a facilitator.
 std::set<std::string> robots_with_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
-  bus::Node node(options);
-  const bus::Census census(node);
-  poll_for(node, listening_time(node), stop, [] {});
-  std::set<std::string> robots;
-  for (const bus::EndpointEntry& entry : census.endpoints())
-    if (!entry.writer && entry.topic == bus::topics::kSolve.name && entry.program == kFacilitator)
-      robots.insert(entry.robot);
+  const std::set<std::string> robots =
+      robots_heard(options, stop, [](const bus::EndpointEntry& entry) {
+        return !entry.writer && entry.topic == bus::topics::kSolve.name &&
+               entry.program == kFacilitator;
+      });
+  if (robots.empty())
+    std::cerr << "saphira: no saphira-facilitator is heard in domain " << options.domain
+              << ": saphira up office has it\n";
   return robots;
 }
 
@@ -100,12 +101,8 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
 
 /// Each robot's agents, one robot after another. Success: one of them has answered.
 int ask_any(const AskOptions& ask_options, bus::NodeOptions options, const bus::Stop& stop) {
-  const std::set<std::string> robots = robots_with_agents(options, stop);
-  if (robots.empty())
-    std::cerr << "saphira: no saphira-facilitator is heard in domain " << options.domain
-              << ": saphira up office has it\n";
   int code = bus::kExitFailed;
-  for (const std::string& robot : robots) {
+  for (const std::string& robot : robots_with_agents(options, stop)) {
     options.robot = robot;
     if (!stop.requested() && ask(ask_options, options, stop, robot) == bus::kExitOk)
       code = bus::kExitOk;
@@ -158,7 +155,7 @@ int withdraw_trigger(const std::vector<std::string>& words, const bus::NodeOptio
   return bus::kExitOk;
 }
 
-int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_one(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Processes processes(node);
   const bus::Census census(node);
@@ -205,6 +202,20 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   return alone ? bus::kExitFailed : bus::kExitOk;
 }
 
+/// Of every robot, one after another. Success: one has agents.
+int list_agents(bus::NodeOptions options, const bus::Stop& stop) {
+  if (options.robot != kEveryRobot)
+    return list_one(options, stop);
+  int code = bus::kExitFailed;
+  for (const std::string& robot : robots_with_agents(options, stop)) {
+    options.robot = robot;
+    std::printf("%s:\n", called(robot).c_str());
+    if (!stop.requested() && list_one(options, stop) == bus::kExitOk)
+      code = bus::kExitOk;
+  }
+  return code;
+}
+
 }  // namespace
 
 void add_ask(CLI::App& app, Chosen& chosen) {
@@ -244,7 +255,7 @@ void add_ask(CLI::App& app, Chosen& chosen) {
             "list, saphira map --help\n");
         return code;
       }
-      return node.robot == "*" ? ask_any(*options, node, stop) : ask(*options, node, stop);
+      return node.robot == kEveryRobot ? ask_any(*options, node, stop) : ask(*options, node, stop);
     };
   });
 }

@@ -7,11 +7,13 @@
 
 namespace saphira::cli {
 
-/// The newest grant of every bridge with this robot's name. Usually there is one; a stop has to
-/// reach all.
+/// The newest grant of every bridge with this robot's name, or of every robot. Usually there is
+/// one; a stop has to reach all.
 class Bridges {
  public:
-  explicit Bridges(bus::Node& node) : grants_(node.reader(bus::topics::kGrant)) {}
+  explicit Bridges(bus::Node& node)
+      : grants_(node.reader(bus::topics::kGrant)),
+        every_robot_(node.options().robot == kEveryRobot) {}
 
   void poll() {
     for (auto& sample : grants_.take()) {
@@ -33,9 +35,10 @@ class Bridges {
   }
   /// " of 2 robots of this name: give one of them another (--robot)"; empty with one bridge.
   std::string several() const {
-    return heard_.size() < 2 ? ""
-                             : " of " + std::to_string(heard_.size()) +
-                                   " robots of this name: give one of them another (--robot)";
+    if (heard_.size() < 2)
+      return {};
+    return " of " + std::to_string(heard_.size()) + " robots" +
+           (every_robot_ ? "" : " of this name: give one of them another (--robot)");
   }
 
  private:
@@ -45,6 +48,7 @@ class Bridges {
     Clock::time_point came;
   };
   bus::Reader<v1::Grant> grants_;
+  const bool every_robot_;
   std::map<bus::WriterId, Heard> heard_;
   std::optional<v1::Grant> newest_;
 };

@@ -41,8 +41,8 @@ class Button {
         // Latched: the bridge holds the stop without us.
         while (write(true))
           node_.wait(milliseconds(5));
-        print("robot %s: %s (confirmed by the bridge%s after %.2f s)\n",
-              node_.options().robot.c_str(), latched(*bridges_.newest()).c_str(),
+        print("%s: %s (confirmed by the bridge%s after %.2f s)\n",
+              called(node_.options().robot).c_str(), latched(*bridges_.newest()).c_str(),
               bridges_.several().c_str(), after);
         return bus::kExitOk;
       }

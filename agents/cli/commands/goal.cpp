@@ -80,7 +80,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const v1::Request request = bus::request("stop");
   const std::uint64_t number = stops.send(request);
   const auto began = Clock::now();
-  const char* const robot = node_options.robot.c_str();
+  const std::string robot = called(node_options.robot);
   bool confirmed = false;
   std::size_t done = 0;  // bridges
   double again = kAgain;
@@ -91,7 +91,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     bridges.poll();
     for (const v1::Answer& answer : stops.poll()) {
       if (!std::exchange(confirmed, true))
-        print("robot %s: %s (confirmed by the bridge after %.2f s)\n", robot, answer.text.c_str(),
+        print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
               seconds_since(began));
       if (!bus::ended(answer.code))
         continue;
@@ -244,16 +244,19 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
-  bus::GoalClient goals(node, "saphira goal");
+  auto statuses = node.reader(bus::topics::kGoalStatus);
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> goals;
   poll_for(node, milliseconds(1300), stop, [&] {
     deployments.poll();
-    goals.poll();
+    keep_newest(statuses, goals, [](const v1::GoalStatus& status) {
+      return std::pair(status.id.writer, status.id.number);
+    });
   });
   deployments.settle(stop);
-  for (const v1::GoalStatus& status : goals.statuses())
+  for (const auto& [id, status] : goals)
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id).c_str(), status.functor.c_str(),
                 status.requester.c_str(), bus::describe(status).c_str());
-  if (!goals.statuses().empty())
+  if (!goals.empty())
     return bus::kExitOk;
   const bool alone = processes.all().empty();
   (alone ? std::cerr << "saphira: " : std::cout) << "no goals; " << who_is_there(processes) << '\n';

@@ -10,6 +10,7 @@
 #include "run_folder.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/robot_name.hpp"
 #include "saphira/cli/printer.hpp"
 #include "watch.hpp"
 
@@ -42,6 +43,30 @@ int print_help(const CLI::App& root, const std::string& name) {
   return bus::kExitUsage;
 }
 
+/// The name of the robot, or "*" for every robot.
+std::string trouble_of_robots(std::string& name) {
+  return name == kEveryRobot ? std::string() : trouble_of_robot(name);
+}
+
+/// std::invalid_argument: this command does not reach every robot.
+void expect_one_robot(const CLI::App& root) {
+  static const std::set<std::string> reach{"agents", "ask",   "complete", "estop", "help",
+                                           "list",   "renew", "status",   "stop"};
+  const auto commands = root.get_subcommands();
+  if (commands.empty())
+    return;
+  const CLI::App& command = *commands.front();
+  const auto words = [&command] { return command.get_option("words")->results(); };
+  if (command.get_name() == "goal"
+          ? words() == std::vector<std::string>{"stop"}
+          : reach.contains(command.get_name()) && command.get_subcommands().empty() &&
+                (command.get_name() != "agents" || words().empty()))
+    return;
+  throw std::invalid_argument(
+      "every robot (*) is reached by list, status, agents, ask, goal stop and estop alone: "
+      "--robot NAME; saphira list names them");
+}
+
 /// A command joins a running bus of this machine, as far as its options leave that open.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
   static const std::set<std::string> others{"demo",  "scenario", "up",    "check", "stop",
@@ -53,8 +78,12 @@ bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options
     return options;  // of a file
   const auto given = [&](const char* option) { return root.get_option(option)->count() > 0; };
   const RunningBus usual = bus_of("", options);
+  std::vector<RunningBus> running = running_buses();
+  if (options.robot == kEveryRobot)
+    for (RunningBus& each : running)
+      each.robot = kEveryRobot;
   const std::optional<RunningBus> meant = bus_meant(
-      usual, running_buses(),
+      usual, running,
       {given("--robot"), given("--domain"),
        given("--profile") || given("--peer") || given("--interface"), given("--security")});
   if (!meant)
@@ -81,6 +110,10 @@ int main(int argc, char** argv) {
         app.name("saphira");
         app.require_subcommand(0, 1);
         app.remove_option(app.get_option("--dry-run"));  // saphira check has that
+        CLI::Option& robot = *app.get_option("--robot");
+        robot.description(
+            "The robot to belong to; '*': every robot, where the command reaches all");
+        *robot.get_validator(0) = CLI::Validator(cli::trouble_of_robots, "");
         for (cli::AddCommand* const add : cli::kCommands)
           add(app, chosen);
         app.add_subcommand("help", "This text; with a command's name: what that takes")
@@ -92,6 +125,8 @@ int main(int argc, char** argv) {
       },
       [&](bus::NodeOptions options, const bus::Stop& stop) -> int {
         options.for_terminal = true;
+        if (options.robot == cli::kEveryRobot)
+          cli::expect_one_robot(*root);
         if (chosen.run) {
           const int code = chosen.run(cli::with_running_bus(*root, options), stop);
           cli::flush_output();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <set>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "saphira/base/heartbeat.hpp"
@@ -143,6 +145,25 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
   return view.anybody() ? bus::kExitOk : bus::kExitFailed;
 }
 
+/// Each robot with a program that works for it, one robot after another.
+int status_of_each(bus::NodeOptions options, const bus::Stop& stop) {
+  const std::set<std::string> works{bus::topics::kGrant.name, bus::topics::kPerception.name,
+                                    bus::topics::kBehaviors.name, bus::topics::kIntentions.name};
+  const std::set<std::string> robots =
+      robots_heard(options, stop, [&works](const bus::EndpointEntry& entry) {
+        return entry.writer && works.contains(entry.topic);
+      });
+  if (robots.empty())
+    return failed("no robot is heard in domain " + std::to_string(options.domain));
+  int code = bus::kExitOk;
+  for (const std::string& robot : robots) {
+    options.robot = robot;
+    std::printf("%s:\n", called(robot).c_str());
+    code = std::max(code, status(false, false, options, stop));
+  }
+  return code;
+}
+
 }  // namespace
 
 void add_status(CLI::App& app, Chosen& chosen) {
@@ -153,7 +174,11 @@ void add_status(CLI::App& app, Chosen& chosen) {
   command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
       ->excludes("--watch");
   chosen.when(command, [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
-    return status(*watch, *json, node, stop);
+    if (node.robot != kEveryRobot)
+      return status(*watch, *json, node, stop);
+    if (*watch || *json)
+      throw std::invalid_argument("--watch and --json are of one robot: --robot NAME");
+    return status_of_each(node, stop);
   });
 }
 

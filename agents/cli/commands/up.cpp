@@ -488,7 +488,7 @@ struct Meant {
 /// root: whose --robot and --domain, or their variables, were given.
 Meant meant_by(const std::string& name, const CLI::App& root, const bus::NodeOptions& options) {
   Meant result{name, {}, {}};
-  if (root.get_option("--robot")->count() > 0)
+  if (root.get_option("--robot")->count() > 0 && options.robot != kEveryRobot)
     result.robot = options.robot;
   if (root.get_option("--domain")->count() > 0)
     result.domain = options.domain;

@@ -131,6 +131,22 @@ std::string who_is_there(const Processes& processes) {
   return "bridge, behaviors and intentions are on the bus (" + where + ")";
 }
 
+std::string called(const std::string& robot) {
+  return robot == kEveryRobot ? "every robot" : "robot " + robot;
+}
+
+std::set<std::string> robots_heard(const bus::NodeOptions& options, const bus::Stop& stop,
+                                   const std::function<bool(const bus::EndpointEntry&)>& tells) {
+  bus::Node node(options);
+  const bus::Census census(node);
+  poll_for(node, listening_time(node), stop, [] {});
+  std::set<std::string> robots;
+  for (const bus::EndpointEntry& entry : census.endpoints())
+    if (tells(entry))
+      robots.insert(entry.robot);
+  return robots;
+}
+
 std::chrono::milliseconds listening_time(const bus::Node& node, bool heard) {
   if (!heard && node.options().profile != bus::Profile::host)
     return std::chrono::milliseconds(4000);

@@ -4,9 +4,11 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/second_deployment.hpp"
@@ -97,6 +99,14 @@ const char* name_of(bus::Profile profile);
 /// A program of this name and its user, for people: "keyboard of ann at laptop (pts/3)"; with
 /// `since`, also the time of this call: "(pts/3, since 14:02)".
 std::string person(const std::string& program, bool since = false);
+
+/// In place of a robot's name.
+inline constexpr const char* kEveryRobot = "*";
+/// "robot flakey", or "every robot".
+std::string called(const std::string& robot);
+/// The robots of the domain with a program that `tells`; they are listened for.
+std::set<std::string> robots_heard(const bus::NodeOptions& options, const bus::Stop& stop,
+                                   const std::function<bool(const bus::EndpointEntry&)>& tells);
 
 constexpr double kEmptyBus = 5.0;  ///< [s] until a question is given up where no program is heard
 

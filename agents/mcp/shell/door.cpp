@@ -65,8 +65,9 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       person_(person ? v1::Person{person->name, security::role_of(person->right)} : v1::Person{}),
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
-      stops_(node, bus::topics::kDriveStop, who),
-      approvals_(node, bus::topics::kProcessRequest, who) {
+      stops_(node, bus::topics::kDriveStop, who) {
+  if (right_ == DoorRight::operate && robot.may_approve())
+    approvals_.emplace(node, bus::topics::kProcessRequest, who);
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
@@ -92,14 +93,16 @@ bool Door::needs_approval(const Own& own) const {
   return known && !own.withdrawn && known->code == v1::CODE_APPROVAL && !bus::ended(known->state);
 }
 
-/// Asks the client's person for goals that need an approval, where the key may give it. The page
-/// and the command line can approve them, too.
+/// Asks the client's person for goals that need an approval, where key and role may give it. The
+/// page and the command line can approve them, too.
 void Door::ask_for_approval() {
-  approvals_.poll();
+  if (!approvals_)
+    return;
+  approvals_->poll();
   for (Own& each : own_) {
     if (!needs_approval(each)) {
       session_.take_back(each.question);
-    } else if (each.question == 0 && right_ == DoorRight::operate) {
+    } else if (each.question == 0) {
       const auto call = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& waiting) {
         return waiting.second.goal == each.id;
       });
@@ -116,7 +119,7 @@ void Door::ask_for_approval() {
     if (found == own_.end())
       continue;
     if (yes)
-      approvals_.send(
+      approvals_->send(
           bus::request("resume", {bus::text("process", bus::describe(found->id))}, "intentions"));
     else
       withdraw(*found, "the person at " + who_ + " did not approve it");
@@ -662,7 +665,15 @@ Result Door::outcome(const v1::GoalId& id) const {
             false};
   const bool bad = bus::ended(known->state) && known->state != v1::GOAL_SUCCEEDED;
   std::string text = "goal " + bus::describe(id) + ": " + words(id, *known);
-  if (!bus::ended(known->state))
+  const auto mine =
+      std::find_if(own_.begin(), own_.end(), [&](const Own& each) { return each.id == id; });
+  if (mine != own_.end() && needs_approval(*mine))
+    text += std::string(mine->question != 0 ? "; the person at this client is asked"
+                                            : "; this client cannot have it approved: somebody "
+                                              "who may has to, in the robot's page or by the "
+                                              "command line") +
+            ". Then it begins; the tool goal follows it, and cancel withdraws it";
+  else if (!bus::ended(known->state))
     text += "; it goes on: ask the tool goal for its end, or cancel it";
   if (other(known->waits_for))
     text += "; the tool cancel ends " + bus::describe(known->waits_for) +

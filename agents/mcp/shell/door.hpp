@@ -35,6 +35,8 @@ class Robot {
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
   const cli::Mind& mind() const { return mind_; }
+  /// The role file of the site lets this program approve goals.
+  bool may_approve() const { return may_approve_; }
   bool moves() const;
   /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
   std::optional<std::string> belief(const std::string& name) const;
@@ -54,6 +56,7 @@ class Robot {
 
   bus::Node& node_;
   const std::vector<std::string> described_;
+  const bool may_approve_;
   cli::Mind mind_;
   bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
@@ -188,7 +191,7 @@ class Door {
   bus::GoalClient goals_;
   bus::RequestClient requests_;
   bus::RequestClient stops_;
-  bus::RequestClient approvals_;
+  std::optional<bus::RequestClient> approvals_;  ///< none: this client's person may not approve
   bus::Reader<v1::Utterance> said_reader_ = node_.reader(bus::topics::kSaid);
   bus::Reader<v1::AgentEvent> event_reader_ = node_.reader(bus::topics::kAgentEvents);
   std::optional<bus::Reader<v1::CameraPicture>> picture_reader_;  ///< while a call waits for one

@@ -7,6 +7,7 @@
 
 #include "door.hpp"
 #include "saphira/mcp/results.hpp"
+#include "saphira/security/credentials.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::mcp {
@@ -35,6 +36,14 @@ Json wait_of(double most) {
           {"description", "[s] to wait at most before this answers; 20 where it is not given"}};
 }
 
+bool role_approves(const bus::NodeOptions& options) {
+  if (options.security.empty() || options.security == bus::kOpenBus)
+    return true;
+  const security::Credentials own = security::load_credentials(
+      options.security, options.program.empty() ? options.name : options.program, unix_seconds());
+  return own.roles.may_write(own.subject.role, bus::topics::kProcessRequest.name);
+}
+
 std::string tool_name(std::string name) {
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_')
@@ -56,9 +65,12 @@ Json point() {
 }
 
 Json schema_of(const v1::ActivityParameter& parameter) {
-  const std::string unit = parameter.unit.empty() ? "" : " [" + parameter.unit + "]";
-  Json json{{"description", parameter.name + unit +
-                                (parameter.usual.empty() ? "" : "; usually " + parameter.usual)}};
+  std::string text = parameter.unit.empty() ? "" : "[" + parameter.unit + "]";
+  if (!parameter.usual.empty())
+    text += (text.empty() ? "usually " : "; usually ") + parameter.usual;
+  Json json = Json::object();
+  if (!text.empty())
+    json["description"] = text;
   switch (parameter.kind) {
     case v1::PARAMETER_NUMBER:
       json["type"] = "number";
@@ -135,12 +147,15 @@ std::string places_of(const v1::FloorMap& map) {
 /// Shipped activities that are parts of others, or the manual's examples. A person rarely asks for
 /// them by name, and each tool costs the model room.
 bool is_apart(const std::string& tool) {
-  static const std::set<std::string> names{
-      "about_turn",    "attend",          "attend_person", "avoid",   "back_off",
-      "back_up",       "bump_and_go",     "come_back",     "drive",   "explore_unknown",
-      "find_position", "find_and_follow", "halt",          "inquire", "look_there",
-      "make_sure",     "monitor_planex",  "pause",         "recover", "report_at",
-      "roam",          "to_point"};
+  static const std::set<std::string> names{"about_turn",      "ask",           "attend",
+                                           "attend_person",   "avoid",         "back_off",
+                                           "back_up",         "blob_search",   "build_map",
+                                           "bump_and_go",     "come_back",     "drive",
+                                           "explore_unknown", "find_position", "find_and_follow",
+                                           "find_person",     "follow_trail",  "halt",
+                                           "inquire",         "look_there",    "make_sure",
+                                           "monitor_planex",  "pause",         "recover",
+                                           "report_at",       "roam",          "to_point"};
   return names.contains(tool);
 }
 
@@ -221,7 +236,10 @@ std::vector<Tool> fixed_tools() {
 }  // namespace
 
 Robot::Robot(bus::Node& node, std::vector<std::string> described)
-    : node_(node), described_(std::move(described)), mind_(node, false) {
+    : node_(node),
+      described_(std::move(described)),
+      may_approve_(role_approves(node.options())),
+      mind_(node, false) {
   make_tools();
 }
 
@@ -328,7 +346,7 @@ void Robot::make_tools() {
     changed_ = now_;
 }
 
-/// The announcements of activities and agents come one by one, in any order.
+/// The announcements of activities and agents, and the map, come one by one, in any order.
 bool Robot::knows_tools() const {
   if (has_listened())
     return true;
@@ -336,7 +354,7 @@ bool Robot::knows_tools() const {
   for (const auto& [id, agent] : agents_)
     announced.insert(agent.info.writer);
   return heard_schemas_ && announced.size() >= agent_reader_.matched() &&
-         now_ - std::max(changed_, *began_) >= kRest;
+         (map_ || map_reader_.matched() == 0) && now_ - std::max(changed_, *began_) >= kRest;
 }
 
 bool Robot::has_listened() const {

@@ -111,7 +111,7 @@ Json json_of(const v1::Argument& argument) {
 }  // namespace
 
 std::string for_model(std::string text) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kWords{
       {{"(saphira map show)", "(the tool map lists them)"},
        {"(saphira device motors on)", "(a person turns them on)"},
        {"(saphira drive hand-back)", "(by a person)"},
@@ -120,6 +120,7 @@ std::string for_model(std::string text) {
        {"saphira map place X Y TH", "a person has to place it on the map"},
        {"saphira map place X Y HEADING, or saphira map find",
         "a person has to place me on the map"},
+       {"a person's approval: saphira goal approve", "a person's approval of goal"},
        {"saphira status shows", "the tool robot_status shows"},
        {"saphira knows lists", "the tool knows lists"}}};
   for (const auto& [command, words] : kWords)

@@ -6,14 +6,17 @@
 #include "door.hpp"
 #include "node_options.hpp"
 #include "only.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/security/authority.hpp"
 
 namespace saphira::mcp {
 namespace {
 
 class DoorInMemory : public testing::Test {
  protected:
-  DoorInMemory() {
+  explicit DoorInMemory(const std::string& security = {}) : security_of_node(security) {
     agents.write({.id = 7,
                   .name = "sweeper",
                   .capabilities = {bus::action("sweep", "sweeps a room",
@@ -120,9 +123,16 @@ class DoorInMemory : public testing::Test {
     return nullptr;
   }
 
+  bus::NodeOptions options() const {
+    bus::NodeOptions made = test::memory_options("mcp");
+    made.security = security_of_node;
+    return made;
+  }
+
+  const std::string security_of_node;
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node other{test::memory_options("facilitator"), memory};
-  bus::Node node{test::memory_options("mcp"), memory};
+  bus::Node node{options(), memory};
   bus::Writer<v1::Agent> agents = other.writer(bus::topics::kAgents);
   bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
@@ -745,6 +755,24 @@ TEST_F(DoorInMemory, ALookHasThePictureOfACameraThatIsThere) {
   EXPECT_EQ(result(3)["content"].size(), 1U) << "a camera that sends nothing";
 }
 
+TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
+  bus::Writer<v1::FloorMap> maps = other.writer(bus::topics::kMap);
+  schemas.write({.schemas = {{.name = "patrol",
+                              .parameters = {{.name = "place", .kind = v1::PARAMETER_TEXT},
+                                             {.name = "whose", .kind = v1::PARAMETER_TEXT}}}}});
+  Robot early(node);
+  early.poll(0.0);
+  early.poll(1.0);
+  EXPECT_FALSE(early.knows_tools());
+  maps.write({.artifacts = {{.name = "N2"}}});
+  early.poll(1.1);
+  early.poll(1.7);
+  EXPECT_TRUE(early.knows_tools());
+  const Json& properties = early.tools().back().input["properties"];
+  EXPECT_EQ(properties["place"]["description"], "a place of the map: N2");
+  EXPECT_FALSE(properties["whose"].contains("description")) << "a name says no more twice";
+}
+
 // The person at the client is asked outside of the model's arguments.
 TEST_F(DoorInMemory, AGoalThatNeedsAnApprovalIsPutToTheClientsPerson) {
   bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
@@ -796,6 +824,48 @@ TEST_F(DoorInMemory, AGoalThatNeedsAnApprovalIsPutToTheClientsPerson) {
     EXPECT_FALSE(withdrawn.data.withdrawn.empty());
     EXPECT_TRUE(approvals.take().empty());
   }
+}
+
+// With security: the shipped role of this program may not approve.
+class DoorOfASite : public DoorInMemory {
+ protected:
+  explicit DoorOfASite(const saphira::test::TempDir& folder = {})
+      : DoorInMemory(member_of(folder.path("authority"))) {}
+
+ private:
+  static std::string member_of(const std::string& authority) {
+    const std::string roles = saphira::test::source("config/security/roles.yaml");
+    return security::Authority::make(authority, "office", read_file(roles), roles, unix_seconds())
+        .add("flakey", {"agent", "operator"}, "", 365, unix_seconds());
+  }
+};
+
+TEST_F(DoorOfASite, AGoalThatTheRoleMayNotApproveWaitsForSomebodyWhoMay) {
+  const bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
+  EXPECT_EQ(approvals.matched(), 0U) << "the bus would refuse a writer";
+
+  session.take(
+      R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":"2025-06-18",)"
+      R"("capabilities":{"elicitation":{}},"clientInfo":{"name":"c","version":"1"}}})");
+  schemas.write({.schemas = {{.name = "patrol"}}});
+  turn();
+  call(2, "patrol", {{"wait_s", 1}});
+  session.take_lines();
+  statuses.write({.id = saphira::test::only(goals.take()).data.id,
+                  .functor = "patrol",
+                  .state = v1::GOAL_WAITING,
+                  .code = v1::CODE_APPROVAL,
+                  .reason = "waits for a person's approval: saphira goal approve 1:2"});
+  turn();
+  EXPECT_TRUE(session.take_lines().empty()) << "nobody is asked";
+  turn(1.0);
+  EXPECT_EQ(result(2)["structuredContent"]["state"], "waiting");
+  const std::string text = result(2)["content"][0]["text"];
+  EXPECT_NE(text.find("this client cannot have it approved: somebody who may has to"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("saphira goal"), std::string::npos) << text;
+  EXPECT_TRUE(goals.take().empty()) << "it still waits";
 }
 
 TEST_F(DoorInMemory, InTheNewerEraTheRepeatedCallFollowsTheGoal) {

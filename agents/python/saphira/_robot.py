@@ -217,6 +217,7 @@ class Robot(Context):
         self._bus = bus
         self._waiter = Waiter(bus)
         self._answers: dict[tuple[str, int], list[v1.Answer]] = {}
+        self._writers: dict[str, _bus.Writer] = {}  # what a writer has declared ends with it
         self._served = Served(bus.answer)
         self._said = 0
         _robots.add(self)
@@ -364,7 +365,12 @@ class Robot(Context):
         return self._stream(topic, newest=False)
 
     def writer(self, topic: "Topic[T]") -> "Writer[T]":
-        return Writer(self._bus.writer(topic.name))
+        return Writer(self._writer_of(topic.name))
+
+    def _writer_of(self, topic: str) -> _bus.Writer:
+        if topic not in self._writers:
+            self._writers[topic] = self._bus.writer(topic)
+        return self._writers[topic]
 
     def _stream(self, topic: "Topic[T]", newest: bool) -> Stream[T]:
         reader = self._bus.reader(topic.name)
@@ -588,7 +594,7 @@ class Robot(Context):
 
     async def _say(self, text: str, speaker: str) -> str:
         reader = self._bus.reader(topics.SAID.name)
-        writer = self._bus.writer(topics.HEARD.name)
+        writer = self._writer_of(topics.HEARD.name)
         self._said += 1
         utterance = v1.Utterance(
             id=v1.GoalId(self._bus.instance(), self._said),

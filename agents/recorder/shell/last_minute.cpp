@@ -57,7 +57,7 @@ LastMinute::LastMinute(bus::Node& node) : goals_(node.reader(bus::topics::kRecal
                           std::string(repeated_by(topic.name)), topic.type});
       if (topic.name == bus::topics::kGoalStatus.name)
         goal_source_ = sources_.size() - 1;
-    } catch (const std::runtime_error&) {
+    } catch (const std::exception&) {
       // On a secured bus this program may not read it.
     }
   }

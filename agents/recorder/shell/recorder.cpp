@@ -47,7 +47,7 @@ Recorder::Recorder(bus::Node& node, Writer& writer, const std::vector<bus::Topic
       const std::uint16_t channel = writer_.add_channel(
           {topic.name, topic.type, node.options().robot}, viewer::schema_of(topic.type));
       sources_.push_back({std::move(echo), topic.name, channel});
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       refused_.push_back(topic.name + ": " + error.what());
     }
   }

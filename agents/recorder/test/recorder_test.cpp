@@ -8,7 +8,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "live.hpp"
 #include "node_options.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/security/authority.hpp"
 
 namespace saphira::recorder {
 namespace {
@@ -92,6 +96,33 @@ TEST_F(Recorded, IsPlayedAsItWasSaidButNothingDrives) {
   ASSERT_EQ(refused.size(), 1U);
   EXPECT_EQ(refused[0].data.code, v1::CODE_NO_ROBOT) << "a number whose values have names";
   EXPECT_TRUE(commands.take().empty());
+}
+
+// With security: the shipped roles, of an observer.
+TEST(SecuredBus, TopicsThatTheRoleMayNotReadAreLeftOutAndNamed) {
+  const test::TempDir folder;
+  const std::string roles = test::source("config/security/roles.yaml");
+  bus::NodeOptions options = test::node_options("record", test::unique_robot());
+  options.security = security::Authority::make(folder.path("authority"), "office", read_file(roles),
+                                               roles, unix_seconds())
+                         .add("karen", {"observer"}, "", 365, unix_seconds());
+  bus::Node node(options);
+  const std::string denied =
+      "robot/serial: karen (observer) may not read the topic robot/serial: that is for agent, "
+      "operator, recorder, robot, services";
+
+  std::ostringstream file;
+  Writer writer(file);
+  const Recorder recorder(node, writer, recorded_topics({"robot/state", "robot/serial"}));
+  EXPECT_EQ(recorder.refused(), std::vector{denied});
+
+  viewer::Live live(node);
+  for (std::size_t channel = 0; channel < live.channels().size(); ++channel) {
+    const std::string& topic = live.channels()[channel].topic;
+    if (topic == "robot/state" || topic == "robot/serial") {
+      EXPECT_EQ(live.subscribe(channel), topic == "robot/serial" ? denied : "");
+    }
+  }
 }
 
 TEST_F(Recorded, SaysWhatItHolds) {

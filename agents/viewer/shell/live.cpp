@@ -26,7 +26,7 @@ std::string Live::subscribe(std::size_t channel) {
   if (channel < topics_) {
     try {
       echoes_[channel] = std::make_unique<bus::Echo>(node_, channels_[channel].topic);
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       echoes_.erase(channel);
       return channels_[channel].topic + ": " + error.what();
     }
@@ -37,7 +37,7 @@ std::string Live::subscribe(std::size_t channel) {
   for (const std::string& topic : drawn_topics()) {
     try {
       drawn_[topic] = std::make_unique<bus::Echo>(node_, topic);
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       drawn_.erase(topic);
       refused += topic + ": " + error.what() + "; ";
     }
