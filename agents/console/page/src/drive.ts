@@ -75,10 +75,7 @@ export class Drive {
   }
 
   onChange(listener: () => void) { this.listeners.push(listener); }
-  mine(): boolean {
-    const control = this.link.data<ControlState>('console/control');
-    return this.link.id !== 0 && control?.holder === this.link.id;
-  }
+  mine(): boolean { return this.link.mine(); }
   // The reason why nothing that is held moves the robot until it was let go, and what to do; empty: there is none.
   letGoFirst(): string {
     if (!this.mine() || !this.by) return '';
