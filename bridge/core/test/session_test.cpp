@@ -208,7 +208,7 @@ TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
   const Stamp before = scene.core.stamp();
   for (int i = 0; i < 20; ++i) {
     scene.say(protocol::encode(protocol::SimStatusPacket{}));
-    scene.pass(0.5);
+    scene.pass_slowly(0.5);
   }
   EXPECT_TRUE(scene.core.in_session());
   EXPECT_TRUE(scene.was_stopped());
