@@ -24,7 +24,7 @@ const command = (robot, ...words) => {
   return child;
 };
 const moving = robot => {
-  command(robot, 'move', '50', '--speed', '0.05');
+  robot.move = command(robot, 'move', '50', '--speed', '0.05');
   return until(`${robot.name} moves`, () => robot.speed() > 0.03);
 };
 const standing = async (robot, from) => inTime(await until(`${robot.name} stands`, () => robot.stood(from)));
@@ -69,7 +69,9 @@ test('the page of one of three robots behind a relay stops each of them, and all
   }
 
   for (const robot of robots) {
+    await end(robot.move);
     await ended(command(robot, 'estop', 'reset'));
+    await ended(command(robot, 'drive', 'hand-back'));
     await moving(robot);
   }
   const from = robots.map(robot => robot.now());
