@@ -368,7 +368,7 @@ test('the history of the link', async () => {
   await open(page);
   await page.locator('.link.live').click();
   const history = page.getByRole('region', {name: 'The link over the last minutes'});
-  for (const [name, value] of [['Age of the picture', /\d ms, at most/], ['Command, there and back', /\d ms, at most/], ["The robot's own packets a second", /: \d+, at most/]])
+  for (const [name, value] of [['Age of the picture', /\d ms, at most/], ['There and back', /\d ms, at most/], ["The robot's own packets a second", /: \d+, at most/]])
     await until(name, async () => value.test(await history.getByRole('img', {name}).getAttribute('aria-label')));
   assert.ok((await history.locator('.chart-bars').first().getAttribute('d')).startsWith('M'));
   await page.addScriptTag({content: axeSource});
