@@ -1,7 +1,7 @@
 # cmake -DOUT=file.cpp -DFOLDER=built -P embed.cmake: the page's files as bytes of a source file.
 set(bytes)
 set(list)
-foreach(file index.html simulator.html)
+foreach(file index.html simulator.html manifest.json icon.svg)
   file(READ ${FOLDER}/${file} hex HEX)
   string(REGEX REPLACE "(..)" "0x\\1," hex "${hex}")
   string(MAKE_C_IDENTIFIER ${file} name)

@@ -43,6 +43,9 @@ constexpr std::size_t kPicturesInStep = 4;
 // Silence after which a packet that has begun will not be completed.
 constexpr double kGap = 0.050;  // [s]
 
+// While time is paused a client hears this often that the simulator is there.
+constexpr std::chrono::milliseconds kTells{500};
+
 // Free running, time may be this far ahead of a client: less than the watchdog's two seconds. A
 // client that is silent for kGivenUp by the wall clock is not waited for any more.
 constexpr int kMostAhead = 10;    // [cycles]
@@ -210,6 +213,7 @@ class Station {
   bool sending() const { return !output_.empty(); }
 
   void gap() { simulation_.gap(number_); }
+  void tell_status() { server().tell_status(); }
 
   void accept() {
     Fd fd = listener_->accept();
@@ -449,8 +453,10 @@ class Serving {
     }
     const bool pending = std::any_of(stations_.begin(), stations_.end(),
                                      [](const auto& station) { return station->packet_pending(); });
-    if (pending) {
-      timer_.set(kGap);
+    const bool tells = pacing_.paused && simulation_.runs();
+    if (pending || tells) {
+      const double rest = std::chrono::duration<double>(tells_at_ - Clock::now()).count();
+      timer_.set(pending ? kGap : std::max(rest, 1e-3));
       timed_ = true;
     } else if (timed_) {
       timer_.clear();
@@ -494,6 +500,12 @@ class Serving {
       simulation_.advance(kTicksPerPacket);
       for (const auto& station : stations_)
         station->count_cycle();
+    }
+    // A client that hears nothing would end the connection.
+    if (pacing_.paused && Clock::now() >= tells_at_) {
+      tells_at_ = Clock::now() + kTells;
+      for (const auto& station : stations_)
+        station->tell_status();
     }
     for (const auto& station : stations_)
       station->write(running_);
@@ -574,6 +586,7 @@ class Serving {
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<pollfd> fds_;
   int steps_ = 0;  // asked for, while time is paused
+  Clock::time_point tells_at_;
   bool running_ = false;
   bool waits_ = false;  // for a client to read its output
   bool timed_ = false;

@@ -385,6 +385,11 @@ SimStatusPacket Server::sim_status() const {
   return packet;
 }
 
+void Server::tell_status() {
+  if (is_open())
+    send(encode(sim_status()));
+}
+
 void Server::open() {
   if (is_open())
     return;  // some clients repeat it

@@ -400,7 +400,7 @@ TEST(Zones, NoGoalEntersAKeepOut) {
   Whole whole(office_with_zones(zone));
   const GoalStatus inside =
       whole.achieve("go_to", {saphira::point("position", {17.5, 10.0, 0.0}, Frame::map)}, 100);
-  EXPECT_EQ(inside.state, v1::GOAL_FAILED);
+  EXPECT_EQ(inside.state, v1::GOAL_REFUSED);
   EXPECT_EQ(inside.code, v1::CODE_NO_ROUTE);
   EXPECT_EQ(inside.reason, "(17.50, 10.00) on the map is in keep-out zone \"lab\"");
   const GoalStatus outside =

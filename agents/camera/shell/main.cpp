@@ -46,6 +46,7 @@ class Program {
       if (states_)
         if (const auto state = states_->take_newest()) {
           stamp_ = state->stamp;
+          head_ = state->head;
           stamped_ = Clock::now();
         }
       if (source_ && fds[2].revents != 0)
@@ -96,7 +97,7 @@ class Program {
           .field_of_view = is_simulated ? frame->field_of_view : radians(options_.field_of_view),
           .pose_in_robot = {.x = is_simulated ? frame->pose_in_robot.x : options_.forward,
                             .y = 0.0,
-                            .th = frame->pose_in_robot.th},
+                            .th = is_simulated ? frame->pose_in_robot.th : head_},
           .height = is_simulated ? frame->height : options_.height,
           .jpeg = camera::to_jpeg(*frame, options_.quality)};
       pictures_.write(picture);
@@ -125,6 +126,7 @@ class Program {
   Clock::time_point written_;
   Clock::time_point stamped_;
   v1::Stamp stamp_;
+  double head_ = 0.0;  // [rad] as of the stamp
   std::uint64_t number_ = 0;
 };
 

@@ -46,12 +46,25 @@ class SocketSource final : public Source {
   PpmStream stream_;
 };
 
+/// An opened device, which is also closed where the camera does not start.
+struct Device {
+  explicit Device(const std::string& path)
+      : fd(v4l2_open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {}
+  ~Device() {
+    if (fd >= 0)
+      v4l2_close(fd);
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const int fd;
+};
+
 /// A camera of V4L2. libv4l2 converts the camera's own format.
 class DeviceSource final : public Source {
  public:
-  DeviceSource(const std::string& path, int columns, int rows)
-      : path_(path), fd_(v4l2_open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
-    if (fd_ < 0)
+  DeviceSource(const std::string& path, int columns, int rows) : path_(path), device_(path) {
+    if (device_.fd < 0)
       throw std::runtime_error(cannot_be(path, "opened"));
     v4l2_format format{};
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -59,22 +72,19 @@ class DeviceSource final : public Source {
     format.fmt.pix.height = static_cast<std::uint32_t>(rows);
     format.fmt.pix.pixelformat = V4L2_PIX_FMT_RGB24;
     format.fmt.pix.field = V4L2_FIELD_ANY;
-    if (v4l2_ioctl(fd_, VIDIOC_S_FMT, &format) != 0 ||
-        format.fmt.pix.pixelformat != V4L2_PIX_FMT_RGB24) {
-      v4l2_close(fd_);
+    if (v4l2_ioctl(device_.fd, VIDIOC_S_FMT, &format) != 0 ||
+        format.fmt.pix.pixelformat != V4L2_PIX_FMT_RGB24)
       throw std::runtime_error(path + ": is no camera that gives pictures in colour");
-    }
     frame_.columns = static_cast<int>(format.fmt.pix.width);
     frame_.rows = static_cast<int>(format.fmt.pix.height);
     frame_.pixels.resize(3 * static_cast<std::size_t>(frame_.columns) *
                          static_cast<std::size_t>(frame_.rows));
     read();  // the first call starts the camera
   }
-  ~DeviceSource() override { v4l2_close(fd_); }
 
-  int fd() const override { return fd_; }
+  int fd() const override { return device_.fd; }
   std::optional<Frame> read() override {
-    const ssize_t size = v4l2_read(fd_, frame_.pixels.data(), frame_.pixels.size());
+    const ssize_t size = v4l2_read(device_.fd, frame_.pixels.data(), frame_.pixels.size());
     if (size < 0 && !is_later())
       throw std::runtime_error(cannot_be(path_, "read"));
     if (size != static_cast<ssize_t>(frame_.pixels.size()))
@@ -84,7 +94,7 @@ class DeviceSource final : public Source {
 
  private:
   std::string path_;
-  int fd_;
+  Device device_;
   Frame frame_;
 };
 

@@ -168,6 +168,7 @@ void Gateway::feed_all() {
   board_.urgent_so_far();
   feed(topics::kRobotDescription);
   feed(topics::kRegistration);
+  feed(topics::kDevices);
   feed(topics::kPerception);
   feed(topics::kVision);
   feed(topics::kGoals, kMany, true);

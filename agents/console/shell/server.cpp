@@ -212,14 +212,16 @@ int Server::Impl::answer_http(lws* wsi, Http& http, std::string_view path) {
   Headers headers{{"content-security-policy:", page->policy},
                   {"etag:", page->tag},
                   {"vary:", "accept-encoding"}};
-  constexpr const char* kHtml = "text/html; charset=utf-8";
+  const char* const type = name.ends_with(".json")  ? "application/manifest+json"
+                           : name.ends_with(".svg") ? "image/svg+xml"
+                                                    : "text/html; charset=utf-8";
   if (header(wsi, WSI_TOKEN_HTTP_IF_NONE_MATCH).find(page->tag) != std::string::npos)
-    return begin_answer(wsi, HTTP_STATUS_NOT_MODIFIED, kHtml, 0, headers) ? web::kAnswered : -1;
+    return begin_answer(wsi, HTTP_STATUS_NOT_MODIFIED, type, 0, headers) ? web::kAnswered : -1;
   http.zipped = !page->zipped.empty() &&
                 header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING).find("gzip") != std::string::npos;
   if (http.zipped)
     headers.emplace_back("content-encoding:", "gzip");
-  if (!begin_answer(wsi, HTTP_STATUS_OK, kHtml,
+  if (!begin_answer(wsi, HTTP_STATUS_OK, type,
                     http.zipped ? page->zipped.size() : page->content.size(), headers))
     return -1;
   http.page = &*page;

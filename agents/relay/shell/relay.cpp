@@ -127,6 +127,7 @@ struct Relay::Impl {
   void came(const Leg& leg, Splice::Side side, std::string_view bytes);
   void left(const Leg& leg, Splice::Side side);
   void tick();
+  void close(Visitor visitor);
 
   static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
@@ -203,11 +204,12 @@ int Relay::Impl::arrived(lws* wsi, Leg& leg) {
   if (gateway == gateways.end())
     return -1;                                // no gateway has dialled in
   const std::string ticket = random_hex(16);  // unguessable
-  if (gateway->second.out.size() > Rendezvous::kMost ||
-      !rendezvous.arrive(door->second->name, web::peer(wsi), last + 1, ticket,
-                         BootClock::seconds()))
+  if (gateway->second.out.size() > Rendezvous::kMost)
     return -1;
   leg.visitor = ++last;
+  if (const auto gone = rendezvous.arrive(door->second->name, web::peer(wsi), leg.visitor, ticket,
+                                          BootClock::seconds()))
+    close(*gone);
   const int one = 1;
   setsockopt(lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
   splices[leg.visitor].attach(Splice::kNear, wsi, false);
@@ -253,8 +255,12 @@ void Relay::Impl::left(const Leg& leg, Splice::Side side) {
 
 void Relay::Impl::tick() {
   for (const Visitor visitor : rendezvous.expire(BootClock::seconds()))
-    if (const auto splice = splices.find(visitor); splice != splices.end())
-      splice->second.close();
+    close(visitor);
+}
+
+void Relay::Impl::close(Visitor visitor) {
+  if (const auto splice = splices.find(visitor); splice != splices.end())
+    splice->second.close();
 }
 
 int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in,
@@ -312,6 +318,7 @@ int Relay::Impl::on_visitor(lws* wsi, lws_callback_reasons reason, void* user, v
     case LWS_CALLBACK_RAW_ADOPT:
       return of(wsi).arrived(wsi, *leg);
     case LWS_CALLBACK_RAW_RX:
+      of(wsi).rendezvous.heard(leg->visitor, BootClock::seconds());
       of(wsi).came(*leg, Splice::kNear, {static_cast<const char*>(in), size});
       return 0;
     case LWS_CALLBACK_RAW_WRITEABLE:

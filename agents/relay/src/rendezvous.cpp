@@ -120,19 +120,37 @@ bool Rendezvous::knows(std::string_view robot, std::string_view token) const {
   return known;
 }
 
-bool Rendezvous::arrive(const std::string& robot, const std::string& from, Visitor visitor,
-                        const std::string& ticket, double now) {
+std::optional<Rendezvous::Visitor> Rendezvous::arrive(const std::string& robot,
+                                                      const std::string& from, Visitor visitor,
+                                                      const std::string& ticket, double now) {
   std::size_t there = 0;
-  std::size_t from_one = 0;
+  std::map<std::string, std::size_t> counts;  // by address
   for (const auto& [other, guest] : guests_)
     if (guest.robot == robot) {
       ++there;
-      from_one += guest.from == from ? 1 : 0;
+      ++counts[guest.from];
     }
-  if (there >= kMost || from_one >= kMostFromOne)
-    return false;
-  guests_[visitor] = {robot, from, ticket, now, true};
-  return true;
+  std::optional<std::string> crowd;  // the address that gives a place
+  if (counts[from] >= kMostFromOne)
+    crowd = from;
+  else if (there >= kMost)
+    crowd = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+              return a.second < b.second;
+            })->first;
+  std::optional<Visitor> gone;
+  for (const auto& [other, guest] : guests_)
+    if (crowd == guest.from && guest.robot == robot &&
+        (!gone || guest.heard < guests_[*gone].heard))
+      gone = other;
+  if (gone)
+    guests_.erase(*gone);
+  guests_[visitor] = {robot, from, ticket, now, now, true};
+  return gone;
+}
+
+void Rendezvous::heard(Visitor visitor, double now) {
+  if (const auto guest = guests_.find(visitor); guest != guests_.end())
+    guest->second.heard = now;
 }
 
 std::optional<Rendezvous::Visitor> Rendezvous::fetch(const std::string& robot,

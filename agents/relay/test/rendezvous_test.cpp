@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "trouble.hpp"
 
@@ -59,7 +61,7 @@ TEST(Relay, KnowsAGatewayByRobotAndToken) {
 
 TEST(Relay, AVisitorIsFetchedOnceAndByTheirRobotAlone) {
   Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
-  EXPECT_TRUE(relay.arrive("pioneer", "here", 7, "t7", 0.0));
+  EXPECT_FALSE(relay.arrive("pioneer", "here", 7, "t7", 0.0));
   EXPECT_FALSE(relay.fetch("flakey", "t7"));
   EXPECT_FALSE(relay.fetch("pioneer", "t8"));
   EXPECT_EQ(relay.fetch("pioneer", "t7"), Rendezvous::Visitor{7});
@@ -79,25 +81,48 @@ TEST(Relay, AVisitorWhomNobodyFetchesLeaves) {
   EXPECT_TRUE(relay.fetch("pioneer", "b"));
 }
 
-TEST(Relay, ACrowdAtOneRobotKeepsNobodyFromAnother) {
-  Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
-  for (Rendezvous::Visitor i = 0; i < Rendezvous::kMost; ++i)
-    EXPECT_TRUE(relay.arrive("pioneer", std::to_string(i % 8), i, std::to_string(i), 0.0));
-  EXPECT_FALSE(relay.arrive("pioneer", "here", 1000, "x", 0.0));
-  EXPECT_TRUE(relay.arrive("flakey", "here", 1001, "y", 0.0));
-  relay.leave(3);
-  EXPECT_TRUE(relay.arrive("pioneer", "here", 1002, "z", 0.0));
+class CrowdedRelay : public testing::Test {
+ protected:
+  using Visitor = Rendezvous::Visitor;
+
+  std::optional<Visitor> arrive(const std::string& from, Visitor visitor, double now,
+                                const std::string& robot = "pioneer") {
+    const auto gone = relay_.arrive(robot, from, visitor, std::to_string(visitor), now);
+    EXPECT_EQ(relay_.fetch(robot, std::to_string(visitor)), visitor);
+    return gone;
+  }
+
+  Rendezvous relay_{{{"pioneer", 1, kToken}, {"flakey", 2, kToken}}};
+};
+
+TEST_F(CrowdedRelay, ThreePersonsBehindOneRouterFitAndOneMoreTakesThePlaceOfWhatIsSilent) {
+  // A page that drives with the camera, and two that watch with it.
+  constexpr Visitor kThreePages = 10 + 5 + 5;
+  Visitor last = 0;
+  while (last < kThreePages)
+    EXPECT_FALSE(arrive("router", ++last, 0.0));
+  while (last < Rendezvous::kMostFromOne)
+    EXPECT_FALSE(arrive("router", ++last, 0.0));
+  EXPECT_FALSE(arrive("elsewhere", 100, 0.0)) << "older, and of another address";
+  for (Visitor each = 1; each <= last; ++each)
+    relay_.heard(each, each == 7 ? 1.0 : 2.0);
+  EXPECT_EQ(arrive("router", 101, 3.0), 7U);
+  EXPECT_EQ(arrive("router", 102, 3.0), 1U) << "of those that spoke last at once, the eldest";
+  EXPECT_FALSE(arrive("router", 103, 3.0, "flakey")) << "each robot has places of its own";
+  relay_.leave(2);
+  EXPECT_FALSE(arrive("router", 104, 3.0));
 }
 
-TEST(Relay, OneAddressCannotTakeAllPlaces) {
-  Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
-  for (Rendezvous::Visitor i = 0; i < Rendezvous::kMostFromOne; ++i)
-    EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.1", i, std::to_string(i), 0.0));
-  EXPECT_FALSE(relay.arrive("pioneer", "10.0.0.1", 1000, "x", 0.0));
-  EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.2", 1001, "y", 0.0));
-  EXPECT_TRUE(relay.arrive("flakey", "10.0.0.1", 1002, "z", 0.0));
-  relay.leave(3);
-  EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.1", 1003, "x", 0.0));
+TEST_F(CrowdedRelay, AtAFullRobotTheAddressWithTheMostGivesPlace) {
+  Visitor last = 0;
+  EXPECT_FALSE(arrive("home", ++last, 0.0)) << "silent for longest";
+  for (const char* const crowd : {"one", "two"})
+    for (std::size_t i = 0; i < Rendezvous::kMostFromOne; ++i)
+      EXPECT_FALSE(arrive(crowd, ++last, 1.0));
+  while (last < Rendezvous::kMost)
+    EXPECT_FALSE(arrive("home", ++last, 2.0));
+  EXPECT_EQ(arrive("phone", 100, 3.0), 2U);
+  EXPECT_EQ(arrive("home", 101, 3.0), 2U + Rendezvous::kMostFromOne);
 }
 
 TEST(Relay, AGatewayComesByTwoPaths) {

@@ -262,6 +262,8 @@ void Core::other(protocol::ServerPacket any, std::uint8_t type, double now) {
     return lost("the robot's controller was reset", now);
   if (const auto* const set = std::get_if<protocol::ConfigPacket>(&any))
     heed(*set, now);
+  if (std::holds_alternative<protocol::SimStatusPacket>(any))  // a simulator whose time stands
+    session_.last_heard = now;
   put(OtherPacket{std::move(any), type, session_.stamp});
 }
 

@@ -203,6 +203,22 @@ TEST(Session, ASilentLinkIsGivenUpAfterTwoSeconds) {
   EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
 }
 
+TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
+  Driven scene;
+  const Stamp before = scene.core.stamp();
+  for (int i = 0; i < 20; ++i) {
+    scene.say(protocol::encode(protocol::SimStatusPacket{}));
+    scene.pass_slowly(0.5);
+  }
+  EXPECT_TRUE(scene.core.in_session());
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  EXPECT_EQ(scene.condition().health, Health::waiting);
+  scene.cycle();
+  EXPECT_EQ(scene.core.stamp(), (Stamp{before.epoch, before.cycle + 1}));
+  EXPECT_EQ(scene.core.grant().role, Role::none) << "a new command is needed";
+}
+
 TEST(Session, WhatCannotBeTrueStopsTheRobotAndKeepsTheSession) {
   Driven scene;
   for (int i = 0; i < 30; ++i) {

@@ -325,6 +325,13 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
           "was asked for " + plain(before_start) + " s before intentions started, " +
           (memory_damaged_ ? "whose memory is damaged" : "which has no memory of the time before") +
           ": it may have been done already. Ask again to have it done";
+    if (event.kind == GoalEvent::Kind::kWritten) {
+      Surroundings map;
+      map.topology = topology_;
+      map.map = map_;
+      event.forbidden = why_refused({Robot(), map, executor_.beliefs(), 0}, event.goal.functor,
+                                    event.goal.arguments);
+    }
     events.push_back(std::move(event));
   }
   for (const Writer& lost : heard.lost_requesters) {

@@ -637,6 +637,38 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
   EXPECT_EQ(refusal(4, "EJ-241").find(unknown), 0U) << "no activity goes there";
 }
 
+TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) {
+  core_.know_map({1, std::make_shared<const maps::Map>(
+                         maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
+                                         "ZONE (2) 8000, 0, 0, 2000, 2000 keep-out \"wet floor\"\n",
+                                         "a.map"))});
+  inputs_.robot.odom_in_map = Pose{};
+  const auto to = [](std::uint64_t number, double x, double y) {
+    Core::Heard::Goal goal = written(number, kKaren);
+    goal.event.goal.arguments[0].point = {x, y, 0.0};
+    goal.event.goal.arguments[0].frame = Frame::map;
+    return goal;
+  };
+  ask({to(1, 3.0, 0.0)});
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
+  // Also between two cycles.
+  Core::Heard heard;
+  heard.goals = {to(2, 8.0, 0.5), to(3, 5.0, 20.0)};
+  note(core_.between(heard, 0.0).news);
+  for (const std::uint64_t number : {2U, 3U}) {
+    EXPECT_EQ(state(number), v1::GOAL_REFUSED);
+    EXPECT_EQ(statuses_.at({5, number}).code, v1::CODE_NO_ROUTE);
+  }
+  EXPECT_EQ(statuses_.at({5, 2}).reason,
+            "(8.00, 0.50) on the map is in keep-out zone \"wet floor\"");
+  EXPECT_EQ(statuses_.at({5, 3}).reason,
+            "(5.00, 20.00) on the map is in no room or corridor of the map");
+  // A change to such a point leaves the goal as it was.
+  ask({to(1, 8.0, 0.5)});
+  EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
+  EXPECT_EQ(statuses_.at({5, 1}).code, v1::CODE_NO_ROUTE);
+}
+
 TEST_F(CoreTest, TellsTheEdgesOfTheMapNearTheRobotInOdom) {
   core_.know_map({1, std::make_shared<const maps::Map>(
                          maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"

@@ -12,7 +12,7 @@ import {loadMap, saveMap, type Sketch} from './map_edit';
 import {Robots, robotsOf} from './robots_panel';
 import {strangersIn} from './strangers';
 import {TargetCard} from './target_card';
-import type {ConsoleInfo, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
+import type {ConsoleInfo, Devices, Grant, Registration, RobotState, Seen, Why, ServiceStatus} from './types';
 import {doubt, type Layers, type Target, View} from './view';
 import {driverWords, forPage, keyless, old, percent, seconds} from './words';
 
@@ -24,7 +24,7 @@ const wordsPeriod = 100;     // [ms] between two looks at the words
 const noteTime = 8000;       // [ms]
 const longNoteTime = 20_000; // [ms] of bad news
 const aside = 30;            // [pixels] of a card from the place that it is about
-const cameraShown = 'saphira camera';
+const cameraShown = 'saphira camera', tabShown = 'saphira tab';
 const beside: {[side: string]: number} = {top: 75, bottom: 60};
 
 function look(link: Link, now: number): Seen {
@@ -45,7 +45,7 @@ export function App() {
   const [drive] = useState(() => new Drive(link, () => constant.current()));
   const constant = useRef(() => {});
   const [, redraw] = useState(0);
-  const [tab, setTab] = useState<Tab>('Goals');
+  const [tab, setTab] = useState<Tab>(tabs.find(each => each === stored(tabShown)) ?? 'Goals');
   const [note, setNote] = useState<{text: string; well: boolean}>();
   const [goal, setGoal] = useState('');
   const [panel, setPanel] = useState<Panel>('');
@@ -99,7 +99,7 @@ export function App() {
         <DrivePanel link={link} drive={drive} grant={grant} seen={state} />
         {note && <p class={note.well ? 'note' : 'note bad'} role="status">{forPage(note.text)}
           <button class="plain" aria-label="Close this message" onClick={() => setNote(undefined)}>×</button></p>}
-        <Tabs tab={tab} choose={setTab} />
+        <Tabs tab={tab} choose={which => { store(tabShown, which); setTab(which); }} />
         <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
           {tab === 'Goals' && <Goals link={link} now={now} />}
           {tab === 'Why' && <WhyTree link={link} />}
@@ -161,7 +161,8 @@ function sentence(drive: Drive, robot: RobotState, grant?: Grant, why?: Why): st
 function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: Grant; seen: Seen}) {
   const robot = link.data<RobotState>('robot/state');
   const registration = link.data<Registration>('registration');
-  const why = link.data<Why>('why');
+  const why = link.data<Why>('why'), devices = link.data<Devices>('robot/devices');
+  const [whole, setWhole] = useState(false);
   if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Its bridge may be missing, or its power off.' : 'Nothing is known of the robot yet.')}</div>;
   const tracking = registration?.state === 'REGISTRATION_TRACKING';
   const lost = registration?.state === 'REGISTRATION_LOST';
@@ -171,16 +172,16 @@ function Now({link, drive, grant, seen: s}: {link: Link; drive: Drive; grant?: G
   const sure = tracking || lost ? `, ${percent(registration!.confidence)} sure` : '';
   const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
   return <div class={`now ${s.state}`}>
-    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{sentence(drive, robot, grant, why)}</p>
+    <p class={whole ? 'sentence whole' : 'sentence'} title={why?.sentence} onClick={() => setWhole(!whole)}>{s.state === 'gone' && 'Last heard: '}{sentence(drive, robot, grant, why)}</p>
     {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {forPage(grant.guard_reason)}</p>}
     <dl>
       <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
       <div><dt>Driver</dt><dd>{driverWords[grant?.role ?? ''] ?? '?'}</dd></div>
       <div><dt>Speed</dt><dd>{robot.velocity.toFixed(2)} m/s</dd></div>
       <div><dt>Turning</dt><dd>{degrees(robot.rotation_velocity).toFixed(0)} °/s</dd></div>
-      <div class="place"><dt>{tracking ? 'On the map' : lost ? 'Lost, at a guess' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th).toFixed(0)}°
+      <div class="place"><dt>{tracking ? 'On the map' : lost ? 'Lost, at a guess' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th)}°
         {tracking ? ` ± ${sigma < 0.1 ? (100 * sigma).toFixed(0) + ' cm' : sigma.toFixed(1) + ' m'}` : lost ? '' : ` (${(registration?.state ?? 'no registration').replace('REGISTRATION_', '').toLowerCase()})`}{sure}</dd></div>
-      <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V</dd></div>
+      <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V{devices?.has_charge && `, ${percent(devices.charge)}`}{!!devices?.charging && ', charging'}</dd></div>
       <div class="place"><dt>Packets a second</dt><dd>motors {robot.motor_packets_per_s}, sonars {robot.sonar_readings_per_s}, vision {robot.vision_packets_per_s}</dd></div>
     </dl>
     {trouble && !grant?.estopped && <p class="guard">{forPage(trouble)}</p>}
@@ -398,8 +399,7 @@ function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, dr
   }, {passive: false});
 }
 
-function Stick({drive}: {drive: Drive}) {
-  const {active, by, hands} = drive;
+function Stick({drive: {active, by, hands}}: {drive: Drive}) {
   const pad = useRef<SVGSVGElement>(null);
   const place = (event: PointerEvent) => {
     const box = pad.current!.getBoundingClientRect();
@@ -414,8 +414,7 @@ function Stick({drive}: {drive: Drive}) {
                 e.preventDefault();
                 if (e.button !== 0) return;
                 pad.current!.setPointerCapture(e.pointerId);
-                drive.stick = pad.current!;
-                hands.grasp(e.pointerId, place(e));
+                hands.grasp(e.pointerId, place(e), () => !!pad.current?.isConnected);
               }}
               onPointerMove={e => hands.move(e.pointerId, place(e), e.buttons !== 0)}
               onContextMenu={e => e.preventDefault()}>

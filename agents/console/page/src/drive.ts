@@ -32,7 +32,6 @@ export class Drive {
   by: '' | 'stick' | 'key' | 'gamepad' = '';   // which is held
   since = 0;                 // [ms] active
   hands = new Hands();
-  stick?: Element;           // where a pointer took it
   hasPads = true;            // the browser has gamepads for this page
   letters?: {get(code: string): string | undefined};   // of the person's keyboard, where the browser tells
 
@@ -76,10 +75,7 @@ export class Drive {
   }
 
   onChange(listener: () => void) { this.listeners.push(listener); }
-  mine(): boolean {
-    const control = this.link.data<ControlState>('console/control');
-    return this.link.id !== 0 && control?.holder === this.link.id;
-  }
+  mine(): boolean { return this.link.mine(); }
   // The reason why nothing that is held moves the robot until it was let go, and what to do; empty: there is none.
   letGoFirst(): string {
     if (!this.mine() || !this.by) return '';
@@ -134,7 +130,6 @@ export class Drive {
     const now = performance.now(), was = this.active, pads = gamepads();
     this.hasPads = !!pads;
     this.velocity = this.rotation = 0;
-    if (!this.stick?.isConnected) hands.drop();   // the browser tells the end of a capture later
     this.by = hands.sample(now, pads ?? [], this.mine());
     if (this.by === 'key') {
       const between = (more: Act, less: Act) => Number(hands.holds(more)) - Number(hands.holds(less));

@@ -12,7 +12,7 @@ export function inverse(a: Pose): Pose {
   return {x: -c * a.x - s * a.y, y: s * a.x - c * a.y, th: -a.th};
 }
 export const degrees = (radians: number) => radians * 180 / Math.PI;
-// [degrees] (-180, 180]
+// [degrees] (-180, 180], whole; no -0
 export function heading(radians: number): number {
-  return degrees(Math.atan2(Math.sin(radians), Math.cos(radians)));
+  return Math.round(degrees(Math.atan2(Math.sin(radians), Math.cos(radians)))) || 0;
 }

@@ -104,15 +104,15 @@ export function wordsOf(goal?: Goal): string {
   return words.includes('') ? '' : [goal.functor, ...words].join(' ');
 }
 
-// Asks for a goal, and ends others once that one is accepted: a refused one ends nothing.
-export async function askInstead(link: Link, words: string, others: Pursued[]): Promise<Answer> {
+// Asks for a goal, and ends others once the robot has accepted it: a refused one ends nothing.
+export async function askGoal(link: Link, words: string, others: Pursued[]): Promise<Answer> {
   const answer = await link.ask({type: 'goal', words});
   if (!answer.well) return answer;
   const end = performance.now() + acceptance;
   let status: GoalStatus | undefined;
   while (!(status = link.get<GoalStatus>('goals/status', answer.id)?.data) && performance.now() < end)
     await new Promise(resolve => setTimeout(resolve, look));
-  if (!status) return {...answer, well: false, text: 'Nobody has taken up the goal, so the others go on. See Programs.'};
+  if (!status) return {...answer, well: false, text: 'Nobody has taken up the goal. See Programs.'};
   if (status.state === 'GOAL_REFUSED') return {...answer, well: false, text: status.reason};
   // The last ones first, so that none of them begins in between.
   for (const other of [...others].reverse()) {

@@ -57,6 +57,7 @@ export class Hands {
   private free = new Set<string>();        // gamepads that were seen with nothing held
   private driver = '';                     // the gamepad that is held
   private sign = '';                       // of its life
+  private there = () => true;
   private signAt = 0;
   private sampled = 0;
 
@@ -98,10 +99,11 @@ export class Hands {
     this.due = now + unproven;
   }
 
-  // One pointer holds the stick; another one does not count.
-  grasp(pointer: number, at: At) {
+  // One pointer holds the stick, while that is there; another one does not count.
+  grasp(pointer: number, at: At, there = () => true) {
     if (this.pointer !== undefined) return;
     this.pointer = pointer;
+    this.there = there;
     this.at = at;
     this.doubt = '';
   }
@@ -110,7 +112,7 @@ export class Hands {
     if (pressed) this.at = at;
     else this.drop(pointer);
   }
-  drop(pointer = this.pointer) {
+  drop(pointer: number) {
     if (pointer === this.pointer) this.pointer = undefined;
   }
 
@@ -135,6 +137,7 @@ export class Hands {
       this.letGo('the keyboard no longer says that the key is held');
     }
     const pad = this.choose(pads, now);
+    if (!this.there()) this.pointer = undefined;
     if (this.pointer !== undefined) return 'stick';
     if (this.held.size > 0) return 'key';
     if (!pad) return '';

@@ -100,11 +100,13 @@ export class Link {
   // Everybody's emergency stop, which is latched.
   estop() {
     this.stopping = this.send({type: 'estop'});
+    navigator.vibrate?.(200);
     if (!this.stopping) this.note("NOT SENT: there is no connection. Stop the robot by its own switch.", false);
     this.tell();
   }
   // Everybody's stop of whatever moves the robot. One answer names who was stopped, a later one is a note.
   stop() {
+    navigator.vibrate?.(200);
     void this.ask({type: 'stop'}).then(answer => this.note(answer.text, answer.well));
   }
 
@@ -115,7 +117,9 @@ export class Link {
     while (this.lanes.some(lane => lane.readyState === WebSocket.CONNECTING) && performance.now() < end)
       await new Promise(resolve => setTimeout(resolve, 20));
     this.send({type: 'take', force});
+    setTimeout(() => this.mine() || this.closeLanes(), mostWait);
   }
+  mine(): boolean { return this.id !== 0 && this.data<ControlState>('console/control')?.holder === this.id; }
 
   // A sample of driving, by several connections in turn: where one waits for what was lost on its way, the
   // others go on. The gateway takes the newest.
@@ -128,6 +132,10 @@ export class Link {
     if (this.ticket && this.lanes.length === 0)
       for (let i = 0; i < furtherLanes; ++i) this.openLane(i);
   }
+  // Who does not drive leaves the places to others: a relay has few for one router.
+  private closeLanes() {
+    for (const lane of this.lanes.splice(0)) lane.close();
+  }
   private openLane(i: number) {
     const socket = this.lanes[i] = socketOf('saphira.commands');
     const ticket = this.ticket;
@@ -136,7 +144,7 @@ export class Link {
       const message = JSON.parse(event.data as string);
       if (message.type === 'state') this.take(message);
     };
-    socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
+    socket.onclose = () => setTimeout(() => this.lanes[i] === socket && this.openLane(i), retry);
   }
 
   // A file, in pieces as the gateway takes them.
@@ -208,7 +216,7 @@ export class Link {
       this.refused = '';
       this.id = 0;
       this.ticket = '';
-      for (const lane of this.lanes.splice(0)) lane.close();
+      this.closeLanes();
       this.roundTrip = 0;
       this.stopping = false;
       this.tell();
@@ -271,7 +279,8 @@ export class Link {
     }
     const control = this.data<ControlState>('console/control');
     const consoles = this.all<ServiceStatus>('system/status').filter(([, {data}]) => data.name === 'console').map(([key]) => key);
-    const held = this.id !== 0 && control?.holder === this.id;
+    const held = this.mine();
+    if (this.before.held && control && !held) this.closeLanes();
     const cut = this.cut;
     if (cut) {
       cut.back ??= now;

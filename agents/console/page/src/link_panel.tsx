@@ -25,7 +25,7 @@ export function LinkHistory({link, seen, close}: {link: Link; seen: Seen; close:
     <div class="row"><h2 class="grow">The link over the last {span / 60} minutes</h2><button class="plain" aria-label="Close the link's history" onClick={close}>×</button></div>
     <div class="charts">
       <Chart name="Age of the picture" series={series} of={s => s.age} floor={100} unit={ms} />
-      <Chart name="Command, there and back" series={series} of={s => s.trip} floor={100} unit={ms} />
+      <Chart name="There and back" series={series} of={s => s.trip} floor={100} unit={ms} />
       <Chart name="Cycles that did not come" series={series} of={s => 100 * s.missed / Math.max(1, s.missed + s.heard)} floor={20} unit={v => `${Math.round(v)}%`} />
       <Chart name="The robot's own packets a second" series={series} of={s => s.packets} floor={10} unit={v => `${v}`} />
     </div>

@@ -2,7 +2,7 @@
 import {strangersIn} from './strangers';
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
-import {degrees} from './geometry';
+import {degrees, heading} from './geometry';
 import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, textOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
@@ -80,7 +80,7 @@ const orderWords = ['', 'in front', 'next'];
 function argumentsOf(goal?: Goal): string {
   return (goal?.arguments ?? []).map(a => {
     if (a.kind === 'ARGUMENT_POINT') return `${a.name} (${a.point.x.toFixed(1)}, ${a.point.y.toFixed(1)})`;
-    return `${a.name} ${a.kind === 'ARGUMENT_TEXT' ? a.text : +a.number.toFixed(2)}`;
+    return `${a.name} ${a.kind === 'ARGUMENT_TEXT' ? a.text : a.name === 'facing' ? `${heading(a.number)}°` : +a.number.toFixed(2)}`;
   }).join(', ');
 }
 function GoalCard({pursued: self, many, link, now}: {pursued: Pursued; many: boolean; link: Link; now: number}) {

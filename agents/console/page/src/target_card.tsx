@@ -1,9 +1,9 @@
 // The card of a place on the map: goals there, and changes of the map.
 import type {RefObject} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
-import {ahead, askInstead, nameOf, quoted} from './goals';
+import {ahead, askGoal, nameOf, quoted} from './goals';
 import type {Answer, Link} from './link';
-import {add, facing, nameFor, placeOf, placeRobot, remove, ruleOf, rules, toUndo, undo, zoneOf, type Sketch} from './map_edit';
+import {add, facing, nameFor, placeOf, placeRobot, remove, rules, toUndo, undo, zoneOf, type Sketch} from './map_edit';
 import type {Grant, Registration} from './types';
 import type {Target, View} from './view';
 import {forPage} from './words';
@@ -13,7 +13,8 @@ const first = 0.5;           // [m] of a new zone, to each side
 
 export function TargetCard({card, corner, link, view, target, close}:
     {card: RefObject<HTMLDivElement>; corner: string; link: Link; view: View; target: Target; close: () => void}) {
-  const [told, setTold] = useState('');
+  const [told, say] = useState({text: '', well: true});
+  const setTold = (text: string, well = true) => say({text, well});
   const [form, show] = useState<Form>('');
   const [, look] = useState(0);
   const open = (next: Form, rule = 'ZONE_KEEP_OUT') => {
@@ -30,7 +31,7 @@ export function TargetCard({card, corner, link, view, target, close}:
   }, [target]);
   const tell = (answer: Answer, done = close) => {
     if (answer.well) done();
-    else setTold(forPage(answer.text));
+    else setTold(forPage(answer.text), false);
   };
   const changed = (answer: Answer, text: string) => tell(answer, () => {
     open('');
@@ -64,19 +65,20 @@ export function TargetCard({card, corner, link, view, target, close}:
         </>}
       </div>
     </> : <p class="small">Without the key you may watch.</p>}
-    {told && <p class="told" role="status">{told}</p>}
+    {told.text && <p class={told.well ? 'told' : 'told bad'} role="status">{told.text}</p>}
   </div>;
 }
 
-function GoalButtons({link, target, facing, tell, setTold}: {link: Link; target: Target; facing?: number; tell: (answer: Answer) => void; setTold: (text: string) => void}) {
+function GoalButtons({link, target, facing, tell, setTold}: {link: Link; target: Target; facing?: number; tell: (answer: Answer) => void; setTold: (text: string, well: boolean) => void}) {
   const grant = link.data<Grant>('drive/grant'), before = ahead(link), waiting = before.length - 1;
-  const name = target.artifact?.name, keepOut = target.zones.find(zone => ruleOf(zone) === 'keep-out');
+  const name = target.artifact?.name;
   const go = grant?.waits_for_hand_back ? 'Hand back, go' : 'Go', at = `${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`;
   const ask = async (place: string, instead: boolean) => {
     const words = facing === undefined ? place : `${place} facing=${facing.toFixed(3)}`;
-    if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.');
-    if (grant?.waits_for_hand_back) link.send({type: 'hand_back'});
-    tell(await (instead ? askInstead(link, words, before) : link.ask({type: 'goal', words})));
+    if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.', false);
+    const answer = await askGoal(link, words, instead ? before : []);
+    if (answer.well && grant?.waits_for_hand_back) link.send({type: 'hand_back'});
+    tell(answer);
   };
   const buttons = (where: string, words: string, main: boolean, title: string) => <div class="row">{before.length === 0
     ? <button class={main ? 'main' : ''} title={title} onClick={() => ask(words, false)}>{go} {where}</button>
@@ -88,9 +90,7 @@ function GoalButtons({link, target, facing, tell, setTold}: {link: Link; target:
     {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}
       {waiting > 0 && `; ${waiting} more ${waiting === 1 ? 'waits' : 'wait'}`}.</p>}
     {name && buttons(`to ${name}`, `go-to-place place=${quoted(name)}`, true, 'by the route that the map gives')}
-    {keepOut ? <p class="told bad">No goal leads here: {nameFor(keepOut)}.</p>
-      : target.inside ? buttons('here', `go-to-place place=${at}`, !name, 'to this point, by the route that the map gives')
-      : target.inside === false ? <p class="told bad">No goal leads here: no room or corridor of the map has this point.</p>
+    {target.routed ? buttons('here', `go-to-place place=${at}`, !name, 'to this point, by the route that the map gives')
       : buttons('here', `go_to position=${at}`, !name, 'straight to this point, around what is in the way, without a route')}
   </>;
 }

@@ -44,6 +44,7 @@ export interface Grant {
   estop_source: string;
   waits_for_hand_back: boolean;
 }
+export interface Devices { has_charge: boolean; charge: number; charging: number }
 export interface Registration {
   state: string;
   reason: string;

@@ -15,6 +15,7 @@ const ahead = 150;           // [ms] that the robot's way is drawn on without ne
 const top = 56;              // [pixels] of the picture, under its buttons
 const bottom = 30;           // [pixels] under its scale
 const small = 20;            // [pixels/m] from which on down the labels are smaller
+const crossSize = 9;         // [pixels] of a goal
 const apart = 4;             // [pixels] between two labels
 const rankOf: {[type: string]: number} = {ARTIFACT_OFFICE: 0, ARTIFACT_CORRIDOR: 1, ARTIFACT_DOOR: 2};
 const otherRank = 3;
@@ -27,7 +28,7 @@ export interface Layers { grid: boolean; sonar: boolean; map: boolean; route: bo
 export interface Target {
   x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact;
   zones: MapArtifact[];      // around it
-  inside?: boolean;          // in a room or corridor of the map [undefined: it has none]
+  routed: boolean;           // on a map with rooms or corridors, by which routes lead
 }
 interface Echo { x: number; y: number; at: number }
 interface Colors { [name: string]: string }
@@ -63,6 +64,7 @@ export class View {
   private odom = -1;
   private tiles = new Map<string, {data: GridTile; image: HTMLCanvasElement; dark: boolean}>();
   private colors: Colors = {};
+  private crosses: Pose[] = [];   // of goals, in the picture
   private lines?: MapLines;
   private widths = new Map<string, number>();   // [pixels] of texts, at the size of 10
   private dark = false;
@@ -210,10 +212,10 @@ export class View {
       const at = compose(inverse(a.pose_in_map), {...world, th: 0});
       return Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
     });
-    const room = around.find(a => a.name && a.type === 'ARTIFACT_OFFICE'), isRegion = (a: MapArtifact) => regionTypes.includes(a.type);
+    const room = around.find(a => a.name && a.type === 'ARTIFACT_OFFICE');
     return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom',
             zones: around.filter(a => a.type === 'ARTIFACT_ZONE'),
-            inside: artifacts.some(isRegion) ? around.some(isRegion) : undefined,
+            routed: artifacts.some(a => regionTypes.includes(a.type)),
             artifact: near && near.d * this.scale < 22 ? near.a : room};
   }
 
@@ -477,13 +479,14 @@ export class View {
     if (!turned) lines.placed = {turn, labels};
     return labels;
   }
-  // The robot covers no name: those under it come once more, over it.
+  // Robot and goals cover no name: those under it come once more, over it.
   private drawCoveredLabels(robot: Pose) {
     if (this.local || !this.layers.map || !this.onMap() || !this.lines) return;
-    const radius = this.robotRadius(), {a, b, c, d} = this.context.getTransform();
-    const covered = ({text, x, y, below}: Placed) =>
-      Math.abs(a * (x - robot.x) + c * (y - robot.y)) / this.ratio < radius * this.scale + this.width(text) / 2 &&
-      Math.abs((b * (x - robot.x) + d * (y - robot.y)) / this.ratio + below) < radius * this.scale + this.fontSize() / 2;
+    const over = [{...robot, size: this.robotRadius() * this.scale}, ...this.crosses.map(at => ({...at, size: crossSize}))];
+    const {a, b, c, d} = this.context.getTransform();
+    const covered = ({text, x, y, below}: Placed) => over.some(o =>
+      Math.abs(a * (x - o.x) + c * (y - o.y)) / this.ratio < o.size + this.width(text) / 2 &&
+      Math.abs((b * (x - o.x) + d * (y - o.y)) / this.ratio + below) < o.size + this.fontSize() / 2);
     this.drawLabels(this.lines, this.context, covered);
   }
   private drawLabels(lines: MapLines, c: CanvasRenderingContext2D, wanted: (label: Placed) => boolean = () => true) {
@@ -606,11 +609,13 @@ export class View {
 
   private drawGoals(odom: Pose) {
     const {open} = pursued(this.link);
+    this.crosses = [];
     for (const {goal, place} of open) {
       for (const argument of goal?.arguments ?? []) {
         const at = this.placeOf(argument, odom);
         if (!at) continue;
-        this.cross(at, this.colors.goal, 9);
+        this.cross(at, this.colors.goal, crossSize);
+        this.crosses.push(at);
         if (open.length > 1 && place > 0) this.label(String(place), at.x + this.px(17), at.y + this.px(11), this.colors.goal, 13);
       }
     }

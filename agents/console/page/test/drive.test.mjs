@@ -69,6 +69,8 @@ test('keys drive while they are held, and somebody else waits for control', asyn
   await bob.getByRole('button', {name: 'Take it'}).click();
   await bob.getByText('You drive').waitFor();
   await stands(bob);  // though ann still holds the key
+  const lanes = page => page.evaluate(() => saphira.lanes.length);
+  await until('only who drives has the further connections', async () => await lanes(ann) === 0 && await lanes(bob) === 5);
   await ann.getByText('has control').waitFor();
   await ann.keyboard.up('i');
   await handBack(bob);

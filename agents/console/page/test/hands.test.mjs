@@ -169,6 +169,16 @@ for (const [steps, held, doubt = ''] of table)
     assert.deepEqual({held: end.held, doubt: end.doubt}, {held, doubt});
   });
 
+test('a stick that is gone from the page is not held', () => {
+  const hands = new Hands();
+  let there = true;
+  hands.sample(0, [], true);
+  hands.grasp(1, {x: 0, y: 1}, () => there);
+  assert.equal(hands.sample(50, [], true), 'stick');
+  there = false;
+  assert.equal(hands.sample(100, [], true), '');
+});
+
 test('the stop is at its place, and at its letter', () => {
   for (const [step, act] of [['down KeyK', 'stop'], ['down KeyK л', 'stop'], ['down KeyK t', 'stop'], ['down KeyV k', 'stop'], ['down Space', 'stop'],
                              ['down - k', 'stop'], ['repeat KeyK', 'stop'], ['control off, down KeyK', 'stop'], ['down KeyJ k', 'left'],

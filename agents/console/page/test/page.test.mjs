@@ -74,6 +74,20 @@ test('the camera is shown, and it is off while nobody looks', async () => {
   await leave(page);
 });
 
+test('it is an app that a browser installs, and shows at its next start what it showed', async () => {
+  const page = await person();
+  await open(page);
+  // What Chromium misses for that: nothing but a profile that stays.
+  const devtools = await page.context().newCDPSession(page);
+  const {installabilityErrors} = await devtools.send('Page.getInstallabilityErrors');
+  assert.deepEqual(installabilityErrors.map(({errorId}) => errorId), ['in-incognito']);
+  await page.getByRole('tab', {name: 'Programs'}).click();
+  await page.reload();
+  await page.locator('.link.live').waitFor();
+  assert.equal(await page.getByRole('tab', {name: 'Programs'}).getAttribute('aria-selected'), 'true');
+  await leave(page);
+});
+
 test('old news are told with their age', async () => {
   const page = await person();
   await open(page);
@@ -277,8 +291,8 @@ test('a zone is drawn on the map, refuses goals there, is removed and undone; a 
   assert.deepEqual([zone.rule, zone.name, Math.abs(zone.length / zone.width - 1.5) < 0.1], ['ZONE_KEEP_OUT', 'wet floor', true]);
   await until('its edge', red);
   await page.mouse.click(middle[0], middle[1] + 10);
-  await card.getByText('No goal leads here: keep-out zone wet floor.').waitFor();
-  assert.equal(await card.getByRole('button', {name: /^Go here/}).count(), 0);
+  await card.getByRole('button', {name: 'Go here'}).click();
+  await card.getByText(/ on the map is in keep-out zone "wet floor"/).waitFor();
   await card.getByRole('button', {name: 'Remove'}).click();
   await until('no zone', async () => (await zones()).length === 0);
   await card.getByRole('button', {name: 'Undo removing keep-out zone wet floor'}).click();
@@ -287,8 +301,8 @@ test('a zone is drawn on the map, refuses goals there, is removed and undone; a 
   await until('no zone', async () => (await zones()).length === 0);
   await card.getByRole('button', {name: 'Close'}).click();
   await page.mouse.click(canvas.x + 5, middle[1]);
-  await card.getByText('No goal leads here: no room or corridor of the map has this point.').waitFor();
-  assert.equal(await card.getByRole('button', {name: /^Go /}).count(), 0);
+  await card.getByRole('button', {name: 'Go here'}).click();
+  await card.getByText(/ on the map is in no room or corridor of the map/).waitFor();
   // A goal with a heading, drawn upwards.
   await page.mouse.click(...middle);
   await card.getByRole('button', {name: 'Facing …'}).click();
@@ -354,7 +368,7 @@ test('the history of the link', async () => {
   await open(page);
   await page.locator('.link.live').click();
   const history = page.getByRole('region', {name: 'The link over the last minutes'});
-  for (const [name, value] of [['Age of the picture', /\d ms, at most/], ['Command, there and back', /\d ms, at most/], ["The robot's own packets a second", /: \d+, at most/]])
+  for (const [name, value] of [['Age of the picture', /\d ms, at most/], ['There and back', /\d ms, at most/], ["The robot's own packets a second", /: \d+, at most/]])
     await until(name, async () => value.test(await history.getByRole('img', {name}).getAttribute('aria-label')));
   assert.ok((await history.locator('.chart-bars').first().getAttribute('d')).startsWith('M'));
   await page.addScriptTag({content: axeSource});
@@ -473,18 +487,21 @@ test('the simulator is paused, stepped, rearranged and given another world, and 
   await leave(looked);
   assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), []);
 
+  const epoch = () => watcher.evaluate(() => saphira.data('robot/state').stamp.epoch), connection = await epoch();
   await page.getByRole('button', {name: 'Pause'}).click();
   await page.locator('.chip', {hasText: 'paused'}).waitFor();
   // A robot that says nothing: the picture of it is marked as old.
   await watcher.locator('.link.old').waitFor();
   await watcher.locator('canvas.stale').waitFor();
-  await watcher.getByText('The robot says nothing.').waitFor();
+  await watcher.getByText(/The picture is [3-9]\.\d s old. The robot says nothing./).waitFor();
   const time = async () => parseFloat(await fact(page, 'Time'));
   const before = await time();
   await page.getByRole('button', {name: 'Step 0.1 s'}).click();
   await until('a step', async () => Math.abs(await time() - before - 0.1) < 0.01);
   await page.getByRole('button', {name: 'Go on'}).click();
   await until('time', async () => await time() > before + 0.5);
+  await watcher.locator('.link.live').waitFor();
+  assert.equal(await epoch(), connection);
 
   const [x, y] = await at();
   await page.getByRole('button', {name: 'Move it right'}).click();

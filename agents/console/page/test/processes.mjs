@@ -60,16 +60,16 @@ export function trace(file) {
 }
 
 // A simulated robot with its bridge and gateway, and what is true of it; in `self`.
-export async function rig(self, folder, robot, {camera = false} = {}) {
+export async function rig(self, folder, robot, {camera = false, console = []} = {}) {
   const line = join(folder, robot), rows = `${line}.csv`, lens = `${line}.camera`;
   Object.assign(self, trace(rows));
   const simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', rows, ...(camera ? ['--camera-socket', lens] : []));
   const bridge = start('saphira-bridge', '--robot', robot, '--link', line);
-  self.gateway = start('saphira-console', '--robot', robot, '--port', '0');
+  self.gateway = start('saphira-console', '--robot', robot, '--port', '0', ...console);
   self.children = [self.gateway, ...(camera ? [start('saphira-camera', '--robot', robot, '--socket', lens)] : []), bridge, simulator];
   let told = '';
   self.gateway.stdout.on('data', data => { told += data; });
-  const [address, port, key] = await until('the address', () => told.match(/http:\/\/localhost:(\d+)\/#(\w+)/));
+  const [address, port, key] = await until('the address', () => told.match(/https?:\/\/localhost:(\d+)\/#(\w+)/));
   return Object.assign(self, {address, port: Number(port), key});
 }
 

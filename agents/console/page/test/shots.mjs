@@ -24,12 +24,12 @@ let browser;
 try {
   const ports = await freePorts(2), names = ['anna', 'bert'];
   for (const [i, name] of names.entries()) {
-    children.push(start('saphira', '--robot', `${name}-${process.pid}`, 'up', 'demo', '--set', `port=${ports[i]}`));
+    children.push(start('saphira', '--robot', name, 'up', 'demo', '--set', `port=${ports[i]}`));
     await until('the address', () => output().includes(`open http://localhost:${ports[i]}/`));
   }
   const address = output().match(new RegExp(`open (http://localhost:${ports[0]}/\\S+)`))[1];
   browser = await chromium.launch({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
-  for (const name of names) children.push(start('saphira', '--robot', `${name}-${process.pid}`, 'goal', 'go', 'lobby'));
+  for (const name of names) children.push(start('saphira', '--robot', name, 'goal', 'go', 'lobby'));
   let bytes = 0;
   for (const {name, drives, robots, camera, link, tab, ...options} of shots) {
     const page = await (await browser.newContext({reducedMotion: 'reduce', ...options})).newPage();

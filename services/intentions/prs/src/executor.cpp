@@ -264,7 +264,7 @@ void Executor::take_written(const GoalEvent& event) {
   Arguments complete;
   std::string wrong = event.forgotten;
   if (wrong.empty())
-    wrong = complaint(goal, code, complete);
+    wrong = complaint(event, code, complete);
   if (wrong.empty()) {
     const auto count = std::count_if(entries_.begin(), entries_.end(),
                                      [](const auto& each) { return open(each.second.status); });
@@ -320,7 +320,7 @@ void Executor::change(Entry& entry, const GoalEvent& event) {
   const Goal& goal = event.goal;
   GoalCode code = v1::CODE_NONE;
   Arguments complete;
-  const std::string wrong = complaint(goal, code, complete);
+  const std::string wrong = complaint(event, code, complete);
   if (!wrong.empty()) {
     // A faulty change leaves the goal as it was.
     entry.status.code = code;
@@ -358,7 +358,8 @@ bool Executor::is_place(const std::string& functor) const {
          places_->place(functor);
 }
 
-std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
+std::string Executor::complaint(const GoalEvent& event, GoalCode& code, Arguments& complete) const {
+  const Goal& goal = event.goal;
   const Schema* const schema = registry_->find(goal.functor);
   if (schema == nullptr) {
     code = v1::CODE_UNKNOWN_FUNCTOR;
@@ -375,9 +376,10 @@ std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& com
   if (!(goal.level >= 0.0 && goal.level <= 1.0))
     return "expected a level from 0 (the usual one) to 1, got " + plain(goal.level);
   std::string wrong = check_arguments(*schema, goal.arguments, complete);
-  if (wrong.empty())
-    code = v1::CODE_NONE;
-  return wrong;
+  if (!wrong.empty())
+    return wrong;
+  code = event.forbidden.empty() ? v1::CODE_NONE : v1::CODE_NO_ROUTE;
+  return event.forbidden;
 }
 
 // --- states

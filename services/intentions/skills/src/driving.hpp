@@ -14,6 +14,9 @@ inline constexpr int kKeepOff = 1;
 inline constexpr int kTask = 2;
 inline constexpr int kRest = 3;  ///< only without any other behavior
 
+/// A goal's point, for people.
+std::string format_point(const Argument& point);
+
 /// An optional number.
 inline Parameter quantity(std::string name, std::string unit, double low, double high,
                           double usual) {

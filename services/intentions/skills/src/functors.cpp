@@ -42,11 +42,6 @@ std::string format(const char* pattern, double a, double b = 0.0) {
   return text;
 }
 
-std::string format_point(const Argument& point) {
-  return format("(%.2f, %.2f)", point.point.x, point.point.y) +
-         (point.frame == Frame::map ? " on the map" : "");
-}
-
 double distance(const Pose& a, const Pose& b) {
   return (a.position() - b.position()).norm();
 }
@@ -544,6 +539,11 @@ std::unique_ptr<Activity> make(const Arguments& arguments) {
 }
 
 }  // namespace
+
+std::string format_point(const Argument& point) {
+  return format("(%.2f, %.2f)", point.point.x, point.point.y) +
+         (point.frame == Frame::map ? " on the map" : "");
+}
 
 Registry built_in() {
   Registry registry;

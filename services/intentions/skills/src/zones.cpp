@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "driving.hpp"
 #include "saphira/base/age.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/maps/route.hpp"
@@ -97,6 +98,16 @@ std::string why_no_goal(const World& world, const Pose& point, Frame frame) {
                        map->at(at->position()).empty() &&
                        !map->region_at(at->position(), maps::RouteSettings().tolerance);
   return outside ? "is in no room or corridor of the map" : "";
+}
+
+std::string why_refused(const World& world, std::string_view functor, const Arguments& arguments) {
+  if (functor != "go_to" && functor != "go-to-place")
+    return {};
+  for (const Argument& to : arguments)
+    if (to.kind == ArgumentKind::point && to.frame == Frame::map)
+      if (const std::string why = why_no_goal(world, to.point, to.frame); !why.empty())
+        return format_point(to) + " " + why;
+  return {};
 }
 
 std::string keep_out_ahead(const World& world, bool backwards) {

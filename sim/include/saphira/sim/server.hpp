@@ -73,6 +73,8 @@ class Server {
   /// The line has been silent for longer than any pause within a packet; see PacketParser::gap. In
   /// live mode advance() does this itself.
   void gap();
+  /// Tells the client that it is there, while time stands.
+  void tell_status();
 
   // ---- For a caller that keeps the time of several servers: Scene::tick() between the first two.
 

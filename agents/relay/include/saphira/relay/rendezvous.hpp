@@ -51,9 +51,12 @@ class Rendezvous {
   bool knows(std::string_view robot, std::string_view token) const;
 
   /// A visitor has come from a network address to the port of a robot, to be fetched by this
-  /// ticket. False: too many are there.
-  bool arrive(const std::string& robot, const std::string& from, Visitor visitor,
-              const std::string& ticket, double now);
+  /// ticket. The visitor that gives place to it, where the address or the robot has too many: of
+  /// those from that address, or from the one with the most, the one that was silent for longest.
+  std::optional<Visitor> arrive(const std::string& robot, const std::string& from, Visitor visitor,
+                                const std::string& ticket, double now);
+  /// Bytes have come from the visitor.
+  void heard(Visitor visitor, double now);
   /// The gateway of that robot fetches the visitor of a ticket. Nothing: no such visitor waits.
   std::optional<Visitor> fetch(const std::string& robot, const std::string& ticket);
   /// The visitor has left, waiting or fetched.
@@ -71,6 +74,7 @@ class Rendezvous {
     std::string from;
     std::string ticket;
     double since = 0.0;
+    double heard = 0.0;  ///< when its newest bytes came
     bool waits = true;
   };
   std::vector<Robot> robots_;

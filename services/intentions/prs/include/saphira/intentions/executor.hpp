@@ -30,6 +30,8 @@ struct GoalEvent {
   /// The reason why an unknown goal is not carried out, since it may have been done already [empty:
   /// carry it out].
   std::string forgotten{};
+  /// kWritten: the reason why the robot may not do it [empty: it may].
+  std::string forbidden{};
   bool needs_approval = false;  ///< waits until a person approves it (Executor::approve)
 };
 
@@ -173,7 +175,7 @@ class Executor {
   void put_up(Entry& entry, const Goal& goal, Arguments complete);
   static bool depends_on_odom(const Entry& entry, bool placed);
   void change(Entry& entry, const GoalEvent& event);
-  std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
+  std::string complaint(const GoalEvent& event, GoalCode& code, Arguments& complete) const;
   bool is_place(const std::string& functor) const;
   static void become(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void end(Entry& entry, GoalState state, GoalCode code, std::string reason);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saphira/intentions/functions.hpp"
@@ -29,6 +30,10 @@ struct SpeedLimit {
 /// Of the slow zones around the robot, of a keep-out before it, where it drives to, and of the
 /// belief `pace`, which may be "slow".
 SpeedLimit speed_limit(const World& world, bool backwards);
+
+/// The reason why a goal is not taken up: it leads to a point of the map where no goal may lead, in
+/// a keep-out or outside of the map's rooms and corridors. Empty: it may be.
+std::string why_refused(const World& world, std::string_view functor, const Arguments& arguments);
 
 /// core_functions() and these: all functions of the shipped activities.
 std::shared_ptr<const Functions> all_functions();
