@@ -1,4 +1,4 @@
-// run soak FOLDER [--minutes N]: the robot patrols with its camera on, before two viewers, of which one has a slow line, and a recorder. One
+// run bench-soak FOLDER [--json] [--minutes N]: the robot patrols with its camera on, before two viewers, of which one has a slow line, and a recorder. One
 // JSON object: late cycles and memory by program, and the pictures that each viewer got.
 import {mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, statSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -10,9 +10,9 @@ import {end, ended, output, sleep, start, until} from './processes.mjs';
 const slow = {delay: 250, spread: 50, loss: 0.05, rate: 60e3};
 const settled = 5;   // [min] until memory counts as that of the beginning
 
-const words = process.argv.slice(2), minutes = Number(words[1] ?? 60);
+const words = process.argv.slice(2).filter(word => word !== '--json'), minutes = Number(words[1] ?? 60);
 if (!(minutes > 0) || words.length > 2 || (words.length && words[0] !== '--minutes')) {
-  console.error('saphira-bench-soak: expected --minutes N');
+  console.error('saphira-bench-soak: expected --json, or --minutes N');
   process.exit(2);
 }
 const folder = mkdtempSync(join(tmpdir(), 'saphira-soak-')), name = `soak-${process.pid}`, robot = ['--robot', name];

@@ -1,4 +1,4 @@
-// run bench FOLDER [--json] [--runs N]: an operator at the real page drives over good and bad links, with the camera on. For each link: the
+// run bench-teleop FOLDER [--json] [--runs N]: an operator at the real page drives over good and bad links, with the camera on. For each link: the
 // first page, the share of the time in which the robot moves while a key is held, the time until it stands after the release, the pictures
 // and their age, and the bytes. What is true of the robot is read from the simulator's trace, whose rows are 0.1 s apart.
 import {mkdtempSync, rmSync} from 'node:fs';
