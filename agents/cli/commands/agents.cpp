@@ -163,7 +163,7 @@ int list_one(const bus::NodeOptions& options, const bus::Stop& stop) {
   auto triggers = node.reader(bus::topics::kTriggers);
   std::map<std::uint64_t, v1::Agent> known;
   std::map<std::pair<std::uint64_t, std::uint64_t>, bus::Sample<v1::Trigger>> set;
-  poll_for(node, milliseconds(1300), stop, [&] {
+  poll_for(node, listening_time(node), stop, [&] {
     processes.poll();
     keep_newest(agents, known, [](const v1::Agent& agent) { return agent.id; });
     for (const auto& sample : triggers.take()) {

@@ -246,7 +246,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   DeploymentWatch deployments(node, processes);
   auto statuses = node.reader(bus::topics::kGoalStatus);
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> goals;
-  poll_for(node, milliseconds(1300), stop, [&] {
+  poll_for(node, listening_time(node), stop, [&] {
     deployments.poll();
     keep_newest(statuses, goals, [](const v1::GoalStatus& status) {
       return std::pair(status.id.writer, status.id.number);

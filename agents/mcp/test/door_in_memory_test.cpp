@@ -1,6 +1,7 @@
 // The calls of a client, on a bus in memory. The test is the facilitator and its agent.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "door.hpp"
@@ -768,7 +769,10 @@ TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
   early.poll(1.1);
   early.poll(1.7);
   EXPECT_TRUE(early.knows_tools());
-  const Json& properties = early.tools().back().input["properties"];
+  const auto patrol = std::find_if(early.tools().begin(), early.tools().end(),
+                                   [](const Tool& tool) { return tool.name == "patrol"; });
+  ASSERT_NE(patrol, early.tools().end());
+  const Json& properties = patrol->input["properties"];
   EXPECT_EQ(properties["place"]["description"], "a place of the map: N2");
   EXPECT_FALSE(properties["whose"].contains("description")) << "a name says no more twice";
 }
