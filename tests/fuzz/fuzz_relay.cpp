@@ -61,10 +61,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (line.starts_with("+")) {
       const std::string robot = line.find("flakey") == std::string::npos ? "pioneer" : "flakey";
       ++last;
-      if (relay.arrive(robot, line, last, std::to_string(last), now)) {
-        there[robot].insert(last);
-        waiting[last] = robot;
+      if (const auto gone = relay.arrive(robot, line, last, std::to_string(last), now)) {
+        expect(there[robot].erase(*gone) == 1);
+        waiting.erase(*gone);
       }
+      there[robot].insert(last);
+      waiting[last] = robot;
       expect(there[robot].size() <= Rendezvous::kMost);
     } else if (const auto path = parse_path(line)) {
       if (const auto visitor = relay.fetch(path->robot, path->ticket)) {
