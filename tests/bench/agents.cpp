@@ -188,16 +188,7 @@ int measure(const Options& all) {
                               {"capabilities", all.capabilities},
                               {"triggers", all.triggers},
                               {"late", late_cycles}};
-  if (all.json)
-    std::printf("%s\n", result.dump().c_str());
-  else
-    std::printf(
-        "a routed request takes %.0f us (p50), %.1f times a ping over bare Fast DDS (%.0f us);\n"
-        "with %u agents, %u capabilities and %u triggers %.2f ms (p50), %.2f ms (p99);\n"
-        "services were late in %llu cycles meanwhile\n",
-        p50, p50 / raw, raw, all.agents, all.capabilities, all.triggers,
-        test::quantile(many, 0.5) / 1000.0, test::quantile(many, 0.99) / 1000.0,
-        static_cast<unsigned long long>(late_cycles));
+  bench::print(result, all.json);
   return 0;
 }
 

@@ -1,9 +1,5 @@
 #include "bench.hpp"
 
-#include <fcntl.h>
-#include <sched.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,62 +16,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Starts argv; stdout goes to `out`, or nowhere.
-pid_t start(std::vector<std::string> argv, int out, int network) {
+/// A name without a folder is one of the project's programs.
+std::vector<std::string> located(std::vector<std::string> argv) {
   if (argv.at(0).find('/') == std::string::npos)
     argv[0] = program_folder() + "/" + argv[0];
-  std::vector<char*> pointers;
-  pointers.reserve(argv.size() + 1);
-  for (std::string& word : argv)
-    pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  const pid_t pid = fork();
-  if (pid < 0)
-    throw std::runtime_error("fork failed");
-  if (pid == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (network >= 0 && setns(network, CLONE_NEWNET) != 0)
-      _exit(126);
-    const int null = open("/dev/null", O_RDWR);
-    dup2(null, 0);
-    dup2(out < 0 ? null : out, 1);
-    dup2(null, 2);
-    execv(pointers[0], pointers.data());
-    _exit(127);
-  }
-  return pid;
+  return argv;
 }
 
 }  // namespace
 
-Child::Child(std::vector<std::string> argv, int network)
-    : pid_(start(std::move(argv), -1, network)) {}
+Child::Child(std::vector<std::string> argv) : Process(located(std::move(argv)), "/dev/null") {}
 
-Child::~Child() {
-  kill(pid_, SIGTERM);
-  waitpid(pid_, nullptr, 0);
-}
-
-std::string output_of(const std::vector<std::string>& argv, int network) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error("pipe failed");
-  const pid_t pid = start(argv, ends[1], network);
-  close(ends[1]);
-  std::string text;
-  char buffer[4096];
-  for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
-    text.append(buffer, static_cast<std::size_t>(n));
-  close(ends[0]);
-  int status = 0;
-  waitpid(pid, &status, 0);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    std::string line;
-    for (const std::string& word : argv)
-      line.append(word).append(" ");
-    throw std::runtime_error(line + "failed");
-  }
-  return text;
+std::string output_of(const std::vector<std::string>& argv) {
+  std::vector<std::string> words = located(argv);
+  words.insert(words.begin(), {"/bin/sh", "-c", "exec \"$0\" \"$@\" 2>/dev/null"});
+  const test::TempDir folder;
+  test::Process process(words, folder.path("said"));
+  siginfo_t ended{};
+  waitid(P_PID, static_cast<id_t>(process.pid()), &ended, WEXITED | WNOWAIT);  // nothing polls
+  if (process.wait() != 0)
+    throw std::runtime_error(argv[0] + " failed: " + process.output());
+  return process.output();
 }
 
 double cpu_seconds(pid_t pid) {

@@ -5,25 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "result.hpp"
+#include "support/process.hpp"
+
 /// The common parts of the benchmark programs.
 namespace saphira::bench {
 
 /// A child with its output dropped; terminated with the object.
-class Child {
+class Child : public test::Process {
  public:
-  /// `network`: a file descriptor of its network namespace; below 0: this one.
-  explicit Child(std::vector<std::string> argv, int network = -1);
-  ~Child();
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  pid_t pid() const { return pid_; }
-
- private:
-  pid_t pid_;
+  explicit Child(std::vector<std::string> argv);
 };
 
 /// Runs a program to its end and returns its stdout; std::runtime_error when it fails.
-std::string output_of(const std::vector<std::string>& argv, int network = -1);
+std::string output_of(const std::vector<std::string>& argv);
 
 /// CPU seconds of a process, and its resident memory [MB]. 0 when it is gone.
 double cpu_seconds(pid_t pid);

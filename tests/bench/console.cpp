@@ -16,6 +16,7 @@
 #include "page_files.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 #include "support/process.hpp"
 #include "support/quantile.hpp"
 
@@ -112,30 +113,18 @@ int run(unsigned seconds, int artifacts, bool json) {
   const double cpu = 100.0 * (bench::cpu_seconds(gateway) - before) / seconds;
   if (delays.empty() || intervals.empty())
     throw std::runtime_error("nothing was drawn");
-  const double p50 = test::quantile(delays, 0.5);
-  const double p99 = test::quantile(delays, 0.99);
-  const double frames = static_cast<double>(intervals.size()) / seconds;
-  const double frame_p99 = test::quantile(intervals, 0.99);
-  const double kb = packed_kb();
-  std::printf("gateway with %zu pages       %6.2f %% of a core, %.1f MB\n", kPages, cpu,
-              bench::resident_mb(gateway));
-  std::printf("packet to page              %6.1f ms half of them, %.1f ms 99 %% (%zu packets)\n",
-              p50, p99, delays.size());
-  std::printf("frames, %.0f artifacts       %6.1f a second, 99 %% within %.1f ms\n", features,
-              frames, frame_p99);
-  std::printf("page                        %6.1f kB packed, first picture after %.0f ms\n", kb,
-              first_picture);
-  if (json)
-    std::printf("%s\n", nlohmann::json{{"gateway_cpu_percent", cpu},
-                                       {"packet_to_page_ms_p50", p50},
-                                       {"packet_to_page_ms_p99", p99},
-                                       {"artifacts", features},
-                                       {"frames_per_s", frames},
-                                       {"frame_ms_p99", frame_p99},
-                                       {"page_kb_gzip", kb},
-                                       {"first_picture_ms", first_picture}}
-                            .dump()
-                            .c_str());
+  bench::print({{"gateway_cpu_percent", cpu},
+                {"gateway_mb", bench::resident_mb(gateway)},
+                {"pages", kPages},
+                {"packets", delays.size()},
+                {"packet_to_page_ms_p50", test::quantile(delays, 0.5)},
+                {"packet_to_page_ms_p99", test::quantile(delays, 0.99)},
+                {"artifacts", features},
+                {"frames_per_s", static_cast<double>(intervals.size()) / seconds},
+                {"frame_ms_p99", test::quantile(intervals, 0.99)},
+                {"page_kb_gzip", packed_kb()},
+                {"first_picture_ms", first_picture}},
+               json);
   return 0;
 }
 
@@ -151,10 +140,5 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", seconds, "how long to watch, twice").in_range(5, 3600);
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(seconds, artifacts, json);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-console: %s\n", error.what());
-    return 1;
-  }
+  return test::guarded([&] { return run(seconds, artifacts, json); });
 }

@@ -94,11 +94,8 @@ int main(int argc, char** argv) {
   const std::string program = std::filesystem::canonical("/proc/self/exe").string();
   const Costs start = count(program, kStart);
   Costs costs = count(program, kStart + kCounted);
-  for (auto& [part, cost] : costs) {
+  for (auto& [part, cost] : costs)
     cost = (cost - start.at(part)) / kCounted;
-    std::printf("%-18s %9.0f instructions a cycle\n", part.c_str(), cost);
-  }
-  if (json)
-    std::printf("%s\n", nlohmann::json(costs).dump().c_str());
+  saphira::bench::print(costs, json);
   return 0;
 }

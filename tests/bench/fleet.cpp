@@ -150,15 +150,12 @@ int main(int argc, char** argv) {
     cpu += seconds - (before.contains(pid) ? before.at(pid) : 0.0);
     mb += bench::proportional_mb(pid);
   }
-  const nlohmann::json result{{"robots", robots},
-                              {"whole", heard.whole()},
-                              {"whole_s", whole_s},
-                              {"cpu_percent_per_robot", 100.0 * cpu / span / robots},
-                              {"mb_per_robot", mb / robots},
-                              {"mixed", heard.mixed()}};
-  std::printf("a robot at rest: %.1f %% of a core, %.0f MB; %zu services of two robots\n",
-              result["cpu_percent_per_robot"].get<double>(), mb / robots, heard.mixed());
-  if (json)
-    std::printf("%s\n", result.dump().c_str());
+  bench::print({{"robots", robots},
+                {"whole", heard.whole()},
+                {"whole_s", whole_s},
+                {"cpu_percent_per_robot", 100.0 * cpu / span / robots},
+                {"mb_per_robot", mb / robots},
+                {"mixed", heard.mixed()}},
+               json);
   return heard.whole() == count && heard.mixed() == 0 ? 0 : 1;
 }

@@ -38,13 +38,8 @@ int main(int argc, char** argv) {
     std::printf("seed %d: one process %.0f x real time, separate processes %.0f x\n", i,
                 single.back(), separate.back());
   }
-  const double single_x = saphira::test::quantile(single, 0.5);
-  const double separate_x = saphira::test::quantile(separate, 0.5);
-  std::printf("median: one process %.0f x (limit 300), separate processes %.0f x (limit 100)\n",
-              single_x, separate_x);
-  if (json)
-    std::printf(
-        "%s\n",
-        nlohmann::json{{"single_process_x", single_x}, {"separate_x", separate_x}}.dump().c_str());
+  saphira::bench::print({{"single_process_x", saphira::test::quantile(single, 0.5)},
+                         {"separate_x", saphira::test::quantile(separate, 0.5)}},
+                        json);
   return 0;
 }

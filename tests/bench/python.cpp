@@ -127,21 +127,11 @@ int measure(bool as_json) {
   const auto ratio = [&](const char* of) {
     return python[of].get<double>() / cpp[of].get<double>();
   };
-  const json result{{"python", python},
-                    {"cpp", cpp},
-                    {"goal_ratio", ratio("goal_us_p50")},
-                    {"state_ratio", ratio("state_cpu_us")}};
-  if (as_json) {
-    std::puts(result.dump().c_str());
-    return 0;
-  }
-  for (const auto& [name, one] : result.items())
-    if (one.is_object())
-      std::printf("%-7s a goal: %.0f us (p99 %.0f us); a state: %.0f us of the processor\n",
-                  name.c_str(), one["goal_us_p50"].get<double>(), one["goal_us_p99"].get<double>(),
-                  one["state_cpu_us"].get<double>());
-  std::printf("of Python a goal takes %.1f times as long, a state %.1f times the work\n",
-              ratio("goal_us_p50"), ratio("state_cpu_us"));
+  bench::print({{"python", python},
+                {"cpp", cpp},
+                {"goal_ratio", ratio("goal_us_p50")},
+                {"state_ratio", ratio("state_cpu_us")}},
+               as_json);
   return 0;
 }
 

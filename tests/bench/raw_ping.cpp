@@ -202,13 +202,10 @@ int main(int argc, char** argv) {
   int code = 0;
   try {
     const auto us = ping(domain, hz, count);
-    const double p50 = saphira::test::quantile(us, 0.5);
-    const double p99 = saphira::test::quantile(us, 0.99);
-    if (json)
-      std::printf("%s\n",
-                  nlohmann::json{{"us", us}, {"p50_us", p50}, {"p99_us", p99}}.dump().c_str());
-    else
-      std::printf("%zu pings at %.0f Hz: p50 %.0f us, p99 %.0f us\n", us.size(), hz, p50, p99);
+    saphira::bench::print({{"us", us},
+                           {"p50_us", saphira::test::quantile(us, 0.5)},
+                           {"p99_us", saphira::test::quantile(us, 0.99)}},
+                          json);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "saphira-bench-raw-ping: %s\n", error.what());
     code = 1;

@@ -196,18 +196,13 @@ int report_serial(const std::vector<double>& ours, int unanswered, int baud, boo
   const double bound = static_cast<double>(bytes) * 1e7 / baud;
   const double p50 = test::quantile(ours, 0.5);
   const double p99 = test::quantile(ours, 0.99);
-  std::printf("%zu reactions over %d baud, %d without an answer\n", ours.size(), baud, unanswered);
-  std::printf("packet to command   p50 %6.1f ms   p99 %6.1f ms\n", p50 / 1000.0, p99 / 1000.0);
-  std::printf("the line alone          %6.1f ms   (%zu bytes)\n", bound / 1000.0, bytes);
-  if (json)
-    std::printf("%s\n", nlohmann::json{{"baud", baud},
-                                       {"p50_us", p50},
-                                       {"p99_us", p99},
-                                       {"line_us", bound},
-                                       {"ratio_p50", p50 / bound},
-                                       {"unanswered", unanswered}}
-                            .dump()
-                            .c_str());
+  bench::print({{"baud", baud},
+                {"p50_us", p50},
+                {"p99_us", p99},
+                {"line_us", bound},
+                {"ratio_p50", p50 / bound},
+                {"unanswered", unanswered}},
+               json);
   return 0;
 }
 
@@ -288,21 +283,14 @@ int main(int argc, char** argv) {
     const double p99 = test::quantile(ours, 0.99);
     const double raw50 = test::quantile(raw, 0.5);
     const double raw99 = test::quantile(raw, 0.99);
-    std::printf("%zu reactions at %.0f Hz, %d without an answer\n", ours.size(), hz, unanswered);
-    std::printf("packet to command   p50 %6.0f us   p99 %6.0f us\n", p50, p99);
-    std::printf("raw two-hop ping    p50 %6.0f us   p99 %6.0f us\n", raw50, raw99);
-    std::printf("ratio               p50 %6.2f (limit 1.5)   p99 %6.2f (limit 2)\n", p50 / raw50,
-                p99 / raw99);
-    if (json)
-      std::printf("%s\n", nlohmann::json{{"ratio_p50", p50 / raw50},
-                                         {"ratio_p99", p99 / raw99},
-                                         {"p50_us", p50},
-                                         {"p99_us", p99},
-                                         {"raw_p50_us", raw50},
-                                         {"raw_p99_us", raw99},
-                                         {"unanswered", unanswered}}
-                              .dump()
-                              .c_str());
+    bench::print({{"ratio_p50", p50 / raw50},
+                  {"ratio_p99", p99 / raw99},
+                  {"p50_us", p50},
+                  {"p99_us", p99},
+                  {"raw_p50_us", raw50},
+                  {"raw_p99_us", raw99},
+                  {"unanswered", unanswered}},
+                 json);
     return 0;
   });
 }

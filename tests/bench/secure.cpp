@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -23,6 +22,7 @@
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/security/authority.hpp"
 #include "support/process.hpp"
+#include "support/quantile.hpp"
 #include "support/strangers.hpp"
 
 using namespace saphira;
@@ -75,12 +75,7 @@ class RoundTrip {
     if (const auto time = ping(milliseconds(500)))
       times_.push_back(*time);
   }
-  double quantile(double share) {
-    std::sort(times_.begin(), times_.end());
-    return times_.empty()
-               ? 0.0
-               : times_[static_cast<std::size_t>(share * static_cast<double>(times_.size() - 1))];
-  }
+  double quantile(double share) const { return test::quantile(times_, share); }
   std::size_t answered() const { return times_.size(); }
 
  private:
@@ -168,11 +163,6 @@ void attack(security::Authority& site, const std::string& self, const std::strin
   result["joined_s"] = once["joined_s"];
   result["joined_while_repeated_s"] = repeated["joined_s"];
   result["flooded_mb"] = once["flooded_mb"];
-  std::printf(
-      "10,000 forged announcements: a member joined in %.2f s, %.0f MB; while 300 are repeated: in "
-      "%.2f s; %d programs ended\n",
-      once["joined_s"].get<double>(), once["flooded_mb"].get<double>(),
-      repeated["joined_s"].get<double>(), result["aborts"].get<int>());
 }
 
 double idle_cpu_percent(const std::string& security, unsigned seconds) {
@@ -239,28 +229,20 @@ int main(int argc, char** argv) {
       secured.measure();
       usleep(5000);
     }
-    std::printf("open     p50 %6.0f us  p99 %6.0f us  %zu of %d answered\n", open.quantile(0.5),
-                open.quantile(0.99), open.answered(), pings);
-    std::printf("secured  p50 %6.0f us  p99 %6.0f us  %zu of %d answered\n", secured.quantile(0.5),
-                secured.quantile(0.99), secured.answered(), pings);
     result = {{"open_p50_us", open.quantile(0.5)},
               {"open_p99_us", open.quantile(0.99)},
               {"secure_p50_us", secured.quantile(0.5)},
               {"secure_p99_us", secured.quantile(0.99)},
-              {"ratio_p50", secured.quantile(0.5) / open.quantile(0.5)}};
-    std::printf("ratio    p50 %6.2f\n", secured.quantile(0.5) / open.quantile(0.5));
+              {"ratio_p50", secured.quantile(0.5) / open.quantile(0.5)},
+              {"open_answered", open.answered()},
+              {"secure_answered", secured.answered()}};
   }
-  if (attacked) {
+  if (attacked)
     attack(site, self, credentials, folder.path(), result);
-  }
   result["idle_cpu_percent"] = nullptr;  // --seconds 0: not measured
-  if (seconds > 0) {
-    const double idle = idle_cpu_percent(credentials, seconds);
-    std::printf("idle demo, secured: %.2f %% of a core\n", idle);
-    result["idle_cpu_percent"] = idle;
-  }
-  if (json)
-    std::printf("%s\n", result.dump().c_str());
+  if (seconds > 0)
+    result["idle_cpu_percent"] = idle_cpu_percent(credentials, seconds);
+  bench::print(result, json);
   return result.value("member_escapes", 0) == 0 && result.value("aborts", 0) == 0 &&
                  result.value("misnamed", nlohmann::json::array()).empty()
              ? 0

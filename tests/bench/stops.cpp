@@ -232,7 +232,7 @@ int main(int argc, char** argv) {
       result["robots"] = robots;
       for (std::size_t i = 0; i < kLosses.size(); ++i)
         result[std::string(kNames.at(i)) + "_m_max"] = worst[i];
-      std::printf("%s\n", result.dump().c_str());
+      bench::print(result, true);
     }
     return 0;
   });

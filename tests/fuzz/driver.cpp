@@ -1,26 +1,18 @@
-// Drives a fuzzer's entry function without libFuzzer: a number of inputs, made from the seeds (and
+// Drives a fuzzer without libFuzzer: a number of inputs, made from the seeds (and
 // from nothing) by random changes. The same inputs in every run.
 //
 //     fuzz_x COUNT [SEED_FILE...]    or, to see a failure again:    fuzz_x - FILE...
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "fuzz.hpp"
 #include "saphira/base/random.hpp"
-#include "saphira/base/text.hpp"
-
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
-
-void test(const std::string& input) {
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
-}
 
 const char* const kTokens[] = {"\xFA\xFB", "-",    "1e999", "nan",          "\n",       ";",
                                "0",        "push", "pop",   "999999999999", "SonarUnit"};
@@ -65,7 +57,7 @@ int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i)
     seeds.push_back(saphira::read_bytes(argv[i]));
   for (const std::string& seed : seeds)
-    test(seed);
+    saphira::fuzz::run(seed);
   const long count = std::strtol(argv[1], nullptr, 10);
   saphira::Random random(1);
   for (long i = 0; i < count; ++i) {
@@ -75,8 +67,7 @@ int main(int argc, char** argv) {
       for (char& c : input)
         c = static_cast<char>(random.next());
     }
-    input = mutate(input, random);
-    test(input);
+    saphira::fuzz::run(mutate(input, random));
   }
   std::printf("%ld inputs\n", count);
   return 0;

@@ -1,11 +1,7 @@
 // A file of activities: it compiles or has errors with their place, and compiled activities run for
 // any time without harm. The same bytes as a value of a belief.
 
-#include <cstdint>
-#include <cstdlib>
-#include <string_view>
-
-#include "saphira/base/text.hpp"
+#include "fuzz.hpp"
 #include "saphira/intentions/executor.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/language.hpp"
@@ -52,8 +48,7 @@ void run(const Loaded& loaded) {
     inputs.behaviors_cycle = inputs.cycle;
     for (const IntendedBehavior& behavior : out.behaviors)
       inputs.behaviors.push_back({behavior.name, i % 5 == 0 ? 1.0 : 0.5, 0.0});
-    if (out.nodes.size() > 302)
-      std::abort();
+    saphira::fuzz::require(out.nodes.size() <= 302);
     for (const Belief& belief : executor.beliefs().all())
       to_text(belief.value);
   }
@@ -61,9 +56,7 @@ void run(const Loaded& loaded) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view content(reinterpret_cast<const char*>(data), size);
+void saphira::fuzz::run(std::string_view content) {
   static const Functions kFunctions = [] {
     Functions all = core_functions();
     add_navigation(all);
@@ -72,21 +65,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Registry kBuiltIn = built_in();
   const Loaded loaded = load_text("fuzz.act", content, kFunctions, kBuiltIn);
   for (const Diagnostic& trouble : loaded.troubles) {
-    if (trouble.line < 1 || trouble.column < 1 || trouble.message.empty())
-      std::abort();
+    require(trouble.line >= 1 && trouble.column >= 1 && !trouble.message.empty());
     static_cast<void>(trouble.text());
   }
-  if (!loaded.ok() && loaded.schemas.size() > 0)
-    std::abort();
+  require(loaded.ok() || loaded.schemas.empty());
   if (!loaded.schemas.empty())
-    run(loaded);
-  try {
+    ::run(loaded);
+  reads([&] {
     const Value value = parse_value(content);
-    if (value != parse_value(to_text(value)))
-      std::abort();
-  } catch (const saphira::FileError& error) {
-    if (error.line() < 1 || error.column() < 1)
-      std::abort();
-  }
-  return 0;
+    require(value == parse_value(to_text(value)));
+  });
 }

@@ -2,11 +2,9 @@
 // outputs.
 
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <string_view>
 #include <vector>
 
+#include "fuzz.hpp"
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/language.hpp"
 
@@ -28,18 +26,14 @@ Intended intended(const Schema& schema) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+void saphira::fuzz::run(std::string_view text) {
   Compiled compiled = compile(text, "fuzz.beh");
   for (const std::vector<FileError>* messages : {&compiled.errors, &compiled.warnings})
     for (const FileError& message : *messages)
-      if (message.line() < 1 || message.column() < 1)
-        std::abort();
+      require(message.line() >= 1 && message.column() >= 1);
   if (!compiled.errors.empty()) {
-    if (!compiled.schemas.empty())
-      std::abort();
-    return 0;
+    require(compiled.schemas.empty());
+    return;
   }
   RobotModel model;
   model.lps.sonars.push_back({0, {0.1, 0.0, 0.0}});
@@ -58,8 +52,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     intent.cycle = cycle;
     inputs.intent = &intent;
     const Output output = executive.step(inputs);
-    if (!std::isfinite(output.speed) || !std::isfinite(output.heading_in_odom))
-      std::abort();
+    require(std::isfinite(output.speed) && std::isfinite(output.heading_in_odom));
   }
-  return 0;
 }

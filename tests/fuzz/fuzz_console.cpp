@@ -4,12 +4,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
+#include "fuzz.hpp"
 #include "saphira/console/access.hpp"
 #include "saphira/console/message.hpp"
 #include "saphira/teleop/control.hpp"
@@ -25,9 +23,8 @@ constexpr Control::OperatorId kPeople = 3;
 
 /// True where its sample counts.
 bool apply(Control& control, Control::OperatorId who, const Message& message, double now) {
-  if (const auto* const wrong = std::get_if<Wrong>(&message);
-      wrong != nullptr && wrong->why.empty())
-    std::abort();
+  if (const auto* const wrong = std::get_if<Wrong>(&message))
+    saphira::fuzz::require(!wrong->why.empty());
   if (const auto* const hello = std::get_if<Hello>(&message))
     control.join(who, hello->name);
   else if (const auto* const take = std::get_if<TakeControl>(&message))
@@ -45,15 +42,13 @@ bool apply(Control& control, Control::OperatorId who, const Message& message, do
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::string_view rest(reinterpret_cast<const char*>(data), size);
+void saphira::fuzz::run(std::string_view rest) {
   AccessSettings access{"right", {"robot.example"}};
-  Caller caller{std::string(rest.substr(0, 40)), std::string(rest.substr(0, size / 2)), false};
+  Caller caller{std::string(rest.substr(0, 40)), std::string(rest.substr(0, rest.size() / 2)),
+                false};
   static_cast<void>(refusal(access, caller));
-  if (may_watch(access, caller) ||
-      visitor_of(access, {}, rest, 0).may(saphira::security::DoorRight::watch))
-    std::abort();
+  require(!(may_watch(access, caller) ||
+            visitor_of(access, {}, rest, 0).may(saphira::security::DoorRight::watch)));
 
   const Control::Settings settings;
   Control control(settings);
@@ -68,13 +63,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (apply(control, who, parse_message(line), now))
       newest[who] = now;
     const Order order = control.order(now);
-    if (order.active &&
-        (control.holder() == 0 || now - newest[control.holder()] > settings.hold + 1e-9))
-      std::abort();
-    if (!std::isfinite(order.velocity) || !std::isfinite(order.rotation))
-      std::abort();
+    require(!(order.active &&
+              (control.holder() == 0 || now - newest[control.holder()] > settings.hold + 1e-9)));
+    require(std::isfinite(order.velocity) && std::isfinite(order.rotation));
     if (!nlohmann::json::accept(to_json(control.state())))
       std::abort();
   }
-  return 0;
 }

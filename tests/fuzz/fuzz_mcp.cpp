@@ -1,16 +1,14 @@
 // Messages of a language model's client to the MCP server, one per line: each is accepted or gets
 // an error, each call has arguments that fit its tool, and every line to the client is JSON.
 
-#include <cstdint>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 
+#include "fuzz.hpp"
 #include "saphira/mcp/session.hpp"
 
 using namespace saphira::mcp;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+void saphira::fuzz::run(std::string_view text) {
   static const Tool kTool{
       .name = "go_to",
       .description = "goes",
@@ -23,7 +21,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Session session("saphira", "1", "a robot");
   session.set_tools({kTool, kWhy});
   std::uint64_t count = 0;
-  std::string_view text(reinterpret_cast<const char*>(data), size);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     ++count;
@@ -36,8 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       session.close(count);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     for (const Call& call : session.take_calls()) {
-      if (call.tool == kTool.name && !misfit(call.arguments, kTool.input).empty())
-        std::abort();
+      require(call.tool != kTool.name || misfit(call.arguments, kTool.input).empty());
       if (call.as_task)
         session.begin_task(call.number, std::to_string(call.number), "begun");
       session.progress(call.number, 0.5, "half");
@@ -47,9 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     session.take_given_up();
     if (text.empty())
       session.end();
-    for (const Line& line : session.take_lines())
-      if (!Json::accept(line.text) || line.text.find('\n') != std::string::npos)
-        std::abort();
+    for (const saphira::mcp::Line& line : session.take_lines())
+      require(Json::accept(line.text) && line.text.find('\n') == std::string::npos);
   }
-  return 0;
 }

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 
+#include "fuzz.hpp"
 #include "saphira/protocol/check.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/impossible.hpp"
@@ -17,11 +16,7 @@
 namespace {
 
 using namespace saphira;
-
-void require(bool condition) {
-  if (!condition)
-    std::abort();
-}
+using fuzz::require;
 
 void decode_everything(const protocol::Bytes& body) {
   const protocol::Command command = protocol::decode_command(body);
@@ -112,12 +107,12 @@ void serve(protocol::ByteView bytes) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const protocol::ByteView input(data, size);
+void saphira::fuzz::run(std::string_view text) {
+  const std::size_t size = text.size();
+  const protocol::ByteView input(bytes_of(text), size);
   protocol::PacketParser parser;
   std::size_t at = 0;
-  std::size_t piece = size > 0 ? data[0] : 0;
+  std::size_t piece = size > 0 ? input[0] : 0;
   auto from = input.begin();
   while (at < size) {
     piece = (piece * 31 + 7) % 61 + 1;
@@ -142,5 +137,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         input.begin() + static_cast<std::ptrdiff_t>(std::min(size, protocol::kMaxBody))));
   check(input);
   serve(input);
-  return 0;
 }

@@ -2,17 +2,12 @@
 // guarantees.
 
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <string_view>
 
-#include "saphira/base/text.hpp"
+#include "fuzz.hpp"
 #include "saphira/protocol/parameters.hpp"
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
-  try {
+void saphira::fuzz::run(std::string_view text) {
+  reads([&] {
     const auto p = saphira::protocol::parse_parameters(text, "fuzz.p");
     bool good = p.angle_unit > 0.0 && p.distance_unit > 0.0 && p.velocity_unit > 0.0 &&
                 p.range_unit > 0.0 && p.vel2_unit > 0.0 && p.radius > 0.0 && p.max_velocity > 0.0 &&
@@ -21,11 +16,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       good = good && p.sonars[i].number == i && std::isfinite(p.sonars[i].pose_in_robot.x);
     for (const std::string& name : saphira::protocol::parameter_file_names(text, p.subclass))
       good = good && name.find('/') == std::string::npos;
-    if (!good)
-      std::abort();
-  } catch (const saphira::FileError& error) {
-    if (error.line() < 1 || error.column() < 1)
-      std::abort();
-  }
-  return 0;
+    require(good);
+  });
 }

@@ -1,15 +1,13 @@
 // A recording of the bus: its samples are read, or it gives an error that says where. What was read
 // is the same when it is written and read again.
 
-#include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "fuzz.hpp"
 #include "saphira/recorder/recording.hpp"
 
 using namespace saphira::recorder;
@@ -40,18 +38,14 @@ Read read(const std::string& file, std::string* written) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string file(reinterpret_cast<const char*>(data), size);
+void saphira::fuzz::run(std::string_view text) {
+  const std::string file(text);
   try {
     std::string written;
     const Read samples = read(file, &written);
-    if (read(written, nullptr) != samples)
-      std::abort();
+    require(read(written, nullptr) == samples);
   } catch (const std::invalid_argument& error) {
-    const std::string_view text = error.what();
-    if (!text.starts_with("byte ") && !text.starts_with("not an MCAP file"))
-      std::abort();
+    const std::string_view why = error.what();
+    require(why.starts_with("byte ") || why.starts_with("not an MCAP file"));
   }
-  return 0;
 }

@@ -2,45 +2,37 @@
 // come (+), are fetched (/carry) and leave (-) in any order. Each text is parsed or gives an error
 // in words; no visitor is fetched twice or by another robot; a robot's visitors are bounded.
 
-#include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
+#include "fuzz.hpp"
 #include "saphira/relay/rendezvous.hpp"
 
 using namespace saphira::relay;
 
 namespace {
 
-void expect(bool holds) {
-  if (!holds)
-    std::abort();
-}
-
 /// Passes a line to every reader of text.
 void read(const std::string& line) {
   try {
     for (const Robot& robot : parse_robots("robots", line))
-      expect(!robot.name.empty() && robot.port > 0 && robot.port < 65536);
+      saphira::fuzz::require(!robot.name.empty() && robot.port > 0 && robot.port < 65536);
   } catch (const std::invalid_argument& error) {
-    expect(std::string_view(error.what()).starts_with("robots"));
+    saphira::fuzz::require(std::string_view(error.what()).starts_with("robots"));
   }
   try {
     const Address address = parse_address(line);
-    expect(!address.host.empty() && !address.robot.empty() && address.port > 0);
+    saphira::fuzz::require(!address.host.empty() && !address.robot.empty() && address.port > 0);
   } catch (const std::invalid_argument& error) {
-    expect(*error.what() != 0);
+    saphira::fuzz::require(*error.what() != 0);
   }
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+void saphira::fuzz::run(std::string_view text) {
   Rendezvous relay({{"pioneer", 1, "0123456789abcdef"}, {"flakey", 2, "fedcba9876543210"}});
   std::map<std::string, std::set<Rendezvous::Visitor>> there;  // by robot
   std::map<Rendezvous::Visitor, std::string> waiting;          // robot
@@ -54,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += 0.5;
     read(line);
     for (const Rendezvous::Visitor gone : relay.expire(now)) {
-      expect(waiting.contains(gone));
+      require(waiting.contains(gone));
       there[waiting[gone]].erase(gone);
       waiting.erase(gone);
     }
@@ -62,15 +54,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const std::string robot = line.find("flakey") == std::string::npos ? "pioneer" : "flakey";
       ++last;
       if (const auto gone = relay.arrive(robot, line, last, std::to_string(last), now)) {
-        expect(there[robot].erase(*gone) == 1);
+        require(there[robot].erase(*gone) == 1);
         waiting.erase(*gone);
       }
       there[robot].insert(last);
       waiting[last] = robot;
-      expect(there[robot].size() <= Rendezvous::kMost);
+      require(there[robot].size() <= Rendezvous::kMost);
     } else if (const auto path = parse_path(line)) {
       if (const auto visitor = relay.fetch(path->robot, path->ticket)) {
-        expect(waiting.contains(*visitor) && waiting[*visitor] == path->robot);
+        require(waiting.contains(*visitor) && waiting[*visitor] == path->robot);
         waiting.erase(*visitor);
       }
     } else if (line.starts_with("-") && last > 0) {
@@ -81,5 +73,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       there["flakey"].erase(visitor);
     }
   }
-  return 0;
 }

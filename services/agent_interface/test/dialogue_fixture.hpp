@@ -40,33 +40,40 @@ struct DialogueTest : testing::Test {
     last = dialogue.hear(utterance, situation);
     return last;
   }
-  /// The robot's answer, in one line.
-  std::string said(const std::string& text, const std::string& speaker = "Alice") {
+  /// The robot's newest answer, in one line.
+  std::string answer() const {
     std::string all;
-    for (const Said& one : hear(text, speaker).said)
+    for (const Said& one : last.said)
       all += (all.empty() ? "" : " / ") + one.text;
     return all;
+  }
+  std::string said(const std::string& text, const std::string& speaker = "Alice") {
+    hear(text, speaker);
+    return answer();
   }
   /// The newest goals.
   std::string goals() const {
     std::string all;
-    for (const WantedGoal& goal : last.goals)
-      all += (all.empty() ? "" : "; ") + goal.functor + " " + describe(goal.arguments);
+    for (const WantedGoal& goal : last.goals) {
+      const std::string arguments = describe(goal.arguments);
+      all += (all.empty() ? "" : "; ") + goal.functor + (arguments.empty() ? "" : " ") + arguments;
+    }
     return all;
   }
-  /// The newest claims.
-  std::string claims() const {
+  static std::string claims(const std::vector<Claimed>& claims) {
     std::string all;
-    for (const Claimed& claim : last.claims)
+    for (const Claimed& claim : claims) {
+      EXPECT_TRUE(claim.list.empty() || joined(claim.list) == claim.value) << claim.value;
       all += (all.empty() ? "" : "; ") + claim.name + "=" + (claim.nil ? "nil" : claim.value);
+    }
     return all;
   }
 
   Situation situation;
   Dialogue dialogue{grammar()};
   Dialogue::Outputs last;
-  std::uint64_t number = 0;
-  double now = 1e9;  ///< [s]
+  std::uint64_t number = 0;  ///< of the newest utterance
+  double now = 1e9;          ///< [s]
 };
 
 }  // namespace saphira::agent_interface

@@ -116,9 +116,8 @@ TEST_F(Facilitation, AsksTheCheapestAgentAndSaysWhichOneAnswered) {
   facilitator.announce(agent(1, "calendar", false, 2.0));
   facilitator.announce(agent(2, "badge reader", false, 1.0));
   const auto asked = ask(place_of(5));
-  ASSERT_EQ(asked.requests.size(), 1u);
-  EXPECT_EQ(asked.requests[0].service, "address of badge reader");
-  EXPECT_EQ(asked.requests[0].asker, kPerson);
+  EXPECT_EQ(test::only(asked.requests).service, "address of badge reader");
+  EXPECT_EQ(test::only(asked.requests).asker, kPerson);
   const auto solved = test::only(hear("badge reader", place_of(5), library()).solved);
   EXPECT_EQ(solved.service, "badge reader");
   EXPECT_EQ(solved.answer, library());
@@ -130,12 +129,10 @@ TEST_F(Facilitation, WhatOneAgentRefusesIsAskedOfTheNext) {
   facilitator.announce(agent(2, "b"));
   ask(place_of(5));
   const auto next = hear("a", place_of(5), {AnswerCode::refused, "no idea", {}});
-  ASSERT_EQ(next.requests.size(), 1u);
-  EXPECT_EQ(next.requests[0].service, "address of b");
+  EXPECT_EQ(test::only(next.requests).service, "address of b");
   EXPECT_TRUE(next.solved.empty());
   const auto end = hear("b", place_of(5), {AnswerCode::refused, "nor I", {}});
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer.text, "nor I");
+  EXPECT_EQ(test::only(end.solved).answer.text, "nor I");
 }
 
 TEST_F(Facilitation, CollectsAnswersOfAllWithTheirOrigin) {
@@ -176,13 +173,11 @@ TEST_F(Facilitation, WhatADeadAgentOwedIsAskedOfAnother) {
   ask(place_of(5));
   facilitator.leave(1);
   const auto next = facilitator.step(now);
-  ASSERT_EQ(next.requests.size(), 1u);
-  EXPECT_EQ(next.requests[0].service, "address of b");
+  EXPECT_EQ(test::only(next.requests).service, "address of b");
   facilitator.leave(2);
   const auto end = facilitator.step(now);
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::lost);
-  EXPECT_EQ(end.solved[0].answer.text, "agent b left before it answered");
+  EXPECT_EQ(test::only(end.solved).answer.code, AnswerCode::lost);
+  EXPECT_EQ(test::only(end.solved).answer.text, "agent b left before it answered");
 }
 
 TEST_F(Facilitation, AnActionIsNotBegunASecondTimeByAnother) {
@@ -192,8 +187,7 @@ TEST_F(Facilitation, AnActionIsNotBegunASecondTimeByAnother) {
   facilitator.leave(1);
   const auto end = facilitator.step(now);
   EXPECT_TRUE(end.requests.empty());
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::lost);
+  EXPECT_EQ(test::only(end.solved).answer.code, AnswerCode::lost);
 }
 
 TEST_F(Facilitation, AsksAgainUntilSomethingIsHeardAndEndsAtTheDeadline) {
@@ -219,8 +213,7 @@ TEST_F(Facilitation, ARepeatedRequestIsAnsweredAgainAndAskedOnce) {
   hear("a", place_of(5), library());
   const auto again = ask(place_of(5));
   EXPECT_TRUE(again.requests.empty());
-  ASSERT_EQ(again.solved.size(), 1u);
-  EXPECT_EQ(again.solved[0].answer, library());
+  EXPECT_EQ(test::only(again.solved).answer, library());
 }
 
 Request withdrawal(std::uint64_t number) {
@@ -237,16 +230,14 @@ TEST_F(Facilitation, AWithdrawnActionEndsWithTheAnswerOfItsAgent) {
   hear("a", place_of(5), {AnswerCode::underway, "on its way"});
   const auto told = ask(withdrawal(5));
   EXPECT_TRUE(told.solved.empty());
-  ASSERT_EQ(told.requests.size(), 1u);
-  EXPECT_EQ(told.requests[0].service, "address of a");
-  EXPECT_EQ(told.requests[0].functor, kWithdraw);
-  EXPECT_EQ(told.requests[0].number, 5u);
-  EXPECT_TRUE(told.requests[0].arguments.empty());
+  EXPECT_EQ(test::only(told.requests).service, "address of a");
+  EXPECT_EQ(test::only(told.requests).functor, kWithdraw);
+  EXPECT_EQ(test::only(told.requests).number, 5u);
+  EXPECT_TRUE(test::only(told.requests).arguments.empty());
   EXPECT_TRUE(ask(place_of(5)).requests.empty()) << "the request once more";
   const auto end = hear("a", place_of(5), {AnswerCode::refused, "withdrawn before it was begun"});
   EXPECT_TRUE(end.requests.empty()) << "no other agent begins it";
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer.text, "withdrawn before it was begun");
+  EXPECT_EQ(test::only(end.solved).answer.text, "withdrawn before it was begun");
   EXPECT_EQ(ask(withdrawal(5)).solved.at(0).answer.code, AnswerCode::refused) << "told again";
 }
 
@@ -273,8 +264,8 @@ TEST_F(Facilitation, WhatNobodyHasBegunEndsAtOnceWhenItIsWithdrawn) {
   ask(wanting(place_of(5), 0.0));  // facts
   const auto end = ask(withdrawal(5));
   EXPECT_TRUE(end.requests.empty());
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer, (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
+  EXPECT_EQ(test::only(end.solved).answer,
+            (Answer{AnswerCode::refused, "withdrawn; nothing was done"}));
   ask(wanting(place_of(7), 0.0));
   hear("a", wanting(place_of(7), 0.0), library());
   EXPECT_EQ(ask(withdrawal(7)).solved.at(0).answer.text, "1 answer; withdrawn");
@@ -317,9 +308,9 @@ TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
   EXPECT_TRUE(facilitator.step(now).requests.empty());
   facilitator.happened("moved", {text("person", "karen"), text("place", "kitchen")}, now);
   const auto moved = facilitator.step(now).requests;
-  ASSERT_EQ(moved.size(), 1u);
-  EXPECT_EQ(text_of(moved[0].arguments, "place"), "kitchen");
-  facilitator.hear(moved[0].service, moved[0].asker, moved[0].number, {}, now);
+  EXPECT_EQ(text_of(test::only(moved).arguments, "place"), "kitchen");
+  facilitator.hear(test::only(moved).service, test::only(moved).asker, test::only(moved).number, {},
+                   now);
   facilitator.take_back({1, 2});
   facilitator.happened("moved", {text("person", "karen"), text("place", "kitchen")}, now);
   EXPECT_TRUE(facilitator.step(now).requests.empty());
@@ -409,8 +400,8 @@ TEST_F(Facilitation, ATriggerFiresItsTimesWhateverIsHeardAgain) {
   now += 5.0;
   const auto first = facilitator.step(now);
   EXPECT_TRUE(first.changed);
-  ASSERT_EQ(first.requests.size(), 1u);
-  facilitator.hear(first.requests[0].service, kSelf, first.requests[0].number, {}, now);
+  facilitator.hear(test::only(first.requests).service, kSelf, test::only(first.requests).number, {},
+                   now);
   facilitator.set(every_five_seconds(2), now);  // its sample came once more
   facilitator.miss({1, 4});                     // its writer was not heard for a moment
   facilitator.set(every_five_seconds(2), now);
@@ -491,8 +482,7 @@ TEST_F(Facilitation, TheActionOfATriggerEndsWithTheTrigger) {
     facilitator.set(every_five_seconds(0), now);
     now += 5.0;
     const auto fired = facilitator.step(now);
-    ASSERT_EQ(fired.requests.size(), 1u);
-    const Request action = fired.requests[0];
+    const Request action = test::only(fired.requests);
     facilitator.hear(action.service, kSelf, action.number, {AnswerCode::underway, ""}, now);
     if (lost)
       facilitator.miss({1, 4});
@@ -535,8 +525,7 @@ TEST_F(FacilitationAgain, ABegunActionOfAnAgentThatIsGoneIsLost) {
   now += 2.0;
   const auto end = facilitator.step(now);
   EXPECT_TRUE(end.requests.empty());
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer,
+  EXPECT_EQ(test::only(end.solved).answer,
             (Answer{AnswerCode::lost,
                     "the agent that was asked is gone; whether it was done is not known"}));
 }
@@ -588,8 +577,7 @@ TEST_F(Facilitation, ARequiredArgumentIsNotLeftOpen) {
   request.arguments[0] = open_slot("person");
   const auto out = ask(request);
   EXPECT_TRUE(out.requests.empty());
-  ASSERT_EQ(out.solved.size(), 1u);
-  EXPECT_EQ(out.solved[0].answer,
+  EXPECT_EQ(test::only(out.solved).answer,
             (Answer{AnswerCode::bad_argument,
                     "place_of: argument \"person\" is missing: expected a text (a name)"}));
 }
@@ -701,9 +689,9 @@ TEST_F(Conjunctions, AnActionThatMayHaveBegunIsNotTriedWithOtherValues) {
   sent(answer(at("cellar")));
   const auto end = answer({AnswerCode::given_up, "the door is closed"});
   EXPECT_TRUE(end.requests.empty());
-  ASSERT_EQ(end.solved.size(), 1u);
-  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::given_up);
-  EXPECT_EQ(end.solved[0].answer.text, "part 2 of 2, go place=\"cellar\": the door is closed");
+  EXPECT_EQ(test::only(end.solved).answer.code, AnswerCode::given_up);
+  EXPECT_EQ(test::only(end.solved).answer.text,
+            "part 2 of 2, go place=\"cellar\": the door is closed");
   sent(ask(go_to_karen(6)));
   sent(answer(at("cellar")));
   facilitator.leave(3);
@@ -885,15 +873,13 @@ TEST_F(Facilitation, ARequestIsWithdrawnByItsAskerAndByOperators) {
   request.person = Identity{"anna", "agent"};
   const auto asked = ask(request);
   EXPECT_EQ(asked.requests.at(0).person, request.person);
-  ASSERT_EQ(asked.audit.size(), 1U);
-  EXPECT_EQ(asked.audit[0].act, v1::AUDIT_ASKED);
+  EXPECT_EQ(test::only(asked.audit).act, v1::AUDIT_ASKED);
   Request other = withdrawal(5);
   other.person = Identity{"planner", "agent"};
   const auto refused = ask(other);
   EXPECT_TRUE(refused.requests.empty() && refused.solved.empty());
   EXPECT_EQ(refused.warnings.size(), 1U);
-  ASSERT_EQ(refused.audit.size(), 1U);
-  EXPECT_EQ(refused.audit[0].act, v1::AUDIT_REFUSED);
+  EXPECT_EQ(test::only(refused.audit).act, v1::AUDIT_REFUSED);
   other.person = Identity{"karen", "operator"};
   EXPECT_EQ(ask(other).requests.at(0).functor, kWithdraw);
 }
@@ -916,8 +902,7 @@ TEST_F(Facilitation, AnActionIsItsAskersOverARestart) {
     other.person = planner;
     const auto refused = ask(other);
     EXPECT_TRUE(refused.requests.empty() && refused.solved.empty()) << other.functor;
-    ASSERT_EQ(refused.audit.size(), 1U);
-    EXPECT_EQ(refused.audit[0].act, v1::AUDIT_REFUSED);
+    EXPECT_EQ(test::only(refused.audit).act, v1::AUDIT_REFUSED);
     EXPECT_EQ(facilitator.open(), 0U);
   }
   for (const Identity& who : {*request.person, Identity{"karen", "operator"}}) {
@@ -943,8 +928,7 @@ TEST_F(Facilitation, ATriggerIsItsRequestersAndActsForThem) {
   now += 5.0;
   const auto fired = facilitator.step(now);
   EXPECT_EQ(fired.warnings.size(), 1U);
-  ASSERT_EQ(fired.requests.size(), 1U);
-  EXPECT_EQ(fired.requests[0].person, anna);
+  EXPECT_EQ(test::only(fired.requests).person, anna);
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "process.hpp"
+#include "utterances.hpp"
+
 namespace saphira::agent_interface {
 namespace {
 
@@ -304,6 +307,17 @@ TEST(Grammar, MistakesNameLineAndColumn) {
             "3:6: the list \"a\" stands above already");
   EXPECT_EQ(mistake("keyword: f\nstop()\n  " + std::string(20'000, '(')),
             "3:54: expected no more than 50 brackets within each other");
+}
+
+/// The shipped grammar and what people may say to it.
+TEST(Utterances, MeanWhatAPersonWouldTakeThemFor) {
+  const std::string file = test::source("config/grammars/flakey.grammar");
+  const Grammar grammar(read_file(file), file);
+  const std::vector<SaidAndMeant> phrases =
+      read_utterances(read_file(test::source("services/agent_interface/test/utterances.txt")));
+  EXPECT_GE(phrases.size(), 250U);
+  for (const SaidAndMeant& phrase : phrases)
+    EXPECT_EQ(meaning_of(grammar, phrase), phrase.meaning) << phrase.text;
 }
 
 }  // namespace

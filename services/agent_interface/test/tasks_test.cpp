@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "only.hpp"
 #include "saphira/base/archive.hpp"
 
 namespace saphira::agent_interface {
@@ -255,12 +256,10 @@ TEST_F(OwnedTask, OnlyItsOwnerAndOperatorsReplaceIt) {
   const Tasks::Outputs denied = want({errand("alice", "the books")}, planner, true);
   EXPECT_FALSE(denied.denied.text.empty());
   EXPECT_TRUE(denied.goals.empty() && denied.canceled.empty() && denied.asks.empty());
-  ASSERT_EQ(denied.said.size(), 1U);
-  EXPECT_TRUE(denied.said[0].refused && denied.said[0].end);
+  EXPECT_TRUE(test::only(denied.said).refused && test::only(denied.said).end);
   const Tasks::Outputs own = want({errand("alice", "the books")}, anna);
   EXPECT_EQ(own.canceled, std::vector<std::uint64_t>{1});
-  ASSERT_EQ(own.goals.size(), 1U);
-  EXPECT_EQ(own.goals[0].person, anna);
+  EXPECT_EQ(test::only(own.goals).person, anna);
   EXPECT_EQ(want({errand("alice", "the mail")}, karen).canceled, std::vector<std::uint64_t>{2});
 }
 
@@ -275,17 +274,14 @@ TEST_F(OwnedTask, AnybodyStopsItAndWhoGoesOnOwnsIt) {
   want({errand("alice", "the mail"), errand("alice", "the books")}, karen);
   const Tasks::Outputs stop = want({motion("alice", "stop")}, planner);
   EXPECT_EQ(stop.canceled, std::vector<std::uint64_t>{1});
-  ASSERT_EQ(stop.goals.size(), 1U);
-  EXPECT_EQ(stop.goals[0].person, planner);
+  EXPECT_EQ(test::only(stop.goals).person, planner);
   tasks.ended({2, true, "stopped"});
   Utterance words{{7, ++number}, "alice", "go on"};
   words.person = planner;
   const Tasks::Outputs again = tasks.go_on(words);
-  ASSERT_EQ(again.goals.size(), 1U);
-  EXPECT_EQ(again.goals[0].person, planner) << "not in the name of who was stopped";
+  EXPECT_EQ(test::only(again.goals).person, planner) << "not in the name of who was stopped";
   const Tasks::Outputs next = tasks.ended({3, true, "brought"});
-  ASSERT_EQ(next.goals.size(), 1U);
-  EXPECT_EQ(next.goals[0].person, planner);
+  EXPECT_EQ(test::only(next.goals).person, planner);
 }
 
 TEST_F(OwnedTask, AWaitEndsForItsOwnerAndOperators) {

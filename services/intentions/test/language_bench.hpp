@@ -136,4 +136,14 @@ class Stage {
   double level = 0.0;
 };
 
+/// Somebody claims it, and it is so in the next step.
+inline void claim(Stage& stage, const std::string& name, bool holds) {
+  stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid,
+                                 {9, name.size() > 1 ? std::uint64_t(name[1]) : 1U},
+                                 "somebody",
+                                 name,
+                                 Value::truth(holds)});
+  stage.step();
+}
+
 }  // namespace saphira::intentions

@@ -9,39 +9,6 @@
 namespace saphira::intentions {
 namespace {
 
-TEST(Activities, OneGoalSetForACycle) {
-  Stage stage(
-      activity("(EXECUTE (say \"one\")) ((EXECUTE (say \"two\")) (EXECUTE (say \"more\")))"
-               "(:three (EXECUTE (say \"three\")))"));
-  stage.begin();
-  EXPECT_EQ(stage.messages, Names({"one"}));
-  stage.step();
-  EXPECT_EQ(stage.messages, Names({"one", "two", "more"}));
-  EXPECT_EQ(stage.display(), "* it THREE");
-  stage.step();
-  EXPECT_EQ(stage.messages.back(), "three");
-  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
-}
-
-TEST(Activities, ParametersVariablesAndConditions) {
-  Stage stage(
-      activity("(= double (* 2 n)) (IF (> double 5) (GOTO :large))"
-               "(SUCCEED \"small ~a\" double) (:large (SUCCEED \"large ~a\" double))",
-               ":params ((n :number 1 :low 0 :high 9))"));
-  stage.ask(1, "it", {number("n", 2.0)});
-  stage.step(5);
-  EXPECT_EQ(stage.status(1).reason, "small 4");
-  stage.ask(2, "it", {number("n", 3.0)});
-  stage.step(5);
-  EXPECT_EQ(stage.status(2).reason, "large 6");
-  stage.begin(3, "it", 5);
-  EXPECT_EQ(stage.status(3).reason, "small 2");
-  stage.ask(4, "it", {number("n", 10.0)});
-  stage.step();
-  EXPECT_EQ(stage.status(4).state, v1::GOAL_REFUSED);
-  EXPECT_EQ(stage.status(4).reason, "argument \"n\": expected a number from 0 to 9, got 10");
-}
-
 TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   Stage stage(
       activity("(INTEND :go-to-pos ((goal . (point 1 2)) (speed . 300mm/s)) :name first)"
@@ -60,45 +27,6 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   stage.satisfy("second", 1.0, 3);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
   EXPECT_TRUE(stage.out.behaviors.empty());
-}
-
-TEST(Activities, WaitsThatLong) {
-  Stage stage(activity("(WAIT 2s) (SUCCEED \"waited\")"));
-  stage.begin(19);
-  EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
-  EXPECT_NE(stage.status(1).step.find("waits for 2s"), std::string::npos) << stage.status(1).step;
-  stage.step(4);
-  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
-  EXPECT_EQ(stage.status(1).reason, "waited");
-}
-
-TEST(Activities, AThresholdLetsGoOnWhileTheBehaviorLasts) {
-  Stage stage(
-      activity("(INTEND :follow () :blocking 0.6 :name lane)"
-               "(INTEND :follow-door () :name door) (UNINTEND 'lane)"));
-  stage.ask(1, "it");
-  stage.satisfy("lane", 0.5, 5);
-  EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
-  stage.satisfy("lane", 0.7, 1);
-  EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
-  stage.satisfy("lane", 1.0, 5);
-  EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
-}
-
-TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
-  Stage stage(
-      "(defintention :top :goals '((INTEND :middle ()) (INTEND :stop-here ())))"
-      "(defintention :middle :goals '((INTEND :bottom ())))"
-      "(defintention :bottom :goals '((INTEND :go-to-pos () :name go)))"
-      "(defintention :stop-here :goals '((INTEND :halt () :name halt)))");
-  stage.begin(1, "top");
-  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "begun at once, three levels deep";
-  EXPECT_EQ(stage.display(), "* top S2; * middle END; * bottom END; * GoToPos B");
-  stage.satisfy("go", 1.0);
-  stage.step(2);  // reports may still be for the earlier intent
-  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  stage.step();
-  EXPECT_EQ(stage.behaviors(), Names({"Halt"}));
 }
 
 TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
@@ -223,6 +151,225 @@ TEST(Activities, PlansThatAZoneForbidsAgainAndAgainFailWithTheZone) {
   stage.step(20);
   EXPECT_EQ(stage.status(2).state, v1::GOAL_SUCCEEDED) << stage.status(2).reason;
   EXPECT_TRUE(stage.belief("*refusals*").nil());
+}
+
+// The compiler's messages.
+
+Registry with_behaviors() {
+  Registry registry = built_in();
+  BehaviorSignature follow{"FollowCorridor", {}};
+  Parameter corridor;
+  corridor.name = "corridor";
+  corridor.required = true;
+  Parameter goal;
+  goal.name = "goal";
+  follow.parameters = {corridor, goal};
+  registry.know_behaviors({follow});
+  return registry;
+}
+
+Loaded load(const std::string& text) {
+  return load_text("a.act", text, core_functions(), with_behaviors());
+}
+
+/// "3:7 message" of each trouble.
+std::vector<std::string> troubles(const std::string& text) {
+  std::vector<std::string> all;
+  for (const Diagnostic& trouble : load(text).troubles)
+    all.push_back(std::to_string(trouble.line) + ":" + std::to_string(trouble.column) + " " +
+                  (trouble.error ? "" : "warning: ") + trouble.message);
+  return all;
+}
+
+using List = std::vector<std::string>;
+
+std::string goals(const std::string& goals) {
+  return "(defintention :it :params (dest) :goals '(\n" + goals + "))";
+}
+
+TEST(ActivityErrors, ShowThePlaceWithACaret) {
+  const Loaded loaded = load("(defintention :it\n  :goals '((GOTO :nowhere)))\n");
+  ASSERT_EQ(loaded.troubles.size(), 1U);
+  EXPECT_TRUE(loaded.schemas.empty());
+  EXPECT_EQ(loaded.troubles[0].text(),
+            "a.act:2:18: no goal-set has the label :nowhere\n"
+            "      :goals '((GOTO :nowhere)))\n"
+            "                     ^");
+}
+
+TEST(ActivityErrors, OfParenthesesAndTexts) {
+  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t))"), List({"1:1 expected a ) for this ("}));
+  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t))))"),
+            List({"1:37 a ) too many: expected (defintention ...)"}));
+  EXPECT_EQ(troubles("(defintention :a :goals '((EXECUTE (say \"x))))"),
+            List({"1:41 expected a \" for this one"}));
+  for (const char* const wrong :
+       {"(WAIT -5s)", "(WAIT-FOR t :timeout -5)", "(WAIT-FOR t :timeout 60deg)",
+        "(INTEND :turn_to () :blocking t :timeout 2m)"})
+    EXPECT_NE(troubles(goals(wrong)).at(0).find("expected a time in seconds, such as 60s, found"),
+              std::string::npos)
+        << wrong;
+  EXPECT_EQ(troubles("(defintention :a :goals '((WAIT-FOR t :timeout 5parsec)))"),
+            List({"1:49 expected a unit (m mm cm km s ms min h deg rad m/s mm/s cm/s deg/s rad/s "
+                  "%) or none, found \"parsec\""}));
+  EXPECT_EQ(troubles("(defschema :a)"),
+            List({"1:1 expected (defintention :name ...), found \"(defschema :a)\""}));
+}
+
+TEST(ActivityErrors, AMissingParenthesisDoesNotTakeTheNextDefinition) {
+  const List all = troubles(
+      "(defintention :a :goals '((TEST t))\n"
+      "(defintention :b :goals '((GOTO :x)))\n");
+  EXPECT_EQ(all, List({"1:1 expected a ) for this (", "2:33 no goal-set has the label :x"}));
+}
+
+TEST(ActivityErrors, OfGoals) {
+  EXPECT_EQ(troubles(goals("(FLY)")),
+            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT, WAIT-FOR, ASK, "
+                  "INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, SUCCEED or FAIL"}));
+  EXPECT_EQ(troubles(goals(":plan (TEST t)")),
+            List({"2:1 expected a goal-set in parentheses: (:plan goal ...)"}));
+  EXPECT_EQ(troubles(goals("(TEST)")), List({"2:1 expected (TEST condition), found \"(TEST)\""}));
+  EXPECT_EQ(troubles(goals("(TEST t :reson 1)")),
+            List({"2:9 expected one of :else, :reason, found \":reson\""}));
+  EXPECT_EQ(troubles(goals("(INTEND :go_to ((position . (point 1 2))) :blocking 2)")),
+            List({"2:53 expected t, nil, or a degree from 0 to 1, found \"2\""}));
+  EXPECT_EQ(
+      troubles(goals("(ASK q place-of ((person . 1)))")),
+      List({"2:1 expected (ASK question functor ((slot . value) ...) :timeout seconds), found "
+            "\"(ASK q place-of ((person . 1)))\""}));
+  EXPECT_EQ(troubles(goals("(ASK q place-of (person) :timeout 5)")),
+            List({"2:18 expected (slot . value), found \"person\""}));
+  EXPECT_EQ(troubles(goals("(= *x* 1)")),
+            List({"2:4 expected a local variable; (EXECUTE (setq *x* ...)) sets an environment "
+                  "variable"}));
+}
+
+TEST(ActivityErrors, OfExpressions) {
+  EXPECT_EQ(troubles(goals("(TEST (fly dest))")), List({"2:8 unknown function \"fly\""}));
+  EXPECT_EQ(troubles(goals("(TEST (null dest 1))")),
+            List({"2:7 (null) expected 1 argument, found 2"}));
+  EXPECT_EQ(troubles(goals("(TEST (> dest))")),
+            List({"2:7 (>) expected 2 to 64 arguments, found 1"}));
+  EXPECT_EQ(troubles(goals("(TEST dset)")),
+            List({"2:7 unknown variable \"dset\": expected a parameter, a variable that = binds, "
+                  "*an-environment-variable* or a condition"}));
+  EXPECT_EQ(troubles(goals("(TEST (say \"x\"))")),
+            List({"2:8 \"say\" is an action: expected it within EXECUTE"}));
+}
+
+TEST(ActivityErrors, OfWhatCannotBeReached) {
+  EXPECT_EQ(troubles(goals("(GOTO :end)\n(TEST t)\n(:end)")),
+            List({"3:1 this goal-set can never be reached"}));
+  EXPECT_EQ(troubles(goals("((SUCCEED)\n(TEST t))")), List({"3:1 this goal can never be reached"}));
+  EXPECT_EQ(troubles(goals("(IF dest (GOTO :a) (GOTO :b)) (TEST t) (:a) (:b)")),
+            List({"2:31 this goal-set can never be reached"}));
+  EXPECT_EQ(troubles(goals("(:a) (:a)")), List({"2:7 the label :a is there twice"}));
+}
+
+TEST(ActivityErrors, OfSchemasAndTheirArguments) {
+  EXPECT_EQ(troubles(goals("(INTEND :fly ())")),
+            List({"2:9 unknown schema \"fly\": neither an activity nor a behavior"}));
+  EXPECT_EQ(
+      troubles(goals("(INTEND :go_to ((place . dest)))")),
+      List({"2:9 go_to needs the parameter \"position\"",
+            "2:17 go_to has no parameter \"place\": expected position, speed, radius, facing, "
+            "patience"}));
+  EXPECT_EQ(troubles(goals("(INTEND :follow-corridor ((goal . dest)))")),
+            List({"2:9 follow-corridor needs the parameter \"corridor\""}));
+  EXPECT_EQ(troubles(goals("(INTEND :it ())")), List({"2:9 it needs the parameter \"dest\""}));
+  EXPECT_EQ(troubles("(defintention :go_to :goals '((TEST t)))"),
+            List({"1:1 \"go_to\" is built in already"}));
+  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t)))\n(defintention :A :goals '((TEST t)))"),
+            List({"2:1 the activity \"A\" is in a.act already"}));
+}
+
+TEST(ActivityErrors, OfAConcurrentActivityThatDrives) {
+  const std::string goals = " :goals '((INTEND :FollowCorridor ((corridor . (point 1 2)))))";
+  EXPECT_EQ(troubles("(defintention :a :concurrent t" + goals + ")"),
+            List({"1:49 \"FollowCorridor\" is a behavior: a concurrent activity does not drive"}));
+  EXPECT_EQ(troubles("(defintention :a :concurrent nil" + goals + ")"), List());
+}
+
+TEST(ActivityErrors, OfAFileWithoutActivities) {
+  for (const std::string file : {"", "\n", "; nothing yet\n"})
+    EXPECT_EQ(troubles(file),
+              List({"1:1 expected (defintention :name ...); there is no activity in this file"}));
+}
+
+TEST(ActivityErrors, OfParameters) {
+  EXPECT_EQ(troubles("(defintention :a :params ((n :numbr 1)) :goals '((TEST t)))"),
+            List({"1:30 expected :number, :text, :place, :point, :list or :any, found "
+                  "\":numbr\""}));
+  EXPECT_EQ(troubles("(defintention :a :params ((n :number 9 :high 3)) :goals '((TEST t)))"),
+            List({"1:27 expected a default within :low and :high"}));
+  // A number as default, a unit or limits make it a number.
+  EXPECT_EQ(troubles("(defintention :a :params ((n 9 :high 3)) :goals '((TEST t)))"),
+            List({"1:27 expected a default within :low and :high"}));
+  EXPECT_EQ(troubles("(defintention :a :params ((n 'x :high 3)) :goals '((TEST t)))").size(), 1U);
+  EXPECT_EQ(troubles("(defintention :a :params ((n :any 'x :low 3)) :goals '((TEST t)))").size(),
+            1U);
+  EXPECT_EQ(troubles("(defintention :a :params ((n :unit m)) :goals '((TEST t)))"), List());
+  EXPECT_EQ(troubles("(defintention :a :params (n n) :goals '((TEST t)))"),
+            List({"1:29 parameter \"n\" is there twice"}));
+}
+
+TEST(ActivityErrors, SeveralOfAFileAndWarnings) {
+  EXPECT_EQ(troubles(goals("(TEST (fly))\n(WAIT-FOR dest)\n(GOTO :x)")),
+            List({"2:8 unknown function \"fly\"",
+                  "3:1 warning: waits without limit: expected :timeout seconds, or :forever t to "
+                  "say so",
+                  "4:7 no goal-set has the label :x"}));
+  const Loaded doubtful = load(goals("(WAIT-FOR dest)"));
+  EXPECT_TRUE(doubtful.ok());
+  EXPECT_EQ(doubtful.schemas.size(), 1U);
+}
+
+TEST(ActivityErrors, BehaviorsThatAreNotKnownYetAreDoubtful) {
+  const Registry registry = built_in();
+  const Loaded loaded = load_text("a.act", goals("(INTEND :follow ())\n(INTEND :follow ())"),
+                                  core_functions(), registry);
+  EXPECT_TRUE(loaded.ok());
+  ASSERT_EQ(loaded.troubles.size(), 1U) << "told once";
+  Registry all = registry;
+  all.add(loaded.schemas[0]);
+  all.know_behaviors({});
+  const auto later = check_references(all);
+  ASSERT_EQ(later.size(), 2U);
+  EXPECT_EQ(later[0].message, "unknown schema \"follow\": neither an activity nor a behavior");
+}
+
+TEST(ActivityErrors, AFileMayNameWhatAnotherOneHas) {
+  const Loaded loaded = load_activities({{"a.act", "(defintention :a :goals '((INTEND :b ())))"},
+                                         {"b.act", "(defintention :b :goals '((INTEND :a ())))"},
+                                         {"c.act", "(defintention :c :goals '((INTEND :d ())))"}},
+                                        core_functions(), with_behaviors());
+  ASSERT_EQ(loaded.troubles.size(), 1U);
+  EXPECT_EQ(loaded.troubles[0].file, "c.act");
+  EXPECT_EQ(loaded.schemas.size(), 2U) << "only the broken one is left out";
+}
+
+TEST(ActivityErrors, AtRunTimeReachTheGoal) {
+  Stage stage("(defintention :it :params (x) :goals '((= y (+ x 1)) (SUCCEED \"~a\" y)))");
+  stage.ask(1, "it", {text("x", "abc")});
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
+  EXPECT_EQ(stage.status(1).code, v1::CODE_ACTIVITY);
+  EXPECT_EQ(stage.status(1).reason, "(+) expected a number, got the text \"abc\"");
+}
+
+TEST(ActivityValues, ReadWhatTheyWrite) {
+  for (const char* const text :
+       {"nil", "t", "2.5", "-1e-07", "follow-it", "\"a \\\"b\\\" c\"", "\"1\"", "(a 1 (b nil))",
+        "(point 1 2.5 -0.5 :map)", "(region 3 12)", "\"\"", "\"T\""})
+    EXPECT_EQ(to_text(parse_value(text)), text);
+  EXPECT_EQ(parse_value("()"), Value());
+  EXPECT_EQ(parse_value("90deg").number() != nullptr, true);
+  EXPECT_THROW(parse_value("(a"), FileError);
+  EXPECT_THROW(parse_value(""), FileError);
+  EXPECT_THROW(parse_value("a b"), FileError);
+  EXPECT_THROW(parse_value("\"a\vb\""), FileError);
+  EXPECT_EQ(to_text(parse_value("\"a\tb\"")), "\"a b\"");
 }
 
 }  // namespace

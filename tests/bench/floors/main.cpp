@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "../result.hpp"
 #include "drive/building.hpp"
 #include "floors/floor.hpp"
 #include "localization/patrol.hpp"
@@ -408,31 +409,25 @@ int run(const Options& options) {
     all.recessed_noticed += patrolled.recessed_noticed;
     all.reported += patrolled.reported;
     all.real += patrolled.real;
-    std::fprintf(
-        options.json ? stderr : stdout,
-        "floor %llu: p95 %.2f m, worst %.2f m, tracking %.0f %%, 0.9 is right %.0f %%, doors "
-        "%d/%d; "
-        "carried: %d of %d arrived, %d false; built %.0f of %.0f m in %.0f min%s, doors %d/%d, %d "
-        "false%s%s\n",
-        static_cast<unsigned long long>(here.seed), p95, worst,
-        100.0 * share(patrolled.tracking, patrolled.cycles),
-        100.0 * share(patrolled.sure_right, patrolled.sure), patrolled.noticed, patrolled.doors,
-        lost.arrived, lost.goals, lost.false_success, built.covered, built.length, built.minutes,
-        built.done ? "" : " (not done)", built.score.doors_found, built.score.doors,
-        built.score.doors_false, built.reason.empty() ? "" : ": ", built.reason.c_str());
-    std::fflush(stdout);
     floors.push_back({{"seed", here.seed},
                       {"p95_m", p95},
                       {"worst_m", worst},
                       {"tracking", share(patrolled.tracking, patrolled.cycles)},
                       {"calibration_at_90", share(patrolled.sure_right, patrolled.sure)},
+                      {"doors", patrolled.doors},
                       {"doors_noticed", share(patrolled.noticed, patrolled.doors)},
+                      {"carried", lost.goals},
+                      {"arrived", lost.arrived},
                       {"false_success", lost.false_success},
                       {"built", built.done},
+                      {"reason", built.reason},
+                      {"corridors_m", built.length},
                       {"explored", explored},
                       {"doors_built", doors},
+                      {"doors_false", built.score.doors_false},
                       {"minutes", built.minutes},
                       {"contacts", built.contacts}});
+    std::fprintf(stderr, "%s\n", floors.back().dump().c_str());
   }
   if (!options.write_to.empty())
     return 0;
@@ -459,7 +454,7 @@ int run(const Options& options) {
                               {"carried_sure_m_p50", test::quantile(carried.sure_way, 0.5)},
                               {"carried_sure_m_p90", test::quantile(carried.sure_way, 0.9)},
                               {"floors", floors}};
-  std::printf("%s\n", result.dump(options.json ? -1 : 2).c_str());
+  bench::print(result, options.json);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "../result.hpp"
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -109,13 +110,6 @@ struct Sum {
             {"things", in_100(things)},
             {"walked_into", in_100(walked_into)},
             {"slower", slower()}};
-  }
-  void print(const std::string& name) const {
-    std::printf(
-        "%-12s %4d runs: %3.0f %% arrived; in 100 runs touched %5.1f who stood, %5.1f who "
-        "walked (%.1f unheard), %.1f things; %.2f times as long as alone\n",
-        name.c_str(), runs, arrived_percent(), in_100(standing), in_100(walking), in_100(unheard),
-        in_100(things), slower());
   }
 };
 
@@ -225,24 +219,14 @@ int main(int argc, char** argv) {
       all.add(run, seconds_alone);
       by_robot[run.options.robot].add(run, seconds_alone);
     }
+    nlohmann::json figures = all.json();
     for (const auto& [robot, sum] : by_robot)
-      sum.print(robot);
+      figures["robots"][robot] = sum.json();
     for (std::size_t i = 0; i < by_crowd.size(); ++i)
       if (by_crowd[i].runs > 0)
-        by_crowd[i].print(kCrowdNames[i]);
-    all.print("all");
-    if (alone_s > 0.0)
-      std::printf("without people: %.0f s in all\n", alone_s);
-    if (json) {
-      nlohmann::json object = all.json();
-      for (const auto& [robot, sum] : by_robot)
-        object["robots"][robot] = sum.json();
-      for (std::size_t i = 0; i < by_crowd.size(); ++i)
-        if (by_crowd[i].runs > 0)
-          object["people"][kCrowdNames[i]] = by_crowd[i].json();
-      object["alone_s"] = alone_s;
-      std::printf("%s\n", object.dump().c_str());
-    }
+        figures["people"][kCrowdNames[i]] = by_crowd[i].json();
+    figures["alone_s"] = alone_s;
+    bench::print(figures, json);
     return all.in_100(all.standing) <= 1.0 && all.in_100(all.walking) <= 5.0 &&
                    all.arrived_percent() >= 90.0
                ? 0

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "../result.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
@@ -197,21 +199,10 @@ std::size_t silent_end(const Sound& sound) {
   return count;
 }
 
-struct Tally {
-  int commands = 0;
-  int right = 0;
-  int wrong = 0;        ///< taken for another command than a stop, and certain
-  int asked_back = 0;   ///< a command that is not certain
-  int asked_wrong = 0;  ///< of them, another command than the one that was said
-  int near_misses = 0;  ///< with the keyword, and meaningless words
-  int taken = 0;        ///< of them, accepted as a command, and certain
-  int keyless = 0;
-  int keyless_taken = 0;
-  int lone_stops = 0;
-  int lone_stops_right = 0;
-  int others = 0;       ///< all that is no stop
-  int false_stops = 0;  ///< of them
-};
+/// Counts by name. Wrong: taken for another command than a stop, and certain. Asked back: a command
+/// that is not certain. Near misses have the keyword, and meaningless words. Others: all that is no
+/// stop.
+using Tally = std::map<std::string, int>;
 
 class Bench {
  public:
@@ -245,18 +236,18 @@ class Bench {
     };
     const auto hear_other = [&](const std::string& text) {
       const std::string heard = hear(text);
-      ++tally.others;
-      tally.false_stops += heard == kStop ? 1 : 0;
+      ++tally["others"];
+      tally["false_stops"] += heard == kStop ? 1 : 0;
       return heard;
     };
     for (const char* const text : kLoneStops) {
-      ++tally.lone_stops;
-      tally.lone_stops_right += hear(text) == kStop ? 1 : 0;
+      ++tally["lone_stops"];
+      tally["lone_stops_right"] += hear(text) == kStop ? 1 : 0;
     }
     for (const char* const text : kOtherSpeech)
       hear_other(text);
-    ++tally.others;
-    tally.false_stops += understood(conversation, babble_, 0, false) == kStop ? 1 : 0;
+    ++tally["others"];
+    tally["false_stops"] += understood(conversation, babble_, 0, false) == kStop ? 1 : 0;
     for (std::size_t i = 0; i < phrases_.size(); i += static_cast<std::size_t>(options_.every)) {
       const Phrase& phrase = phrases_[i];
       if (phrase.meaning.empty() && noise != Noise::none)
@@ -264,21 +255,21 @@ class Bench {
       const std::string heard =
           phrase.meaning == kStop ? hear(phrase.text) : hear_other(phrase.text);
       if (phrase.meaning.empty()) {
-        ++tally.near_misses;
-        tally.taken += !heard.empty() && heard != kStop && certain_ ? 1 : 0;
+        ++tally["near_misses"];
+        tally["near_misses_taken"] += !heard.empty() && heard != kStop && certain_ ? 1 : 0;
         continue;
       }
-      ++tally.commands;
+      ++tally["commands"];
       const bool other = !heard.empty() && heard != phrase.meaning && heard != kStop;
       const bool asks = !certain_ && !heard.empty() && heard != kStop;
-      tally.right += heard == phrase.meaning && !asks ? 1 : 0;
-      tally.wrong += other && !asks ? 1 : 0;
-      tally.asked_back += asks ? 1 : 0;
-      tally.asked_wrong += asks && other ? 1 : 0;
+      tally["right"] += heard == phrase.meaning && !asks ? 1 : 0;
+      tally["wrong"] += other && !asks ? 1 : 0;
+      tally["asked_back"] += asks ? 1 : 0;
+      tally["asked_wrong"] += asks && other ? 1 : 0;
       if (noise != Noise::none || phrase.meaning == kStop)
         continue;  // a stop needs no keyword
-      ++tally.keyless;
-      tally.keyless_taken +=
+      ++tally["keyless"];
+      tally["keyless_taken"] +=
           hear_other(phrase.text.substr(phrase.text.find(' ') + 1)).empty() ? 0 : 1;
     }
     return tally;
@@ -319,8 +310,8 @@ class Bench {
   bool certain_ = false;  ///< of the newest command
 };
 
-double share(int part, int whole) {
-  return whole > 0 ? static_cast<double>(part) / whole : 0.0;
+double share(Tally& all, const std::string& part, const std::string& whole) {
+  return all[whole] > 0 ? static_cast<double>(all[part]) / all[whole] : 0.0;
 }
 
 int run(const Options& options) {
@@ -329,44 +320,15 @@ int run(const Options& options) {
   Tally all[3];  // by kNoises
   nlohmann::json voices = nlohmann::json::array();
   const auto add = [](Tally& sum, const Tally& one) {
-    sum.commands += one.commands;
-    sum.right += one.right;
-    sum.wrong += one.wrong;
-    sum.asked_back += one.asked_back;
-    sum.asked_wrong += one.asked_wrong;
-    sum.near_misses += one.near_misses;
-    sum.taken += one.taken;
-    sum.keyless += one.keyless;
-    sum.keyless_taken += one.keyless_taken;
-    sum.lone_stops += one.lone_stops;
-    sum.lone_stops_right += one.lone_stops_right;
-    sum.others += one.others;
-    sum.false_stops += one.false_stops;
+    for (const auto& [name, count] : one)
+      sum[name] += count;
   };
   const auto tell = [&](const std::string& voice, const char* how, const Tally& one) {
-    std::fprintf(
-        options.json ? stderr : stdout,
-        "%-16s %-12s right %3d of %3d, wrong %2d, asked back %2d (wrong %2d); taken for "
-        "a command: %d of %d without the keyword, %d of %d near misses; lone stops %d of %d, "
-        "false ones %d of %d\n",
-        voice.c_str(), how, one.right, one.commands, one.wrong, one.asked_back, one.asked_wrong,
-        one.keyless_taken, one.keyless, one.taken, one.near_misses, one.lone_stops_right,
-        one.lone_stops, one.false_stops, one.others);
-    std::fflush(stdout);
-    voices.push_back({{"voice", voice},
-                      {"sound", how},
-                      {"commands", one.commands},
-                      {"right", one.right},
-                      {"wrong", one.wrong},
-                      {"asked_back", one.asked_back},
-                      {"asked_wrong", one.asked_wrong},
-                      {"keyless_taken", one.keyless_taken},
-                      {"near_misses", one.near_misses},
-                      {"near_misses_taken", one.taken},
-                      {"lone_stops", one.lone_stops},
-                      {"lone_stops_right", one.lone_stops_right},
-                      {"others", one.others},
-                      {"false_stops", one.false_stops}});
+    nlohmann::json told(one);
+    told["voice"] = voice;
+    told["sound"] = how;
+    std::fprintf(stderr, "%s\n", told.dump().c_str());
+    voices.push_back(told);
   };
   for (const bool unseen : {false, true})
     for (const std::string& voice : unseen ? options.unseen : options.seen)
@@ -380,25 +342,30 @@ int run(const Options& options) {
           add(seen, one);
         tell(voice, kNames[i], one);
       }
-  const auto& [clean, white, babble] = all;
+  auto& [clean, white, babble] = all;
   Tally noise = white;
   add(noise, babble);
+  Tally unseen = clean;
+  for (const auto& [name, count] : seen)
+    unseen[name] -= count;
+  Tally any = clean;
+  add(any, noise);
   const nlohmann::json result{
-      {"lone_stops", share(clean.lone_stops_right, clean.lone_stops)},
-      {"lone_stops_in_noise", share(noise.lone_stops_right, noise.lone_stops)},
-      {"false_stops", share(clean.false_stops + noise.false_stops, clean.others + noise.others)},
-      {"accept_seen", share(seen.right, seen.commands)},
-      {"accept_unseen", share(clean.right - seen.right, clean.commands - seen.commands)},
-      {"false_accept", share(clean.keyless_taken, clean.keyless)},
-      {"near_misses_taken", share(clean.taken, clean.near_misses)},
-      {"wrong_in_white_noise", share(white.wrong, white.commands)},
-      {"accept_in_white_noise", share(white.right, white.commands)},
-      {"wrong_in_babble", share(babble.wrong, babble.commands)},
-      {"accept_in_babble", share(babble.right, babble.commands)},
+      {"lone_stops", share(clean, "lone_stops_right", "lone_stops")},
+      {"lone_stops_in_noise", share(noise, "lone_stops_right", "lone_stops")},
+      {"false_stops", share(any, "false_stops", "others")},
+      {"accept_seen", share(seen, "right", "commands")},
+      {"accept_unseen", share(unseen, "right", "commands")},
+      {"false_accept", share(clean, "keyless_taken", "keyless")},
+      {"near_misses_taken", share(clean, "near_misses_taken", "near_misses")},
+      {"wrong_in_white_noise", share(white, "wrong", "commands")},
+      {"accept_in_white_noise", share(white, "right", "commands")},
+      {"wrong_in_babble", share(babble, "wrong", "commands")},
+      {"accept_in_babble", share(babble, "right", "commands")},
       {"um_s_p50", test::quantile(bench.um, 0.5)},
       {"um_s_p95", test::quantile(bench.um, 0.95)},
       {"voices", voices}};
-  std::printf("%s\n", result.dump(options.json ? -1 : 2).c_str());
+  bench::print(result, options.json);
   return 0;
 }
 

@@ -1,11 +1,12 @@
 // The share of answers to why, why not and status that lack something, or say something false: in
 // the situations of agents/situation/test/situations.txt, or of a file of your own.
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "../../support/guarded.hpp"
+#include "../result.hpp"
 #include "agents/situation/test/table.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -31,12 +32,7 @@ int run(const std::string& file, bool json) {
     for (const std::string& part : found.says)
       std::printf("  says: %s\n", part.c_str());
   }
-  if (json)
-    std::printf("%s\n", nlohmann::json{{"situations", all.size()}, {"half", half}, {"false", wrong}}
-                            .dump()
-                            .c_str());
-  else
-    std::printf("%zu answers, %d half, %d false\n", all.size(), half, wrong);
+  bench::print({{"situations", all.size()}, {"half", half}, {"false", wrong}}, json);
   return half + wrong == 0 ? 0 : 1;
 }
 
@@ -50,10 +46,5 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "one JSON object: situations, half, false");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
-    return run(file, json);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-why: %s\n", error.what());
-    return 1;
-  }
+  return saphira::test::guarded([&] { return run(file, json); });
 }

@@ -1,11 +1,12 @@
 // The share of utterances with the meaning that a person would give them, and of wrong actions: for
 // services/agent_interface/test/utterances.txt, or a file of your own.
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "../../support/guarded.hpp"
+#include "../result.hpp"
 #include "agent_interface/test/utterances.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -37,15 +38,8 @@ int run(const std::string& file, const std::string& grammar_file, bool json) {
       std::printf("\"%s\": expected %s, understood %s\n", phrase.text.c_str(),
                   phrase.meaning.c_str(), meant.c_str());
   }
-  if (json)
-    std::printf("%s\n", nlohmann::json{{"utterances", phrases.size()},
-                                       {"right", right},
-                                       {"acted_wrongly", acted_wrongly}}
-                            .dump()
-                            .c_str());
-  else
-    std::printf("%d of %zu utterances right, %d acted on wrongly\n", right, phrases.size(),
-                acted_wrongly);
+  bench::print({{"utterances", phrases.size()}, {"right", right}, {"acted_wrongly", acted_wrongly}},
+               json);
   return acted_wrongly == 0 ? 0 : 1;
 }
 
@@ -61,11 +55,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "one JSON object: utterances, right, acted_wrongly");
   if (const auto code = app.parse(argc, argv))
     return *code;
-  try {
+  return test::guarded([&] {
     return run(file, grammar.empty() ? config_folder() + "/grammars/flakey.grammar" : grammar,
                json);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "saphira-bench-words: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -1,0 +1,154 @@
+// The conversations of dialogues.txt.
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "dialogue_fixture.hpp"
+#include "saphira/base/archive.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+Pose pose_of(const std::string& text) {
+  std::istringstream in(text);
+  double x = 0.0;
+  double y = 0.0;
+  double degrees = 0.0;
+  EXPECT_TRUE(in >> x >> y >> degrees) << text;
+  return {x, y, radians(degrees)};
+}
+
+/// One conversation, with a dialogue of its own.
+class Conversation : public DialogueTest {
+ public:
+  void TestBody() override {}
+
+  void take(const std::string& line) {
+    const std::size_t arrow = std::min(line.find(" =>"), line.size());
+    const std::size_t colon = std::min(line.find(':'), arrow);
+    const std::string key = line.substr(0, colon);
+    const std::string value = colon + 2 < arrow ? line.substr(colon + 2, arrow - colon - 2) : "";
+    if (const auto fact = facts_.find(key); fact != facts_.end()) {
+      EXPECT_EQ(fact->second(), value);
+    } else if (const auto change = changes_.find(key); change != changes_.end()) {
+      change->second(value);
+    } else {
+      speak(key, value);
+    }
+    if (arrow < line.size()) {
+      EXPECT_EQ(answer(), arrow + 4 < line.size() ? line.substr(arrow + 4) : "");
+    }
+    if (!last.goals.empty())
+      wanted_ = last.goals.front().tag;
+  }
+
+ private:
+  /// speaker: with the recognizer's confidence, such as "Alice (0.3)".
+  void speak(const std::string& speaker, const std::string& text) {
+    const std::size_t confidence = speaker.find(" (");
+    Utterance utterance{{7, ++number}, speaker.substr(0, confidence), text};
+    if (confidence != std::string::npos)
+      utterance.confidence = std::stod(speaker.substr(confidence + 2));
+    utterance.time = now;
+    last = dialogue.hear(utterance, situation);
+  }
+  void use(Dialogue next) { std::swap(dialogue, next); }
+  void restart() {
+    Dialogue restarted{grammar()};
+    restore(saved(dialogue), restarted);
+    EXPECT_EQ(restarted.claims(), dialogue.claims());
+    EXPECT_EQ(restarted.knowledge().all(), dialogue.knowledge().all());
+    use(std::move(restarted));
+  }
+  std::string canceled() const {
+    std::string all;
+    for (const std::uint64_t tag : last.canceled)
+      all += (all.empty() ? "" : " ") + std::to_string(tag);
+    return all;
+  }
+  std::string namings() const {
+    std::string all;
+    for (const maps::Feature& feature : last.namings)
+      all += (all.empty() ? "" : "; ") + std::to_string(feature.id) + " " + feature.name;
+    return all;
+  }
+  static std::string yes(bool is) { return is ? "yes" : "no"; }
+
+  std::uint64_t wanted_ = 0;  ///< the newest goal
+  std::string map_ = kMap;
+  std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
+  const std::map<std::string, std::function<std::string()>> facts_{
+      {"goals", [this] { return goals(); }},
+      {"functor", [this] { return last.goals.at(0).functor; }},
+      {"priority", [this] { return std::to_string(last.goals.at(0).priority); }},
+      {"lasting", [this] { return yes(last.goals.at(0).lasting); }},
+      {"canceled", [this] { return canceled(); }},
+      {"claims", [this] { return claims(last.claims); }},
+      {"all claims", [this] { return claims(dialogue.claims()); }},
+      {"source", [this] { return last.claims.at(0).source; }},
+      {"namings", [this] { return namings(); }},
+      {"answers", [this] { return std::to_string(last.said.at(0).answers.second); }},
+      {"end", [this] { return yes(last.said.at(0).end); }},
+      {"refused", [this] { return yes(last.said.at(0).refused); }},
+      {"facts", [this] { return std::to_string(dialogue.knowledge().all().size()); }},
+      {"doorway", [this] { return std::to_string(dialogue.knowledge().all().at(0).artifact); }},
+      {"place of karen", [this] { return dialogue.knowledge().place_of("karen"); }}};
+  const std::map<std::string, std::function<void(const std::string&)>> changes_{
+      {"done",
+       [this](const auto& text) {
+         last = dialogue.ended({wanted_, true, text});
+       }},
+      {"failed",
+       [this](const auto& text) {
+         last = dialogue.ended({wanted_, false, text});
+       }},
+      {"seconds pass", [this](const auto& text) { now += std::stod(text); }},
+      {"restart", [this](const auto&) { restart(); }},
+      {"anew", [this](const auto&) { use(Dialogue{grammar()}); }},
+      {"asks about", [this](const auto& text) { situation.asked_about = text; }},
+      {"asks for", [this](const auto& text) { situation.asked_for = text; }},
+      {"carries",
+       [this](const auto& text) {
+         situation.carried = {{text, "EJ-231"}};
+       }},
+      {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
+      {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
+      {"at", [this](const auto& text) { situation.pose_in_map = pose_of(text); }},
+      {"is lost", [this](const auto&) { situation.pose_in_map.reset(); }},
+      {"points", [this](const auto& text) { situation.pointing_in_map = pose_of(text); }},
+      {"no map", [this](const auto&) { situation.map = {}; }},
+      {"map",
+       [this](const auto& text) { situation.map = maps::parse_map(map_ += text + "\n", "map"); }},
+      {"grammar", [this](const auto& text) { grammar_ += text + "\n"; }},
+      {"new grammar", [this](const auto&) { dialogue.use(Grammar(grammar_, "grammar")); }}};
+};
+
+TEST(Dialogues, AreAsWritten) {
+  // The machine's clock gives the time in sentences.
+  setenv("TZ", "UTC", 1);
+  tzset();
+  const std::string file = "services/agent_interface/test/dialogues.txt";
+  std::istringstream lines(read_file(test::source(file)));
+  std::optional<Conversation> conversation;
+  int number = 0;
+  int conversations = 0;
+  for (std::string line; std::getline(lines, line);) {
+    SCOPED_TRACE(file + ":" + std::to_string(++number));
+    if (line.empty() || line[0] == '#')
+      continue;
+    if (line.starts_with("== ")) {
+      conversation.emplace();
+      ++conversations;
+    } else {
+      ASSERT_TRUE(conversation);
+      conversation->take(line);
+    }
+  }
+  EXPECT_GT(conversations, 50);
+}
+
+}  // namespace
+}  // namespace saphira::agent_interface

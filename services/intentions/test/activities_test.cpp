@@ -1,0 +1,150 @@
+// The activities of activities.txt.
+#include <cctype>
+#include <optional>
+#include <sstream>
+
+#include "language_bench.hpp"
+#include "process.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/idl/goal_words.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+std::string code_words(GoalCode code) {
+  return code == v1::CODE_TIMEOUT    ? "timeout"
+         : code == v1::CODE_ACTIVITY ? "activity"
+                                     : std::to_string(code);
+}
+
+std::string digits(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+/// One case.
+class Script {
+ public:
+  explicit Script(const std::string& activities) : stage_(activities) {}
+
+  /// What happens, or what has to be so.
+  void take(const std::string& line) {
+    const std::size_t colon = line.find(':');
+    std::istringstream in(line.substr(0, colon));
+    std::string verb;
+    in >> verb;
+    if (colon == std::string::npos) {
+      happen(verb, in);
+      return;
+    }
+    EXPECT_EQ(fact(line.substr(0, colon), verb, in),
+              line.size() > colon + 2 ? line.substr(colon + 2) : "");
+  }
+
+ private:
+  std::string fact(const std::string& what, const std::string& verb, std::istringstream& in) {
+    if (what == "behaviors")
+      return joined(stage_.behaviors(), " ");
+    if (what == "display")
+      return stage_.display();
+    if (what == "said")
+      return joined(stage_.messages, " | ");
+    if (what == "last said")
+      return stage_.messages.back();
+    if (what == "sentences")
+      return std::to_string(stage_.messages.size());
+    if (what == "behavior control")
+      return stage_.out.behavior_control ? "yes" : "no";
+    std::string name;
+    in >> name;
+    if (verb == "belief")
+      return spoken(stage_.belief(name));
+    const GoalStatus& status = stage_.status(std::stoull(name));
+    return verb == "goal"       ? name_of(status.state)
+           : verb == "code"     ? code_words(status.code)
+           : verb == "reason"   ? status.reason
+           : verb == "step"     ? status.step
+           : verb == "progress" ? digits(status.progress)
+           : verb == "level"    ? digits(status.level)
+                                : "no such fact: " + what;
+  }
+
+  void happen(const std::string& verb, std::istringstream& in) {
+    std::string name;
+    std::string more;
+    double level = 0.0;
+    std::uint64_t id = 0;
+    int cycles = 1;
+    if (verb == "begin" && in >> id >> name >> cycles) {
+      stage_.begin(id, name, cycles);
+    } else if (verb == "ask" && in >> id >> name) {
+      Arguments arguments;
+      int priority = 0;
+      while (in >> more) {
+        if (more == "priority")
+          in >> priority;
+        else
+          arguments.push_back(argument(more));
+      }
+      stage_.ask(id, name, arguments, priority);
+    } else if (verb == "step" && in >> cycles) {
+      stage_.step(cycles);
+    } else if (verb == "withdraw" && in >> id) {
+      stage_.dispose(id);
+    } else if ((verb == "stall" || verb == "free") && in >> cycles) {
+      stage_.stall(verb == "stall", cycles);
+    } else if ((verb == "left" || verb == "right") && in >> name) {
+      (verb == "left" ? stage_.inputs.robot.left_stalled : stage_.inputs.robot.right_stalled) =
+          name == "stalls";
+    } else if (verb == "satisfy" && in >> name >> level >> cycles) {
+      stage_.satisfy(name, level, cycles);
+    } else if (verb == "claim" && in >> name >> more) {
+      claim(stage_, name, more == "t");
+    } else if (verb == "trouble" && std::getline(in >> std::ws, more)) {
+      stage_.inputs.troubles = {{stage_.out.behaviors.at(0).name, more}};
+    } else {
+      ADD_FAILURE() << "not understood: " << verb;
+    }
+  }
+
+  /// Of "n=2" or "what=b".
+  static Argument argument(const std::string& text) {
+    const std::size_t at = text.find('=');
+    const std::string value = text.substr(at + 1);
+    return std::isdigit(static_cast<unsigned char>(value[0])) != 0
+               ? number(text.substr(0, at), std::stod(value))
+               : saphira::text(text.substr(0, at), value);
+  }
+
+  Stage stage_;
+};
+
+TEST(ActivitiesInWords, DoAsWritten) {
+  const std::string file = "services/intentions/test/activities.txt";
+  std::istringstream lines(read_file(test::source(file)));
+  std::optional<Script> one;
+  std::string activities;
+  int number = 0;
+  int cases = 0;
+  for (std::string line; std::getline(lines, line);) {
+    SCOPED_TRACE(file + ":" + std::to_string(++number));
+    if (line.empty() || line[0] == ';')
+      continue;
+    if (line.starts_with("== ")) {
+      one.reset();
+      activities.clear();
+      ++cases;
+    } else if (line[0] == '(' || line[0] == ' ') {
+      activities += line + "\n";
+    } else {
+      if (!one)
+        one.emplace(activities);
+      one->take(line);
+    }
+  }
+  EXPECT_GT(cases, 35);
+}
+
+}  // namespace
+}  // namespace saphira::intentions
