@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
@@ -25,7 +24,7 @@ std::string fault(const ParameterSpec& spec, const Argument& argument) {
       return "expected a number from " + plain(spec.low) + " to " + plain(spec.high) + " (" +
              spec.meaning + "), got " + plain(argument.number);
   } else if (argument.kind == Kind::text) {
-    if (std::find(spec.choices.begin(), spec.choices.end(), argument.text) == spec.choices.end())
+    if (std::ranges::find(spec.choices, argument.text) == spec.choices.end())
       return "expected " + joined(spec.choices, " or ") + ", got \"" + argument.text.substr(0, 40) +
              "\"";
   } else {
@@ -43,8 +42,8 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
                                             const std::vector<Argument>& arguments,
                                             const Pose& robot_in_odom, std::string& trouble) {
   for (const Argument& argument : arguments)
-    if (std::none_of(specs.begin(), specs.end(),
-                     [&](const ParameterSpec& s) { return s.name == argument.name; })) {
+    if (std::ranges::none_of(specs,
+                             [&](const ParameterSpec& s) { return s.name == argument.name; })) {
       trouble = "unknown parameter \"" + argument.name.substr(0, 40) + "\"; expected ";
       if (specs.empty())
         trouble += "none";
@@ -54,8 +53,7 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
     }
   Parameters parameters;
   for (const ParameterSpec& spec : specs) {
-    const auto given = std::find_if(arguments.begin(), arguments.end(),
-                                    [&](const Argument& a) { return a.name == spec.name; });
+    const auto given = std::ranges::find(arguments, spec.name, &Argument::name);
     if (given == arguments.end()) {
       if (spec.required) {
         trouble = "parameter \"" + spec.name + "\" is missing: expected " + describe(spec.kind) +
@@ -77,7 +75,7 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
     if (spec.kind == Kind::number) {
       parameters.items_.push_back({spec.name, given->number});
     } else if (spec.kind == Kind::text) {
-      const auto choice = std::find(spec.choices.begin(), spec.choices.end(), given->text);
+      const auto choice = std::ranges::find(spec.choices, given->text);
       parameters.items_.push_back(
           {spec.name, given->text, static_cast<std::size_t>(choice - spec.choices.begin())});
     } else {
@@ -124,36 +122,6 @@ std::optional<Pose> Parameters::point(std::string_view name) const {
 std::optional<Pose> Parameters::point(std::size_t index) const {
   const Pose* const pose = std::get_if<Pose>(&items_[index].value);
   return pose == nullptr ? std::optional<Pose>{} : *pose;
-}
-
-ParameterSpec number_parameter(std::string name, std::string meaning, double low, double high,
-                               double usual) {
-  ParameterSpec spec;
-  spec.name = std::move(name);
-  spec.meaning = std::move(meaning);
-  spec.low = low;
-  spec.high = high;
-  spec.usual = usual;
-  return spec;
-}
-
-ParameterSpec point_parameter(std::string name, std::string meaning) {
-  ParameterSpec spec;
-  spec.name = std::move(name);
-  spec.kind = Kind::point;
-  spec.meaning = std::move(meaning);
-  spec.required = true;
-  return spec;
-}
-
-ParameterSpec choice_parameter(std::string name, std::string meaning,
-                               std::vector<std::string> choices) {
-  ParameterSpec spec;
-  spec.name = std::move(name);
-  spec.kind = Kind::text;
-  spec.meaning = std::move(meaning);
-  spec.choices = std::move(choices);
-  return spec;
 }
 
 }  // namespace saphira::behaviors

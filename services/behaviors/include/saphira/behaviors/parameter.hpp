@@ -4,26 +4,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
-#include "saphira/requests/argument.hpp"
+#include "saphira/requests/functor.hpp"
 
 namespace saphira::behaviors {
 
 using Kind = ArgumentKind;
 
-/// A parameter of a schema.
-struct ParameterSpec {
-  std::string name;
-  Kind kind = Kind::number;
-  std::string meaning;  ///< with its unit, for people
-  bool required = false;
-  double low = 0.0;  ///< of numbers
-  double high = 0.0;
-  double usual = 0.0;                ///< default of numbers
-  std::vector<std::string> choices;  ///< of texts; the first is the default
-};
+/// A parameter of a schema: a number, a text of which the first choice is the default, or a point.
+using ParameterSpec = Parameter;
 
 /// The parameters of one behavior: every number and text that its schema has, checked; points in
 /// odom.
@@ -60,11 +52,10 @@ class Parameters {
   std::vector<Item> items_;
 };
 
-/// For the tables of schemas.
-ParameterSpec number_parameter(std::string name, std::string meaning, double low, double high,
-                               double usual);
-ParameterSpec point_parameter(std::string name, std::string meaning);
-ParameterSpec choice_parameter(std::string name, std::string meaning,
-                               std::vector<std::string> choices);
+/// An optional number, for the tables of schemas.
+inline ParameterSpec number_parameter(std::string name, std::string meaning, double low,
+                                      double high, double usual) {
+  return optional(saphira::number_parameter(std::move(name), std::move(meaning), low, high), usual);
+}
 
 }  // namespace saphira::behaviors
