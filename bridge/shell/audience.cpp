@@ -23,8 +23,8 @@ bool Audience::begins_anew(double now) {
   const auto waits = [&](const auto& item) {
     return item.second.waits && now - *item.second.waits >= kMute;
   };
-  if ((anew_ && now - *anew_ < kAgain) || std::none_of(programs_.begin(), programs_.end(), waits) ||
-      std::any_of(programs_.begin(), programs_.end(), steps))
+  if ((anew_ && now - *anew_ < kAgain) || std::ranges::none_of(programs_, waits) ||
+      std::ranges::any_of(programs_, steps))
     return false;
   anew_ = now;
   return true;

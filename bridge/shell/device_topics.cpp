@@ -10,11 +10,7 @@
 namespace saphira::bridge {
 
 DeviceTopics::DeviceTopics(bus::Node& node, reflector::Reflector& reflector)
-    : node_(node),
-      reflector_(reflector),
-      devices_(node.writer(bus::topics::kDevices)),
-      serial_data_(node.writer(bus::topics::kSerialData)),
-      desk_(node, bus::topics::kRobotAnswers) {
+    : node_(node), reflector_(reflector), desk_(node, bus::topics::kRobotAnswers) {
   // In the order of reflector::Device.
   const bus::RequestTopic* const topics[] = {
       &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,

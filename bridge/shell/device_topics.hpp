@@ -36,8 +36,8 @@ class DeviceTopics {
 
   bus::Node& node_;
   reflector::Reflector& reflector_;
-  bus::Writer<v1::Devices> devices_;
-  bus::Writer<v1::SerialData> serial_data_;
+  bus::Writer<v1::Devices> devices_ = node_.writer(bus::topics::kDevices);
+  bus::Writer<v1::SerialData> serial_data_ = node_.writer(bus::topics::kSerialData);
   Desk desk_;
   Camera* camera_ = nullptr;
   bool session_ = false;

@@ -385,7 +385,7 @@ void Shell::tend_files(double now) {
 void Shell::perform(const StatusReport& report, double now) {
   tend_files(now);
   v1::ServiceStatus& status = node_.status();
-  status.state = to_bus(report.condition.health);
+  status.state = report.condition.health;
   status.reason = report.condition.reason;
   status.stamp = to_bus(report.stamp);
   status.lockstep = lockstep_;

@@ -98,7 +98,7 @@ void Server::measure(const Measured& body) {
 
 void Server::hear(const std::vector<SonarEcho>& echoes) {
   for (const SonarEcho& echo : echoes) {
-    if (!is_open() || std::find(firing_.begin(), firing_.end(), echo.number) == firing_.end())
+    if (!is_open() || std::ranges::find(firing_, echo.number) == firing_.end())
       continue;
     std::erase_if(readings_, [&](const RawSonar& old) { return old.number == echo.number; });
     readings_.push_back({echo.number, to_range(echo, parameters_.range_unit)});
@@ -179,25 +179,27 @@ void Server::act(const Command& command) {
     return;
   const bool session = std::visit(
       Overloaded{
-          [](const Pulse&) { return true; },
-          [this](const Open&) {
-            open();
-            return true;
-          },
-          [this](const Close&) {
-            close();
-            return true;
-          },
           [this](const Bare& c) {
-            if (c.number != Number::kReset && c.number != Number::kMaintenance)
-              return false;
-            close();  // the controller starts anew; a client has to synchronize again
-            return later_;
-          },
-          [this](const Step&) {
-            single_step_ = true;
-            step_asked_ = is_open();
-            return true;
+            switch (c.number) {
+              case Number::kPulse:
+                return true;
+              case Number::kOpen:
+                open();
+                return true;
+              case Number::kClose:
+                close();
+                return true;
+              case Number::kStep:
+                single_step_ = true;
+                step_asked_ = is_open();
+                return true;
+              case Number::kReset:
+              case Number::kMaintenance:
+                close();  // the controller starts anew; a client has to synchronize again
+                return later_;
+              default:
+                return false;
+            }
           },
           [this](const Polling& c) {
             polling_ = c.sonars;
@@ -250,10 +252,6 @@ bool Server::drive(const Command& command) {
           [&](const WheelVelocities& c) {
             return move([&](Robot& r) { r.set_wheel_velocities(c.left, c.right); });
           },
-          [&](const SetOrigin&) {
-            robot_.set_origin();
-            return true;
-          },
           [&](const Rotate& c) {
             return later_ && move([&](Robot& r) { r.set_rotation_velocity(c.velocity); });
           },
@@ -274,6 +272,9 @@ bool Server::drive(const Command& command) {
               case Number::kEmergencyStop2:
                 robot_.emergency_stop();
                 emergency_ = true;
+                return true;
+              case Number::kSetOrigin:
+                robot_.set_origin();
                 return true;
               default:
                 return false;

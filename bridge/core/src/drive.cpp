@@ -6,6 +6,7 @@
 #include "saphira/authority/age.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/geometry/pose.hpp"
 
@@ -78,7 +79,7 @@ void Core::command(const DriveCommand& in, double now) {
   if (!arbiter_.offer(command, session_.stamp.cycle))
     return;
   if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
-      std::all_of(in.edges.begin(), in.edges.end(), is_usable)) {
+      std::ranges::all_of(in.edges, is_usable)) {
     session_.edges = in.edges;
     session_.edges_cycle = session_.stamp.cycle;
   }
@@ -116,9 +117,7 @@ Answer Core::stop(const Request& request, double now) {
   const Argument* const by = find(request.arguments, "by");
   const std::string source =
       by == nullptr || by->text.empty() ? request.source : by->text + ", through " + request.source;
-  std::string stopped;
-  for (const std::string& driver : arbiter_.stop(id, source, time(now), session_.stamp.cycle))
-    stopped += (stopped.empty() ? "" : ", ") + driver;
+  std::string stopped = joined(arbiter_.stop(id, source, time(now), session_.stamp.cycle));
   stopped = stopped.empty() ? "nobody drove" : "stopped: " + stopped;
   info("stop by " + source + ": " + stopped);
   put(v1::AuditEntry{.act = v1::AUDIT_STOPPED, .who = source, .text = stopped});

@@ -52,7 +52,7 @@ bool Line::listen(double gap, bool moved, double now) {
 }
 
 std::size_t Line::damaged_in_window() const {
-  return static_cast<std::size_t>(std::count(newest_.begin(), newest_.end(), true));
+  return static_cast<std::size_t>(std::ranges::count(newest_, true));
 }
 
 bool Line::bad() const {

@@ -37,21 +37,22 @@ bool Core::has_low_battery() const {
 
 Condition Core::condition(double now, const Surroundings& around) const {
   if (!robot_trouble_.empty())
-    return {Health::waiting, robot_trouble_};
+    return {v1::SERVICE_WAITING, robot_trouble_};
   if (!around.namesake.empty())
-    return {in_session() ? Health::degraded : Health::waiting,
+    return {in_session() ? v1::SERVICE_DEGRADED : v1::SERVICE_WAITING,
             "another bridge, " + around.namesake + ", has a robot of this name"};
   if (!around.link_open)
-    return {Health::waiting, "robot link: " + around.link_trouble};
+    return {v1::SERVICE_WAITING, "robot link: " + around.link_trouble};
   if (!connection_.open())
-    return {Health::waiting, "waits for " + connection_.waiting_for()};
-  if (Condition robot = robot_condition(now); robot.health != Health::running)
+    return {v1::SERVICE_WAITING, "waits for " + connection_.waiting_for()};
+  if (Condition robot = robot_condition(now); robot.health != v1::SERVICE_RUNNING)
     return robot;
   if (around.has_keeper && !around.keeper_alive)
-    return {Health::degraded, "the keeper is gone: nobody stops the robot when the bridge hangs"};
+    return {v1::SERVICE_DEGRADED,
+            "the keeper is gone: nobody stops the robot when the bridge hangs"};
   if (around.has_keeper && now < keeper_new_until_)
-    return {Health::degraded, "the keeper died or hung; another one was started (" +
-                                  std::to_string(keeper_restarts_) + " so far)"};
+    return {v1::SERVICE_DEGRADED, "the keeper died or hung; another one was started (" +
+                                      std::to_string(keeper_restarts_) + " so far)"};
   return {};
 }
 
@@ -60,40 +61,41 @@ Condition Core::robot_condition(double now) const {
   const std::uint64_t cycle = session_.stamp.cycle;
   const std::string doubt = session_.doubts.newest(now);
   if (session_.silent && !doubt.empty())
-    return {Health::waiting, doubt};
+    return {v1::SERVICE_WAITING, doubt};
   if (session_.silent && cycle > 0 && line_.bad())
-    return {Health::waiting, "robot link silent: " + line_.words()};
+    return {v1::SERVICE_WAITING, "robot link silent: " + line_.words()};
   if (session_.silent)
-    return {Health::waiting, cycle > 0 ? "robot link silent"
-                                       : "robot link silent: no packet has come (a simulator in "
-                                         "single step needs --lockstep here)"};
+    return {v1::SERVICE_WAITING, cycle > 0
+                                     ? "robot link silent"
+                                     : "robot link silent: no packet has come (a simulator in "
+                                       "single step needs --lockstep here)"};
   if (settings_.lockstep && !session_.stepping)
-    return {Health::waiting,
+    return {v1::SERVICE_WAITING,
             session_.stepped || cycle == 0
                 ? "waits for a permit to step"
                 : "waits for the behaviors' command for cycle " + std::to_string(cycle)};
   if (arbiter_.latches().estopped)
-    return {Health::degraded, "emergency stop, pressed by " + arbiter_.latches().estop_source +
-                                  ": saphira estop reset releases it"};
+    return {v1::SERVICE_DEGRADED, "emergency stop, pressed by " + arbiter_.latches().estop_source +
+                                      ": saphira estop reset releases it"};
   if (!in_session())
     return {};
   if (!doubt.empty())
-    return {Health::degraded, doubt};
+    return {v1::SERVICE_DEGRADED, doubt};
   if (now < line_.stands_until())
-    return {Health::degraded, line_.why_it_stands(now)};
+    return {v1::SERVICE_DEGRADED, line_.why_it_stands(now)};
   if (line_.bad())
-    return {Health::degraded, line_.words()};
+    return {v1::SERVICE_DEGRADED, line_.words()};
   if (session_.delay > 0.0)
-    return {Health::degraded, delay_words()};
+    return {v1::SERVICE_DEGRADED, delay_words()};
   if (reflector_.state().information.emergency_stop.value_or(false))
-    return {Health::degraded, "the robot's own emergency stop is pressed"};
+    return {v1::SERVICE_DEGRADED, "the robot's own emergency stop is pressed"};
   if (motors_off())
-    return {Health::degraded,
+    return {v1::SERVICE_DEGRADED,
             "the robot's motors are off (its own button, or: saphira device motors on)"};
   if (session_.low_battery >= kLowBatteryCycles) {
     const protocol::Information& in = reflector_.state().information;
     return {
-        Health::degraded,
+        v1::SERVICE_DEGRADED,
         format("the battery is nearly empty (%.1f V%s): bring the robot to its charger", in.battery,
                in.state_of_charge ? format(", %.0f %%", 100.0 * *in.state_of_charge).c_str() : "")};
   }
@@ -102,7 +104,7 @@ Condition Core::robot_condition(double now) const {
 
 /// An obstacle that keeps the bridge from its robot for a while is logged, once.
 void Core::tell_wait(const Condition& now_is, double now) {
-  const bool waits = now_is.health == Health::waiting && !settings_.lockstep;
+  const bool waits = now_is.health == v1::SERVICE_WAITING && !settings_.lockstep;
   if (!waits || wait_.reason != now_is.reason)
     wait_ = {waits ? now_is.reason : "", now, false};
   if (!waits || wait_.told || now - wait_.since < kTellWait)

@@ -241,7 +241,7 @@ TEST(Estop, IsKeptAndToldOnceAndHoldsOverSessions) {
   scene.cycles(3, Role::behaviors);
   EXPECT_FALSE(scene.was_moved());
   EXPECT_TRUE(scene.was_stopped());
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
 }
 
 TEST(Estop, HoldsOverARestart) {

@@ -20,23 +20,23 @@ struct Stepped : Scene {
     core.permit(3);
     answer();
   }
-  int steps() const { return times_sent<protocol::Step>(); }
+  int steps() const { return times_sent(protocol::Step{}); }
 };
 
 TEST(Lockstep, StepsWithinThePermit) {
   Scene scene(lockstep());
   scene.connect();
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 0);
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 0);
   EXPECT_FALSE(scene.has<WatchLink>()) << "its world stands still by itself";
   scene.pass(0.1);
   EXPECT_EQ(scene.condition().reason, "waits for a permit to step");
   scene.core.permit(3);
   scene.answer();
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 1);
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 1);
   scene.cycles(2, Role::behaviors);
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 3);
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 3);
   scene.cycles(1, Role::behaviors);
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 3) << "cycle 3 is the last of the permit";
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 3) << "cycle 3 is the last of the permit";
 }
 
 TEST(Lockstep, WaitsForTheAnswerOfTheBehaviors) {
@@ -89,9 +89,9 @@ TEST(Lockstep, AnOldSampleBehindTheAnswerTakesNothingBack) {
 TEST(Lockstep, FreeStepsNeedNoPermit) {
   Scene scene(lockstep(true));
   scene.connect();
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 1);
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 1);
   scene.cycles(3, Role::behaviors);
-  EXPECT_EQ(scene.times_sent<protocol::Step>(), 4);
+  EXPECT_EQ(scene.times_sent(protocol::Step{}), 4);
 }
 
 TEST(Lockstep, NoClockCounts) {

@@ -183,7 +183,7 @@ void Rules::packets(const protocol::Bytes& bytes) {
 
 void Rules::command_sent(const protocol::Command& command) {
   using namespace protocol;
-  if (std::holds_alternative<Open>(command) || std::holds_alternative<Pulse>(command)) {
+  if (command == protocol::Command(Open{}) || command == protocol::Command(Pulse{})) {
     // Either may also be a SYNC. The setpoints before a session are unknown.
     if (stamp_.epoch == 0)
       zero_velocity_ = zero_turn_ = velocity_is_zero_ = turn_is_zero_ = false;
@@ -202,7 +202,7 @@ void Rules::command_sent(const protocol::Command& command) {
   } else if (std::holds_alternative<Heading>(command)) {
     turn_is_zero_ = false;
     moves("a heading");
-  } else if (std::holds_alternative<protocol::Step>(command)) {
+  } else if (command == protocol::Command(protocol::Step{})) {
     ++played_.steps;
     if (!settings_.lockstep || stepping_ || (stamp_.cycle > 0 && !answered_) ||
         (!settings_.free_step && permit_ <= stamp_.cycle))

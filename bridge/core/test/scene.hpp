@@ -152,11 +152,8 @@ struct Scene {
     return std::any_of(notes.begin(), notes.end(),
                        [&](const Note& note) { return note.text.find(part) != std::string::npos; });
   }
-  template <class Kind>
-  int times_sent() const {
-    return static_cast<int>(std::count_if(sent.begin(), sent.end(), [](const auto& command) {
-      return std::holds_alternative<Kind>(command);
-    }));
+  int times_sent(const protocol::Command& command) const {
+    return static_cast<int>(std::count(sent.begin(), sent.end(), command));
   }
   bool was_sent(const protocol::Command& command) const {
     return std::find(sent.begin(), sent.end(), command) != sent.end();

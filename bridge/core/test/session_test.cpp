@@ -88,7 +88,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
   EXPECT_TRUE(scene.noted("the line to the robot is slow: an answer takes 0.8 s"));
   scene.forget();
   scene.cycles(12, Role::behaviors, 0.4);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
   EXPECT_NE(scene.condition().reason.find("is slow"), std::string::npos);
   const auto fastest = [&] {
     double velocity = 0.0;
@@ -111,7 +111,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
     scene.sent.clear();
   }
   scene.cycles(12, Role::behaviors, 0.4);
-  EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING) << scene.condition().reason;
   EXPECT_NEAR(fastest(), 0.4, 1e-9);
 }
 
@@ -149,7 +149,7 @@ TEST(Session, ALostLinkIsToldWithARobotThatStands) {
   scene.core.link_closed("closed by the robot", scene.now);
   scene.deliver();
   EXPECT_TRUE(scene.was_stopped());
-  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+  EXPECT_EQ(scene.times_sent(protocol::Close{}), 1);
   EXPECT_TRUE(scene.noted("connection to the robot ended: closed by the robot"));
   const std::vector<GrantDecided> grants = scene.all<GrantDecided>();
   ASSERT_FALSE(grants.empty());
@@ -200,7 +200,7 @@ TEST(Session, ASilentLinkIsGivenUpAfterTwoSeconds) {
   scene.pass_slowly(0.2);
   EXPECT_FALSE(scene.core.in_session());
   EXPECT_TRUE(scene.was_stopped());
-  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+  EXPECT_EQ(scene.times_sent(protocol::Close{}), 1);
 }
 
 TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
@@ -228,7 +228,7 @@ TEST(Session, WhatCannotBeTrueStopsTheRobotAndKeepsTheSession) {
   EXPECT_TRUE(scene.core.in_session());
   EXPECT_EQ(scene.core.grant().role, Role::none);
   EXPECT_TRUE(scene.noted("no packet for 0.5 s that can be true: the robot is told to stop"));
-  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   EXPECT_FALSE(scene.has<CycleBegan>());
   scene.cycle();
   ASSERT_TRUE(scene.has<CycleBegan>());
@@ -307,7 +307,7 @@ TEST(Session, ARobotWithoutParametersIsTriedAgainLater) {
   EXPECT_FALSE(scene.core.may_connect(scene.now + 1.8));
   EXPECT_TRUE(scene.core.may_connect(scene.now + 2.0));
   scene.pass_slowly(0.2);
-  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   EXPECT_EQ(scene.condition().reason, "no parameter file for it");
   scene.pass_slowly(2.0);
   scene.has_parameters = true;
@@ -334,7 +334,7 @@ TEST(Session, ARobotOfAnotherBridgeIsNotAsked) {
   scene.around.namesake = "process 7";
   scene.connect();
   EXPECT_TRUE(scene.sent.empty());
-  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   EXPECT_EQ(scene.condition().reason, "another bridge, process 7, has a robot of this name");
   EXPECT_FALSE(scene.has<GrantDecided>()) << "the other bridge says who drives";
   scene.around.namesake.clear();
@@ -347,7 +347,7 @@ TEST(Session, AnEndInGoodOrderIsNoWarning) {
   scene.core.end(scene.now);
   scene.deliver();
   EXPECT_TRUE(scene.was_stopped());
-  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+  EXPECT_EQ(scene.times_sent(protocol::Close{}), 1);
   for (const Note& note : scene.all<Note>())
     EXPECT_EQ(note.level, Note::Level::info) << note.text;
 }
@@ -393,7 +393,7 @@ int lurches(Scene& scene, double seconds, bool damages) {
 TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
   Driven scene;
   EXPECT_LE(lurches(scene, 30.0, true), 5);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
   EXPECT_EQ(scene.condition().reason.find("the robot is not heard while it moves (4 times now"), 0U)
       << scene.condition().reason;
   const std::vector<GrantDecided> grants = scene.all<GrantDecided>();
@@ -406,7 +406,7 @@ TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
   // The line is repaired: the robot moves by itself, and continues.
   EXPECT_EQ(lurches(scene, 400.0, false), 1);
   EXPECT_EQ(scene.core.grant().role, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING) << scene.condition().reason;
   // Old events count no more.
   lurches(scene, 0.5, true);
   EXPECT_EQ(lurches(scene, 2.0, false), 1);
@@ -428,14 +428,14 @@ TEST(Session, ABadLineIsTold) {
     }
     return scene.condition();
   };
-  EXPECT_EQ(one_in(15).health, Health::running);
+  EXPECT_EQ(one_in(15).health, v1::SERVICE_RUNNING);
   const Condition bad = one_in(7);
-  EXPECT_EQ(bad.health, Health::degraded);
+  EXPECT_EQ(bad.health, v1::SERVICE_DEGRADED);
   EXPECT_EQ(bad.reason.find("the line to the robot is bad: "), 0U) << bad.reason;
   EXPECT_NE(bad.reason.find(" of its last 50 packets were damaged"), std::string::npos)
       << bad.reason;
   EXPECT_EQ(scene.core.grant().role, Role::behaviors) << "it drives on";
-  EXPECT_EQ(one_in(61).health, Health::running);
+  EXPECT_EQ(one_in(61).health, v1::SERVICE_RUNNING);
 }
 
 TEST(Session, UntilARobotSaysHowItBrakesItsParameterFileCounts) {

@@ -21,7 +21,7 @@ TEST(Status, ARobotThatIsServedIsRunning) {
   Driven scene;
   scene.cycles(2, Role::behaviors);
   scene.pass(0.11);
-  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING);
   EXPECT_EQ(scene.condition().reason, "");
   EXPECT_EQ(scene.all<StatusReport>().back().steps, 14U);
 }
@@ -61,7 +61,7 @@ TEST(Status, SaysWhatIsWaitedFor) {
   scene.mute = true;
   scene.connect();
   scene.pass(0.1);
-  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   EXPECT_EQ(scene.condition().reason,
             "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
 }
@@ -89,10 +89,10 @@ TEST(Status, SaysThatASimulatorMayWaitForSteps) {
 
 TEST(Status, ThePressedButtonOfTheRobotIsTold) {
   Later scene;
-  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING);
   scene.shown.ptu = protocol::kFlagMotors | protocol::kFlagEmergencyStop;
   scene.cycles(2, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
   EXPECT_EQ(scene.condition().reason, "the robot's own emergency stop is pressed");
 }
 
@@ -100,7 +100,7 @@ TEST(Status, MotorsThatAreOffAreTold) {
   Later scene;
   scene.shown.ptu = 0;
   scene.cycles(2, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
   EXPECT_NE(scene.condition().reason.find("the robot's motors are off"), std::string::npos);
 }
 
@@ -125,9 +125,9 @@ TEST(Status, ABatteryThatStaysLowIsTold) {
                             .time = {},
                             .flags3 = {}};
     scene.cycles(99, Role::behaviors);
-    EXPECT_EQ(scene.condition().health, Health::running) << one.tenths;
+    EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING) << one.tenths;
     scene.cycles(2, Role::behaviors);
-    EXPECT_EQ(scene.condition().health == Health::degraded, one.is_low)
+    EXPECT_EQ(scene.condition().health == v1::SERVICE_DEGRADED, one.is_low)
         << one.tenths << ' ' << one.charge << ' ' << scene.condition().reason;
   }
 }
@@ -137,9 +137,9 @@ TEST(Status, MotorsHaveASecondToBeSwitchedOn) {
   scene.shown.motors = protocol::Motors::kNoPower;
   scene.connect();
   scene.cycles(9, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING);
   scene.cycles(3, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
 }
 
 TEST(Status, TheKeeperIsWatched) {
@@ -147,7 +147,7 @@ TEST(Status, TheKeeperIsWatched) {
   scene.around.has_keeper = true;
   scene.around.keeper_alive = true;
   scene.cycles(2, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING);
   scene.around.keeper_alive = false;
   scene.cycles(2, Role::behaviors);
   EXPECT_EQ(scene.condition().reason,
@@ -159,14 +159,14 @@ TEST(Status, TheKeeperIsWatched) {
   EXPECT_EQ(scene.condition().reason,
             "the keeper died or hung; another one was started (1 so far)");
   scene.cycles(102, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_RUNNING);
 }
 
 TEST(Status, AFieldThatCannotBeTrueIsTold) {
   Driven scene;
   scene.shown.sonars = {{40, 1000}};
   scene.cycles(2, Role::behaviors);
-  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_DEGRADED);
   EXPECT_NE(scene.condition().reason.find("sonar number 40"), std::string::npos);
   EXPECT_TRUE(scene.noted("sonar number 40"));
   EXPECT_EQ(scene.core.grant().role, Role::behaviors) << "the rest of the packet holds";

@@ -234,7 +234,7 @@ void Checker::argument(const CommandRule& rule, ByteView body) {
         return;
       }
       const ByteView text = body.subspan(2);
-      const bool terminated = std::find(text.begin(), text.end(), 0) == text.end() - 1;
+      const bool terminated = std::ranges::find(text, 0) == text.end() - 1;
       const bool counted = text[0] == text.size() - 1;
       if (!terminated && !counted)
         wrong("a string that ends with NUL, or that begins with its length");
@@ -288,11 +288,11 @@ void Checker::remember(const Command& command) {
     if (mode == 1)
       ++asked.once;
   };
-  if (std::holds_alternative<Open>(command)) {
+  if (command == Command(Open{})) {
     state_ = State::kOpen;
-  } else if (std::holds_alternative<Close>(command)) {
+  } else if (command == Command(Close{})) {
     close();
-  } else if (std::holds_alternative<SetOrigin>(command) || command == Command(SimReset{})) {
+  } else if (command == Command(SetOrigin{}) || command == Command(SimReset{})) {
     last_.reset();
   } else if (const auto* integer = std::get_if<Integer>(&command)) {
     static constexpr std::pair<Number, PacketType> reports[]{
@@ -376,8 +376,8 @@ void Checker::information(ByteView body) {
                                  " bytes; expected at least " + std::to_string(smallest) +
                                  " with " + std::to_string(packet->sonars.size()) +
                                  " sonar readings");
-  else if (packet->unknown_bytes > 0 && std::find(kTrailingEnds.begin(), kTrailingEnds.end(),
-                                                  body.size() - smallest) == kTrailingEnds.end())
+  else if (packet->unknown_bytes > 0 &&
+           std::ranges::find(kTrailingEnds, body.size() - smallest) == kTrailingEnds.end())
     note(Side::kServer,
          std::to_string(packet->unknown_bytes) + " bytes behind the fields that are known");
   if (body[0] == 0x31 || body[0] == 0x34)

@@ -80,7 +80,7 @@ Argument read_argument(ByteView body, bool counted) {
         return {Argument::Kind::kString, 0, Bytes(data.begin() + 1, data.end())};
       // A string of the manual ends with NUL and has none inside; so a final NUL decides.
       if (data.back() == 0) {
-        const auto end = std::find(data.begin(), data.end(), 0);
+        const auto end = std::ranges::find(data, 0);
         return {Argument::Kind::kString, 0, Bytes(data.begin(), end)};
       }
       if (data[0] == data.size() - 1)
@@ -126,8 +126,9 @@ Command decode_plain(ByteView body) {
     return Unknown{body[0]};
   const Number number = found->number;
   static constexpr Number bare[]{
-      Number::kStop,     Number::kEmergencyStop, Number::kEmergencyStop2, Number::kTrueOrigin,
-      Number::kSimReset, Number::kReset,         Number::kMaintenance};
+      Number::kPulse,      Number::kOpen,     Number::kClose,         Number::kSetOrigin,
+      Number::kStep,       Number::kStop,     Number::kEmergencyStop, Number::kEmergencyStop2,
+      Number::kTrueOrigin, Number::kSimReset, Number::kReset,         Number::kMaintenance};
   if (std::find(std::begin(bare), std::end(bare), number) != std::end(bare))
     return Bare{number};
   if (found->form == ArgumentForm::kRaw)
@@ -203,9 +204,6 @@ std::optional<Command> decode_number(Number number, const Argument& argument, By
 Bytes encode(const Command& command, double vel2_unit, StringForm form) {
   return std::visit(
       Overloaded{
-          [](const Pulse&) { return bare(Number::kPulse); },
-          [](const Open&) { return bare(Number::kOpen); },
-          [](const Close&) { return bare(Number::kClose); },
           [form](const Polling& c) {
             Bytes text;
             for (const std::uint8_t sonar : c.sonars)
@@ -213,7 +211,6 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
                 text.push_back(static_cast<std::uint8_t>(sonar + 1));
             return with_string(Number::kPolling, text, form);
           },
-          [](const SetOrigin&) { return bare(Number::kSetOrigin); },
           [](const Velocity& c) {
             return with_int(Number::kVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
           },
@@ -244,7 +241,6 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
           [](const Timer& c) { return with_int(Number::kTimer, c.pin); },
           [](const Gripper& c) { return with_int(Number::kGripper, c.state); },
           [](const Ptu& c) { return with_int(Number::kPtu, c.width); },
-          [](const Step&) { return bare(Number::kStep); },
           [](const Enable& c) { return with_int(Number::kEnable, c.on ? 1 : 0); },
           [](const Acceleration& c) {
             return with_int(Number::kAcceleration, rounded(c.acceleration * 1000.0, -32767, 32767));
@@ -309,23 +305,9 @@ Command decode_command(ByteView body, double vel2_unit) {
   const Unknown unknown{body[0]};
   const Argument argument = read_argument(body, false);
   const auto number = static_cast<Number>(body[0]);
-  switch (number) {  // those whose argument has no meaning
-    case Number::kPulse:
-      return Pulse{};
-    case Number::kOpen:
-      return Open{};
-    case Number::kClose:
-      return Close{};
-    case Number::kSetOrigin:
-      return SetOrigin{};
-    case Number::kStep:
-      return Step{};
-    case Number::kTruePose: {
-      const auto pose = read_pose(body);
-      return pose ? Command{TruePose{*pose}} : Command{unknown};
-    }
-    default:
-      break;
+  if (number == Number::kTruePose) {
+    const auto pose = read_pose(body);
+    return pose ? Command{TruePose{*pose}} : Command{unknown};
   }
   if (number == Number::kPolling) {
     if (argument.kind != Argument::Kind::kString && argument.kind != Argument::Kind::kNone)

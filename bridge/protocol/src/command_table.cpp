@@ -125,10 +125,9 @@ constexpr auto kRules = [] {
   });
 }();
 
-static_assert(std::is_sorted(kRules.begin(), kRules.end(),
-                             [](const CommandRule& a, const CommandRule& b) {
-                               return a.number < b.number;
-                             }));
+static_assert(std::ranges::is_sorted(kRules, [](const CommandRule& a, const CommandRule& b) {
+  return a.number < b.number;
+}));
 
 }  // namespace
 
@@ -137,9 +136,9 @@ std::span<const CommandRule> rules() {
 }
 
 const CommandRule* rule(std::uint8_t number) {
-  const auto* const found = std::find_if(
-      kRules.begin(), kRules.end(),
-      [number](const CommandRule& r) { return static_cast<std::uint8_t>(r.number) == number; });
+  const auto* const found = std::ranges::find_if(kRules, [number](const CommandRule& r) {
+    return static_cast<std::uint8_t>(r.number) == number;
+  });
   return found == kRules.end() ? nullptr : found;
 }
 

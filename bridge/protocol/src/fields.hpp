@@ -68,7 +68,7 @@ class Fields {
   /// Up to its NUL; unprintable characters become question marks.
   std::string string() {
     const ByteView rest = bytes_.subspan(at_);
-    const auto end = std::find(rest.begin(), rest.end(), 0);
+    const auto end = std::ranges::find(rest, 0);
     if (end == rest.end())
       ended_ = true;
     at_ += static_cast<std::size_t>(end - rest.begin()) + (ended_ ? 0 : 1);

@@ -62,11 +62,10 @@ std::string impossible_motion(const InformationPacket& packet, const RobotParame
 
 std::string take_out_readings(InformationPacket& packet, const RobotParameters& p) {
   const auto is_unknown = [&p](const RawSonar& reading) {
-    return std::none_of(p.sonars.begin(), p.sonars.end(), [&reading](const SonarUnit& unit) {
-      return unit.number == reading.number;
-    });
+    return std::ranges::none_of(
+        p.sonars, [&reading](const SonarUnit& unit) { return unit.number == reading.number; });
   };
-  const auto first = std::find_if(packet.sonars.begin(), packet.sonars.end(), is_unknown);
+  const auto first = std::ranges::find_if(packet.sonars, is_unknown);
   if (first == packet.sonars.end())
     return {};
   std::string what = "sonar number " + std::to_string(first->number) + "; its table has " +

@@ -307,7 +307,7 @@ class Parser {
   void baud(LineReader& in) {
     constexpr std::array rates{0L, 9600L, 19200L, 38400L, 57600L, 115200L};  // of HOSTBAUD
     const long rate = in.integer("baud rate", 0, rates.back());
-    if (std::find(rates.begin(), rates.end(), rate) == rates.end())
+    if (std::ranges::find(rates, rate) == rates.end())
       in.fail("expected 0 (never), 9600, 19200, 38400, 57600 or 115200");
     parameters_.switch_to_baud = static_cast<int>(rate);
   }
@@ -371,7 +371,7 @@ class Parser {
   void sonar_unit(LineReader& in) {
     const long number = in.integer("sonar number", 0, kMaxSonars - 1);
     const auto is_same = [number](const SonarUnit& unit) { return unit.number == number; };
-    if (std::any_of(parameters_.sonars.begin(), parameters_.sonars.end(), is_same))
+    if (std::ranges::any_of(parameters_.sonars, is_same))
       in.fail("expected each sonar once; this one stands above already");
     SonarUnit unit;
     unit.number = static_cast<std::uint8_t>(number);
@@ -387,8 +387,8 @@ class Parser {
     auto& sonars = parameters_.sonars;
     if (!sonar_count_)
       return;
-    std::sort(sonars.begin(), sonars.end(),
-              [](const SonarUnit& a, const SonarUnit& b) { return a.number < b.number; });
+    std::ranges::sort(sonars,
+                      [](const SonarUnit& a, const SonarUnit& b) { return a.number < b.number; });
     // The manual's own sample describes a unit 7 of seven (0 to 6).
     while (!sonars.empty() && sonars.back().number >= sonar_count_number_) {
       parameters_.warnings.push_back(
@@ -473,8 +473,7 @@ class Parser {
     if (message.empty())
       return;
     const int number = seen_.at("headreach");
-    const auto line = std::find_if(lines_.begin(), lines_.end(),
-                                   [&](const Line& each) { return each.number == number; });
+    const auto line = std::ranges::find(lines_, number, &Line::number);
     throw FileError(p.file, number, line->words[0].column, message, line->text);
   }
 
@@ -520,12 +519,11 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
                                               std::string_view subclass) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
-    const bool plain =
-        !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](char c) {
-          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
-                 c == '+' || c == '.';
-        });
-    if (plain && std::find(names.begin(), names.end(), name + ".p") == names.end())
+    const bool plain = !name.empty() && name[0] != '.' && std::ranges::all_of(name, [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '+' ||
+             c == '.';
+    });
+    if (plain && std::ranges::find(names, name + ".p") == names.end())
       names.push_back(name + ".p");
   };
   const std::string of_class = lowered(robot_class);

@@ -23,11 +23,10 @@ constexpr std::array<std::pair<const char*, What>, 4> kLines{
      {"line_min_mass", What::minimum_mass}}};
 
 bool is_color(const std::string& name) {
-  return !name.empty() && name.size() <= kLongestColor &&
-         std::all_of(name.begin(), name.end(), [](char c) {
-           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                  c == '-' || c == '_' || c == '#';
-         });
+  return !name.empty() && name.size() <= kLongestColor && std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '#';
+  });
 }
 
 std::optional<VisionSetting> setting_of(const std::string& text) {

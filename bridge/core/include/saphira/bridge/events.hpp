@@ -136,9 +136,8 @@ struct KeepOdometry {
 };
 
 /// The status of the service.
-enum class Health { running, degraded, waiting };
 struct Condition {
-  Health health = Health::running;
+  v1::ServiceState health = v1::SERVICE_RUNNING;
   std::string reason;
 };
 struct StatusReport {

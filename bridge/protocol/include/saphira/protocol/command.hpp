@@ -85,27 +85,11 @@ enum class Number : std::uint8_t {
   kMaintenance = 255,
 };
 
-/// sfCOMPULSE: shows that the client is alive.
-struct Pulse {
-  bool operator==(const Pulse&) const = default;
-};
-/// sfCOMOPEN: starts motors, sonars and information packets.
-struct Open {
-  bool operator==(const Open&) const = default;
-};
-/// sfCOMCLOSE: back to the wait state.
-struct Close {
-  bool operator==(const Close&) const = default;
-};
 /// sfCOMPOLLING: the firing sequence of the sonars, repeated; empty switches all off. At most 12
 /// (manual 5.6); encode() sends the first twelve.
 struct Polling {
   std::vector<std::uint8_t> sonars;  ///< from 0; the packet carries 1 + number
   bool operator==(const Polling&) const = default;
-};
-/// sfCOMSETO: the server's own position becomes (0, 0, 0).
-struct SetOrigin {
-  bool operator==(const SetOrigin&) const = default;
 };
 /// sfCOMVEL. Sent in whole mm/s.
 struct Velocity {
@@ -155,10 +139,6 @@ struct Gripper {
 struct Ptu {
   std::uint16_t width = 0;  ///< [us] (Table 6-2; Table 5-4 prints "ms")
   bool operator==(const Ptu&) const = default;
-};
-/// sfCOMSTEP: the simulator's world moves on by 100 ms and then waits.
-struct Step {
-  bool operator==(const Step&) const = default;
 };
 // ---- Later servers: P2OS, AROS, ARCOS; and simulators. In these files a "later server".
 
@@ -240,7 +220,7 @@ enum class GripperAction : std::uint8_t {
 
 /// No argument.
 struct Bare {
-  Number number = Number::kStop;
+  Number number = Number::kPulse;
   bool operator==(const Bare&) const = default;
 };
 struct Integer {
@@ -274,6 +254,13 @@ struct TextCommand : Text {
   explicit TextCommand(Bytes bytes = {}) : Text{N, std::move(bytes)} {}
 };
 
+using Pulse = BareCommand<Number::kPulse>;  ///< sfCOMPULSE: shows that the client is alive
+using Open = BareCommand<Number::kOpen>;    ///< starts motors, sonars and information packets
+using Close = BareCommand<Number::kClose>;  ///< back to the wait state
+/// The server's own position becomes (0, 0, 0).
+using SetOrigin = BareCommand<Number::kSetOrigin>;
+/// The simulator's world moves on by 100 ms and then waits.
+using Step = BareCommand<Number::kStep>;
 using Stop = BareCommand<Number::kStop>;
 using EmergencyStop = BareCommand<Number::kEmergencyStop>;
 using SimReset = BareCommand<Number::kSimReset>;
@@ -309,11 +296,11 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-using Command = std::variant<Pulse, Open, Close, Polling, SetOrigin, Velocity, Heading,
-                             DeltaHeading, RotationVelocity, WheelVelocities, DigitalOutput, Timer,
-                             Gripper, Ptu, Step, Unknown, Enable, Acceleration, MaxVelocity, Move,
-                             Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
-                             SonarSwitch, LateralVelocity, TruePose, Bare, Integer, Text, Raw>;
+using Command =
+    std::variant<Bare, Polling, Velocity, Heading, DeltaHeading, RotationVelocity, WheelVelocities,
+                 DigitalOutput, Timer, Gripper, Ptu, Unknown, Enable, Acceleration, MaxVelocity,
+                 Move, Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
+                 SonarSwitch, LateralVelocity, TruePose, Integer, Text, Raw>;
 
 // ---- The table of the commands.
 
