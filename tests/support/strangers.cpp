@@ -2,13 +2,14 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 namespace saphira::test {
 
@@ -26,28 +27,37 @@ sockaddr_in place(const char* address, std::uint16_t port) {
   return result;
 }
 
-std::string hear_one(std::uint16_t port) {
-  const int heard = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const int yes = 1;
-  setsockopt(heard, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  const ip_mreq group{place(kGroup, 0).sin_addr, place("127.0.0.1", 0).sin_addr};
-  setsockopt(heard, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
-  const timeval limit{20, 0};
-  setsockopt(heard, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  const sockaddr_in here = place(kGroup, port);
+/// The announcement of a program, at the port of its robot: one of eight behind the domain's first.
+std::string hear_one(std::uint16_t first) {
+  std::vector<pollfd> heard;
+  for (std::uint16_t port = first + 2; port < first + 10; ++port) {
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const int yes = 1;
+    setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const ip_mreq group{place(kGroup, 0).sin_addr, place("127.0.0.1", 0).sin_addr};
+    setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
+    const sockaddr_in here = place(kGroup, port);
+    if (bind(fd, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0)
+      heard.push_back({fd, POLLIN, 0});
+    else
+      close(fd);
+  }
   std::string packet;
-  if (bind(heard, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0)
-    for (ssize_t got = 0; got >= 0 && packet.empty();) {
+  while (packet.empty() && poll(heard.data(), heard.size(), 20'000) > 0)
+    for (const pollfd& each : heard) {
+      if ((each.revents & POLLIN) == 0)
+        continue;
       std::array<char, 65536> buffer{};
-      got = recv(heard, buffer.data(), buffer.size(), 0);
+      const ssize_t got = recv(each.fd, buffer.data(), buffer.size(), 0);
       const std::string text(buffer.data(), static_cast<std::size_t>(got < 0 ? 0 : got));
       if (text.starts_with("RTPS") && text.size() > 300 &&
           text.find(std::string("\0\1\0\xc2", 4)) != std::string::npos)
         packet = text;
     }
-  close(heard);
+  for (const pollfd& each : heard)
+    close(each.fd);
   if (packet.empty())
-    throw std::runtime_error("no program announces itself on port " + std::to_string(port));
+    throw std::runtime_error("no program announces itself behind port " + std::to_string(first));
   return packet;
 }
 

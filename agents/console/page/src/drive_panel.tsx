@@ -76,8 +76,8 @@ function Mine({link, drive, grant, seen, control}: {link: Link; drive: Drive; gr
     <div class="row"><label for="speed" class="small">Fastest {drive.maxVelocity.toFixed(2)} m/s</label>
       <input id="speed" class="grow" type="range" min="0.05" max={most} step="0.05" value={drive.maxVelocity} onInput={speed} /></div>
     {doubt && <p class="told" role="status">Let go, since {doubt}. Press again to drive.</p>}
-    <p class="small faint keys">Keys{drive.letters ? '' : ', at their places on a US keyboard'}, held down: {key('KeyI')} faster {key('KeyM')} slower, back {key('KeyJ')} left {key('KeyL')} right {key('Period')} go on; {key('KeyK')} stop
-      {' '}{key('KeyG')} constant speed, by the behaviors. {pad ? `Gamepad ${pad}${padHint && ': ' + padHint}.`
+    <p class="small faint"><span class="keys">Keys{drive.letters ? '' : ', at their places on a US keyboard'}, held down: {key('KeyI')} faster {key('KeyM')} slower, back {key('KeyJ')} left {key('KeyL')} right {key('Period')} go on; {key('KeyK')} stop
+      {' '}{key('KeyG')} constant speed, by the behaviors. </span>{pad ? `Gamepad ${pad}${padHint && ': ' + padHint}.`
         : (drive.hasPads ? 'A gamepad shows once one of its buttons is pressed' : 'This browser gives this page no gamepad')
           + (isSecureContext ? '.' : '; some browsers give one only to a page by https. The command saphira drive takes one without.')}</p>
   </div>;

@@ -30,6 +30,19 @@ function memory() {
     } catch { /* it has ended meanwhile */ }
   return sizes;
 }
+// Round the offices, and again where that ends.
+const ends = [];
+let over = false, goal;
+function patrol() {
+  goal = start('saphira', ...robot, 'goal', 'patrol', 'places=N1, S3, N3, S2', 'rounds=1000');
+  let last = '';
+  goal.stdout.on('data', data => { last = String(data).trim().split('\n').at(-1).trim() || last; });
+  goal.on('exit', () => {
+    if (over) return;
+    ends.push(last);
+    setTimeout(patrol, 1000);
+  });
+}
 async function status() {
   const asked = start('saphira', ...robot, 'status', '--json');
   let told = '';
@@ -43,7 +56,7 @@ try {
   const up = start('saphira', ...robot, 'up', 'demo', '--set', `port=${20_000 + process.pid % 500 * 20}`);
   children.push(up);
   const address = new URL(await until('the address', () => output().match(/open (http:\S+)/)?.[1]));
-  children.unshift(start('saphira', ...robot, 'goal', 'patrol', 'places=N1, S3, N3, S2', 'rounds=1000'));
+  patrol();
   children.unshift(start('saphira-record', ...robot, recording));
   browser = await chromium.launch({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
   const pictures = [0, 0];
@@ -64,11 +77,13 @@ try {
   }
   const state = await status();
   console.log(JSON.stringify({benchmark: 'soak', minutes, late_cycles: Object.fromEntries(state.programs.map(each => [each.name, each.late_cycles])),
-    cycles: Object.fromEntries(state.programs.map(each => [each.name, each.cycles])), mb_first: first, mb_last: memory(),
+    mb_first: first, mb_last: memory(),
     pictures_per_s: pictures.map((count, viewer) => Math.round((count - before[viewer]) / 6 / minutes) / 10),
-    recording_mb: Math.round(statSync(recording).size / 1e6), goal_goes_on: children[1].exitCode === null}));
+    recording_mb: Math.round(statSync(recording).size / 1e6), goal_ends: ends}));
 } finally {
+  over = true;
   await browser?.close();
+  await end(goal);
   for (const child of children) await end(child);
   rmSync(folder, {recursive: true, force: true});
 }

@@ -24,8 +24,8 @@ after(async () => {
   console.log(`\n| held | what happens | until it stands [s] |\n| --- | --- | --- |\n${table.join('\n')}`);
 });
 
-async function openPage(script = () => {}) {
-  const context = await browser.newContext({viewport: {width: 1280, height: 800}, reducedMotion: 'reduce', hasTouch: true});
+async function openPage(script = () => {}, hasTouch = true) {
+  const context = await browser.newContext({viewport: {width: 1280, height: 800}, reducedMotion: 'reduce', hasTouch});
   await context.addInitScript(() => {
     window.pads = [];
     navigator.getGamepads = () => window.pads;
@@ -288,7 +288,7 @@ test('the letters on the page are those of the keyboard; a page without gamepads
     Object.defineProperty(navigator, 'keyboard', {value: {getLayoutMap: async () => new Map([['KeyI', 'c'], ['KeyK', 't'], ['Period', 'v']])}});
     Object.defineProperty(window, 'isSecureContext', {value: false});
     navigator.getGamepads = undefined;
-  });
+  }, false);
   await until('control', async () => {
     await page.evaluate(() => saphira.send({type: 'take', force: true}));
     return mine();
@@ -297,7 +297,7 @@ test('the letters on the page are those of the keyboard; a page without gamepads
   assert.deepEqual((await page.locator('.drive kbd').allInnerTexts()).slice(0, 6), ['c', 'm', 'j', 'l', 'v', 't']);
   await page.getByText('gives this page no gamepad; some browsers give one only to a page by https').waitFor();
   await page.close();
-  await openPage(() => { Object.defineProperty(navigator, 'keyboard', {value: undefined}); });
+  await openPage(() => { Object.defineProperty(navigator, 'keyboard', {value: undefined}); }, false);
   await until('control', async () => {
     await page.evaluate(() => saphira.send({type: 'take', force: true}));
     return mine();
