@@ -14,7 +14,6 @@ namespace {
 
 constexpr auto kRoles = pairs_by_name<authority::Role, v1::Role>();
 constexpr auto kGuardActions = pairs_by_name<authority::GuardAction, v1::GuardAction>();
-
 // The bounds of the sequences.
 constexpr std::size_t kMostSonars = 64;
 constexpr std::size_t kMostRefusals = 16;
@@ -45,13 +44,31 @@ v1::Stamp to_bus(const Stamp& stamp) {
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
-  v1::RobotState out = namesakes_of<v1::RobotState>(in);
-  take_namesakes(state, out);
-  out.stamp = stamp;
-  out.status = kMotors.theirs(in.motors);
-  out.sonars = converted(in.sonars, reading_of, kMostSonars);
-  out.motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s);
-  out.sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s);
+  v1::RobotState out{.stamp = stamp,
+                     .odom = state.odom,
+                     .pose_in_odom = saphira::to_bus(state.pose_in_odom),
+                     .velocity = in.velocity,
+                     .rotation_velocity = in.rotation_velocity,
+                     .left_velocity = in.left_velocity,
+                     .right_velocity = in.right_velocity,
+                     .target_velocity = state.target_velocity,
+                     .target_heading_in_odom = state.target_heading_in_odom,
+                     .status = kMotors.theirs(in.motors),
+                     .left_stalled = in.left_stalled,
+                     .right_stalled = in.right_stalled,
+                     .bumpers = in.bumpers,
+                     .battery = in.battery,
+                     .ptu = in.ptu,
+                     .head = in.head,
+                     .say = in.say,
+                     .timer = in.timer,
+                     .analog = in.analog,
+                     .digital_input = in.digital_input,
+                     .digital_output = in.digital_output,
+                     .sonars = converted(in.sonars, reading_of, kMostSonars),
+                     .motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s),
+                     .sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s)};
+  out.vision_packets_per_s = 0;  // Shell counts them
   out.bad_packets = static_cast<std::uint32_t>(bad_packets);
   return out;
 }
@@ -72,9 +89,14 @@ v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
   return {.channels = converted(packet.channels, [](const protocol::VisionChannel& channel) {
-            auto out = namesakes_of<v1::VisionChannel>(channel);
-            out.mode = kVisionModes.theirs(channel.mode);
-            return out;
+            return v1::VisionChannel{.mode = kVisionModes.theirs(channel.mode),
+                                     .x = channel.x,
+                                     .y = channel.y,
+                                     .area = channel.area,
+                                     .width = channel.width,
+                                     .height = channel.height,
+                                     .first = channel.first,
+                                     .count = channel.count};
           })};
 }
 
@@ -109,19 +131,28 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
 
 v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
-  v1::Grant out = namesakes_of<v1::Grant>(grant);
-  out.stamp = stamp;
-  out.role = kRoles.theirs(grant.role);
-  out.guard = kGuardActions.theirs(guarded.action);
-  out.guard_reason = guarded.reason;
-  out.asked_velocity = told.setpoints.velocity;
-  out.velocity = guarded.velocity;
-  out.rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY;
-  out.rotation_velocity = guarded.rotation_velocity;
-  out.heading = told.setpoints.heading_in_odom;
-  out.distance_left = told.distance_left;
-  out.answers = to_bus(grant.answers);
-  out.stop = {grant.stop.asker, grant.stop.number};
+  v1::Grant out{
+      .stamp = stamp,
+      .role = kRoles.theirs(grant.role),
+      .source = grant.source,
+      .reason = grant.reason,
+      .expires_in = grant.expires_in,
+      .command_age = grant.command_age,
+      .guard = kGuardActions.theirs(guarded.action),
+      .guard_reason = guarded.reason,
+      .asked_velocity = told.setpoints.velocity,
+      .velocity = guarded.velocity,
+      .rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY,
+      .rotation_velocity = guarded.rotation_velocity,
+      .heading = told.setpoints.heading_in_odom,
+      .distance_left = told.distance_left,
+      .answers = to_bus(grant.answers),
+      .number = grant.number,
+      .estopped = grant.estopped,
+      .estop_source = grant.estop_source,
+      .waits_for_hand_back = grant.waits_for_hand_back,
+      .stop = {grant.stop.asker, grant.stop.number},
+      .stop_source = grant.stop_source};
   const auto refusal = [](const authority::Refusal& one) {
     return v1::Refusal{.role = kRoles.theirs(one.role), .source = one.source, .reason = one.reason};
   };
@@ -140,21 +171,28 @@ std::string trouble(const v1::MotorCommand& command) {
 }
 
 reflector::Motion to_motion(const v1::MotorCommand& command) {
-  auto out = namesakes_of<reflector::Motion>(command);
+  reflector::Motion out;
   out.translation = kTranslations.ours(command.translation, reflector::Translation::none);
   out.rotation = kRotations.ours(command.rotation, reflector::Rotation::none);
+  out.velocity = command.velocity;
+  out.distance = command.distance;
+  out.move = command.move;
+  out.rotation_velocity = command.rotation_velocity;
+  out.heading = command.heading;
   return out;
 }
 
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer) {
   DriveCommand out{{}, to_motion(command), command.contact_speed, {}, trouble(command)};
-  take_namesakes(command, out.command);
   out.command.role = role;
   out.command.writer = writer;
   out.command.source = source_of(command);
   out.command.epoch = command.stamp.epoch;
   out.command.cycle = command.stamp.cycle;
+  out.command.number = command.number;
+  out.command.active = command.active;
+  out.command.hand_back = command.hand_back;
   out.command.heeds = {command.heeds.asker, command.heeds.number};
   for (const v1::Edge& edge : command.edges)
     out.edges.push_back({{edge.x1, edge.y1}, {edge.x2, edge.y2}});

@@ -213,7 +213,7 @@ TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
   EXPECT_TRUE(scene.core.in_session());
   EXPECT_TRUE(scene.was_stopped());
   EXPECT_EQ(scene.core.grant().role, Role::none);
-  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   scene.cycle();
   EXPECT_EQ(scene.core.stamp(), (Stamp{before.epoch, before.cycle + 1}));
   EXPECT_EQ(scene.core.grant().role, Role::none) << "a new command is needed";
