@@ -17,7 +17,7 @@ constexpr std::size_t kMostWaiting = 64;  // requests for results
 constexpr const char* kSource = "cmd_vel of ROS 2";
 
 /// A part of a service. ROS 2 complains about an endpoint without any user data.
-bus::ForeignTopic part(const std::string& name, std::string_view type) {
+bus::ForeignTopic part(const std::string& name, const char* type) {
   bus::ForeignTopic topic;
   topic.name = name;
   topic.type = type;
@@ -42,7 +42,7 @@ std::string node_info(const bus::WriterId& participant, const std::string& name,
                       const std::vector<bus::WriterId>& writers) {
   const auto gid = [](const bus::WriterId& id) {
     Gid made;
-    std::ranges::copy(id, made.data.begin());
+    std::copy(id.begin(), id.end(), made.data.begin());
     return made;
   };
   Info info;
@@ -70,9 +70,9 @@ template <class Request, class Response>
 RosRobot::Served<Request, Response>::Served(RosRobot& robot,
                                             const Service<Request, Response>& service)
     : requests_(robot.foreign_.reader(
-          part("rq/" + std::string(service.name) + "Request", type_name<Request>()))),
+          part("rq/" + std::string(service.name) + "Request", service.request_type))),
       answers_(robot.foreign_.writer(
-          part("rr/" + std::string(service.name) + "Reply", type_name<Response>()))),
+          part("rr/" + std::string(service.name) + "Reply", service.response_type))),
       distribution_(robot.distribution()) {
   robot.reader_ids_.push_back(requests_->id());
   robot.writer_ids_.push_back(answers_->id());
@@ -106,6 +106,13 @@ RosRobot::RosRobot(bus::Node& node, const Options& options)
       foreign_(with_enclave(options), [&node] { node.wake(); }),
       outward_(options.with_map),
       mind_(node, false),
+      states_(node.reader(bus::topics::kRobotState)),
+      descriptions_(node.reader(bus::topics::kRobotDescription)),
+      registrations_(node.reader(bus::topics::kRegistration)),
+      maps_(node.reader(bus::topics::kMap)),
+      tiles_(node.reader(bus::topics::kGrid)),
+      sonars_(node.reader(bus::topics::kSonarBuckets)),
+      perceptions_(node.reader(bus::topics::kPerception)),
       odom_(*this, kOdom),
       tf_(*this, kTf),
       tf_static_(*this, kTfStatic),

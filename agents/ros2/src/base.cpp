@@ -203,14 +203,14 @@ std::string Base::trouble(double now) const {
     return "no odometry has come";
   if (!odometry_.lives(now))
     return "the odometry has ended";
-  const bool has_ranges =
-      std::ranges::any_of(ranges_, [](const auto& each) { return each.second.came.has_value(); });
+  const bool has_ranges = std::any_of(ranges_.begin(), ranges_.end(),
+                                      [](const auto& each) { return each.second.came; });
   if (!robot_.sonars.empty() && !scan_.came && !has_ranges)
     return bad_ranges_.empty() ? "no scan and no range has come" : bad_ranges_;
   if (scan_.came && !scan_.lives(now))
     return "the scan has ended";
-  if (has_ranges &&
-      std::ranges::none_of(ranges_, [&](const auto& each) { return each.second.lives(now); }))
+  if (has_ranges && std::none_of(ranges_.begin(), ranges_.end(),
+                                 [&](const auto& each) { return each.second.lives(now); }))
     return "the ranges have ended";
   return is_heard_ ? "" : "nobody takes cmd_vel";
 }

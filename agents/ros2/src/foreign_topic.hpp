@@ -12,7 +12,7 @@ template <class T>
 bus::ForeignTopic foreign(const Topic<T>& of, const std::string& name) {
   bus::ForeignTopic topic;
   topic.name = name;
-  topic.type = type_name<T>();
+  topic.type = of.type;
   topic.reliable = of.kind != Kind::wish;
   topic.transient_local = of.kind == Kind::latched;
   topic.depth = of.kind == Kind::many ? 100 : of.kind == Kind::latched ? 1 : 10;

@@ -57,8 +57,8 @@ Duration duration_of(double seconds) {
 }  // namespace
 
 Navigate::Entry* Navigate::find(const Uuid& goal) {
-  const auto found = std::ranges::find_if(
-      entries_, [&](const Entry& entry) { return entry.info.goal_id == goal; });
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& entry) { return entry.info.goal_id == goal; });
   return found == entries_.end() ? nullptr : &*found;
 }
 
@@ -109,8 +109,8 @@ Navigate::Canceled Navigate::cancel(const CancelRequest& request) {
 }
 
 std::optional<ResultResponse> Navigate::result(const Uuid& goal) const {
-  const auto found = std::ranges::find_if(
-      entries_, [&](const Entry& entry) { return entry.info.goal_id == goal; });
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& entry) { return entry.info.goal_id == goal; });
   if (found == entries_.end())
     return ResultResponse{};
   if (!found->ended())
@@ -145,7 +145,8 @@ GoalStatusArray Navigate::statuses() const {
 
 std::optional<FeedbackMessage> Navigate::feedback(const std::optional<viewer::Place>& place,
                                                   std::int64_t time_ns) const {
-  const auto found = std::ranges::find(entries_, kExecuting, &Entry::state);
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [](const Entry& entry) { return entry.state == kExecuting; });
   if (found == entries_.end() || !place)
     return std::nullopt;
   FeedbackMessage message;

@@ -288,9 +288,8 @@ TEST_F(CycloneTest, ARequestOfFastRtpsIsAnsweredInItsWay) {
                               [] {});
   const std::string prefix = "navigate_to_pose/_action/cancel_goal";
   const auto requests =
-      client_of_fast.writer({"rq/" + prefix + "Request", std::string(type_name<CancelRequest>())});
-  const auto answers =
-      client_of_fast.reader({"rr/" + prefix + "Reply", std::string(type_name<CancelResponse>())});
+      client_of_fast.writer({"rq/" + prefix + "Request", kCancelGoal.request_type});
+  const auto answers = client_of_fast.reader({"rr/" + prefix + "Reply", kCancelGoal.response_type});
   ASSERT_TRUE(
       test::wait_until([&] { return requests->matched() > 0 && answers->matched() > 0; }, kLong));
   const bus::SampleId reader_of_answers{answers->id(), 0};
