@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 
@@ -24,11 +25,9 @@ struct Mistake {
 /// The mistakes of mistakes.txt.
 std::vector<Mistake> mistakes() {
   std::vector<Mistake> all;
-  std::istringstream lines(read_file(test::source("tests/integration/mistakes.txt")));
-  for (std::string line; std::getline(lines, line);) {
+  test::each_line("tests/integration/mistakes.txt", '#', [&](std::string line) {
     const std::size_t arrow = line.find(" => ");
-    if (line[0] == '#' || arrow == std::string::npos)
-      continue;
+    ASSERT_NE(arrow, std::string::npos) << "expected \"words => answer\"";
     Mistake& mistake = all.emplace_back();
     mistake.words = line.substr(0, arrow);
     line.erase(0, arrow + 4);
@@ -44,7 +43,7 @@ std::vector<Mistake> mistakes() {
       mistake.said.push_back(part);
       at = end + 5;
     }
-  }
+  });
   return all;
 }
 

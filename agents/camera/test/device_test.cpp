@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kFd = 1000;
 
-/// The camera: its answers, and what was asked of it.
+/// The answers of the camera, and the calls that it got.
 struct Camera {
   int open_error = 0;
   std::uint32_t columns = 4;

@@ -669,8 +669,8 @@ Result Door::outcome(const v1::GoalId& id) const {
       std::find_if(own_.begin(), own_.end(), [&](const Own& each) { return each.id == id; });
   if (mine != own_.end() && needs_approval(*mine))
     text += std::string(mine->question != 0 ? "; the person at this client is asked"
-                                            : "; this client cannot have it approved: somebody "
-                                              "who may has to, in the robot's page or by the "
+                                            : "; this client may not approve it: a person "
+                                              "approves it in the robot's page or by the "
                                               "command line") +
             ". Then it begins; the tool goal follows it, and cancel withdraws it";
   else if (!bus::ended(known->state))

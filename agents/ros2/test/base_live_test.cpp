@@ -109,8 +109,8 @@ class FakeBase {
   std::thread thread_;
 };
 
-/// A bridge with the base as its robot, and a person who drives. The tests of times are base_test
-/// and those of the bridge's core.
+/// A bridge whose robot is the base, and a person who drives. Times are tested by base_test and by
+/// the tests of the bridge's core.
 class Ros2Base : public ::testing::Test {
  protected:
   void start(const std::string& options = "") {

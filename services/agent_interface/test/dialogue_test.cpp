@@ -189,7 +189,7 @@ TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   EXPECT_EQ(last.claims.at(1).list, std::vector<std::string>{"bob"});
   hear("no, sorry");
   EXPECT_EQ(last.claims.size(), 1u);
-  // What an activity finds takes the place of what was said.
+  // A finding of an activity replaces the sentence of a person.
   dialogue.found({}, now);
   const Dialogue::Outputs out = dialogue.found({{"karen", "EJ-231", 70}}, now);
   ASSERT_EQ(out.claims.size(), 1u);

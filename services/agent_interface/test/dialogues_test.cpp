@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "dialogue_fixture.hpp"
+#include "lines.hpp"
 #include "saphira/base/archive.hpp"
 
 namespace saphira::agent_interface {
@@ -130,15 +131,9 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  const std::string file = "services/agent_interface/test/dialogues.txt";
-  std::istringstream lines(read_file(test::source(file)));
   std::optional<Conversation> conversation;
-  int number = 0;
   int conversations = 0;
-  for (std::string line; std::getline(lines, line);) {
-    SCOPED_TRACE(file + ":" + std::to_string(++number));
-    if (line.empty() || line[0] == '#')
-      continue;
+  test::each_line("services/agent_interface/test/dialogues.txt", '#', [&](const std::string& line) {
     if (line.starts_with("== ")) {
       conversation.emplace();
       ++conversations;
@@ -146,7 +141,7 @@ TEST(Dialogues, AreAsWritten) {
       ASSERT_TRUE(conversation);
       conversation->take(line);
     }
-  }
+  });
   EXPECT_GT(conversations, 50);
 }
 

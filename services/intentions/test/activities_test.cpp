@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "language_bench.hpp"
-#include "process.hpp"
+#include "lines.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/idl/goal_words.hpp"
 
@@ -28,7 +28,7 @@ class Script {
  public:
   explicit Script(const std::string& activities) : stage_(activities) {}
 
-  /// What happens, or what has to be so.
+  /// Carries out an event, or checks an expectation.
   void take(const std::string& line) {
     const std::size_t colon = line.find(':');
     std::istringstream in(line.substr(0, colon));
@@ -121,16 +121,10 @@ class Script {
 };
 
 TEST(ActivitiesInWords, DoAsWritten) {
-  const std::string file = "services/intentions/test/activities.txt";
-  std::istringstream lines(read_file(test::source(file)));
   std::optional<Script> one;
   std::string activities;
-  int number = 0;
   int cases = 0;
-  for (std::string line; std::getline(lines, line);) {
-    SCOPED_TRACE(file + ":" + std::to_string(++number));
-    if (line.empty() || line[0] == ';')
-      continue;
+  test::each_line("services/intentions/test/activities.txt", ';', [&](const std::string& line) {
     if (line.starts_with("== ")) {
       one.reset();
       activities.clear();
@@ -142,7 +136,7 @@ TEST(ActivitiesInWords, DoAsWritten) {
         one.emplace(activities);
       one->take(line);
     }
-  }
+  });
   EXPECT_GT(cases, 35);
 }
 
