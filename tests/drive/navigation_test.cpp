@@ -210,6 +210,23 @@ TEST(Navigation, AroundAClosedDoorItReplans) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
+TEST(Navigation, APatrolLeavesOutAPlaceThatItDoesNotReach) {
+  Whole whole(office(1, office_with("patrolled", kClosed247)));
+  const GoalStatus status =
+      whole.achieve("patrol", {text("places", "EJ-245, EJ-247, EJ-249")}, 6000);
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+  EXPECT_EQ(status.reason.find("1 rounds, 1 times without one of its places: no way"), 0u)
+      << status.reason;
+  EXPECT_TRUE(is_in(whole, "EJ-249"));
+}
+
+TEST(Navigation, APatrolOfAPlaceThatTheMapDoesNotHaveDoesNotBegin) {
+  Whole whole(office());
+  const GoalStatus status = whole.achieve("patrol", {text("places", "EJ-245, EJ-999")}, 100);
+  EXPECT_EQ(status.state, v1::GOAL_FAILED);
+  EXPECT_NE(status.reason.find("EJ-999"), std::string::npos) << status.reason;
+}
+
 TEST(Ways, AreDrivenToATenthOfThemselves) {
   for (const double way : {0.1, 0.2, 0.3, 0.5, 1.0}) {
     Whole whole(office());
@@ -415,6 +432,24 @@ TEST(Navigation, ToAPointOfTheMapByARoute) {
       whole.achieve("go-to-place", {saphira::point("place", {14.7, 25.0, 0.0}, Frame::map)}, 3000);
   EXPECT_EQ(there.state, v1::GOAL_SUCCEEDED) << there.reason;
   EXPECT_LT((whole.truth().position() - Vec2(14.7, 25.0)).norm(), 0.7);
+}
+
+// The demo's map has no furniture: what the robot hears of it must not deny the place.
+TEST(Navigation, EveryRoomOfAFurnishedOfficeIsReachedAgainAndAgain) {
+  for (const std::uint64_t seed : {1, 8, 14}) {
+    WholeOptions options;
+    options.drive.world = "office";
+    options.drive.seed = seed;
+    options.drive.guard = true;
+    Whole whole(options);
+    for (int round = 0; round < 2; ++round)
+      for (const char* const room : {"N1", "S3", "N3", "S2", "N2", "S1"}) {
+        const GoalStatus there = whole.achieve("go-to-place", {saphira::text("place", room)}, 6000);
+        EXPECT_EQ(there.state, v1::GOAL_SUCCEEDED) << seed << ": " << room << ": " << there.reason;
+        EXPECT_TRUE(is_in(whole, room)) << seed << ": " << room;
+      }
+    EXPECT_EQ(whole.drive().contacts(), 0);
+  }
 }
 
 TEST(Navigation, AThingIsPutOnTheMapAndTakenFromItWhenItIsCarriedOff) {

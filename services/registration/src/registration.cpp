@@ -102,6 +102,7 @@ class Registration::Self {
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
   void find_environment();
+  double explained_by_furniture() const;
   void report();
 
   Settings settings_;
@@ -616,6 +617,7 @@ void Registration::Self::find_environment() {
 
 void Registration::Self::report() {
   now_.output.state = now_.on ? now_.state : v1::REGISTRATION_OFF;
+  find_environment();
   if (now_.filter) {
     now_.output.pose_in_map = now_.filter->pose();
     now_.output.covariance = now_.filter->pose_covariance();
@@ -647,7 +649,8 @@ void Registration::Self::report() {
     };
     now_.output.confidence =
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
-                 between(search_.contradiction(), settings_.refuted, settings_.doubts));
+                 between(search_.contradiction() - explained_by_furniture(), settings_.refuted,
+                         settings_.doubts));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =
@@ -658,7 +661,14 @@ void Registration::Self::report() {
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
                                               : "matched with the map";
   }
-  find_environment();
+}
+
+/// Maps leave furniture out: in a room, a share of the evidence of its walls says nothing.
+double Registration::Self::explained_by_furniture() const {
+  const auto& region = now_.output.environment;
+  return region && map_.features[*region].type == PointType::office
+             ? std::min(settings_.furniture, search_.contradiction_of_walls())
+             : 0.0;
 }
 
 Registration::Registration(Settings settings, maps::Map map, std::optional<Pose> pose_in_map)

@@ -62,6 +62,8 @@ struct Settings {
   // of its old place have faded.
   double doubts = 3.0;    ///< up to this one the pose holds...
   double refuted = 10.0;  ///< ...and from this one on it does not, until it is below `doubts` again
+  double furniture =
+      3.0;  ///< the limit of that of walls in a room which does not lower the confidence
   SearchSettings search;
 
   // Other possible poses near by: a cloud beside the filter, which takes over where it is better.

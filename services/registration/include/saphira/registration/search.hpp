@@ -99,7 +99,9 @@ class Search {
   /// Doors have been found closed that were open before.
   void found_closed(std::size_t doors);
   /// The evidence against the present place.
-  double contradiction() const { return now_.against + now_.strange + now_.openings; }
+  double contradiction() const { return contradiction_of_walls() + now_.openings; }
+  /// The part of it that silent walls and echoes without an artifact are.
+  double contradiction_of_walls() const { return now_.against + now_.strange; }
   /// True where this is the present place: the evidence against it counts for both.
   bool is_own(const Pose& pose_in_map) const;
   /// Follows a given place of the robot, beside `own` of step().
