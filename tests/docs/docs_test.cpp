@@ -66,11 +66,13 @@ TEST(Docs, PathsAreThere) {
   EXPECT_GT(paths, 10);
 }
 
-TEST(Docs, TheBehaviorOfTheDocumentIsTaken) {
+TEST(Docs, TheBehaviorsOfTheDocumentAreTaken) {
   const test::TempDir folder;
   std::ofstream(folder.path("slow-down.beh")) << test::block_of("docs/add-a-behavior.md", "");
+  std::ofstream(folder.path("keep-middle.beh")) << test::block_of("docs/add-a-behavior.md", "c");
   behaviors::Registry registry = behaviors::load_behaviors(folder.path());
   EXPECT_NE(registry.find("SlowDown"), nullptr);
+  EXPECT_NE(registry.find("KeepMiddle"), nullptr);
 }
 
 TEST(Docs, TheConfigurationsOfHostsStartTheServer) {
@@ -101,6 +103,7 @@ std::string taken(const std::string& text) {
 
 TEST(Docs, TheActivitiesOfTheDocumentsAreTaken) {
   EXPECT_EQ(taken(test::block_of("docs/add-an-activity.md", "lisp")), "greet");
+  EXPECT_EQ(taken(test::block_of("docs/add-a-behavior.md", "lisp")), "keep-middle");
   const std::string page = read_file(source() / "docs/add-a-behavior.md");
   std::smatch intends;
   ASSERT_TRUE(std::regex_search(page, intends, std::regex(R"(`(\(INTEND :SlowDown [^`]*)`)")));

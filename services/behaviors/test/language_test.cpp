@@ -266,6 +266,7 @@ TEST(Language, MistakesAreShownWhereTheyAre) {
        "argument 1 of sqrt: expected a number, found a point"},
       {update("float q = sfPointPhi(p);"), 10, 22, "expected a point, found a number"},
       {update("float q = sfPointPhy(a);"), 10, 11, "did you mean sfPointPhi?"},
+      {update("x = zzz(1);"), 10, 5, "unknown function \"zzz\": expected one of sfPointPhi, "},
       {update("float q = sqrt(1, 2);"), 10, 11, "expected 1 argument of sqrt, found 2"},
       {update("float q = 1 +;"), 10, 14, "expected a number, a variable, a call or \"(\""},
       {update("float q = (1;"), 10, 13, "expected \")\" or an operator"},

@@ -247,6 +247,8 @@ TEST(ActivityErrors, OfGoals) {
 
 TEST(ActivityErrors, OfExpressions) {
   EXPECT_EQ(troubles(goals("(TEST (fly dest))")), List({"2:8 unknown function \"fly\""}));
+  EXPECT_EQ(troubles(goals("(TEST (elapsd))")),
+            List({"2:8 unknown function \"elapsd\": did you mean elapsed?"}));
   EXPECT_EQ(troubles(goals("(TEST (null dest 1))")),
             List({"2:7 (null) expected 1 argument, found 2"}));
   EXPECT_EQ(troubles(goals("(TEST (> dest))")),

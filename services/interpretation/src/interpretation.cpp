@@ -275,7 +275,7 @@ void Interpretation::stand(Percept percept, const Lines& lines) {
     // Not below the cycle: a restarted service must not repeat an id.
     last_id_ = std::max(last_id_ + 1, static_cast<std::uint32_t>(cycle_));
     percept.id = last_id_;
-    percept.since = cycle_;
+    percept.since = std::min(cycle_, percept.seen);
     standing_.push_back({std::move(percept), true, lines, travelled_});
   }
 }

@@ -11,6 +11,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "saphira/security/roles.hpp"
 
 namespace saphira::system {
 namespace {
@@ -59,6 +60,21 @@ TEST(System, TheBridgeAloneIsReadInTheSameCycle) {
     for (const Line::End& end : line.readers)
       EXPECT_EQ(end.use == runtime::Port::Use::kState, line.topic.starts_with("robot/"))
           << line.topic << " of " << all[end.unit].name;
+}
+
+// A service without a role would find the bus of a site with security closed.
+TEST(System, EachProgramHasARoleThatMayUseItsTopics) {
+  const std::string file = config_folder() + "/security/roles.yaml";
+  const security::Roles roles =
+      security::parse_roles(read_file(file), file, security::topics_of_contract());
+  for (const Unit& unit : units()) {
+    const security::Role* const role = roles.of_program(unit.name);
+    ASSERT_NE(role, nullptr) << unit.name;
+    for (const runtime::Port& port : unit.ports)
+      EXPECT_TRUE(port.is_input() ? roles.may_read(role->name, port.topic)
+                                  : roles.may_write(role->name, port.topic))
+          << unit.name << ", " << port.topic;
+  }
 }
 
 // docs/architecture.md shows it. `saphira wiring --draw docs/wiring.svg` makes it anew.

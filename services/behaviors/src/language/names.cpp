@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "saphira/base/guess.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors::language {
 namespace {
@@ -19,6 +20,10 @@ constexpr const char* kComposed[] = {"f_greater", "f_smaller", "f_eq", "f_not"};
 
 bool is_constant(std::string_view name) {
   return std::ranges::any_of(constants(), [&](const Constant& c) { return name == c.name; });
+}
+
+std::string known(const std::vector<std::string>& names) {
+  return ": expected one of " + joined(names);
 }
 
 }  // namespace
@@ -49,7 +54,7 @@ std::string meant_variable(const std::string& name, const Variables& variables) 
     names.push_back(known);
   for (const Constant& constant : constants())
     names.emplace_back(constant.name);
-  return did_you_mean(name, names);
+  return did_you_mean(name, names, known(names));
 }
 
 std::string meant_function(const std::string& name) {
@@ -59,7 +64,7 @@ std::string meant_function(const std::string& name) {
   for (const Quick& quick : kQuick)
     names.emplace_back(quick.name);
   names.insert(names.end(), std::begin(kComposed), std::end(kComposed));
-  return did_you_mean(name, names);
+  return did_you_mean(name, names, known(names));
 }
 
 }  // namespace saphira::behaviors::language

@@ -1,5 +1,7 @@
 #include "language/expressions.hpp"
 
+#include "saphira/base/guess.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -23,6 +25,15 @@ std::string count(std::size_t fewest, std::size_t most) {
   if (most > 64)
     return std::to_string(fewest) + " arguments or more";
   return std::to_string(fewest) + " to " + std::to_string(most) + " arguments";
+}
+
+std::vector<std::string> names_of(const Functions& functions) {
+  std::vector<std::string> names;
+  for (const Special& special : kSpecials)
+    names.emplace_back(special.name);
+  for (const auto& [name, function] : functions.functions())
+    names.push_back(name);
+  return names;
 }
 
 }  // namespace
@@ -119,7 +130,8 @@ Expression Expressions::call(const Form& form, const std::string& name, bool act
       result.kind = Kind::kAction;
       result.action = std::make_shared<const Action>(*action);
     } else {
-      definition_.fail(head, "unknown function " + quoted(head.text));
+      definition_.fail(head, "unknown function " + quoted(head.text) +
+                                 did_you_mean(name, names_of(definition_.functions())));
     }
   }
   for (std::size_t i = 1; i < form.items.size(); ++i)
