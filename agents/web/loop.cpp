@@ -5,6 +5,7 @@
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <sys/stat.h>
+#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <array>
@@ -18,7 +19,8 @@ namespace saphira::web {
 namespace {
 
 constexpr const char* kDescriptor = "descriptor";
-constexpr lws_usec_t kRenewal = 2'000'000;  // [us] between two looks at the certificates
+constexpr long kSecond = 1'000'000;     // [us]
+constexpr long kRenewal = 2 * kSecond;  // [us] between two looks at the certificates
 constexpr std::size_t kLongestHeader = 1024;
 constexpr unsigned short kLongestHeaders =
     16384;  // of a request: cookies of others, behind a proxy
@@ -225,22 +227,31 @@ void Loop::watch(lws_vhost* vhost, int fd, std::function<void()> readable) {
   lws_set_opaque_user_data(wsi, &watched_.back());
 }
 
-void Loop::tick(lws_sorted_usec_list_t* list) {
-  Timer& timer = *reinterpret_cast<Timer*>(list);  // its first member
-  timer.tick();
-  lws_sul_schedule(timer.context, 0, list, tick, timer.period);
+Loop::Timer::Timer(long period, std::function<void()> the_tick)
+    : fd(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)), tick(std::move(the_tick)) {
+  const timespec each{period / kSecond, period % kSecond * 1000};
+  const itimerspec times{each, each};
+  if (fd < 0 || timerfd_settime(fd, 0, &times, nullptr) != 0)
+    throw std::runtime_error("the event loop of the network cannot make a timer");
 }
 
-void Loop::every(lws_usec_t period, std::function<void()> call) {
-  Timer& timer = timers_.emplace_back();
-  timer.context = context_;
-  timer.period = period;
-  timer.tick = std::move(call);
-  lws_sul_schedule(context_, 0, &timer.list, tick, period);
+Loop::Timer::~Timer() {
+  close(fd);
+}
+
+/// A timer of libwebsockets would poll without a pause in the last millisecond before its time.
+void Loop::every(long period, std::function<void()> call) {
+  timers_.emplace_back(period, std::move(call));
 }
 
 void Loop::run(lws_vhost* vhost, int stop) {
   watch(vhost, stop, [this] { stopping_ = true; });
+  for (const Timer& timer : timers_)
+    watch(vhost, timer.fd, [&timer] {
+      std::uint64_t count = 0;
+      if (read(timer.fd, &count, sizeof count) == sizeof count)
+        timer.tick();
+    });
   while (!stopping_)
     if (lws_service(context_, 0) < 0)
       throw std::runtime_error("the event loop of the network has failed");

@@ -64,8 +64,8 @@ class Loop {
   /// From now on calls `readable` when the descriptor is. The vhost has to have the protocol
   /// descriptors().
   void watch(lws_vhost* vhost, int fd, std::function<void()> readable);
-  /// From now on calls `tick` once a period [us].
-  void every(lws_usec_t period, std::function<void()> tick);
+  /// Calls `tick` once a period [us], while the loop runs. Call before run().
+  void every(long period, std::function<void()> tick);
   /// Runs until `stop` is readable. std::runtime_error where the loop fails.
   void run(lws_vhost* vhost, int stop);
 
@@ -78,12 +78,14 @@ class Loop {
  private:
   struct Certificate;
   struct Timer {
-    lws_sorted_usec_list_t list{};
-    lws_context* context = nullptr;
-    lws_usec_t period = 0;
+    Timer(long period, std::function<void()> tick);
+    ~Timer();
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+
+    int fd;
     std::function<void()> tick;
   };
-  static void tick(lws_sorted_usec_list_t* list);
 
   lws_context* context_ = nullptr;
   std::list<std::function<void()>> watched_;

@@ -111,7 +111,8 @@ Server::Events Gateway::events() {
           [this](auto connection) { return next(connection); },
           [this] {
             node_.clear_wake();
-            poll();
+            if (!pages_.empty())  // else the next tick takes the samples of all topics at once
+              poll();
           },
           [this] { tick(); }};
 }

@@ -405,7 +405,7 @@ void Server::want(Connection connection) {
 }
 
 void Server::want_all_soon() {
-  if (impl_->soon)
+  if (impl_->soon || impl_->open.empty())
     return;
   impl_->soon = true;
   impl_->together.impl = impl_.get();

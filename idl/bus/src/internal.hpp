@@ -58,7 +58,6 @@ class Wake {
   int fd_;
   std::atomic<bool> pending_{false};
   std::atomic<bool> asleep_{true};
-  std::atomic<bool> written_{false};  ///< fd() is readable
 };
 
 /// What was refused since the last call.

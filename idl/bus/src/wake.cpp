@@ -23,19 +23,14 @@ void Wake::signal() {
     return;
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(fd_, &one, sizeof one);
-  written_.store(true);
 }
 
 void Wake::clear() {
-  if (!pending_.load() && !written_.load())
-    return;
   // First the descriptor, then the flag: a signal in between writes nothing, but its samples are
   // there already when the caller takes. In reverse order its write would be consumed and the flag
   // would stay set, for ever.
-  if (written_.exchange(false)) {
-    std::uint64_t count = 0;
-    [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);
-  }
+  std::uint64_t count = 0;
+  [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);
   pending_.store(false);
 }
 
