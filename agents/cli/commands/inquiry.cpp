@@ -17,11 +17,14 @@ bool Inquiry::poll() {
   const double waited = seconds_since(began_);
   if (asked_ == 0) {
     cycle_ = mind_.newest_cycle();
-    if (mind_.held() && mind_.recall())
+    if (waited <= kMindPatience && !(mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0)))
+      return false;
+    if (!mind_.held() && !misses(mind_.situation(cycle_, false)))
+      return true;
+    // Since when is in the past.
+    if (mind_.recall())
       grown_ = Clock::now();
-    return (waited > kMindPatience ||
-            (mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0))) &&
-           (!mind_.held() || seconds_since(grown_) > kRecalled);
+    return waited > 1.0 && seconds_since(grown_) > kRecalled;
   }
   if (asked_ > 0)
     cycle_ = static_cast<std::uint64_t>(asked_);

@@ -191,6 +191,8 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
     now.estopped_since = grants_.since(now.grant->stamp.cycle,
                                        [](const v1::Grant& grant) { return grant.estopped; });
   now.stalled_since = robots_.since(cycle, stalled);
+  now.behaviors_drove =
+      grants_.newest([](const v1::Grant& grant) { return grant.role == v1::ROLE_BEHAVIORS; });
   // After a late command of this cycle, an earlier one holds: the reasons are from its cycle.
   std::uint64_t answered = cycle;
   const auto drives = [&](v1::Role role) { return now.grant && now.grant->role == role; };

@@ -40,6 +40,14 @@ class Past {
     return samples_.empty() ? situation::Known{}
                             : situation::Known{samples_.begin()->first, samples_.rbegin()->first};
   }
+  /// The newest cycle for which it `holds` [0: none].
+  template <class Holds>
+  std::uint64_t newest(Holds holds) const {
+    for (auto at = samples_.rbegin(); at != samples_.rend(); ++at)
+      if (holds(at->second))
+        return at->first;
+    return 0;
+  }
   /// The cycle since which it `holds` without a break, up to this one [0: it does not, or since
   /// before the oldest sample].
   template <class Holds>

@@ -14,6 +14,8 @@ namespace saphira::situation {
 namespace {
 
 constexpr std::array kMakeItGo{"bridge", "behaviors", "intentions"};
+constexpr std::array kPrograms{"bridge", "behaviors", "intentions", "interpretation",
+                               "registration"};
 
 constexpr std::uint64_t kLateCycles = 3;   // behind: worth mentioning
 constexpr std::uint64_t kHungCycles = 10;  // behind: no more samples come
@@ -68,9 +70,9 @@ std::optional<Expected> expected(const Situation& s, const std::string& program)
 std::string missed(const Situation& s, const std::string& name) {
   if (name == "intentions" && s.behaviors && s.behaviors->input_age >= kListened)
     return "behaviors has heard nothing of it for " + seconds_text(s.behaviors->input_age);
-  if (s.grant && s.grant->role == v1::ROLE_NONE &&
-      s.grant->reason.find(name + " (behaviors) ran out") != std::string::npos)
-    return s.grant->reason;
+  if (name == "behaviors" && s.behaviors_drove > 0)
+    return "it last drove " + seconds_text(seconds_of(s.now - std::min(s.now, s.behaviors_drove))) +
+           " ago";
   const std::string topic = name == "interpretation" ? "perception"
                             : name == "behaviors"    ? "behaviors/state"
                                                      : name;
@@ -170,8 +172,7 @@ Condition present_condition(const Situation& s, const std::string& name) {
 /// a robot can do without interpretation and registration, unless others miss them.
 std::vector<std::pair<std::string, Condition>> conditions(const Situation& s) {
   std::vector<std::pair<std::string, Condition>> all;
-  for (const char* const name :
-       {"bridge", "behaviors", "intentions", "interpretation", "registration"}) {
+  for (const char* const name : kPrograms) {
     const Condition how = condition(s, name);
     const bool needed =
         std::find(kMakeItGo.begin(), kMakeItGo.end(), std::string_view(name)) != kMakeItGo.end();
@@ -256,6 +257,12 @@ std::vector<std::string> unheard(const Situation& situation) {
     if (how.health == Health::hung || how.health == Health::lost || how.health == Health::absent)
       all.push_back(name);
   return all;
+}
+
+bool misses(const Situation& situation) {
+  return std::any_of(kPrograms.begin(), kPrograms.end(), [&](const char* const name) {
+    return find(situation.programs, name) == nullptr && !missed(situation, name).empty();
+  });
 }
 
 bool is_heard(const std::vector<Program>& programs, const std::string& name) {

@@ -97,6 +97,7 @@ TEST(Condition, WhoIsMissedByOthersIsNamed) {
   Situation s = driving();
   test::remove(s, "registration");
   EXPECT_EQ(unheard(s), std::vector<std::string>{}) << "a deployment without it";
+  EXPECT_FALSE(misses(s));
   v1::ServiceStatus& intentions = test::find(s, "intentions").status;
   intentions.state = v1::SERVICE_DEGRADED;
   for (const char* const runs : {"runs on an old sample of", "runs without"}) {
@@ -104,6 +105,7 @@ TEST(Condition, WhoIsMissedByOthersIsNamed) {
     EXPECT_EQ(trouble(s), "registration is not heard (not running, hung, or cut off; intentions " +
                               intentions.reason + ")");
     EXPECT_EQ(unheard(s), std::vector<std::string>{"registration"});
+    EXPECT_TRUE(misses(s));
     EXPECT_EQ(nlohmann::json::parse(to_json(s)).at("missing"), "registration");
   }
 }

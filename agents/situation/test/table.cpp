@@ -10,7 +10,6 @@
 #include "saphira/geometry/pose.hpp"
 #include "saphira/situation/sentence.hpp"
 #include "saphira/situation/why.hpp"
-#include "saphira/situation/words.hpp"
 
 namespace saphira::situation::test {
 namespace {
@@ -109,8 +108,7 @@ void stopped_before(Situation& s, const std::string& program, double time) {
   if (program == "behaviors") {
     forget(s, program, {});
     other.reason += "/state";
-    s.grant->reason = "the lease of behaviors (behaviors) ran out: its newest command is " +
-                      seconds_text(time) + " old";
+    s.behaviors_drove = s.now - cycles(time);
   }
 }
 

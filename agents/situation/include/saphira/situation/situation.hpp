@@ -63,6 +63,7 @@ struct Situation {
   /// not, or were so before the known past].
   std::uint64_t estopped_since = 0;
   std::uint64_t stalled_since = 0;
+  std::uint64_t behaviors_drove = 0;  ///< the newest cycle in which behaviors drove [0: not known]
   std::vector<v1::Belief> beliefs;          ///< at present: the activities' beliefs
   std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
   std::vector<Program> programs;            ///< at present
@@ -110,6 +111,8 @@ std::string trouble(const Situation& situation);
 /// The programs of the robot that are hung, silent or not on the bus: those that move it, and those
 /// that others miss.
 std::vector<std::string> unheard(const Situation& situation);
+/// Others miss a program whose status has not come: more listening tells.
+bool misses(const Situation& situation);
 /// A program of this name is heard.
 bool is_heard(const std::vector<Program>& programs, const std::string& name);
 /// The missing or unheard ones of them, in words such as "behaviors and intentions"; empty: all are
