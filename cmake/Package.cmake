@@ -83,7 +83,7 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 it, ask others and can be asked, or drive. With types for mypy, and with or
 without asyncio.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "saphira (= ${PROJECT_VERSION}), libfastrtps-dev, libeigen3-dev, libspdlog-dev, libssl-dev, libyaml-cpp-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "saphira (= ${PROJECT_VERSION}), libfastrtps-dev, libeigen3-dev, libspdlog-dev, libssl-dev, libutf8proc-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEV_DESCRIPTION
   "Headers and static libraries for programs that join the bus of Saphira and

@@ -252,7 +252,7 @@ TEST_F(CliTest, StatusOfAnEmptyBusSaysSo) {
 
 TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
   const Scripted scripted(robot_);
-  expect({"status"}, 0,
+  expect({"status"}, 1,
          {"bridge", "running", std::to_string(getpid()), "drive: nobody drives: nobody asked",
           "trouble: behaviors and intentions are not heard"});
 }

@@ -2,6 +2,12 @@
 
 namespace saphira::cli {
 
+namespace {
+
+constexpr double kRecalled = 0.7;  // [s] without older samples: the past is complete
+
+}  // namespace
+
 bool Inquiry::poll() {
   mind_.poll();
   const auto known = mind_.known();
@@ -11,7 +17,14 @@ bool Inquiry::poll() {
   const double waited = seconds_since(began_);
   if (asked_ == 0) {
     cycle_ = mind_.newest_cycle();
-    return waited > kMindPatience || (mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0));
+    if (waited <= kMindPatience && !(mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0)))
+      return false;
+    if (!mind_.held() && !misses(mind_.situation(cycle_, false)))
+      return true;
+    // Since when is in the past.
+    if (mind_.recall())
+      grown_ = Clock::now();
+    return waited > 1.0 && seconds_since(grown_) > kRecalled;
   }
   if (asked_ > 0)
     cycle_ = static_cast<std::uint64_t>(asked_);

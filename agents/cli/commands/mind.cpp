@@ -15,6 +15,10 @@ std::optional<T> copy(const T* sample) {
   return sample == nullptr ? std::nullopt : std::optional<T>(*sample);
 }
 
+bool stalled(const v1::RobotState& robot) {
+  return robot.left_stalled || robot.right_stalled;
+}
+
 }  // namespace
 
 Mind::Mind(bus::Node& node, bool recalled) : node_(node), processes_(node) {
@@ -22,11 +26,14 @@ Mind::Mind(bus::Node& node, bool recalled) : node_(node), processes_(node) {
     recall();
 }
 
-void Mind::recall() {
+bool Mind::recall() {
+  if (recall_)
+    return false;
   recall_ = std::make_unique<Recall>(Recall{
       node_.reader(bus::topics::kRecallRobot), node_.reader(bus::topics::kRecallGrant),
       node_.reader(bus::topics::kRecallBehaviors), node_.reader(bus::topics::kRecallIntentions),
       node_.reader(bus::topics::kRecallGoals)});
+  return true;
 }
 
 void Mind::poll() {
@@ -72,7 +79,7 @@ void Mind::poll() {
       doubtful_since_ = registration->stamp.cycle;
     registration_ = std::move(registration);
   }
-  if (!recall_ && !heard() && seconds_since(began_) > kSilence)
+  if (!heard() && seconds_since(began_) > kSilence)
     recall();
 }
 
@@ -96,6 +103,11 @@ const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cy
                       [](const v1::BehaviorState& each) { return each.running; }))
         return then;
   return nullptr;
+}
+
+bool Mind::held() const {
+  return (grants_.newest() != nullptr && grants_.newest()->estopped) ||
+         (robots_.newest() != nullptr && stalled(*robots_.newest()));
 }
 
 void Mind::listen(std::chrono::milliseconds time, const bus::Stop& stop) {
@@ -175,6 +187,12 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.listened = seconds_since(began_);
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));
+  if (now.grant)
+    now.estopped_since = grants_.since(now.grant->stamp.cycle,
+                                       [](const v1::Grant& grant) { return grant.estopped; });
+  now.stalled_since = robots_.since(cycle, stalled);
+  now.behaviors_drove =
+      grants_.newest([](const v1::Grant& grant) { return grant.role == v1::ROLE_BEHAVIORS; });
   // After a late command of this cycle, an earlier one holds: the reasons are from its cycle.
   std::uint64_t answered = cycle;
   const auto drives = [&](v1::Role role) { return now.grant && now.grant->role == role; };

@@ -40,6 +40,27 @@ class Past {
     return samples_.empty() ? situation::Known{}
                             : situation::Known{samples_.begin()->first, samples_.rbegin()->first};
   }
+  /// The newest cycle for which it `holds` [0: none].
+  template <class Holds>
+  std::uint64_t newest(Holds holds) const {
+    for (auto at = samples_.rbegin(); at != samples_.rend(); ++at)
+      if (holds(at->second))
+        return at->first;
+    return 0;
+  }
+  /// The cycle since which it `holds` without a break, up to this one [0: it does not, or since
+  /// before the oldest sample].
+  template <class Holds>
+  std::uint64_t since(std::uint64_t cycle, Holds holds) const {
+    std::uint64_t first = 0;
+    for (auto at = samples_.upper_bound(cycle); at != samples_.begin();) {
+      --at;
+      if (!holds(at->second))
+        return first;
+      first = at->first;
+    }
+    return 0;
+  }
   const T* newest() const { return samples_.empty() ? nullptr : &samples_.rbegin()->second; }
   std::uint64_t epoch() const { return epoch_; }
 
@@ -57,6 +78,10 @@ class Mind {
   Mind(bus::Node& node, bool recalled);
 
   void poll();
+  /// The emergency stop is pressed, or a wheel is stalled: its beginning is of interest.
+  bool held() const;
+  /// Also takes the last minute from now on; false: it is taken already.
+  bool recall();
   /// Waits and polls, for that time.
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
@@ -97,7 +122,6 @@ class Mind {
     bus::Reader<v1::Intentions> intentions;
     bus::Reader<v1::GoalStatusSet> goals;
   };
-  void recall();
   void take_past_goals();
   std::vector<v1::GoalStatus> goals_at(std::uint64_t cycle) const;
   const v1::Grant* grant_for(std::uint64_t cycle) const;

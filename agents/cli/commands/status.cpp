@@ -47,8 +47,8 @@ class StatusView {
     const auto all = processes_.all();
     if (all.empty())
       return who_is_there(processes_) + "\n" + silent_peers();
-    std::string text = status_table(all);
     const situation::Situation now = situation();
+    std::string text = status_table(all, unheard(now));
     text += "drive: " + driver(now) + "\n";
     if (const std::string trouble = situation::trouble(now); !trouble.empty())
       text += "trouble: " + trouble + "\n";
@@ -85,7 +85,7 @@ class StatusView {
   }
 
   const Processes& processes() const { return processes_; }
-  bool anybody() const { return !processes_.all().empty(); }
+  bool all_heard() const { return !processes_.all().empty() && unheard(situation()).empty(); }
 
  private:
   std::string silent_peers() const {
@@ -122,7 +122,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
       listen(node, stop, view.processes(), refresh, [&view] { return view.news(); });
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
-    return view.anybody() ? bus::kExitOk : bus::kExitFailed;
+    return view.all_heard() ? bus::kExitOk : bus::kExitFailed;
   }
   while (watch && !stop.requested()) {
     const bool terminal = isatty(STDOUT_FILENO) != 0;
@@ -142,7 +142,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
         "slow: the last of this was heard after %.1f s, by a network or a machine that is "
         "slow or loaded\n",
         took);
-  return view.anybody() ? bus::kExitOk : bus::kExitFailed;
+  return view.all_heard() ? bus::kExitOk : bus::kExitFailed;
 }
 
 /// Each robot with a program that works for it, one robot after another.

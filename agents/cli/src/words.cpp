@@ -44,7 +44,8 @@ std::array<std::string, 2> two_lines(const std::string& text, std::size_t width)
   return {text.substr(0, space), text.substr(space + 1, width)};
 }
 
-std::string status_table(std::vector<SeenProcess> processes) {
+std::string status_table(std::vector<SeenProcess> processes,
+                         const std::vector<std::string>& unheard) {
   std::sort(processes.begin(), processes.end(), [](const SeenProcess& a, const SeenProcess& b) {
     return std::pair(a.status.name, a.status.pid) < std::pair(b.status.name, b.status.pid);
   });
@@ -65,6 +66,10 @@ std::string status_table(std::vector<SeenProcess> processes) {
                     (status.reason.empty() ? "" : ", " + status.reason)
               : status.reason});
   }
+  for (const std::string& name : unheard)
+    if (std::none_of(processes.begin(), processes.end(),
+                     [&name](const SeenProcess& one) { return one.status.name == name; }))
+      rows.push_back({name, "not heard"});
   return table(rows);
 }
 

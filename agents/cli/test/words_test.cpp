@@ -47,6 +47,13 @@ TEST(StatusTable, SaysWhoIsLost) {
   EXPECT_NE(text.find("running", intentions), std::string::npos);
 }
 
+TEST(StatusTable, HasARowForWhoIsMissed) {
+  const std::string text =
+      status_table({process("intentions", 3.5)}, {"intentions", "registration"});
+  EXPECT_TRUE(text.ends_with("\nregistration  not heard\n")) << text;
+  EXPECT_EQ(text.find("intentions"), text.rfind("intentions")) << text;
+}
+
 TEST(Ending, IsThatOfTheContent) {
   EXPECT_NO_THROW(expect_ending("floor.svg", ".svg"));
   EXPECT_EQ(test::trouble_of<std::invalid_argument>([] { expect_ending("floor.txt", ".svg"); }),

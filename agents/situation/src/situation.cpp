@@ -14,6 +14,8 @@ namespace saphira::situation {
 namespace {
 
 constexpr std::array kMakeItGo{"bridge", "behaviors", "intentions"};
+constexpr std::array kPrograms{"bridge", "behaviors", "intentions", "interpretation",
+                               "registration"};
 
 constexpr std::uint64_t kLateCycles = 3;   // behind: worth mentioning
 constexpr std::uint64_t kHungCycles = 10;  // behind: no more samples come
@@ -63,6 +65,25 @@ std::optional<Expected> expected(const Situation& s, const std::string& program)
   return std::nullopt;
 }
 
+/// The evidence of others that a program is gone, in words: their last word from it, or the samples
+/// that they miss. It needs nothing that the program keeps itself. Empty: nobody misses it.
+std::string missed(const Situation& s, const std::string& name) {
+  if (name == "intentions" && s.behaviors && s.behaviors->input_age >= kListened)
+    return "behaviors has heard nothing of it for " + seconds_text(s.behaviors->input_age);
+  if (name == "behaviors" && s.behaviors_drove > 0)
+    return "it last drove " + seconds_text(seconds_of(s.now - std::min(s.now, s.behaviors_drove))) +
+           " ago";
+  const std::string topic = name == "interpretation" ? "perception"
+                            : name == "behaviors"    ? "behaviors/state"
+                                                     : name;
+  for (const Program& other : s.programs)
+    for (const char* const runs : {"runs without ", "runs on an old sample of "})
+      if (other.age <= kLostAge && other.status.state == v1::SERVICE_DEGRADED &&
+          other.status.reason.find(runs + topic) != std::string::npos)
+        return other.status.name + " " + other.status.reason;
+  return {};
+}
+
 /// In a past cycle only the samples of that time count.
 Condition past_condition(const Situation& s, const std::string& program) {
   const auto wanted = expected(s, program);
@@ -90,17 +111,22 @@ Condition past_condition(const Situation& s, const std::string& program) {
   return {Health::late, "left this cycle out"};
 }
 
+/// The samples of a program come, though its status may be late.
+bool steps(const Situation& s, const Known& known) {
+  return known.newest > 0 && s.now < known.newest + kHungCycles && s.silence <= kListened;
+}
+
 /// That of one instance. The cyclic samples have no mark of their writer: they count for the
 /// instance that `counts`.
 Condition present_condition(const Situation& s, const Program& program, bool counts) {
-  if (program.age > kLostAge)
+  const auto wanted = counts ? expected(s, program.status.name) : std::nullopt;
+  if (program.age > kLostAge && !(wanted && steps(s, wanted->known)))
     return {Health::lost, "has not been heard for " + seconds_text(program.age) +
                               " (it is dead, hangs, or is cut off)"};
   const v1::ServiceStatus& status = program.status;
   if (status.state == v1::SERVICE_STARTING || status.state == v1::SERVICE_WAITING)
     return {Health::waiting, std::string("is ") + name_of(status.state) +
                                  (status.reason.empty() ? "" : ": " + status.reason)};
-  const auto wanted = counts ? expected(s, status.name) : std::nullopt;
   if (wanted && s.now > 0 && s.listened >= kListened) {
     if (wanted->known.newest == 0)
       return {Health::hung, "is on the bus, and says nothing (it hangs, or is cut off)"};
@@ -130,14 +156,31 @@ Condition present_condition(const Situation& s, const std::string& name) {
   if (s.listened < kListened)
     return {};
   const auto wanted = expected(s, name);
+  if (wanted && steps(s, wanted->known))
+    return {};
   const std::uint64_t newest = wanted ? wanted->known.newest : 0;
-  return {
-      Health::absent,
-      "is not heard (not running, hung, or cut off; " +
-          (newest == 0 ? "listened for " + seconds_text(s.listened)
-                       : "its last was " +
-                             seconds_text(seconds_of(s.now - std::min(s.now, newest))) + " ago") +
-          ")"};
+  std::string evidence =
+      newest == 0
+          ? missed(s, name)
+          : "its last was " + seconds_text(seconds_of(s.now - std::min(s.now, newest))) + " ago";
+  if (evidence.empty())
+    evidence = "listened for " + seconds_text(s.listened);
+  return {Health::absent, "is not heard (not running, hung, or cut off; " + evidence + ")"};
+}
+
+/// The programs of the robot with their conditions, without those that a deployment may leave out:
+/// a robot can do without interpretation and registration, unless others miss them.
+std::vector<std::pair<std::string, Condition>> conditions(const Situation& s) {
+  std::vector<std::pair<std::string, Condition>> all;
+  for (const char* const name : kPrograms) {
+    const Condition how = condition(s, name);
+    const bool needed =
+        std::find(kMakeItGo.begin(), kMakeItGo.end(), std::string_view(name)) != kMakeItGo.end();
+    if (needed || how.health == Health::hung || how.health == Health::lost ||
+        (how.health == Health::absent && !missed(s, name).empty()))
+      all.emplace_back(name, how);
+  }
+  return all;
 }
 
 nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
@@ -195,24 +238,31 @@ Condition condition(const Situation& situation, const std::string& program) {
 std::string trouble(const Situation& situation) {
   // The same trouble of several programs is stated once.
   std::vector<std::pair<std::string, std::vector<std::string>>> all;
-  for (const char* const name :
-       {"bridge", "behaviors", "intentions", "interpretation", "registration"}) {
-    const Condition how = condition(situation, name);
+  for (const auto& [name, how] : conditions(situation)) {
     if (how.health == Health::running || how.health == Health::fresh)
-      continue;
-    // A robot can do without the last two, and a deployment leaves them out.
-    const bool needed =
-        std::find(kMakeItGo.begin(), kMakeItGo.end(), std::string_view(name)) != kMakeItGo.end();
-    if (!needed && how.health != Health::hung && how.health != Health::lost)
       continue;
     if (all.empty() || all.back().first != how.words)
       all.push_back({how.words, {}});
-    all.back().second.emplace_back(name);
+    all.back().second.push_back(name);
   }
   std::string text;
   for (const auto& [words, names] : all)
     text += (text.empty() ? "" : "; ") + listed(names) + " " + of_several(words, names.size());
   return text;
+}
+
+std::vector<std::string> unheard(const Situation& situation) {
+  std::vector<std::string> all;
+  for (const auto& [name, how] : conditions(situation))
+    if (how.health == Health::hung || how.health == Health::lost || how.health == Health::absent)
+      all.push_back(name);
+  return all;
+}
+
+bool misses(const Situation& situation) {
+  return std::any_of(kPrograms.begin(), kPrograms.end(), [&](const char* const name) {
+    return find(situation.programs, name) == nullptr && !missed(situation, name).empty();
+  });
 }
 
 bool is_heard(const std::vector<Program>& programs, const std::string& name) {
@@ -274,7 +324,7 @@ std::string to_json(const Situation& situation) {
                              {"reason", status.reason},
                              {"step", status.step},
                              {"progress", status.progress}});
-  json["missing"] = missing_services(situation.programs);
+  json["missing"] = listed(unheard(situation));
   json["trouble"] = trouble(situation);
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

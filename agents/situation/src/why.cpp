@@ -49,10 +49,9 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
-  for (const char* const name : {"interpretation", "registration"})
-    if (const Condition how = condition(scene_, name);
-        how.health == Health::hung || how.health == Health::lost)
-      cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
+  for (const std::string& name : unheard(scene_))
+    if (name == "interpretation" || name == "registration")
+      cause.because.push_back({"program", name + " " + condition(scene_, name).words, {}});
   if (scene_.past)
     return;
   if (lost()) {
@@ -68,7 +67,8 @@ void Reason::add_conditions(Cause& cause) const {
     cause.because.push_back({"registration", words, {}});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
-    if (program.status.name == "bridge" && program.status.state == v1::SERVICE_DEGRADED)
+    if (program.status.name == "bridge" && program.status.state == v1::SERVICE_DEGRADED &&
+        !(scene_.grant && scene_.grant->estopped))
       cause.because.push_back({"program", "bridge is degraded: " + program.status.reason, {}});
 }
 
@@ -81,11 +81,16 @@ void Reason::add_troubles(Sentence& sentence) const {
   for (const Program& program : scene_.programs)
     if (!scene_.past && program.status.name == "bridge" &&
         program.status.state == v1::SERVICE_DEGRADED &&
-        program.status.reason.find("motors are off") == std::string::npos)
+        program.status.reason.find("motors are off") == std::string::npos &&
+        !(scene_.grant && scene_.grant->estopped))
       sentence.add(1, "; " + program.status.reason);
   for (const char* const name : {"bridge", "behaviors", "intentions"})
     if (const Condition how = condition(scene_, name); how.health == Health::fresh)
       sentence.add(2, "; " + std::string(name) + " " + how.words);
+  for (const std::string& name : unheard(scene_))
+    if (!scene_.past && (name == "interpretation" || name == "registration"))
+      sentence.add(2, "; " + name + " " + condition(scene_, name).words,
+                   "; " + name + " is silent");
   if (lost())
     sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
   else if (const std::string words = doubt(); !words.empty())
@@ -105,12 +110,13 @@ Explanation Reason::stopped() const {
     std::string brief;
   };
   std::vector<Part> reasons;
-  if (const std::string held = latched(grant); !held.empty())
-    reasons.push_back({held, {}});
+  if (const std::string latch = held(); !latch.empty())
+    reasons.push_back({latch, {}});
   else if (grant.stamp.epoch == 0)
     reasons.push_back({grant.reason, {}});
   if (auto age = age_cause()) {
-    if (!scene_.behaviors->limit_reason.empty())
+    // A silent program is a reason by itself.
+    if (!scene_.behaviors->limit_reason.empty() && condition(scene_, "intentions").heard())
       reasons.push_back({age->text, {}});
     cause.because.push_back(std::move(*age));
   }
@@ -147,7 +153,7 @@ Explanation Reason::by_hand() const {
   const v1::Grant& grant = *scene_.grant;
   Sentence sentence;
   if (grant.role == v1::ROLE_ESTOP) {
-    sentence.add(0, latched(grant));
+    sentence.add(0, held());
     sentence.add(1, meanwhile());
   } else {
     sentence.add(0, told());
@@ -155,7 +161,8 @@ Explanation Reason::by_hand() const {
     sentence.add(0, ": " + grant.source + " drives it (" + situation::name_of(grant.role) + ")");
     if (grant.command_age >= kOldInput)
       sentence.add(1,
-                   format("; its newest command is %.1f s old: the network, or a computer, is slow",
+                   format("; its newest command is %.1f s old: the network between it and bridge, "
+                          "or a computer, is slow",
                           grant.command_age),
                    format("; its newest command is %.1f s old", grant.command_age));
   }
@@ -252,8 +259,10 @@ Explanation Reason::by_behaviors_known() {
     add(0, hindered->text);
   if (guarded)
     add(1, guard_cause()->text, guard_words(true));
-  if (aged)
-    add(1, age_cause()->text, age_cause()->text.substr(0, age_cause()->text.find(", and")));
+  if (aged) {
+    const std::string age = age_cause()->text;
+    add(1, age, age.substr(0, std::min(age.find(", and"), age.find(" (slow "))));
+  }
   int rank = 2;
   for (const v1::BehaviorState* behavior : mentioned) {
     add(rank, wants(speeds, turns, *behavior, true), wants(speeds, turns, *behavior, false));

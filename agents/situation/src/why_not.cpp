@@ -133,7 +133,12 @@ Explanation Reason::why_not(Wish wish) {
                  std::move(detail));
       } else {
         const Say* against = nullptr;
+        const Say* own = nullptr;
         for (const Say& other : say) {
+          if (other.behavior == &behavior) {
+            own = &other;
+            continue;
+          }
           const bool opposed = turning ? (wish == Wish::turn_left) != (other.behavior->turn > 0.0)
                                : wish == Wish::faster ? other.behavior->speed < speed + kNoSpeed
                                                       : other.behavior->speed > speed - kNoSpeed;
@@ -142,7 +147,9 @@ Explanation Reason::why_not(Wish wish) {
         }
         // Rules within one behavior may oppose each other, too.
         std::string what = who + ", but ";
-        if (against == nullptr)
+        if (against == nullptr && own != nullptr)
+          what += "all its rules together want " + wish_of(behavior, channel);
+        else if (against == nullptr)
           what += "it weighs too little for it";
         else
           what += name_of(*against->behavior) + " wants " + of_say(*against, channel, true);

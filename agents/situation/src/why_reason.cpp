@@ -263,13 +263,26 @@ std::string refused(const v1::Refusal& refusal) {
          ") was refused: " + refusal.reason;
 }
 
+std::string Reason::ago(std::uint64_t since) const {
+  return since == 0 ? ""
+                    : " " + seconds_text(seconds_of(scene_.cycle - std::min(scene_.cycle, since)));
+}
+
+/// The latch that holds, with its age.
+std::string Reason::held() const {
+  std::string text = latched(*scene_.grant);
+  if (const std::string age = ago(scene_.estopped_since); scene_.grant->estopped && !age.empty())
+    text.insert(text.rfind(": "), "," + age + " ago");
+  return text;
+}
+
 Cause Reason::grant_cause() const {
   const v1::Grant& grant = *scene_.grant;
   Cause cause{"grant", std::string(situation::name_of(grant.role)), {}};
   if (grant.role == v1::ROLE_NONE)
     cause.text = "nobody drives";
   else if (grant.estopped)
-    cause.text = "emergency stop";
+    return {"grant", held(), {}};
   else
     cause.text = grant.source + " drives as " + situation::name_of(grant.role);
   if (!grant.reason.empty())
@@ -281,8 +294,14 @@ Cause Reason::grant_cause() const {
 
 std::string Reason::guard_words(bool brief) const {
   const std::string& reason = scene_.grant->guard_reason;
-  return std::string("the guard beside the robot ") + situation::name_of(scene_.grant->guard) +
-         " it (" + (brief ? reason.substr(0, reason.find(';')) : reason) + ")";
+  std::string text = std::string("the guard beside the robot ") +
+                     situation::name_of(scene_.grant->guard) + " it (" +
+                     (brief ? reason.substr(0, reason.find(';')) : reason) + ")";
+  if (reason.find("contact is meant") != std::string::npos && scene_.behaviors)
+    for (const Say& say : says(Channel::speed))
+      if (const v1::IntentionNode* const meant = node_of(*say.behavior))
+        return text + ", by " + intention_name(*meant);
+  return text;
 }
 
 std::optional<Cause> Reason::guard_cause() const {
@@ -299,14 +318,36 @@ std::optional<Cause> Reason::hindrance() const {
   if (robot.status == v1::MOTORS_NO_POWER && std::abs(robot.velocity) < kFarFromTold &&
       std::abs(robot.rotation_velocity) < kTurning)
     return Cause{"motors", "its motors are off (saphira device motors on)", {}};
+  const std::string since = scene_.stalled_since == 0 ? "" : " for" + ago(scene_.stalled_since);
   if (robot.left_stalled && robot.right_stalled)
-    return Cause{"motors", "both wheels are stalled", {}};
+    return Cause{"motors", "both wheels are stalled" + since, {}};
   if (robot.left_stalled || robot.right_stalled)
     return Cause{
         "motors",
-        std::string("its ") + (robot.left_stalled ? "left" : "right") + " wheel is stalled",
+        std::string("its ") + (robot.left_stalled ? "left" : "right") + " wheel is stalled" + since,
         {}};
   return std::nullopt;
+}
+
+/// The hops on which samples are late, with the machines where they are several.
+std::string Reason::slow_way() const {
+  const auto at = [this](const char* const name) {
+    for (const Program& program : scene_.programs)
+      if (program.status.name == name)
+        return program.status.host;
+    return std::string();
+  };
+  const auto hop = [&at](const char* const from, const char* const word, const char* const to) {
+    const std::string hosts =
+        at(from) == at(to) ? "" : " (" + at(from) + " " + word + " " + at(to) + ")";
+    return std::string(from) + " " + word + " " + to + hosts;
+  };
+  std::vector<std::string> ways;
+  if (scene_.behaviors->input_age >= kSlowHop)
+    ways.push_back("from " + hop("intentions", "to", "behaviors"));
+  if (scene_.grant && scene_.grant->command_age >= kSlowHop)
+    ways.push_back("between " + hop("bridge", "and", "behaviors"));
+  return ways.empty() ? "" : " (slow " + listed(ways) + ")";
 }
 
 std::optional<Cause> Reason::age_cause() const {
@@ -314,18 +355,19 @@ std::optional<Cause> Reason::age_cause() const {
     return std::nullopt;
   const v1::BehaviorSet& all = *scene_.behaviors;
   if (!all.limit_reason.empty())
-    return Cause{"limit",
-                 all.limit_reason + (all.speed_limit > 0.0 ? ", so it drives no faster than " +
-                                                                 speed_text(all.speed_limit)
-                                                           : ""),
-                 {}};
+    return Cause{
+        "limit",
+        all.limit_reason +
+            (all.speed_limit > 0.0 ? ", so it drives no faster than " + speed_text(all.speed_limit)
+                                   : "") +
+            (all.limit_reason.starts_with(kSlowWords) ? slow_way() : ""),
+        {}};
   const double command_age = scene_.grant ? scene_.grant->command_age : 0.0;
   if (std::max(all.input_age, command_age) < kOldInput)
     return std::nullopt;
   return Cause{"age",
-               format("the network, or a computer, is slow: what was intended was %.1f s old, ",
-                      all.input_age) +
-                   format("and the command answers what was %.1f s ago", command_age),
+               kSlowWords + format(": what was intended was %.1f s old, ", all.input_age) +
+                   format("and the command answers what was %.1f s ago", command_age) + slow_way(),
                {}};
 }
 
@@ -500,6 +542,8 @@ std::string Reason::goal_so_far(bool brief) const {
 
 std::string Reason::last_known(bool brief) const {
   const v1::GoalStatus* const status = foremost();
+  if (status == nullptr && !scene_.past && !scene_.goals.empty())
+    return goal_of(scene_.goals.back().id, brief) + " is asked for, and its state is not known";
   if (scene_.past || status == nullptr || !scene_.robot ||
       status->stamp.epoch != scene_.robot->stamp.epoch)
     return {};

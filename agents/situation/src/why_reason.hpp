@@ -17,6 +17,11 @@ inline constexpr double kSilence = 1.0;
 /// [s] Older inputs and commands are worth mentioning.
 inline constexpr double kOldInput = 0.3;
 
+/// [s] Age of samples on a hop that is worth naming.
+inline constexpr double kSlowHop = 0.15;
+/// Of limits by the age of inputs (behaviors), and of our own.
+inline const std::string kSlowWords = "the network, or a computer, is slow";
+
 /// How a behavior takes part in a channel of the blend.
 struct Say {
   const v1::BehaviorState* behavior = nullptr;
@@ -78,6 +83,10 @@ class Reason {
   std::string goal_of(const v1::GoalId& id, bool brief) const;
   std::string doubt() const;
 
+  /// " 12 s", for a cycle that is not 0.
+  std::string ago(std::uint64_t since) const;
+  std::string held() const;
+  std::string slow_way() const;
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
   /// `brief`: without the end of its reason.

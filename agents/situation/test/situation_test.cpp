@@ -15,10 +15,11 @@ using test::program;
 
 TEST(Condition, OfTwoInstancesTheOneThatIsHeardCounts) {
   Situation s = driving();
+  s.behaviors_known.newest = s.now - 80;
   Program dead = program("behaviors");
   dead.age = 8.0;
   s.programs.push_back(dead);
-  EXPECT_EQ(condition(s, "behaviors").health, Health::running);
+  EXPECT_EQ(condition(s, "behaviors").health, Health::hung);
   test::find(s, "behaviors").age = 9.0;
   EXPECT_EQ(condition(s, "behaviors").health, Health::lost);
   EXPECT_NE(condition(s, "behaviors").words.find("8.0 s"), std::string::npos);
@@ -78,6 +79,37 @@ TEST(Condition, InTheJsonEachInstanceHasItsOwn) {
                 "has not been heard for 9.0 s (it is dead, hangs, or is cut off)", ""}));
 }
 
+TEST(Condition, SamplesCountBeforeTheStatusComes) {
+  Situation s = driving();
+  for (const char* const name : {"behaviors", "intentions"}) {
+    test::remove(s, name);
+    EXPECT_EQ(condition(s, name).health, Health::running);
+  }
+  EXPECT_EQ(unheard(s), std::vector<std::string>{});
+  s.behaviors_known.newest = s.now - 10;
+  EXPECT_EQ(condition(s, "behaviors").health, Health::absent);
+  s.behaviors_known.newest = s.now;
+  s.silence = 1.5;  // nothing newer can be expected
+  EXPECT_EQ(unheard(s), (std::vector<std::string>{"behaviors", "intentions"}));
+}
+
+TEST(Condition, WhoIsMissedByOthersIsNamed) {
+  Situation s = driving();
+  test::remove(s, "registration");
+  EXPECT_EQ(unheard(s), std::vector<std::string>{}) << "a deployment without it";
+  EXPECT_FALSE(misses(s));
+  v1::ServiceStatus& intentions = test::find(s, "intentions").status;
+  intentions.state = v1::SERVICE_DEGRADED;
+  for (const char* const runs : {"runs on an old sample of", "runs without"}) {
+    intentions.reason = std::string(runs) + " registration";
+    EXPECT_EQ(trouble(s), "registration is not heard (not running, hung, or cut off; intentions " +
+                              intentions.reason + ")");
+    EXPECT_EQ(unheard(s), std::vector<std::string>{"registration"});
+    EXPECT_TRUE(misses(s));
+    EXPECT_EQ(nlohmann::json::parse(to_json(s)).at("missing"), "registration");
+  }
+}
+
 TEST(Condition, LateIsHeardAndHungIsNot) {
   Situation s = driving();
   s.behaviors_known.newest = s.now - 2;
@@ -106,6 +138,7 @@ TEST(MissingServices, AreNamed) {
 TEST(Json, HoldsProgramsDriveGoalsAndTrouble) {
   Situation s = driving();
   test::find(s, "intentions").age = 4.0;
+  s.intentions_known.newest = s.now - 40;
   const auto json = nlohmann::json::parse(to_json(s));
   EXPECT_EQ(json.at("programs").size(), 5U);
   EXPECT_EQ(json.at("programs").at(0).at("name"), "bridge");

@@ -86,6 +86,32 @@ void forget(Situation& s, const std::string& program, Known recalled) {
   known(s, program) = recalled;
 }
 
+/// A command that starts now hears nothing of a program that has been stopped for so long [s], not
+/// even what is latched: only what others say. Goals are their requesters' own.
+void stopped_before(Situation& s, const std::string& program, double time) {
+  remove(s, program);
+  if (program == "intentions") {
+    forget(s, program, {});
+    s.statuses.clear();
+    s.statuses_known = false;
+    s.behaviors->input_age = time;
+    s.behaviors->speed_limit = -1.0;
+    s.behaviors->limit_reason = "no newer intent has come for " + std::to_string(cycles(time)) +
+                                " cycles: intentions, or the network to it, is gone";
+    return;
+  }
+  v1::ServiceStatus& other = find(s, "intentions").status;
+  other.state = v1::SERVICE_DEGRADED;
+  other.reason = "runs on an old sample of " + program;
+  if (program == "interpretation")
+    other.reason = "runs on an old sample of perception";
+  if (program == "behaviors") {
+    forget(s, program, {});
+    other.reason += "/state";
+    s.behaviors_drove = s.now - cycles(time);
+  }
+}
+
 void place(Situation& s, v1::RegistrationState state, double confidence,
            const std::string& reason) {
   s.registration.emplace();
@@ -124,6 +150,13 @@ const std::map<std::string, Change>& changes() {
          s.grant->role = v1::ROLE_ESTOP;
          s.grant->estopped = true;
          s.grant->estop_source = w.rest();
+       }},
+      {"estop-age", [](Situation& s, Words& w) { s.estopped_since = s.now - cycles(w.number()); }},
+      {"stall-age", [](Situation& s, Words& w) { s.stalled_since = s.now - cycles(w.number()); }},
+      {"host",
+       [](Situation& s, Words& w) {
+         Program& program = find(s, w.word());
+         program.status.host = w.word();
        }},
       {"stopped-by",
        [](Situation& s, Words& w) {
@@ -250,6 +283,13 @@ const std::map<std::string, Change>& changes() {
            s.statuses_known = false;
          }
        }},
+      {"stopped-before-we-came",
+       [](Situation& s, Words& w) {
+         const std::string program = w.word();
+         stopped_before(s, program, w.number());
+       }},
+      {"status-late", [](Situation& s, Words& w) { remove(s, w.word()); }},
+      {"goal-asked-by-one-who-left", [](Situation& s, Words&) { s.goals.clear(); }},
       {"just-forgotten",
        [](Situation& s, Words& w) {
          forget(s, w.word(), {s.now, s.now});

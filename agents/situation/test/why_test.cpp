@@ -86,6 +86,27 @@ TEST_F(WhyTest, NamesWhatPeopleHaveToldAboutWhatItDoes) {
   EXPECT_EQ(text.find("perception"), std::string::npos) << text;
 }
 
+TEST_F(WhyTest, ABehaviorIsNotSetAgainstItself) {
+  v1::BehaviorState& follow = scene.behaviors->behaviors[1];
+  follow.name = "follow#3";
+  follow.schema = "follow";
+  follow.speed = 0.18;
+  follow.rules = {test::rule("on_course", 0.8, v1::CONTROL_SPEED, 0.21)};
+  scene.behaviors->speed = scene.grant->velocity = scene.robot->velocity = 0.18;
+  EXPECT_EQ(why_not(scene, Wish::faster).sentence,
+            "It does not go faster: follow would (rule on_course, 0.21 m/s), but all its rules "
+            "together want 0.18 m/s.");
+  // Another one does stand against it.
+  v1::BehaviorState& other = scene.behaviors->behaviors[0];
+  other.recommends_speed = true;
+  other.speed = 0.1;
+  other.speed_weight = 0.5;
+  other.rules = {test::rule("near", 1.0, v1::CONTROL_SPEED, 0.1)};
+  EXPECT_EQ(why_not(scene, Wish::faster).sentence,
+            "It does not go faster: follow would (rule on_course, 0.21 m/s), but KeepOff wants "
+            "0.10 m/s (rule near).");
+}
+
 TEST_F(WhyTest, APlaceOfTwoPersonsIsGroundedInTheOneThatWasMeant) {
   v1::IntentionNode& node = scene.intentions->nodes[0];
   node.schema = "go-to-place";

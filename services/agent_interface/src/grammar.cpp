@@ -29,7 +29,7 @@ bool is_number(const std::string& word) {
          std::count(word.begin(), word.end(), '.') <= 1;
 }
 
-/// Small letters, and the signs of typographers as those of a keyboard.
+/// Letters as names are compared, and the signs of typographers as those of a keyboard.
 std::string plain(std::string_view said) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns{
       {{"\u2018", "'"},

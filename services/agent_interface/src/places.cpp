@@ -81,8 +81,11 @@ std::string only_with_word_of(const std::string& said, const std::vector<std::st
 
 /// A name in the letters of the text that it is from.
 std::string as_said(const std::string& name, const std::string& text) {
-  const std::size_t at = lowered(text).rfind(name);
-  return at == std::string::npos ? name : text.substr(at, name.size());
+  for (std::size_t at = text.size(); at-- > 0;)
+    for (std::size_t size = 1; size <= 2 * name.size() && at + size <= text.size(); ++size)
+      if (lowered(std::string_view(text).substr(at, size)) == name)
+        return text.substr(at, size);
+  return name;
 }
 
 /// The corridor around the robot; or the room, otherwise the nearest doorway. Of a corridor and a

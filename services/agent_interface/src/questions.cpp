@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "words.hpp"
 
@@ -184,9 +185,14 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
   } else if (functor == "where_office") {
     const std::string person = slot(meaning, "person");
     const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
+    std::vector<std::string> people;
+    for (const Advice& one : knowledge_.all())
+      if (one.kind == Advice::Kind::office_of)
+        people.push_back(one.about);
     say(utterance,
-        office == nullptr ? "nobody has told me where " + person + "'s office is"
-                          : as_told(*office),
+        office == nullptr
+            ? "nobody has told me where " + person + "'s office is" + did_you_mean(person, people)
+            : as_told(*office),
         true, out);
   } else if (functor == "whose_office" || functor == "is_office_of") {
     owner_of(meaning, utterance, situation, out);

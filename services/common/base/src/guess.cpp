@@ -1,15 +1,22 @@
 #include "saphira/base/guess.hpp"
 
+#include <utf8proc.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
-#include "saphira/base/text.hpp"
+#include "folding.hpp"
 
 namespace saphira {
 namespace {
 
 constexpr std::size_t kLongest = 64;  // letters: longer words are not compared
+
+/// Without case and marks: "jose" of "José". Such words are near, and not the same.
+std::string bare(std::string_view word) {
+  return internal::without_case(word, UTF8PROC_DECOMPOSE | UTF8PROC_STRIPMARK);
+}
 
 /// The number of letters left out, added, replaced, or swapped with the next (optimal string
 /// alignment).
@@ -34,13 +41,13 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string guess(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.empty() || word.size() > kLongest)
     return "";
-  const std::string small = lowered(word);
+  const std::string small = bare(word);
   std::string best;
   std::size_t nearest = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest)
       continue;
-    const std::size_t far = distance(small, lowered(candidate));
+    const std::size_t far = distance(small, bare(candidate));
     if (far < nearest) {
       nearest = far;
       best = candidate;
@@ -50,11 +57,11 @@ std::string guess(std::string_view word, const std::vector<std::string>& candida
     return best;
   const auto longer = std::find_if(
       candidates.begin(), candidates.end(),
-      [&](const std::string& candidate) { return lowered(candidate).starts_with(small); });
+      [&](const std::string& candidate) { return bare(candidate).starts_with(small); });
   if (longer != candidates.end())
     return *longer;
   for (const std::string& candidate : candidates) {
-    const std::string known = lowered(candidate);
+    const std::string known = bare(candidate);
     if (known.size() > best.size() && small.starts_with(known) &&
         (small[known.size()] == '-' || small[known.size()] == '_'))
       best = candidate;

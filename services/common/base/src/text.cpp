@@ -1,5 +1,7 @@
 #include "saphira/base/text.hpp"
 
+#include <utf8proc.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -11,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "folding.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/printable.hpp"
 
@@ -86,11 +89,7 @@ std::string describe(const std::string& file, int line, int column, const std::s
 }  // namespace
 
 std::string lowered(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z')
-      c = static_cast<char>(c - 'A' + 'a');
-  return out;
+  return internal::without_case(text, UTF8PROC_COMPOSE);
 }
 
 bool blank(char c) {

@@ -17,6 +17,13 @@ TEST(Guess, FindsWhatWasMeant) {
   EXPECT_EQ(did_you_mean("gaol", kCommands, "; help lists them"), ": did you mean goal?");
 }
 
+TEST(Guess, MarksAreLeftOut) {
+  EXPECT_EQ(guess("jose", {"karen", "jos\u00e9"}), "jos\u00e9");
+  EXPECT_EQ(guess("buro sud", {"B\u00fcro S\u00fcd"}), "B\u00fcro S\u00fcd");
+  EXPECT_EQ(guess("BU\u0308RO SUD", {"B\u00fcro S\u00fcd"}), "B\u00fcro S\u00fcd");
+  EXPECT_EQ(guess("\xFFgoal", kCommands), "goal") << "not UTF-8";
+}
+
 TEST(Guess, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(guess("fly", kCommands), "");
   EXPECT_EQ(guess("", kCommands), "");

@@ -10,8 +10,26 @@
 namespace saphira {
 namespace {
 
-TEST(Text, LoweredChangesCapitalLettersAlone) {
-  EXPECT_EQ(lowered("EJ-231 [@Z`{\xC4"), "ej-231 [@z`{\xC4");
+TEST(Text, NamesAreComparedAsPeopleReadThem) {
+  EXPECT_EQ(lowered("EJ-231 [@Z`{"), "ej-231 [@z`{");
+  const std::string jose = "jos\u00e9";
+  for (const char* const said : {"Jos\u00e9", "Jose\u0301", "JOS\u00c9", "JOSE\u0301"})
+    EXPECT_EQ(lowered(said), jose) << said;
+  EXPECT_NE(lowered("Jose"), jose);
+  EXPECT_EQ(lowered("Bu\u0308ro S\u00dcD"), "b\u00fcro s\u00fcd");
+  EXPECT_EQ(lowered("Wei\u00df"), lowered("WEISS"));
+  // The dot of this capital is a mark of its own behind the small letter, with any locale.
+  EXPECT_EQ(lowered("\u0130stanbul"), "i\u0307stanbul");
+  EXPECT_EQ(lowered(lowered("\u0130stanbul")), lowered("\u0130stanbul"));
+}
+
+TEST(Text, WhatIsNotUtf8StaysAsItIs) {
+  EXPECT_EQ(lowered("EJ-231 \xC4"), "ej-231 \xC4");
+  EXPECT_EQ(lowered("\xC3"), "\xC3");
+  EXPECT_EQ(lowered("\xED\xA0\x80\xFF"), "\xED\xA0\x80\xFF");
+  EXPECT_EQ(lowered(""), "");
+  const std::string zero("\0\u00c9", 3);
+  EXPECT_EQ(lowered(zero), std::string("\0\u00e9", 3));
 }
 
 TEST(Text, SplitsWordsAndDropsComments) {

@@ -143,6 +143,16 @@ TEST(Topology, OfAMapWithoutNamesKindsAndIdsAreShown) {
   EXPECT_NEAR((*office->point - Vec2(3.0, 0.2)).norm(), 0.0, 1e-9);
 }
 
+TEST(Topology, NamesAreComparedAsPeopleReadThem) {
+  const Topology t(parse_map("POS (4) 0, 0, 0 \"B\u00fcro S\u00fcd\"\n", "built.map"));
+  for (const char* const said :
+       {"B\u00fcro S\u00fcd", "Bu\u0308ro Su\u0308d", "b\u00fcro s\u00fcd", "B\u00dcRO S\u00dcD"})
+    EXPECT_TRUE(t.place(said)) << said;
+  EXPECT_FALSE(t.place("buro sud"));
+  EXPECT_EQ(t.no_place("buro sud"),
+            "the map has no place \"buro sud\": did you mean B\u00fcro S\u00fcd?");
+}
+
 TEST(Topology, PlacesByNameAndId) {
   const Topology t(load_map(config_folder() + "/maps/office-floor.map"));
   ASSERT_TRUE(t.place("EJ-231"));

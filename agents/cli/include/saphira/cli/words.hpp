@@ -24,8 +24,9 @@ std::string table(const std::vector<std::vector<std::string>>& rows);
 /// The text on two lines of at most that many characters, divided at a word.
 std::array<std::string, 2> two_lines(const std::string& text, std::size_t width);
 
-/// The table of processes, sorted by name.
-std::string status_table(std::vector<SeenProcess> processes);
+/// The table of processes, sorted by name; after them those of `unheard` that are not among them.
+std::string status_table(std::vector<SeenProcess> processes,
+                         const std::vector<std::string>& unheard = {});
 
 /// std::invalid_argument unless the file to be written has the ending of its content.
 void expect_ending(const std::string& path, const std::string& ending);

@@ -59,6 +59,11 @@ struct Situation {
   std::optional<v1::Registration> registration;  ///< at present: the robot's place on the map
   /// The cycle in which that place became doubtful [0: it is not, or nobody saw the change].
   std::uint64_t doubtful_since = 0;
+  /// The cycles in which the emergency stop was pressed, and in which a wheel stalled [0: they are
+  /// not, or were so before the known past].
+  std::uint64_t estopped_since = 0;
+  std::uint64_t stalled_since = 0;
+  std::uint64_t behaviors_drove = 0;  ///< the newest cycle in which behaviors drove [0: not known]
   std::vector<v1::Belief> beliefs;          ///< at present: the activities' beliefs
   std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
   std::vector<Program> programs;            ///< at present
@@ -103,6 +108,11 @@ Condition condition(const Situation& situation, const std::string& program);
 
 /// The trouble with the programs that move the robot, in words; empty: none.
 std::string trouble(const Situation& situation);
+/// The programs of the robot that are hung, silent or not on the bus: those that move it, and those
+/// that others miss.
+std::vector<std::string> unheard(const Situation& situation);
+/// Others miss a program whose status has not come: more listening tells.
+bool misses(const Situation& situation);
 /// A program of this name is heard.
 bool is_heard(const std::vector<Program>& programs, const std::string& name);
 /// The missing or unheard ones of them, in words such as "behaviors and intentions"; empty: all are

@@ -38,7 +38,7 @@ class UnusableFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// With small letters in place of A to Z.
+/// For comparing names: without case and composed (NFC), by Unicode, in every locale the same.
 std::string lowered(std::string_view text);
 
 /// True for a separator of words within a line.
