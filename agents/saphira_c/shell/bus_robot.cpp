@@ -567,19 +567,18 @@ class BusRobot final : public ServedRobot {
     for (const protocol::Bytes& packet : packets)
       call_device(node, packet);
     for (v1::Request& request : requests)
-      ends.registration.send(std::move(request));
+      ends.registration.send(std::move(request), [this](const v1::Answer& answer) {
+        hear(answer);
+        const std::lock_guard lock(mutex_);
+        placing_ = placing_ && !bus::ended(answer.code);
+      });
     if (asks_to_stop)
-      ends.stops.send(bus::request("stop"));
-    const std::vector<v1::Answer> answers = ends.registration.poll();
-    hear(answers);
-    if (std::any_of(answers.begin(), answers.end(),
-                    [](const v1::Answer& answer) { return bus::ended(answer.code); })) {
-      const std::lock_guard lock(mutex_);
-      placing_ = false;
-    }
-    hear(ends.stops.poll());
+      ends.stops.send(bus::request("stop"), [this](const v1::Answer& answer) { hear(answer); });
+    const double now = BootClock::seconds();
+    ends.registration.poll(now);
+    ends.stops.poll(now);
     for (auto& [name, client] : devices_)
-      hear(client.poll());
+      client.poll(now);
     for (const std::string& text : told) {
       ends.messages.write({.stamp = stamp_, .source = source_, .text = text});
     }
@@ -619,12 +618,11 @@ class BusRobot final : public ServedRobot {
                   .emplace(std::piecewise_construct, std::tuple(call->topic.name),
                            std::forward_as_tuple(node, call->topic, source_))
                   .first;
-    found->second.send(call->request);
+    found->second.send(call->request, [this](const v1::Answer& answer) { hear(answer); });
   }
-  void hear(const std::vector<v1::Answer>& answers) {
-    for (const v1::Answer& answer : answers)
-      if (bus::ended(answer.code) && !bus::well(answer.code))
-        say_("the robot does not do it: " + std::string(answer.text), true);
+  void hear(const v1::Answer& answer) {
+    if (!bus::well(answer.code))
+      say_("the robot does not do it: " + answer.text, true);
   }
 
   /// Shows the states of the program's micro-tasks, and takes requests from the bus to change them.
