@@ -192,7 +192,7 @@ void RosRobot::poll() {
   take_robot();
   if (inward_) {
     const double now = std::chrono::duration<double>(cli::Clock::now().time_since_epoch()).count();
-    take_wishes();
+    take_wishes(now);
     drive(now);
     serve();
   }
