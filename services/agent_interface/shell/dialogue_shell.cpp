@@ -26,7 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
 constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
-constexpr double kStopsWithin = 10.0;     // [s] the robot, afterwards
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
 KnownGoal::State state_of(v1::GoalState state) {
@@ -132,7 +131,7 @@ void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
                            nobody ? "no bridge has confirmed the stop: press the robot's own switch"
                                   : answer.text}));
   };
-  stops_.send(std::move(request), hear, kConfirmsWithin, kStopsWithin);
+  stops_.send(std::move(request), hear, kConfirmsWithin);
 }
 
 void DialogueShell::want(const WantedGoal& wanted) {
