@@ -24,6 +24,7 @@
 #include "environment.hpp"
 #include "inquiry.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/robot_name.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -47,6 +48,7 @@ struct Parts {
   std::optional<bus::GoalClient> goals;               ///< once one is asked for: not every role may
   std::map<std::string, bus::RequestClient> clients;  ///< by topic
   std::optional<bus::Agent> agent;
+  std::vector<v1::Answer> told;    ///< to its requests
   std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
 };
 
@@ -178,22 +180,26 @@ class Bus {
     return status ? to_python(*status, class_of("GoalStatus")) : py::none();
   }
 
-  std::uint64_t send(const std::string& topic, py::handle request) {
+  /// patience: [s] for the end; without a deadline in the request, after each answer.
+  std::uint64_t send(const std::string& topic, py::handle request, double patience) {
     bus::RequestClient& client = client_of(topic);
     const auto asked = sample_of<v1::Request>(request, "Request");
-    return unlocked([&] { return client.send(asked); });
+    const auto hear = [&told = parts().told](const v1::Answer& answer) { told.push_back(answer); };
+    return unlocked([&] { return client.send(asked, hear, patience, patience); });
   }
-  void again(const std::string& topic, std::uint64_t number, py::handle request) {
+  void withdraw(const std::string& topic, std::uint64_t number) {
     bus::RequestClient& client = client_of(topic);
-    const auto asked = sample_of<v1::Request>(request, "Request");
     unlocked([&] {
-      client.again(number, asked);
+      client.withdraw(number);
       return 0;
     });
   }
-  py::list answers(const std::string& topic) {
+  /// The answers since the last call. Repeats the requests that are not answered.
+  py::list answers() {
+    for (auto& [topic, client] : parts().clients)
+      client.poll(BootClock::seconds());
     py::list list;
-    for (const v1::Answer& answer : client_of(topic).poll())
+    for (const v1::Answer& answer : std::exchange(parts().told, {}))
       list.append(to_python(answer, class_of("Answer")));
     return list;
   }
@@ -363,7 +369,7 @@ PYBIND11_MODULE(_bus, module) {
       .def("cancel", &Bus::cancel)
       .def("status", &Bus::status)
       .def("send", &Bus::send)
-      .def("again", &Bus::again)
+      .def("withdraw", &Bus::withdraw)
       .def("answers", &Bus::answers)
       .def("can", &Bus::can)
       .def("requests", &Bus::requests)

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../acceptance/system.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/teleop/pilot.hpp"
 
@@ -223,11 +224,11 @@ std::vector<Stop> stops() {
       {"request of a program",
        [](Site& site) {
          bus::RequestClient client(site.system().node(), bus::topics::kDriveStop, "bench");
-         const std::uint64_t number = client.send(bus::request("stop"));
          bool done = false;
+         client.send(bus::request("stop"),
+                     [&](const v1::Answer& answer) { done = answer.code == v1::ANSWER_DONE; });
          site.until([&] {
-           for (const v1::Answer& answer : client.poll())
-             done = done || (answer.number == number && answer.code == v1::ANSWER_DONE);
+           client.poll(BootClock::seconds());
            return done;
          });
          return done;

@@ -304,7 +304,9 @@ class Teleop {
     if (now() - stopped_at_ < kStopAgain)
       return;
     stopped_at_ = now();
-    stops_.send(bus::request("stop"));
+    stops_.send(bus::request("stop"), [this](const v1::Answer& answer) {
+      note_ = (answer.service.empty() ? "NOT CONFIRMED: " : "") + answer.text;
+    });
     note_ = "NOT CONFIRMED: asks the bridge to stop whatever moves the robot";
   }
 
@@ -331,8 +333,7 @@ class Teleop {
   void take() {
     processes_.poll();
     goals_.poll();
-    for (const v1::Answer& answer : stops_.poll())
-      note_ = answer.text;
+    stops_.poll(now());
     if (const auto robot = robots_.take_newest()) {
       robot_ = *robot;
       robot_came_ = Clock::now();

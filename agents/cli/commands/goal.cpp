@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -21,7 +22,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kAgain = 0.2;             ///< [s] between two requests, until one is answered
 constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
@@ -77,19 +77,22 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Processes processes(node);
   Bridges bridges(node);
   bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
-  const v1::Request request = bus::request("stop");
-  const std::uint64_t number = stops.send(request);
+  bus::Reader<v1::Answer> answers = node.reader(bus::topics::kRobotAnswers);  // of each bridge
+  stops.send(bus::request("stop"), {}, kConfirmPatience);
   const auto began = Clock::now();
   const std::string robot = called(node_options.robot);
   bool confirmed = false;
-  std::size_t done = 0;  // bridges
-  double again = kAgain;
+  std::set<bus::WriterId> done;  // bridges
   double told = 0.0;
   while (!stop.requested()) {
     node.wait(milliseconds(20), &stop);
     processes.poll();
     bridges.poll();
-    for (const v1::Answer& answer : stops.poll()) {
+    stops.poll(seconds_since(began));
+    for (const auto& sample : answers.take()) {
+      const v1::Answer& answer = sample.data;
+      if (sample.info.disposed || answer.asker != node.instance())
+        continue;
       if (!std::exchange(confirmed, true))
         print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
               seconds_since(began));
@@ -99,22 +102,19 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
         complain("saphira: %s. The latched stop is saphira estop.\n", answer.text.c_str());
         return bus::kExitFailed;
       }
-      print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
-      ++done;
+      if (done.insert(sample.info.writer).second)
+        print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
     }
-    if (done > 0 && seconds_since(began) >= kAllHeard && done >= bridges.count()) {
+    if (!done.empty() && seconds_since(began) >= kAllHeard && done.size() >= bridges.count()) {
       if (bridges.count() > 1)
         print("this was a stop%s\n", bridges.several().c_str());
       return bus::kExitOk;
     }
-    if (confirmed && (done == 0 || seconds_since(began) < kConfirmPatience))
+    if (confirmed && (done.empty() || seconds_since(began) < kConfirmPatience))
       continue;
-    if (seconds_since(began) > again) {  // a bridge that is found late
-      stops.again(number, request);
-      again += kAgain;
-    }
     if (seconds_since(began) > told + kConfirmPatience) {
       told = seconds_since(began);
+      stops.send(bus::request("stop"), {}, kConfirmPatience);  // for a bridge that is found late
       const std::string who =
           confirmed ? "not every bridge" + bridges.several() : who_is_there(processes);
       complain(

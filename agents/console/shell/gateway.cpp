@@ -205,7 +205,7 @@ void Gateway::poll() {
   mind_.poll();
   goals_.poll();
   for (bus::RequestClient* client : {&stops_, &resets_, &registration_, &processes_})
-    take_answers(*client);
+    client->poll(now());
   tell_cancels();
   if (const v1::RobotState* const robot = mind_.robot()) {
     const bool is_new = robot->stamp.cycle != stamp_.cycle;

@@ -81,12 +81,9 @@ class Gateway {
     bool robots = false;                ///< it shows the list of robots
     Upload upload;
   };
-  struct Asked {
+  struct Canceling {
     Connection connection = 0;
     std::uint64_t reference = 0;
-  };
-  struct Canceling {
-    Asked asked;
     v1::GoalId goal;
     double until = 0.0;  ///< [s] for its end
   };
@@ -134,7 +131,6 @@ class Gateway {
   void say(Connection connection, std::string text);
   void answer(Connection connection, std::uint64_t reference, bool well, const std::string& text,
               const std::string& id = {});
-  void take_answers(bus::RequestClient& client);
   void send(bus::RequestClient& client, v1::Request request, Connection connection,
             const Page& page, std::uint64_t reference);
 
@@ -167,7 +163,6 @@ class Gateway {
   int robots_topic_ = 0;
   int why_topic_ = 0;
   std::map<Connection, Page> pages_;
-  std::map<std::uint64_t, Asked> asked_;  ///< by the number of the request
   std::vector<Canceling> canceling_;
   int viewers_ = 0;
   std::uint64_t events_ = 0;

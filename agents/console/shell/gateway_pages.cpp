@@ -56,7 +56,6 @@ void Gateway::closed(Connection connection) {
     found->second.flow->close(connection);
   if (found->second.greeted && found->second.channel == Channel::telemetry)
     --viewers_;
-  std::erase_if(asked_, [&](const auto& asked) { return asked.second.connection == connection; });
   pages_.erase(found);
   show_control();
 }
@@ -401,7 +400,7 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
     return;
   }
   goals_.cancel(*id, "by " + operator_of(page.name), person_of(page.visitor));
-  canceling_.push_back({{connection, cancel.reference}, *id, now() + kCanceled});
+  canceling_.push_back({connection, cancel.reference, *id, now() + kCanceled});
 }
 
 /// Answers each page that asked to cancel a goal: it has ended, or it has not within the time.
@@ -412,7 +411,7 @@ void Gateway::tell_cancels() {
     const bool done = !status || bus::ended(status->state);
     if (!done && now() < one.until)
       return false;
-    answer(one.asked.connection, one.asked.reference, done,
+    answer(one.connection, one.reference, done,
            done ? "withdrawn"
                 : "asked to end, and it has not ended yet. With security only its owner and "
                   "operators may cancel it; everybody may stop the robot: k",
@@ -432,23 +431,13 @@ void Gateway::hear(const Page& page, const Say& words) {
 void Gateway::send(bus::RequestClient& client, v1::Request request, Connection connection,
                    const Page& page, std::uint64_t reference) {
   request.person = person_of(page.visitor);
-  asked_[client.send(std::move(request))] = {connection, reference};
-}
-
-void Gateway::take_answers(bus::RequestClient& client) {
-  for (const v1::Answer& given : client.poll()) {
-    const auto asked = asked_.find(given.number);
-    if (asked == asked_.end())
-      continue;
+  client.send(std::move(request), [this, connection, reference](const v1::Answer& given) {
     std::string id;  // of the artifact that was put
     for (const v1::Argument& result : given.results)
       if (result.name == "id")
         id = format("%.0f", result.number);
-    answer(asked->second.connection, asked->second.reference, bus::well(given.code), given.text,
-           id);
-    if (bus::ended(given.code))
-      asked_.erase(asked);
-  }
+    answer(connection, reference, bus::well(given.code), given.text, id);
+  });
 }
 
 }  // namespace saphira::console

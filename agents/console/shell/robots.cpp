@@ -76,6 +76,7 @@ void Robots::poll(double now) {
       member.cycle = state->stamp.cycle;
       member.came = now;
     }
+    member.stops.poll(now);
     const v1::Grant* grant = member.mind.grant();
     if (const auto command = member.pilot.stop(grant != nullptr && grant->estopped))
       member.estop.write(*command);

@@ -22,9 +22,9 @@ class Robots {
   explicit Robots(bus::Node& own) : own_(own) {}
 
   /// Looks for robots: each two seconds, and twice a second while the list is shown and 5 s longer,
-  /// so that an emergency stop of that time is pressed until the bridge has latched it.
+  /// so that a stop of that time is repeated until the bridge has taken it.
   void look(bool shown, double now);
-  /// Reads the new samples, and repeats emergency stops that are not latched yet.
+  /// Reads the new samples, and repeats stops that the bridge has not taken yet.
   void poll(double now);
   /// The robots but for the own one. While nobody looks, their names alone.
   std::vector<RobotSeen> seen(double now) const;

@@ -98,7 +98,7 @@ bool Door::needs_approval(const Own& own) const {
 void Door::ask_for_approval() {
   if (!approvals_)
     return;
-  approvals_->poll();
+  approvals_->poll(now_);
   for (Own& each : own_) {
     if (!needs_approval(each)) {
       session_.take_back(each.question);
@@ -155,21 +155,8 @@ void Door::hear() {
                                  {"arguments", arguments}},
                                 false};
       }
-  for (const v1::Answer& answer : requests_.poll()) {
-    actions_.hear(answer);
-    for (auto& [number, waiting] : waiting_)
-      if (waiting.what == Waiting::For::request && waiting.number == answer.number &&
-          bus::ended(answer.code))
-        waiting.result = Result{cli::line_of(answer), values_of(answer.results, waiting.declared),
-                                !bus::well(answer.code)};
-  }
-  for (const v1::Answer& answer : stops_.poll())
-    for (auto& [number, waiting] : waiting_)
-      if (waiting.what == Waiting::For::stop && waiting.number == answer.number &&
-          bus::ended(answer.code))
-        waiting.result = Result{answer.text,
-                                {{"stopped", bus::well(answer.code)}, {"moves", robot_.moves()}},
-                                !bus::well(answer.code)};
+  requests_.poll(now_);
+  stops_.poll(now_);
 }
 
 void Door::turn(double now) {
@@ -213,14 +200,7 @@ void Door::turn(double now) {
   if (std::none_of(waiting_.begin(), waiting_.end(),
                    [](const auto& each) { return each.second.what == Waiting::For::picture; }))
     picture_reader_.reset();
-  write_due();
   note();
-}
-
-/// Writes the due requests of the actions.
-void Door::write_due() {
-  for (const v1::Request& request : actions_.due(now_))
-    requests_.again(request.number, request);
 }
 
 /// Logs each call that has ended.
@@ -262,9 +242,12 @@ void Door::begin(const Call& call) {
   if (call.tool == "stop") {
     v1::Request stop = bus::request("stop");
     stop.person = person_;
-    waiting_[call.number] = {.what = Waiting::For::stop,
-                             .number = stops_.send(std::move(stop)),
-                             .until = now_ + kStopPatience};
+    const auto result = [this](const v1::Answer& answer) {
+      const bool well = bus::well(answer.code);
+      return Result{answer.text, {{"stopped", well}, {"moves", robot_.moves()}}, !well};
+    };
+    stops_.send(std::move(stop), end_of(call.number, result), kStopPatience + 1.0);
+    waiting_[call.number] = {.what = Waiting::For::stop, .until = now_ + kStopPatience};
     return;
   }
   if (const v1::ActivitySchema* const activity = robot_.activity(call.tool)) {
@@ -355,17 +338,29 @@ void Door::request(const Call& call, const v1::Capability& capability) {
     request.arguments.push_back(call.arguments.contains(parameter.name)
                                     ? argument(parameter.name, call.arguments[parameter.name])
                                     : bus::open(parameter.name));
-  const std::uint64_t number = requests_.send(request);
+  const double patience = request.deadline + kReply;
   if (!capability.acts) {
-    waiting_[call.number] = {.what = Waiting::For::request,
-                             .number = number,
-                             .until = now_ + kReply + 1.0,
-                             .declared = capability.parameters};
+    const auto result = [declared = capability.parameters](const v1::Answer& answer) {
+      return Result{cli::line_of(answer), values_of(answer.results, declared),
+                    !bus::well(answer.code)};
+    };
+    requests_.send(std::move(request), end_of(call.number, result), patience);
+    waiting_[call.number] = {.what = Waiting::For::request, .until = now_ + kReply + 1.0};
     return;
   }
-  v1::GoalId id{.writer = node_.instance(), .number = number};
-  actions_.begin(id, std::move(request), capability.parameters, now_);
+  const auto hear = [this](const v1::Answer& answer) { actions_.hear(answer); };
+  v1::GoalId id{.writer = node_.instance(), .number = requests_.send(request, hear, patience)};
+  actions_.begin(id, request, capability.parameters);
   follow(call, id);
+}
+
+/// Makes the end of a request the result of its call.
+bus::RequestClient::Hear Door::end_of(std::uint64_t call,
+                                      std::function<Result(const v1::Answer&)> result) {
+  return [this, call, result = std::move(result)](const v1::Answer& answer) {
+    if (const auto asked = waiting_.find(call); asked != waiting_.end() && bus::ended(answer.code))
+      asked->second.result = result(answer);
+  };
 }
 
 /// A goal or an action that the client has just asked for.
@@ -461,10 +456,10 @@ void Door::take_back_words() {
 void Door::withdraw(Own& own, const std::string& why) {
   if (std::exchange(own.withdrawn, true))
     return;
-  if (actions_.find(own.id) != nullptr)
-    actions_.withdraw(own.id);
-  else
-    goals_.cancel(own.id, why);
+  if (actions_.find(own.id) == nullptr)
+    return goals_.cancel(own.id, why);
+  actions_.withdraw(own.id);
+  requests_.withdraw(own.id.number);
 }
 
 /// The bus puts a checked identity before the client's name.
@@ -708,7 +703,6 @@ bool Door::leave() {
 void Door::close(const std::string& why) {
   for (Own& each : own_)
     withdraw(each, why);
-  write_due();
   if (has_words_underway())
     take_back_words();
 }

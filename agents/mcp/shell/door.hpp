@@ -127,16 +127,15 @@ class Door {
       picture
     } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
-    std::uint64_t number = 0;  ///< of the utterance or the request
+    std::uint64_t number = 0;  ///< of the utterance
     double until = 0.0;        ///< [s]
     double told = -1.0;        ///< progress
     std::string words = {};    ///< of that progress
     std::string said = {};
-    std::string name = {};                               ///< of the event [empty: any] or belief
-    std::optional<std::string> value = std::nullopt;     ///< wanted of the belief; nothing: another
-    std::string before = {};                             ///< value of the belief
-    std::optional<Result> result = std::nullopt;         ///< of the request or event
-    std::vector<v1::CapabilityParameter> declared = {};  ///< of the request
+    std::string name = {};                            ///< of the event [empty: any] or belief
+    std::optional<std::string> value = std::nullopt;  ///< wanted of the belief; nothing: another
+    std::string before = {};                          ///< value of the belief
+    std::optional<Result> result = std::nullopt;      ///< of the request or event
     bool is_task = false;
     bool had_any = true;  ///< to cancel
     double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
@@ -159,6 +158,8 @@ class Door {
   bool is_mine(const v1::GoalStatus& status) const;
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
+  bus::RequestClient::Hear end_of(std::uint64_t call,
+                                  std::function<Result(const v1::Answer&)> result);
   void cancel(const Call& call);
   void cancel_other(const Call& call, const std::optional<v1::GoalId>& id);
   std::optional<v1::GoalStatus> other(const v1::GoalId& id) const;
@@ -171,7 +172,6 @@ class Door {
   bool has_words_underway() const;
   void take_back_words();
   void withdraw(Own& own, const std::string& why = {});
-  void write_due();
   void say(const Call& call);
   void wait_for(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);

@@ -6,8 +6,6 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr double kAgain = 2.0;         // [s]
-constexpr double kGrace = 10.0;        // [s] after the deadline of the request, for the last answer
 constexpr std::size_t kMostKept = 64;  // actions that are remembered
 
 v1::GoalState state_of(const v1::Answer& answer, bool withdrawn) {
@@ -37,26 +35,23 @@ bool is_over(const Action& action) {
 
 }  // namespace
 
-void Actions::begin(const v1::GoalId& id, v1::Request request,
-                    std::vector<v1::CapabilityParameter> declared, double now) {
+void Actions::begin(const v1::GoalId& id, const v1::Request& request,
+                    std::vector<v1::CapabilityParameter> declared) {
   for (auto each = asked_.begin(); each != asked_.end() && asked_.size() >= kMostKept;)
     each = is_over(each->second.action) ? asked_.erase(each) : std::next(each);
-  request.asker = id.writer;
-  request.number = id.number;
   Asked& asked = asked_[id.number];
-  asked = {{}, std::move(request), std::move(declared), false, now + kAgain, 0.0};
-  asked.end = now + asked.request.deadline + kGrace;
+  asked.declared = std::move(declared);
   v1::GoalStatus& status = asked.action.status;
   status.id = id;
-  status.functor = asked.request.functor;
-  status.requester = asked.request.source;
+  status.functor = request.functor;
+  status.requester = request.source;
   status.state = v1::GOAL_WAITING;
   status.reason = "no agent has answered yet; without saphira-facilitator none does";
 }
 
 void Actions::hear(const v1::Answer& answer) {
   const auto found = asked_.find(answer.number);
-  if (found == asked_.end() || found->second.request.asker != answer.asker)
+  if (found == asked_.end())
     return;
   Asked& asked = found->second;
   v1::GoalStatus& status = asked.action.status;
@@ -64,44 +59,23 @@ void Actions::hear(const v1::Answer& answer) {
     return;
   status.state = state_of(answer, asked.withdrawn);
   const bool silent = answer.text.empty() && !bus::well(answer.code);
-  const std::string text = silent ? "no reason was given" : answer.text;
+  const bool late = answer.code == v1::ANSWER_TOO_LATE;
+  const std::string text = (silent ? "no reason was given" : answer.text) +
+                           (late ? "; whether it was done is not known" : "");
   status.reason = (answer.service.empty() || text.empty() ? "" : answer.service + ": ") + text;
   if (is_over(asked.action))
     asked.action.results = values_of(answer.results, asked.declared);
 }
 
 void Actions::withdraw(const v1::GoalId& id) {
-  const auto found = asked_.find(id.number);
-  if (found == asked_.end() || found->second.withdrawn)
-    return;
-  Asked& asked = found->second;
-  asked.withdrawn = true;
-  asked.again = 0.0;
-  asked.request.functor = bus::kWithdraw;
-  asked.request.arguments.clear();
-}
-
-std::vector<v1::Request> Actions::due(double now) {
-  std::vector<v1::Request> requests;
-  for (auto& [number, asked] : asked_) {
-    if (is_over(asked.action))
-      continue;
-    if (now >= asked.end) {
-      asked.action.status.state = v1::GOAL_FAILED;
-      asked.action.status.reason =
-          "its end was not heard in time; whether it was done is not known";
-    } else if (now >= asked.again) {
-      asked.again = now + kAgain;
-      requests.push_back(asked.request);
-    }
-  }
-  return requests;
+  if (const auto found = asked_.find(id.number); found != asked_.end())
+    found->second.withdrawn = true;
 }
 
 const Action* Actions::find(const v1::GoalId& id) const {
   const auto found = asked_.find(id.number);
-  return found == asked_.end() || found->second.request.asker != id.writer ? nullptr
-                                                                           : &found->second.action;
+  return found == asked_.end() || found->second.action.status.id != id ? nullptr
+                                                                       : &found->second.action;
 }
 
 std::vector<Action> Actions::all() const {

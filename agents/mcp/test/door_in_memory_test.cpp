@@ -402,6 +402,9 @@ TEST_F(DoorInMemory, ARequestIsRepeatedForAFacilitatorThatStartsAnew) {
   say(request, v1::ANSWER_UNDERWAY, "");
   turn(1.0);
   EXPECT_TRUE(solve.take().empty());
+  solve = node.reader<v1::Request>(bus::topics::kAgentRequest);  // it ends
+  turn(1.0);
+  solve = other.reader<v1::Request>(bus::topics::kSolve);
   turn(1.0);
   const v1::Request again = heard();
   EXPECT_EQ(again.number, request.number);
@@ -414,11 +417,13 @@ TEST_F(DoorInMemory, ARequestIsRepeatedForAFacilitatorThatStartsAnew) {
 TEST_F(DoorInMemory, AnActionWhoseEndIsNeverHeardIsNotSaidToBeDone) {
   const std::string handle = begin_sweep();
   EXPECT_EQ(result(1)["structuredContent"]["state"], "waiting");
+  turn();
   turn(611.0);
   call(2, "goal", {{"goal", handle}});
   EXPECT_EQ(result(2)["isError"], true);
   EXPECT_EQ(result(2)["structuredContent"]["reason"],
-            "its end was not heard in time; whether it was done is not known");
+            "nothing was heard of the request on agents/solve within 610 s; whether it was done is "
+            "not known");
 }
 
 TEST_F(DoorInMemory, AtMostFourActionsAreUnderway) {

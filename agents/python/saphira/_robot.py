@@ -29,7 +29,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _EMPTY_BUS = 5.0  # [s] until a question is given up where no program is heard
 _UNANSWERED = 15.0  # [s] until a goal without a status is given up
 _SILENCE = 11.0  # [s] until a request is given up, after the newest word of an agent
-_AGAIN = 0.3  # [s] between two writings of a request, until it is answered
 _LOOK = 0.2  # [s]
 _PATIENCE = 5.0  # [s] until what a latched topic says is given up
 _QUIET = 0.3  # [s] after which no further tile of the grid is expected
@@ -216,7 +215,7 @@ class Robot(Context):
     def __init__(self, bus: _bus.Bus) -> None:
         self._bus = bus
         self._waiter = Waiter(bus)
-        self._answers: dict[tuple[str, int], list[v1.Answer]] = {}
+        self._answers: dict[int, list[v1.Answer]] = {}
         self._writers: dict[str, _bus.Writer] = {}  # what a writer has declared ends with it
         self._served = Served(bus.answer)
         self._said = 0
@@ -224,6 +223,8 @@ class Robot(Context):
 
     def _poll(self) -> None:
         self._bus.poll()
+        for answer in self._bus.answers():
+            self._answers.get(answer.number, []).append(answer)
         for request in self._bus.requests():
             self._served.handle(request)
 
@@ -314,38 +315,27 @@ class Robot(Context):
         return [Answer(each) for each in told[:-1] if each.results or each.text]
 
     async def _asked(self, topic: "Topic[v1.Request]", request: v1.Request) -> list[v1.Answer]:
-        """All answers, the end last. The request is written again until it is answered."""
-        number = self._bus.send(topic.name, request)
-        key = (topic.name, number)
-        self._answers[key] = told = cast("list[v1.Answer]", [])
+        """All answers, the end last."""
         patience = request.deadline + 1.0 if request.deadline > 0.0 else _SILENCE
-        again, heard, count = time.monotonic() + _AGAIN, time.monotonic(), 0
+        number = self._bus.send(topic.name, request, patience)
+        self._answers[number] = told = cast("list[v1.Answer]", [])
         try:
             while True:
-                for answer in self._bus.answers(topic.name):
-                    asked = self._answers.get((topic.name, answer.number))
-                    if asked is not None:
-                        asked.append(answer)
+                self._poll()
                 if told and told[-1].code != v1.AnswerCode.ANSWER_UNDERWAY:
                     break
-                now = time.monotonic()
-                if len(told) > count:
-                    count, heard = len(told), now
-                self._poll()
                 nobody = "" if told else self._absence(topic)
-                if nobody or now > heard + patience:
-                    why = nobody or f"{request.functor}: nothing was heard for {patience:.0f} s"
-                    raise Nobody(why, v1.AnswerCode.ANSWER_NOBODY)
-                if now > again:
-                    self._bus.again(topic.name, number, request)
-                    again = now + (_AGAIN if not told else 10 * _AGAIN)
-                await self._waiter.news(_AGAIN)
+                if nobody:
+                    raise Nobody(nobody, v1.AnswerCode.ANSWER_NOBODY)
+                await self._waiter.news(_LOOK)
         except BaseException:
             if self._bus.is_open():
-                self._bus.again(topic.name, number, v1.Request(functor="withdraw"))
+                self._bus.withdraw(topic.name, number)
             raise
         finally:
-            del self._answers[key]
+            del self._answers[number]
+        if told[-1].code == v1.AnswerCode.ANSWER_TOO_LATE and not told[-1].service:
+            raise Nobody(f"{request.functor}: {told[-1].text}", v1.AnswerCode.ANSWER_NOBODY)
         trouble = trouble_of_answer(told[-1])
         if trouble is not None:
             raise trouble

@@ -48,6 +48,9 @@ class FakeBus:
     def poll(self) -> None:
         pass
 
+    def answers(self) -> list[v1.Answer]:
+        return []
+
     def requests(self) -> list[v1.Request]:
         return []
 

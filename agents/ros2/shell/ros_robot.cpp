@@ -192,7 +192,7 @@ void RosRobot::poll() {
   take_robot();
   if (inward_) {
     const double now = std::chrono::duration<double>(cli::Clock::now().time_since_epoch()).count();
-    take_wishes();
+    take_wishes(now);
     drive(now);
     serve();
   }
@@ -234,7 +234,7 @@ PoseStamped RosRobot::placed(const PoseStamped& pose) const {
   return robot ? in_odom(pose, robot->pose_in_odom) : pose;
 }
 
-void RosRobot::take_wishes() {
+void RosRobot::take_wishes(double now) {
   Inward& in = *inward_;
   for (const bus::ForeignSample& sample : in.goal_pose->take()) {
     const auto pose = read<PoseStamped>(sample.bytes);
@@ -247,13 +247,14 @@ void RosRobot::take_wishes() {
     const auto pose = read<PoseWithCovarianceStamped>(sample.bytes);
     if (const auto position =
             pose ? argument_of("position", pose->header, pose->pose.pose) : std::nullopt)
-      in.registration.send(bus::request("place", {*position}));
+      in.registration.send(bus::request("place", {*position}), [this](const v1::Answer& answer) {
+        if (!bus::well(answer.code))
+          node_.warn("initialpose: " + answer.text);
+      });
     else
       node_.warn("a pose on initialpose is not of map, odom or base_link");
   }
-  for (const v1::Answer& answer : in.registration.poll())
-    if (!bus::well(answer.code))
-      node_.warn("initialpose: " + answer.text);
+  in.registration.poll(now);
 }
 
 void RosRobot::serve() {

@@ -112,7 +112,7 @@ class RosRobot {
   void drive(double now);
   /// A pose of base_link in odom, if the robot's place there is known.
   PoseStamped placed(const PoseStamped& pose) const;
-  void take_wishes();
+  void take_wishes(double now);
   void serve();
   void tell_slowly();
   void show_node();

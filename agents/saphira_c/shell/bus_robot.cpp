@@ -205,12 +205,14 @@ v1::ProgramMind mind_of(const SharedMind& mind) {
   return sample;
 }
 
-/// A client command (manual 5.2) for a device of the robot, as a request; nothing: there is none.
-struct DeviceCall {
+/// A request to a program on the bus.
+struct Call {
   bus::RequestTopic topic;
   v1::Request request;
 };
-std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
+
+/// A client command (manual 5.2) for a device of the robot; nothing: there is none.
+std::optional<Call> device_call(const protocol::Bytes& packet) {
   // Header (2), count, command, kind of argument, argument, sum (2).
   constexpr std::size_t kCommand = 3;
   if (packet.size() < kCommand + 6)
@@ -219,7 +221,7 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
   const int high = packet[kCommand + 3];
   const auto call = [](const bus::RequestTopic& topic, const char* functor,
                        std::vector<v1::Argument> arguments) {
-    return DeviceCall{topic, bus::request(functor, std::move(arguments))};
+    return Call{topic, bus::request(functor, std::move(arguments))};
   };
   switch (static_cast<protocol::Number>(packet[kCommand])) {
     case protocol::Number::kDigitalOutput:
@@ -266,11 +268,7 @@ class BusRobot final : public ServedRobot {
     const std::lock_guard lock(mutex_);
     return std::exchange(was_stopped_, false);
   }
-  void stop() override {
-    const std::lock_guard lock(mutex_);
-    asks_to_stop_ = true;
-    wake();
-  }
+  void stop() override { ask({bus::topics::kDriveStop, bus::request("stop")}); }
   std::optional<Found> found() override {
     const std::lock_guard lock(mutex_);
     return found_;
@@ -300,7 +298,8 @@ class BusRobot final : public ServedRobot {
     return std::exchange(pointed_out_, {});
   }
   void load_map(const std::string& text, const std::string& name) override {
-    ask(bus::request("load", {bus::text("text", text), bus::text("name", name)}));
+    ask({bus::topics::kRegistrationRequest,
+         bus::request("load", {bus::text("text", text), bus::text("name", name)})});
   }
   void place(const Pose& robot) override {
     {
@@ -309,16 +308,14 @@ class BusRobot final : public ServedRobot {
       if (found_)
         found_->odom_in_map.reset();
     }
-    ask(bus::request("place", {bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)}));
+    ask({bus::topics::kRegistrationRequest,
+         bus::request("place",
+                      {bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)})});
   }
 
  private:
   /// The endpoints on the bus, for the thread alone.
   struct Ends {
-    Ends(bus::Node& of, const std::string& source)
-        : node(of),
-          registration(node, bus::topics::kRegistrationRequest, source),
-          stops(node, bus::topics::kDriveStop, source) {}
     bus::Node& node;
     bus::Reader<v1::RobotState> robots = node.reader(bus::topics::kRobotState);
     bus::Reader<v1::RobotDescription> descriptions = node.reader(bus::topics::kRobotDescription);
@@ -332,13 +329,12 @@ class BusRobot final : public ServedRobot {
     bus::Writer<v1::Message> messages = node.writer(bus::topics::kMessages);
     bus::Writer<v1::Drawing> drawings = node.writer(bus::topics::kDrawings);
     bus::Writer<v1::ProgramMind> minds = node.writer(bus::topics::kProgramMinds);
-    bus::RequestClient registration;
-    bus::RequestClient stops;
+    std::map<std::string, bus::RequestClient> clients{};  ///< by topic
   };
 
-  void ask(const v1::Request& request) {
+  void ask(Call call) {
     const std::lock_guard lock(mutex_);
-    requests_.push_back(request);
+    calls_.push_back(std::move(call));
     wake();
   }
   void wake() override {
@@ -361,7 +357,9 @@ class BusRobot final : public ServedRobot {
   void serve() {
     bus::Node node = memory_ ? bus::Node(options_, memory_) : bus::Node(options_);
     source_ = node.options().name;
-    Ends ends(node, source_);
+    Ends ends{node};
+    for (const auto& topic : {bus::topics::kDriveStop, bus::topics::kRegistrationRequest})
+      client_of(ends, topic);  // matched by the first request
     ProcessTable table;
     runtime::ProcessesOnBus processes(node, table);
     {
@@ -545,17 +543,15 @@ class BusRobot final : public ServedRobot {
   bool say_all(bus::Node& node, Ends& ends) {
     std::optional<v1::MotorCommand> wish;
     std::vector<protocol::Bytes> packets;
-    std::vector<v1::Request> requests;
+    std::vector<Call> calls;
     std::vector<std::string> told;
     std::vector<Drawn> drawn;
     std::optional<SharedMind> mind;
-    bool asks_to_stop = false;
     {
       const std::lock_guard lock(mutex_);
-      asks_to_stop = std::exchange(asks_to_stop_, false);
       wish = std::exchange(wish_, std::nullopt);
       packets = std::exchange(packets_, {});
-      requests = std::exchange(requests_, {});
+      calls = std::exchange(calls_, {});
       told = std::exchange(told_, {});
       drawn = std::exchange(drawn_, {});
       mind = std::exchange(mind_, std::nullopt);
@@ -565,21 +561,11 @@ class BusRobot final : public ServedRobot {
     if (wish)
       write(node, ends, *wish);
     for (const protocol::Bytes& packet : packets)
-      call_device(node, packet);
-    for (v1::Request& request : requests)
-      ends.registration.send(std::move(request));
-    if (asks_to_stop)
-      ends.stops.send(bus::request("stop"));
-    const std::vector<v1::Answer> answers = ends.registration.poll();
-    hear(answers);
-    if (std::any_of(answers.begin(), answers.end(),
-                    [](const v1::Answer& answer) { return bus::ended(answer.code); })) {
-      const std::lock_guard lock(mutex_);
-      placing_ = false;
-    }
-    hear(ends.stops.poll());
-    for (auto& [name, client] : devices_)
-      hear(client.poll());
+      call_device(ends, packet);
+    for (Call& call : calls)
+      send_call(ends, std::move(call));
+    for (auto& [topic, client] : ends.clients)
+      client.poll(BootClock::seconds());
     for (const std::string& text : told) {
       ends.messages.write({.stamp = stamp_, .source = source_, .text = text});
     }
@@ -604,8 +590,8 @@ class BusRobot final : public ServedRobot {
     return true;
   }
 
-  void call_device(bus::Node& node, const protocol::Bytes& packet) {
-    const auto call = device_call(packet);
+  void call_device(Ends& ends, const protocol::Bytes& packet) {
+    auto call = device_call(packet);
     if (!call) {
       say_("command " + std::to_string(packet.size() > 3 ? packet[3] : 0) +
                " is not for the bus: its bridge keeps the packets of the robot (docs/requests.md "
@@ -613,18 +599,20 @@ class BusRobot final : public ServedRobot {
            true);
       return;
     }
-    auto found = devices_.find(call->topic.name);
-    if (found == devices_.end())
-      found = devices_
-                  .emplace(std::piecewise_construct, std::tuple(call->topic.name),
-                           std::forward_as_tuple(node, call->topic, source_))
-                  .first;
-    found->second.send(call->request);
+    send_call(ends, *std::move(call));
   }
-  void hear(const std::vector<v1::Answer>& answers) {
-    for (const v1::Answer& answer : answers)
-      if (bus::ended(answer.code) && !bus::well(answer.code))
-        say_("the robot does not do it: " + std::string(answer.text), true);
+  bus::RequestClient& client_of(Ends& ends, const bus::RequestTopic& topic) {
+    return ends.clients.try_emplace(topic.name, ends.node, topic, source_).first->second;
+  }
+  void send_call(Ends& ends, Call call) {
+    const bool of_map = std::string_view(call.topic.name) == bus::topics::kRegistrationRequest.name;
+    const auto hear = [this, of_map](const v1::Answer& answer) {
+      if (!bus::well(answer.code))
+        say_("the robot does not do it: " + answer.text, true);
+      const std::lock_guard lock(mutex_);
+      placing_ = placing_ && !(of_map && bus::ended(answer.code));
+    };
+    client_of(ends, call.topic).send(std::move(call.request), hear);
   }
 
   /// Shows the states of the program's micro-tasks, and takes requests from the bus to change them.
@@ -682,7 +670,6 @@ class BusRobot final : public ServedRobot {
   std::string news_;
   bool told_limit_ = false;
   bus::StopNotice notice_;
-  std::map<std::string, bus::RequestClient> devices_;
 
   // Shared with the program's thread, as those of ServedRobot.
   bus::Node* node_ = nullptr;
@@ -693,8 +680,7 @@ class BusRobot final : public ServedRobot {
   std::optional<v1::MotorCommand> wish_;
   bool stopped_ = false;      // and has not let go
   bool was_stopped_ = false;  // since take_stop()
-  bool asks_to_stop_ = false;
-  std::vector<v1::Request> requests_;
+  std::vector<Call> calls_;
   std::vector<std::string> told_;
   std::vector<Drawn> drawn_;
   std::vector<SharedTask> shared_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -14,12 +14,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kAgain{300};  // period of repetition
+constexpr double kAgain = 0.3;  // [s] period of repetition
 constexpr std::chrono::milliseconds kLook{50};
 constexpr std::chrono::microseconds kSpin{1000};  // most answers are there by then
 
-std::string seconds(double patience) {
-  return format("%.0f s", patience);
+double seconds() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -35,31 +35,99 @@ RequestClient::RequestClient(Node& node, const RequestTopic& topic, std::string 
     direct_ = node.reader(*direct);
 }
 
-v1::Request RequestClient::complete(v1::Request request, std::uint64_t number) {
+RequestClient::Pending& RequestClient::begin(v1::Request request, Hear hear, double first,
+                                             double next) {
   request.asker = node_.instance();
-  request.number = number;
+  request.number = next_request_number();
   if (request.source.empty())
     request.source = source_;
-  return request;
+  if (pending_.empty())
+    matched_ = writer_.matched();
+  const v1::Answer lost{.asker = request.asker,
+                        .number = request.number,
+                        .code = v1::ANSWER_NOBODY,
+                        .text = std::string("no program takes what is asked on ") + topic_.name};
+  const std::uint64_t number = request.number;
+  return pending_[number] = {std::move(request), std::move(hear), first, next, lost};
 }
 
-std::uint64_t RequestClient::send(v1::Request request) {
-  request = complete(std::move(request), next_request_number());
-  if (!writer_.write(request))
+bool RequestClient::write(Pending& one) {
+  if (!writer_.write(one.request))
+    return false;
+  if (writer_.matched() > 0) {
+    one.again.reset();
+    one.lost.code = v1::ANSWER_TOO_LATE;
+    one.lost.text =
+        format("nothing was heard of the request on %s within %.0f s", topic_.name, one.first);
+  }
+  return true;
+}
+
+std::uint64_t RequestClient::send(v1::Request request, Hear hear, double first, double next) {
+  Pending& one = begin(std::move(request), std::move(hear), first, next);
+  const std::uint64_t number = one.request.number;
+  if (!write(one)) {
+    pending_.erase(number);
     throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
-  return request.number;
+  }
+  return number;
 }
 
-void RequestClient::again(std::uint64_t number, v1::Request request) {
-  writer_.write(complete(std::move(request), number));
+void RequestClient::withdraw(std::uint64_t number) {
+  const auto found = pending_.find(number);
+  if (found == pending_.end())
+    return;
+  Pending& one = found->second;
+  one.request.functor = kWithdraw;
+  one.request.arguments.clear();
+  one.heard = false;
+  one.again = 0.0;
+  write(one);
 }
 
-std::vector<v1::Answer> RequestClient::poll() {
-  std::vector<v1::Answer> answers;
-  for (auto& sample : reader_.take())
-    if (!sample.info.disposed && sample.data.asker == node_.instance())
-      answers.push_back(std::move(sample.data));
-  return answers;
+/// True where a request was written.
+bool RequestClient::turn(double now) {
+  std::vector<std::pair<Hear, v1::Answer>> heard;
+  for (auto& sample : reader_.take()) {
+    v1::Answer& answer = sample.data;
+    const auto found = pending_.find(answer.number);
+    if (sample.info.disposed || answer.asker != node_.instance() || found == pending_.end())
+      continue;
+    Pending& one = found->second;
+    one.heard = true;
+    if (one.request.deadline <= 0.0)
+      one.end = now + one.next;
+    one.lost = answer;
+    one.lost.code = v1::ANSWER_TOO_LATE;
+    one.lost.text = "the request is still under way";
+    heard.emplace_back(one.hear, std::move(answer));
+    if (ended(heard.back().second.code))
+      pending_.erase(found);
+  }
+  bool wrote = false;
+  if (!pending_.empty()) {
+    // A program that was started again has to hear the requests anew.
+    const std::size_t before = std::exchange(matched_, writer_.matched());
+    for (auto& [number, one] : pending_) {
+      if (matched_ < before && one.heard) {
+        one.heard = false;
+        one.again = now;
+      }
+      if (!one.end)
+        one.end = now + one.first;
+      if (now >= *one.end)
+        heard.emplace_back(one.hear, one.lost);
+      else if (!one.heard && one.again && now >= *one.again && matched_ > 0)
+        wrote = write(one) || wrote;
+      if (!one.again)
+        one.again = now + kAgain;
+    }
+    std::erase_if(pending_, [now](const auto& each) { return now >= *each.second.end; });
+  }
+  for (const auto& [hear, answer] : heard)
+    if (hear)
+      hear(answer);
+  return wrote;
 }
 
 /// A good end of the request, straight from the agent that carried it out. Any other answer is for
@@ -84,50 +152,27 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
                               const std::function<void()>& meanwhile) {
-  request = complete(std::move(request), next_request_number());
-  v1::Answer newest{.asker = request.asker,
-                    .number = request.number,
-                    .code = v1::ANSWER_NOBODY,
-                    .text = std::string("no program takes what is asked on ") + topic_.name};
-  bool heard = false;
-  std::size_t matched = writer_.matched();
-  auto again = Clock::now();
-  const auto limit =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
-  auto end = again + limit;
-  for (auto now = again; now < end && (stop == nullptr || !stop->requested()); now = Clock::now()) {
-    // A program that was started again has to hear the request anew.
-    if (const std::size_t before = std::exchange(matched, writer_.matched()); matched < before) {
-      heard = false;
-      again = now;
-    }
-    if (!heard && now >= again && matched > 0 && writer_.write(request)) {
-      again = now + kAgain;
-      newest.code = v1::ANSWER_TOO_LATE;
-      newest.text = "nothing was heard of the request within " + seconds(patience);
+  std::optional<v1::Answer> end;
+  const auto hear = [&end](const v1::Answer& answer) {
+    if (ended(answer.code))
+      end = answer;
+  };
+  Pending& one = begin(std::move(request), hear, patience, patience);
+  const std::shared_ptr<void> forgets(
+      nullptr, [this, number = one.request.number](void*) { pending_.erase(number); });
+  while (true) {
+    if (turn(seconds()))
       node_.spin(kSpin);
-    }
-    node_.wait(std::min(kLook, std::chrono::ceil<std::chrono::milliseconds>(end - now)), stop);
+    if (end)
+      return *std::move(end);
+    if (stop != nullptr && stop->requested())
+      return one.lost;
+    node_.wait(kLook, stop);
     if (meanwhile)
       meanwhile();
-    if (auto answer = take_direct(request))
+    if (auto answer = end ? std::nullopt : take_direct(one.request))
       return *std::move(answer);
-    for (v1::Answer& answer : poll()) {
-      if (answer.number != request.number)
-        continue;
-      heard = true;
-      newest = std::move(answer);
-      if (ended(newest.code))
-        return newest;
-      if (request.deadline <= 0.0)
-        end = Clock::now() + limit;
-    }
   }
-  if (!ended(newest.code)) {
-    newest.code = v1::ANSWER_TOO_LATE;
-    newest.text = "the request is still under way";
-  }
-  return newest;
 }
 
 v1::Request request(const std::string& functor, std::vector<v1::Argument> arguments,

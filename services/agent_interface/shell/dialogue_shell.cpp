@@ -26,7 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
 constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
-constexpr double kStopsWithin = 10.0;     // [s] the robot, afterwards
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
 KnownGoal::State state_of(v1::GoalState state) {
@@ -124,34 +123,15 @@ void DialogueShell::reload() {
 void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
   v1::Request request = bus::request("stop", {bus::text("by", wanted.requester())});
   request.person = bus::to_bus(wanted.person);
-  stopping_[stops_.send(std::move(request))] = {wanted.tag, {}};
-}
-
-void DialogueShell::take_stops(double seconds) {
-  std::vector<Outcome> ended;
-  for (const v1::Answer& answer : stops_.poll()) {
-    const auto found = stopping_.find(answer.number);
-    if (found == stopping_.end())
-      continue;
-    found->second.until = seconds + kStopsWithin;
-    if (!bus::ended(answer.code))
-      continue;
-    ended.push_back({found->second.tag, bus::well(answer.code), answer.text});
-    stopping_.erase(found);
-  }
-  for (auto one = stopping_.begin(); one != stopping_.end();) {
-    if (!one->second.until)
-      one->second.until = seconds + kConfirmsWithin;
-    if (seconds <= *one->second.until) {
-      ++one;
-      continue;
-    }
-    ended.push_back(
-        {one->second.tag, false, "no bridge has confirmed the stop: press the robot's own switch"});
-    one = stopping_.erase(one);
-  }
-  for (const Outcome& outcome : ended)
-    perform(dialogue_.ended(outcome));
+  const auto hear = [this, tag = wanted.tag](const v1::Answer& answer) {
+    const bool nobody = answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
+    if (bus::ended(answer.code))
+      perform(
+          dialogue_.ended({tag, bus::well(answer.code),
+                           nobody ? "no bridge has confirmed the stop: press the robot's own switch"
+                                  : answer.text}));
+  };
+  stops_.send(std::move(request), hear, kConfirmsWithin);
 }
 
 void DialogueShell::want(const WantedGoal& wanted) {
@@ -354,13 +334,13 @@ void DialogueShell::step(double seconds, double now) {
     node_.status().reason = "";
   }
   take_places();
-  registration_.poll();
+  registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())
     if (!sample.info.disposed)
       perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
-  take_stops(seconds);
+  stops_.poll(seconds);
   take_utterances();
   agent_.poll();
 }

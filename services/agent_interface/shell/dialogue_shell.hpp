@@ -42,7 +42,6 @@ class DialogueShell {
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
   void ask_to_stop(const WantedGoal& wanted);
-  void take_stops(double seconds);
   void claim(const Claimed& claim);
   void remember();
   void publish();
@@ -67,13 +66,8 @@ class DialogueShell {
   bus::Writer<v1::Knowledge> knows_;
   bus::Audit audit_;
   Situation situation_;
-  v1::Vision seen_;                            ///< the newest
-  std::map<std::uint64_t, v1::GoalId> asked_;  ///< by the dialogue's tag
-  struct Stopping {
-    std::uint64_t tag = 0;
-    std::optional<double> until;  ///< [s] then no bridge has answered
-  };
-  std::map<std::uint64_t, Stopping> stopping_;      ///< by the request's number
+  v1::Vision seen_;                                 ///< the newest
+  std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
   std::map<std::uint64_t, std::string> orphans_;    ///< goals of before the restart, by tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;

@@ -142,14 +142,15 @@ class FacilitatorInMemory : public testing::Test {
 
 TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
-  const std::uint64_t number = asker.send(sweep());
+  std::vector<v1::Answer> answers;
+  const std::uint64_t number =
+      asker.send(sweep(), [&](const v1::Answer& answer) { answers.push_back(answer); });
   turn();
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
-  v1::Request withdrawal{.functor = bus::kWithdraw};
-  asker.again(number, withdrawal);
+  asker.withdraw(number);
   turn();
   EXPECT_EQ(stopped, begun);
-  const auto answers = asker.poll();
+  asker.poll(now);
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0].text, "sweeps");
   EXPECT_EQ(answers[1].code, v1::ANSWER_GIVEN_UP);
@@ -176,23 +177,31 @@ TEST_F(FacilitatorInMemory, AnActionEndsWithTheWriterThatAskedForIt) {
 
 TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
-  const std::uint64_t number = asker.send(sweep());
+  std::string told;
+  const std::uint64_t number =
+      asker.send(sweep(), [&](const v1::Answer& answer) { told = answer.text; });
   turn();
+  asker.poll(now);
+  EXPECT_EQ(told, "sweeps");
   int swept = 0;
   bus::Agent broom(other, "broom", "comes first by its name");
   broom.can(bus::action("sweep", "sweeps the floor", {}), [&](const v1::Request&) {
     ++swept;
     return bus::done({});
   });
+  facilitator.reset();
+  hub.reset();
+  asker.poll(now);
   restart();
-  asker.again(number, sweep());
+  asker.poll(now);
   turn();
   broom.poll();
   EXPECT_EQ(swept, 0);
   EXPECT_EQ(begun, std::vector<std::uint64_t>{number});
   worker.answer(begun_request, bus::done({}, "clean"));
   turn();
-  EXPECT_EQ(asker.poll().back().text, "clean");
+  asker.poll(now);
+  EXPECT_EQ(told, "clean");
 }
 
 TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
@@ -298,7 +307,8 @@ TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
   auto statuses = person.writer(bus::topics::kGoalStatus);
   bus::RequestClient asker(person, bus::topics::kSolve, "a person");
   v1::Request request{.functor = "explore", .deadline = 1.5};
-  asker.send(request);
+  std::string told;
+  asker.send(request, [&](const v1::Answer& answer) { told = answer.text; });
   turn();
   const auto asked = test::only(goals.take());
   EXPECT_NEAR(asked.data.deadline, 1.0, 1e-9);
@@ -308,7 +318,8 @@ TEST_F(TheRobotInMemory, AGoalThatLastsUntilItsDeadlineIsAnsweredInTime) {
   now += 1.2;  // its deadline, and the way of the status
   statuses.write(status);
   turn();
-  EXPECT_EQ(asker.poll().back().text, "drove 0.10 m until the deadline");
+  asker.poll(now);
+  EXPECT_EQ(told, "drove 0.10 m until the deadline");
 }
 
 TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {

@@ -15,17 +15,14 @@ struct Action {
 };
 
 /// The actions that a client has asked of agents. Each has an id and a status as a goal has, so the
-/// same tools report and withdraw both. Pure: times are [s] of any clock that never goes back.
+/// same tools report and withdraw both.
 class Actions {
  public:
-  /// A request that was sent now, under the number of this id.
-  void begin(const v1::GoalId& id, v1::Request request,
-             std::vector<v1::CapabilityParameter> declared, double now);
+  /// A request that was sent under the number of this id.
+  void begin(const v1::GoalId& id, const v1::Request& request,
+             std::vector<v1::CapabilityParameter> declared);
   void hear(const v1::Answer& answer);
   void withdraw(const v1::GoalId& id);
-  /// The requests and withdrawals to write now: each is written again until its end is heard, since
-  /// the facilitator may have started anew.
-  std::vector<v1::Request> due(double now);
 
   /// Null: no action of this id.
   const Action* find(const v1::GoalId& id) const;
@@ -35,11 +32,8 @@ class Actions {
  private:
   struct Asked {
     Action action;
-    v1::Request request;
     std::vector<v1::CapabilityParameter> declared;
     bool withdrawn = false;
-    double again = 0.0;  ///< [s] time of the next repetition
-    double end = 0.0;    ///< [s] then it is given up
   };
 
   std::map<std::uint64_t, Asked> asked_;  ///< by the number

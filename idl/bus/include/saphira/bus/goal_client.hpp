@@ -18,8 +18,8 @@ namespace saphira::bus {
 ///   Node node(options);
 ///   GoalClient goals(node, "my agent");
 ///   v1::Goal goal;
-///   goal.functor("go_to");
-///   goal.arguments({point("position", 3.0, 1.0, 0.0, v1::FRAME_ODOM)});
+///   goal.functor = "go_to";
+///   goal.arguments = {point("position", 3.0, 1.0, 0.0, v1::FRAME_ODOM)};
 ///   const v1::GoalId id = goals.ask(goal);
 ///   while (...) { node.wait(500ms); goals.poll(); auto status = goals.status(id); ... }
 ///

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -10,41 +11,58 @@
 
 namespace saphira::bus {
 
-/// An agent's side of requests: asks, and waits for the answers. For the node's own thread.
+/// An agent's side of requests: asks, and hears the answers. For the node's own thread.
 ///
 ///   Node node(options);
 ///   RequestClient robot(node, topics::kServo, "my agent");
-///   v1::Request request;
-///   request.functor("servo");
-///   request.arguments({number("width", 1500)});
-///   const v1::Answer answer = robot.ask(request, 10.0);
-///   if (answer.code() != v1::ANSWER_DONE) ... answer.text() ...
+///   const v1::Answer answer = robot.ask(request("servo", {number("width", 1500)}), 10.0);
+///   if (answer.code != v1::ANSWER_DONE) ... answer.text ...
+///
+/// A request is written again until a program answers, and when such a program is gone; it is
+/// carried out once. Each request has an end. Where no program gives one in time, it is this
+/// client's: ANSWER_NOBODY says that no program takes such requests, and ANSWER_TOO_LATE that none
+/// has answered.
 class RequestClient {
  public:
+  /// Called with each answer to a request, the end last.
+  using Hear = std::function<void(const v1::Answer&)>;
+
   /// source: name of the asker, for people. direct: topic of the answers before a router passes
   /// them on.
   RequestClient(Node& node, const RequestTopic& topic, std::string source,
                 const Topic<v1::Answer>* direct = nullptr);
 
   /// Asks, and waits for the end of the request, for `patience` [s] at most; without a deadline in
-  /// the request, for as long after each ANSWER_UNDERWAY. There is always an answer: ANSWER_NOBODY
-  /// says that no program takes such requests, and ANSWER_TOO_LATE that none has answered. The
-  /// request is written again until a program answers, and when such a program is gone; it is
-  /// carried out once.
-  /// `meanwhile` is called whenever a sample has come to the node.
+  /// the request, for as long after each ANSWER_UNDERWAY. `meanwhile` is called whenever a sample
+  /// has come to the node.
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {});
 
-  /// Asks without waiting: the number of the request. Its answers come out of poll().
-  std::uint64_t send(v1::Request request);
-  /// Writes a request of send() once more, under its number, for a program that has started since.
-  /// With the functor kWithdraw: withdraws it.
-  void again(std::uint64_t number, v1::Request request);
-  /// The answers to this client's requests, since the last call, oldest first.
-  std::vector<v1::Answer> poll();
+  /// Asks without waiting: the number of the request. Its answers come in poll(). It ends `first`
+  /// [s] after the next poll(); without a deadline in the request, `next` [s] after each
+  /// ANSWER_UNDERWAY. std::runtime_error where the bus did not take it.
+  std::uint64_t send(v1::Request request, Hear hear = {}, double first = 10.0, double next = 10.0);
+  /// Withdraws a request of send() that has not ended; its end still comes.
+  void withdraw(std::uint64_t number);
+  /// Hears the answers, and writes the requests that are due. now: [s] of a clock that never goes
+  /// back, the steady one where this client waits in ask(), too.
+  void poll(double now) { turn(now); }
 
  private:
-  v1::Request complete(v1::Request request, std::uint64_t number);
+  /// A request that has not ended.
+  struct Pending {
+    v1::Request request;
+    Hear hear;
+    double first = 0.0;
+    double next = 0.0;
+    v1::Answer lost;                    ///< its end where no further answer comes
+    bool heard = false;                 ///< by a program that is still there
+    std::optional<double> again = 0.0;  ///< [s] then it is written; none: it was, since poll()
+    std::optional<double> end{};        ///< [s] then it is lost; none: it was not polled yet
+  };
+  Pending& begin(v1::Request request, Hear hear, double first, double next);
+  bool write(Pending& one);
+  bool turn(double now);
   std::optional<v1::Answer> take_direct(const v1::Request& request);
 
   Node& node_;
@@ -53,6 +71,8 @@ class RequestClient {
   Writer<v1::Request> writer_;
   Reader<v1::Answer> reader_;
   std::optional<Reader<v1::Answer>> direct_;
+  std::map<std::uint64_t, Pending> pending_;  ///< by number
+  std::size_t matched_ = 0;                   ///< programs that take requests
 };
 
 using saphira::kWithdraw;
