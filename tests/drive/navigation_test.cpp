@@ -43,6 +43,7 @@ struct Answer {
   std::string to;  ///< a part of the robot's words
   std::string name;
   intentions::Value value;
+  std::string speaker{};  ///< empty: not known
 };
 
 class People {
@@ -53,7 +54,7 @@ class People {
     for (; heard_ < whole.said().size(); ++heard_)
       if (next_ < answers_.size() &&
           whole.said()[heard_].find(answers_[next_].to) != std::string::npos) {
-        whole.claim(answers_[next_].name, answers_[next_].value);
+        whole.claim(answers_[next_].name, answers_[next_].value, answers_[next_].speaker);
         ++next_;
       }
   }
@@ -612,11 +613,12 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
 
 /// The end of a delivery to Alice in EJ-247, of something that is given to the robot here; somebody
 /// takes it, and others say whether she has it.
-GoalStatus delivered_to_alice(const intentions::Value& taker, const std::string& she_has_it) {
+GoalStatus delivered_to_alice(const intentions::Value& taker, const std::string& she_has_it,
+                              const std::string& says = {}) {
   Whole whole(office());
-  People people({{"Please give me the report", "given", kYes},
+  People people({{"Please give me the report", "given", kYes, "Karen"},
                  {"Here is the report from karen for alice, please take it", "taken", taker},
-                 {"Does alice have the report?", "answer", she_has_it}});
+                 {"Does alice have the report?", "answer", she_has_it, says}});
   const auto goal = whole.ask(
       "deliver", {text("object", "the report"), text("to", "EJ-247"), text("sender", "karen"),
                   text("receiver", "alice"), saphira::number("patience", 5.0)});
@@ -633,6 +635,37 @@ TEST(People, ADeliveryIsDoneWhenTheOneWhomItWasForHasIt) {
   EXPECT_EQ(taken.state, v1::GOAL_FAILED);
   EXPECT_EQ(taken.reason, "karen took the report, which was for alice");
   EXPECT_EQ(delivered_to_alice(kYes, "no").reason, "somebody took the report, which was for alice");
+}
+
+TEST(People, WhoGaveOrTookADeliveryIsNoWitnessOfIt) {
+  for (const std::string witness : {"bob", "karen"})
+    EXPECT_EQ(delivered_to_alice("bob", "yes", witness).reason,
+              "bob took the report, which was for alice, and only " + witness +
+                  " says that alice has it");
+  for (const std::string witness : {"Alice", "John", ""})
+    EXPECT_EQ(delivered_to_alice("bob", "yes", witness).state, v1::GOAL_SUCCEEDED);
+}
+
+TEST(People, WhoAnswersForSomebodyElseIsNamed) {
+  const auto reason = [](const std::string& functor, const std::string& answer,
+                         const std::string& speaker) {
+    Whole whole(office());
+    whole.claim("place-of-karen", "EJ-247");
+    People people(
+        {{"Is karen here?", "answer", "yes"}, {"karen, alice", "answer", answer, speaker}});
+    const auto goal =
+        whole.ask(functor, {text("person", "karen"), text("sender", "alice"),
+                            functor == "tell" ? text("message", "it is late")
+                                              : text("question", "if lunch is ready")});
+    return among(whole, people, goal, 6000).reason;
+  };
+  EXPECT_EQ(reason("inquire", "does not know", "Bob"),
+            "karen, asked if lunch is ready, did not answer; bob does not know");
+  EXPECT_EQ(reason("inquire", "does not know", "Karen"),
+            "karen, asked if lunch is ready, does not know");
+  EXPECT_EQ(reason("inquire", "no", ""), "karen, asked if lunch is ready, said no");
+  EXPECT_EQ(reason("tell", "yes", "Bob"), "karen was told, and did not answer; bob said yes");
+  EXPECT_EQ(reason("tell", "yes", "Karen"), "karen was told, and said yes");
 }
 
 TEST(People, AReplyThatIsNoAnswerIsAskedOnceMoreAndTold) {

@@ -67,9 +67,9 @@ v1::GoalId Whole::ask(std::string functor, const Arguments& arguments, int prior
   return id;
 }
 
-void Whole::claim(std::string name, intentions::Value value) {
+void Whole::claim(std::string name, intentions::Value value, const std::string& speaker) {
   claims_.write({.id = {2, next_goal_++},
-                 .source = "test",
+                 .source = speaker.empty() ? "test" : speaker + " said \"" + spoken(value) + "\"",
                  .name = std::move(name),
                  .value = to_text(value)});
 }

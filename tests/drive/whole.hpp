@@ -42,8 +42,8 @@ class Whole {
   /// Asks for a goal, which is taken in the next cycle.
   v1::GoalId ask(std::string functor, const Arguments& arguments = {}, int priority = 0,
                  double deadline = 0.0);
-  /// Makes a claim, which is taken in the next cycle.
-  void claim(std::string name, intentions::Value value);
+  /// Makes a claim, which is taken in the next cycle. `speaker`: of the dialogue, for that person.
+  void claim(std::string name, intentions::Value value, const std::string& speaker = {});
   /// The newest status of a goal; kWaiting until there is one.
   const v1::GoalStatus& status(const v1::GoalId& goal) const;
   bool ended(const v1::GoalId& goal) const;

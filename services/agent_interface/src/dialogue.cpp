@@ -242,7 +242,8 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     value = called;
     told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
-    value = "no";
+    const bool knows = meaning.functor == "no" || situation.asked_about != "answer";
+    value = knows ? "no" : "does not know";
     told.about.clear();
   } else if (open && is_question(utterance.text)) {
     refuse(utterance, "is that a question? Without the question mark I take it as an answer", out);

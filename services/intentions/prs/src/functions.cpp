@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/beliefs.hpp"
 
 namespace saphira::intentions {
@@ -322,6 +323,18 @@ void add_points(Functions& functions) {
                 });
 }
 
+/// The speaker of what people said, as services/agent_interface names its claims: Bob said "no".
+/// A checked identity stands before that, with a comma.
+Value speaker_of(const std::string& said_by) {
+  const std::size_t end = said_by.find(" said \"");
+  if (end == std::string::npos)
+    return {};
+  const std::size_t comma = said_by.rfind(", ", end);
+  const std::size_t begin = comma == std::string::npos ? 0 : comma + 2;
+  const std::string speaker = lowered(said_by.substr(begin, end - begin));
+  return speaker.empty() || speaker == "somebody" ? Value() : Value(speaker);
+}
+
 void add_beliefs(Functions& functions) {
   functions.add("belief", 1, 1, "(belief 'name): what is known under that name, such as a claim",
                 [](const World& world, Values a) {
@@ -333,6 +346,13 @@ void add_beliefs(Functions& functions) {
         const Belief* const belief = world.beliefs.stored(normal(text_of(a, 0, "belief-since")));
         return belief == nullptr ? Value() : Value(kTick * static_cast<double>(belief->since));
       });
+  functions.add("belief-by", 1, 1,
+                "(belief-by 'name): the person who said it, in small letters; nil: not known",
+                [](const World& world, Values a) {
+                  const Belief* const belief =
+                      world.beliefs.stored(normal(text_of(a, 0, "belief-by")));
+                  return belief == nullptr ? Value() : speaker_of(belief->said_by);
+                });
   functions.add("yes", 1, 1, "(yes answer): whether it is t or yes", [](const World&, Values a) {
     const std::string* const text = a[0].text();
     return Value::truth(a[0].is_t() || (text != nullptr && normal(*text) == "yes"));
