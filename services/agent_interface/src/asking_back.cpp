@@ -11,6 +11,8 @@ namespace {
 
 /// Slots for places and people.
 constexpr std::array kNamed{"place", "from", "to", "person", "owner", "other"};
+/// The same, and those for things.
+constexpr std::array kNames{"place", "from", "to", "person", "owner", "other", "object", "name"};
 constexpr const char* kLeft = "then I leave it";
 constexpr std::size_t kMostQuestions = 16;
 
@@ -31,6 +33,13 @@ void rename(Grammar::Understood& understood, const std::string& from, const std:
       for (auto& [slot, value] : step.slots)
         if (value == from)
           value = to;
+}
+
+/// "I meant the mail", "no, the mail"; "no problem" is no other name.
+bool names_something(const Meaning& instead, const Utterance& utterance) {
+  const std::vector<std::string> words = words_of(utterance.text);
+  return !slot(instead, "meant").empty() ||
+         std::find(words.begin(), words.end(), "the") != words.end();
 }
 
 /// The places and persons of a meaning.
@@ -160,6 +169,7 @@ void Dialogue::note_name(Grammar::Understood understood, const Utterance& uttera
 
 std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question& question,
                                                                  const std::string& words,
+                                                                 bool names,
                                                                  const Situation& situation) const {
   std::vector<std::pair<Meaning, std::string>> found;
   const Meaning& was = question.sentence.meanings.front();
@@ -167,16 +177,16 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
   if (is_known(words, situation)) {
     // A place rather for a place, and a person for a person.
     const bool is_place = !place(words, situation).empty();
-    for (const bool fits : {true, false})
-      for (const char* const name : kNamed) {
-        const std::string value = slot(was, name);
-        const bool person = std::string_view(name) == "person" || std::string_view(name) == "owner";
-        const bool any = std::string_view(name) == "from" || std::string_view(name) == "to";
-        if (!value.empty() && value != "this" && (fits ? any || person != is_place : found.empty()))
-          found.emplace_back(with(was, name, words), text);
+    for (const bool fits : {true, false}) {
+      for (const std::string_view name : kNamed) {
+        const std::string value = slot(was, std::string(name));
+        const bool any = name == "from" || name == "to" || !fits;
+        if (!value.empty() && value != "this" && (any || (name == "place") == is_place))
+          found.emplace_back(with(was, std::string(name), words), text);
       }
-    if (!found.empty())
-      return found;
+      if (!found.empty())
+        return found;
+    }
   }
   if (was.slots.contains("message") || was.slots.contains("question"))
     return found;  // any words fit there
@@ -199,15 +209,19 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
         continue;
       const Meaning& now = again.meanings.front();
       // "EJ-233 kitchen" is no name, but another name may be unknown.
-      const bool mixed = std::any_of(kNamed.begin(), kNamed.end(), [&](const char* name) {
+      const bool mixed = std::any_of(kNames.begin(), kNames.end(), [&](const char* name) {
         const std::string value = slot(now, name);
-        return value != slot(was, name) && value != words && !is_known(value, situation);
+        return !value.empty() && value != slot(was, name) && (value != words || !names) &&
+               !is_known(value, situation);
       });
       if (now.functor == was.functor && now != was && !mixed &&
           std::none_of(found.begin(), found.end(),
                        [&](const auto& one) { return one.first == now; }))
         found.emplace_back(now, changed);
     }
+  const auto unknown = [&](const auto& one) { return names_unknown(one.first, situation); };
+  if (!std::all_of(found.begin(), found.end(), unknown))
+    std::erase_if(found, unknown);
   return found;
 }
 
@@ -259,9 +273,11 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     next = std::move(question.yes[*number]);
   } else if (heard.size() != 1) {
     return false;
-  } else if (const auto other = !question.asked && heard.front().functor == kInstead
-                                    ? corrected(question, slot(heard.front(), "name"), situation)
-                                    : std::vector<std::pair<Meaning, std::string>>{};
+  } else if (const auto other =
+                 !question.asked && heard.front().functor == kInstead
+                     ? corrected(question, slot(heard.front(), "name"),
+                                 names_something(heard.front(), utterance), situation)
+                     : std::vector<std::pair<Meaning, std::string>>{};
              !other.empty()) {
     next = question.sentence;
     next.meanings.clear();
@@ -310,7 +326,7 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     return false;  // it is for an activity
   }
   forget_question(utterance);
-  if (!question.asked)
+  if (!question.asked && next.meanings.size() == 1)
     for (const Advice& one : std::vector<Advice>(knowledge_.all()))
       if (one.said == question.raised_by.text && one.time == question.raised_by.time &&
           same_person(one.speaker, utterance.speaker))

@@ -188,9 +188,9 @@ class Dialogue {
   std::optional<std::size_t> chosen(const Question& question, const Grammar::Understood& understood,
                                     const Utterance& utterance) const;
   /// The meanings of the sentence with other words in the place of some of its own, and its text
-  /// then.
+  /// then. names: an unknown name counts, too.
   std::vector<std::pair<Meaning, std::string>> corrected(const Question& question,
-                                                         const std::string& words,
+                                                         const std::string& words, bool names,
                                                          const Situation& situation) const;
   bool names_unknown(const Meaning& meaning, const Situation& situation) const;
   /// The place or person that a reply names; empty: none.
