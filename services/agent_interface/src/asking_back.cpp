@@ -26,6 +26,11 @@ std::string order_in_text(const Grammar::Understood& understood) {
   return "the rest";
 }
 
+std::string with_words(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = lowered(text).find(from);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
 /// Puts a name in the place of another in all steps.
 void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
   for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
@@ -182,7 +187,7 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
         const std::string value = slot(was, std::string(name));
         const bool any = name == "from" || name == "to" || !fits;
         if (!value.empty() && value != "this" && (any || (name == "place") == is_place))
-          found.emplace_back(with(was, std::string(name), words), text);
+          found.emplace_back(with(was, std::string(name), words), with_words(text, value, words));
       }
       if (!found.empty())
         return found;
