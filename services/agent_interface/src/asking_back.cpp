@@ -10,7 +10,9 @@ namespace saphira::agent_interface {
 namespace {
 
 /// Slots for places and people.
-constexpr std::array kNamed{"place", "from", "to", "person", "owner"};
+constexpr std::array kNamed{"place", "from", "to", "person", "owner", "other"};
+/// The same, and those for things.
+constexpr std::array kNames{"place", "from", "to", "person", "owner", "other", "object", "name"};
 constexpr const char* kLeft = "then I leave it";
 constexpr std::size_t kMostQuestions = 16;
 
@@ -24,6 +26,11 @@ std::string order_in_text(const Grammar::Understood& understood) {
   return "the rest";
 }
 
+std::string with_words(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = lowered(text).find(from);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
 /// Puts a name in the place of another in all steps.
 void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
   for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
@@ -31,6 +38,13 @@ void rename(Grammar::Understood& understood, const std::string& from, const std:
       for (auto& [slot, value] : step.slots)
         if (value == from)
           value = to;
+}
+
+/// "I meant the mail", "no, the mail"; "no problem" is no other name.
+bool names_something(const Meaning& instead, const Utterance& utterance) {
+  const std::vector<std::string> words = words_of(utterance.text);
+  return !slot(instead, "meant").empty() ||
+         std::find(words.begin(), words.end(), "the") != words.end();
 }
 
 /// The places and persons of a meaning.
@@ -91,14 +105,17 @@ void Dialogue::choices(const Grammar::Understood& understood, const Utterance& u
 }
 
 /// An open question has the first claim on an answer. A stop is one in any case.
-void Dialogue::prefer_answer(Grammar::Understood& understood, const Situation& situation) const {
+void Dialogue::prefer_answer(Grammar::Understood& understood, const Question* question,
+                             const Situation& situation) const {
   std::vector<Meaning>& meanings = understood.meanings;
   if (understood.answer && meanings.size() == 1 && meanings.front().functor != "stop" &&
       (is_yes_or_no(*understood.answer) || meanings.front().functor == "to_place")) {
     meanings = {*understood.answer};
     understood.then.clear();
     understood.apart.clear();
-  } else if (situation.asked_about.empty() && questions_.empty() && understood.bare.size() == 1 &&
+  } else if (situation.asked_about.empty() &&
+             (question == nullptr || (!question->asked && question->names.empty())) &&
+             understood.bare.size() == 1 &&
              !place(slot(understood.bare.front(), "person"), situation).empty()) {
     meanings = {{"to_place", {{"place", slot(understood.bare.front(), "person")}, {"owner", ""}}}};
     understood.bare.clear();
@@ -134,17 +151,18 @@ void Dialogue::ask_for_order(Grammar::Understood understood, const Utterance& ut
   ask(std::move(question), utterance);
 }
 
-/// The robot has asked for another name, or goes to work, and its speaker may correct the name.
+/// The robot has asked for another name, or does what was said, and its speaker may correct that.
 void Dialogue::note_name(Grammar::Understood understood, const Utterance& utterance,
                          const Outputs& out) {
   Question question;
-  question.asked = out.goals.empty();
-  if (!question.asked && understood.then.empty())
-    question.names = names_in(understood.meanings.front());
-  else if (question.asked && !out.unknown.name.empty())
-    question.names = {out.unknown.name};
-  if (question.names.empty())
+  question.asked =
+      std::any_of(out.said.begin(), out.said.end(), [](const Said& one) { return one.refused; });
+  if (question.asked ? out.unknown.name.empty() : !understood.then.empty())
     return;
+  if (question.asked)
+    question.names = {out.unknown.name};
+  else if (!out.goals.empty())
+    question.names = names_in(understood.meanings.front());
   question.no = kLeft;
   if (question.asked && !out.unknown.meant.empty()) {
     question.yes = {understood};
@@ -152,6 +170,64 @@ void Dialogue::note_name(Grammar::Understood understood, const Utterance& uttera
   }
   question.sentence = std::move(understood);
   ask(std::move(question), utterance);
+}
+
+std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question& question,
+                                                                 const std::string& words,
+                                                                 bool names,
+                                                                 const Situation& situation) const {
+  std::vector<std::pair<Meaning, std::string>> found;
+  const Meaning& was = question.sentence.meanings.front();
+  const std::string& text = question.raised_by.text;
+  if (is_known(words, situation)) {
+    // A place rather for a place, and a person for a person.
+    const bool is_place = !place(words, situation).empty();
+    for (const bool fits : {true, false}) {
+      for (const std::string_view name : kNamed) {
+        const std::string value = slot(was, std::string(name));
+        const bool any = name == "from" || name == "to" || !fits;
+        if (!value.empty() && value != "this" && (any || (name == "place") == is_place))
+          found.emplace_back(with(was, std::string(name), words), with_words(text, value, words));
+      }
+      if (!found.empty())
+        return found;
+    }
+  }
+  if (was.slots.contains("message") || was.slots.contains("question"))
+    return found;  // any words fit there
+  const std::vector<std::string> said = words_of(text);
+  const auto& keywords = grammar_.keywords();
+  const auto key = std::find_first_of(said.begin(), said.end(), keywords.begin(), keywords.end());
+  const auto first = static_cast<std::size_t>(key - said.begin()) + 1;
+  constexpr std::size_t kMostWords = 4;
+  for (std::size_t length = 1; length <= kMostWords && found.empty(); ++length)
+    for (std::size_t at = first; at + length <= said.size(); ++at) {
+      std::string changed = keywords.front();
+      for (std::size_t i = first; i < said.size(); ++i) {
+        if (i == at)
+          changed += " " + words;
+        if (i < at || i >= at + length)
+          changed += (said[i] == "'s" ? "" : " ") + said[i];
+      }
+      const Grammar::Understood again = grammar_.understand(changed);
+      if (again.meanings.size() != 1 || !again.then.empty())
+        continue;
+      const Meaning& now = again.meanings.front();
+      // "EJ-233 kitchen" is no name, but another name may be unknown.
+      const bool mixed = std::any_of(kNames.begin(), kNames.end(), [&](const char* name) {
+        const std::string value = slot(now, name);
+        return !value.empty() && value != slot(was, name) && (value != words || !names) &&
+               !is_known(value, situation);
+      });
+      if (now.functor == was.functor && now != was && !mixed &&
+          std::none_of(found.begin(), found.end(),
+                       [&](const auto& one) { return one.first == now; }))
+        found.emplace_back(now, changed);
+    }
+  const auto unknown = [&](const auto& one) { return names_unknown(one.first, situation); };
+  if (!std::all_of(found.begin(), found.end(), unknown))
+    std::erase_if(found, unknown);
+  return found;
 }
 
 bool Dialogue::names_unknown(const Meaning& meaning, const Situation& situation) const {
@@ -167,7 +243,7 @@ std::string Dialogue::named(const Grammar::Understood& understood, const Utteran
   const Meaning& said = bare ? understood.bare.front() : understood.meanings.front();
   const bool instead = said.functor == kInstead;
   const std::string name = slot(said, instead ? "name" : "person");
-  if (instead && understood.addressed)
+  if (instead && understood.addressed && words_of(name).size() <= 3)
     return name;
   // Without the keyword it may be a word to somebody else.
   const bool alone = bare || saphira::joined(words_of(utterance.text), " ") == name;
@@ -202,6 +278,17 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     next = std::move(question.yes[*number]);
   } else if (heard.size() != 1) {
     return false;
+  } else if (const auto other =
+                 !question.asked && heard.front().functor == kInstead
+                     ? corrected(question, slot(heard.front(), "name"),
+                                 names_something(heard.front(), utterance), situation)
+                     : std::vector<std::pair<Meaning, std::string>>{};
+             !other.empty()) {
+    next = question.sentence;
+    next.meanings.clear();
+    for (const auto& [meaning, text] : other)
+      next.meanings.push_back(meaning);
+    again.text = other.front().second;
   } else if (bare || !is_yes_or_no(heard.front())) {
     const std::string name = named(understood, utterance, situation);
     if (name.empty() || question.names.empty() ||
@@ -211,9 +298,9 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     rename(next, question.names.front(), name);
     // Of several names it asks which one was wrong.
     for (std::size_t i = 1; i < question.names.size(); ++i) {
-      Grammar::Understood other = question.sentence;
-      rename(other, question.names[i], name);
-      next.meanings.push_back(other.meanings.front());
+      Grammar::Understood renamed = question.sentence;
+      rename(renamed, question.names[i], name);
+      next.meanings.push_back(renamed.meanings.front());
     }
   } else if (!question.asked) {
     return false;
@@ -244,6 +331,11 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     return false;  // it is for an activity
   }
   forget_question(utterance);
+  if (!question.asked && next.meanings.size() == 1)
+    for (const Advice& one : std::vector<Advice>(knowledge_.all()))
+      if (one.said == question.raised_by.text && one.time == question.raised_by.time &&
+          same_person(one.speaker, utterance.speaker))
+        withdraw(one.number, out);
   carry_out(std::move(next), again, situation, out);
   return true;
 }

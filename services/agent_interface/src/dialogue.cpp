@@ -33,14 +33,13 @@ bool is_fact(const Meaning& meaning) {
   return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
 }
 
-/// The unit of a motion's distance [m]; 0: no motion over a distance.
-double unit_of_move(std::string_view functor) {
-  return functor == "move"               ? 1.0
-         : functor == "move_feet"        ? 0.3048
-         : functor == "move_inches"      ? 0.0254
-         : functor == "move_centimeters" ? 0.01
-         : functor == "move_millimeters" ? 0.001
-                                         : 0.0;
+/// The unit of a motion's distance [m].
+double meters_in(std::string_view unit) {
+  return unit == "ft"       ? 0.3048
+         : unit == "inches" ? 0.0254
+         : unit == "cm"     ? 0.01
+         : unit == "mm"     ? 0.001
+                            : 1.0;
 }
 
 /// Puts the speaker where a slot has "me". False: the speaker has no name.
@@ -93,8 +92,8 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
   };
   if (meaning.functor == "stop") {
     want(meaning, utterance, "stop", {});
-  } else if (const double unit = unit_of_move(meaning.functor); unit > 0.0) {
-    const double distance = number_of(meaning, "distance") * unit;
+  } else if (meaning.functor == "move") {
+    const double distance = number_of(meaning, "distance") * meters_in(slot(meaning, "unit"));
     if (distance <= 0.0) {
       refuse(utterance, "that is no way to go", out);
       return true;
@@ -235,8 +234,14 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
       return true;
   }
   const bool takes = situation.asked_about == "taken";
-  if (meaning.functor == "yes" || meaning.functor == "handed") {
-    value = takes && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
+  const bool holder = situation.asked_about == "who-has";
+  if (holder && meaning.functor == "other_has") {
+    refuse(utterance, "who is that? Say the name", out);
+    return true;
+  }
+  if (meaning.functor == "yes" || meaning.functor == "handed" || meaning.functor == "other_has") {
+    const bool own = takes ? meaning.functor != "other_has" : holder && meaning.functor == "handed";
+    value = own && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
     told.about.clear();
   } else if (takes && meaning.functor == "somebody") {
     value = called;
@@ -374,21 +379,29 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool answers = question != nullptr && question->asked;
   const bool certain = utterance.confidence >= kCertain && utterance.text.size() <= kLongestText;
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
-  prefer_answer(understood, situation);
+  prefer_answer(understood, question, situation);
   const bool corrects = question != nullptr && !question->asked &&
                         (!asked || (understood.meanings.size() == 1 &&
                                     !slot(understood.meanings.front(), "meant").empty()));
-  if (corrects && understood.addressed && understood.meanings.empty()) {
-    understood = grammar_.understand(utterance.text, true);
-    std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != kInstead; });
-    understood.bare.clear();
+  // "No, right" after "turn left 30 degrees" is no turn of its own.
+  if (corrects && certain && understood.addressed &&
+      (understood.meanings.empty() ||
+       understood.meanings.front().functor == question->sentence.meanings.front().functor)) {
+    Grammar::Understood again = grammar_.understand(utterance.text, true);
+    if (again.answer)
+      again.meanings = {*again.answer};
+    if (again.meanings.size() == 1 && again.meanings.front().functor == kInstead &&
+        answered(*question, again, utterance, situation, out))
+      return out;
   }
   if ((answers || corrects) && certain &&
       answered(*question, understood, utterance, situation, out))
     return out;
   leave_out(understood, situation);
-  // Another sentence of that speaker ends the robot's question.
-  if (utterance.confidence >= kSure &&
+  // Another sentence of that speaker ends the robot's question. What was not understood may be said
+  // once more.
+  const bool heard = !understood.meanings.empty();
+  if (utterance.confidence >= kSure && (heard || answers) &&
       (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
     forget_question(utterance);
   if (utterance.text.size() > kLongestText) {

@@ -1,6 +1,8 @@
 // The part of the dialogue for errands between people, and for ways back.
 #include <algorithm>
+#include <cmath>
 
+#include "saphira/base/format.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -63,6 +65,42 @@ void Dialogue::change_pace(bool slower, const Utterance& utterance, const Situat
   }
 }
 
+/// The next time that the clock shows that. Without "am" or "pm" an hour up to twelve is of either
+/// half of the day.
+void Dialogue::wait_until(const Meaning& meaning, const Utterance& utterance, Outputs& out) {
+  constexpr std::int64_t kMinute = 60;
+  constexpr std::int64_t kHour = 60 * kMinute;
+  constexpr std::int64_t kLongest = 10 * kHour;  // of the activity
+  const double hour = number_of(meaning, "hour");
+  const double minute = number_of(meaning, "minute");
+  const std::string half = slot(meaning, "half");
+  const bool twelve = hour >= 1.0 && hour <= 12.0;
+  if (hour != std::floor(hour) || minute != std::floor(minute) || hour >= 24.0 || minute >= 60.0 ||
+      (!half.empty() && !twelve)) {
+    refuse(utterance, "I know no such time of the day", out);
+    return;
+  }
+  if (utterance.time <= 0.0) {
+    refuse(utterance, "I do not know what time it is", out);
+    return;
+  }
+  const auto now = static_cast<std::int64_t>(utterance.time);
+  const auto clock = [&](const char* part) { return std::stoll(local_text(now, part)); };
+  const std::int64_t shown = clock("%H") * kHour + clock("%M") * kMinute + clock("%S");
+  const std::int64_t turn = (half.empty() && twelve ? 12 : 24) * kHour;
+  const auto whole = static_cast<std::int64_t>(hour);
+  const std::int64_t wanted =
+      (half.empty() ? whole : whole % 12 + (half == "pm" ? 12 : 0)) * kHour +
+      static_cast<std::int64_t>(minute) * kMinute;
+  const std::int64_t seconds = (wanted - shown + 2 * turn) % turn;
+  const std::string time = local_text(now + seconds, "%H:%M");
+  if (seconds > kLongest)
+    refuse(utterance, "I wait for up to ten hours, and not until " + time, out);
+  else
+    want(with(meaning, "hour", time), utterance, "pause",
+         {number("seconds", static_cast<double>(seconds))});
+}
+
 bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
                       const Situation& situation, Outputs& out) {
   const std::string& functor = meaning.functor;
@@ -111,6 +149,10 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
       refuse(utterance, "I wait for up to an hour", out);
     else
       want(meaning, utterance, "pause", {number("seconds", seconds)});
+  } else if (functor == "until") {
+    wait_until(meaning, utterance, out);
+  } else if (functor == "cannot") {
+    refuse(utterance, grammar_.paraphrase(meaning), out);
   } else if (functor == "go_on") {
     add(tasks_.go_on(utterance), out);
   } else if (functor == "pace") {

@@ -10,12 +10,17 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no command
-constexpr std::size_t kLongestName = 3;        // words
+constexpr std::size_t kLongestName = 4;        // words: "EJ two thirty one"
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
 /// Units behind a number without a blank, and their words in the grammars.
-constexpr std::array<std::pair<const char*, const char*>, 5> kUnits{
-    {{"m", "meters"}, {"cm", "cm"}, {"deg", "degrees"}, {"s", "seconds"}, {"in", "inches"}}};
+constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "meters"},
+                                                                     {"cm", "cm"},
+                                                                     {"deg", "degrees"},
+                                                                     {"s", "seconds"},
+                                                                     {"in", "inches"},
+                                                                     {"am", "am"},
+                                                                     {"pm", "pm"}}};
 
 /// Short forms, and the words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
@@ -67,8 +72,6 @@ std::string describe(const Meaning& meaning) {
     text += (text.back() == '(' ? "" : ", ") + name + "=" + value;
   return text + ")";
 }
-
-namespace {}  // namespace
 
 std::vector<std::string> words_and_marks_of(std::string_view said) {
   const std::string text = plain(said);
@@ -171,22 +174,6 @@ std::size_t joint(const std::vector<std::string>& words, std::size_t at) {
   if (next > at)
     take(kComma);
   return next - at;
-}
-
-/// A step that leaves out how the step before it began: "to the library" or "the library" after "go
-/// to the kitchen". Empty: it does not.
-std::vector<std::string> completed(const std::vector<std::string>& before,
-                                   const std::vector<std::string>& words) {
-  if (words.front() != "to" && words.front() != "the")
-    return {};
-  const auto same = std::find(before.begin(), before.end(), words.front());
-  // "Take the mail from Karen to John, then to Bob" is no second way to Karen.
-  if (same == before.begin() || same == before.end() ||
-      std::find(before.begin(), same, "from") != same)
-    return {};
-  std::vector<std::string> whole(before.begin(), same);
-  whole.insert(whole.end(), words.begin(), words.end());
-  return whole;
 }
 
 }  // namespace
@@ -367,8 +354,10 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       return;
     // Of several ways to divide it, the one with the fewest steps.
     const bool counted = sentence.size() > 1 && sentence.front() == "first";
-    std::vector<std::vector<Meaning>> ways =
-        divided({sentence.begin() + (counted ? 1 : 0), sentence.end()}, {});
+    const std::vector<std::string> steps(sentence.begin() + (counted ? 1 : 0), sentence.end());
+    std::vector<std::vector<Meaning>> ways = divided(steps, {}, false);
+    if (result.meanings.empty() && ways.empty())
+      ways = divided(steps, {}, true);
     std::stable_sort(ways.begin(), ways.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (result.meanings.empty()) {
@@ -382,10 +371,35 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     if (!ways.empty() && takes_text(last.functor))
       result.apart = ways.front();
   };
+  // "In ten minutes go home", "go home at five": the time is the first step.
+  const auto timed = [&](const std::vector<std::string>& sentence) {
+    for (std::size_t i = 1; i < sentence.size(); ++i)
+      for (const bool ahead : {true, false}) {
+        const auto middle = sentence.begin() + static_cast<std::ptrdiff_t>(i);
+        std::vector<std::string> time(sentence.begin(), middle);
+        std::vector<std::string> rest(middle, sentence.end());
+        if (!ahead)
+          std::swap(time, rest);
+        const std::vector<Meaning> when = look(without_commas(time), true, false, Among::timed);
+        if (when.size() != 1 || without_commas(rest).empty())
+          continue;
+        if (rest.front() == kComma)
+          rest.erase(rest.begin());
+        whole(rest);
+        if (result.meanings.size() == 1 && is_step(result.meanings.front())) {
+          result.then.insert(result.then.begin(), result.meanings.front());
+          result.meanings = when;
+          result.apart.clear();
+          return;
+        }
+        result.meanings.clear();
+        result.then.clear();
+      }
+  };
+  std::vector<std::string> order = said;
   if (words.size() <= kLongestUtterance) {
     whole(said);
     // "No, go to the library" corrects the sentence before. Without the comma it forbids.
-    std::vector<std::string> order = said;
     while (result.meanings.empty() && order.size() > 2 && order[0] == "no" && order[1] == kComma) {
       order.erase(order.begin(), order.begin() + 2);
       whole(order);
@@ -399,6 +413,8 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.meanings = look(words, result.addressed, replies, Among::reply);
   if (result.meanings.empty() && urgent.meaning)
     result.meanings = {*urgent.meaning};
+  else if (result.meanings.empty() && result.addressed)
+    timed(order);
   const std::vector<Meaning> as_reply = look(words, false, true, Among::reply);
   if (result.meanings.empty() && result.addressed)
     result.bare = as_reply;
@@ -439,6 +455,7 @@ std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool a
     const Among of = rule.use == Use::urgent  ? Among::urgent
                      : rule.use == Use::reply ? Among::reply
                      : rule.use == Use::later ? Among::later
+                     : rule.use == Use::timed ? Among::timed
                      : rule.use == Use::alone ? Among::alone
                                               : Among::usual;
     if (of != among || (rule.use == Use::reply ? !replies : !addressed))
@@ -463,8 +480,38 @@ std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool a
   return meanings;
 }
 
+bool Grammar::is_step(const Meaning& meaning) const {
+  return std::find(steps_.begin(), steps_.end(), meaning.functor) != steps_.end();
+}
+
+/// A step that leaves out how the step before it began: "to the library" or "the library" after "go
+/// to the kitchen", "right" after "look left". Empty: it does not.
+std::vector<std::string> Grammar::completed(const std::vector<std::string>& before,
+                                            const std::vector<std::string>& words) const {
+  const auto is_gaze = [&](const std::string& word) {
+    const auto list = lists_.find("gaze");
+    return list != lists_.end() &&
+           std::any_of(list->second.begin(), list->second.end(), [&](const Entry& one) {
+             return one.words.size() == 1 && one.words.front() == word;
+           });
+  };
+  auto same = before.end();
+  if (words.front() == "to" || words.front() == "the")
+    same = std::find(before.begin(), before.end(), words.front());
+  else if (words.size() == 1 && !before.empty() && is_gaze(before.back()) && is_gaze(words.front()))
+    same = before.end() - 1;
+  // "Take the mail from Karen to John, then to Bob" is no second way to Karen.
+  if (same == before.begin() || same == before.end() ||
+      std::find(before.begin(), same, "from") != same)
+    return {};
+  std::vector<std::string> whole(before.begin(), same);
+  whole.insert(whole.end(), words.begin(), words.end());
+  return whole;
+}
+
 std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string>& words,
-                                                   const std::vector<std::string>& before) const {
+                                                   const std::vector<std::string>& before,
+                                                   bool runs_on) const {
   std::vector<std::vector<Meaning>> ways;
   const bool first = before.empty();
   const auto step = [&](std::vector<std::string>& sentence) -> std::optional<Meaning> {
@@ -476,24 +523,28 @@ std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string
       meanings = look(sentence, true, false, Among::later);
     if (meanings.empty())
       meanings = look(sentence, true, false, Among::usual);
-    const auto is_step = [&] {
-      return meanings.size() == 1 &&
-             std::find(steps_.begin(), steps_.end(), meanings[0].functor) != steps_.end();
-    };
-    if (auto all = completed(before, sentence); !is_step() && !all.empty()) {
-      meanings = look(all, true, false, Among::usual);
-      if (meanings.size() == 1 && takes_text(meanings[0].functor))
-        return std::nullopt;
-      sentence = std::move(all);
+    const auto one_step = [&] { return meanings.size() == 1 && is_step(meanings.front()); };
+    if (auto all = completed(before, sentence);
+        !all.empty() && (!one_step() || sentence.size() == 1)) {
+      std::vector<Meaning> again = look(all, true, false, Among::usual);
+      if (!one_step() || !again.empty()) {
+        if (again.size() == 1 && takes_text(again.front().functor))
+          return std::nullopt;
+        meanings = std::move(again);
+        sentence = std::move(all);
+      }
     }
-    return is_step() ? std::optional(meanings[0]) : std::nullopt;
+    return one_step() ? std::optional(meanings.front()) : std::nullopt;
   };
   if (std::vector<std::string> all = words; !first)
     if (const auto last = step(all))
       ways.push_back({*last});
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     const std::size_t between = joint(words, i);
-    if (between == 0 || i + between >= words.size() || joint(words, i - 1) > 1)
+    if (i + between >= words.size() || joint(words, i - 1) > 1)
+      continue;
+    if (between == 0 &&
+        (!runs_on || i < 2 || i + 2 > words.size() || words[i] == "to" || words[i] == "the"))
       continue;
     const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
     std::vector<std::string> sentence(words.begin(), at);
@@ -501,7 +552,7 @@ std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string
     if (!head)
       continue;
     const auto next = at + static_cast<std::ptrdiff_t>(between);
-    for (std::vector<Meaning>& rest : divided({next, words.end()}, sentence)) {
+    for (std::vector<Meaning>& rest : divided({next, words.end()}, sentence, runs_on)) {
       rest.insert(rest.begin(), *head);
       if (rest.size() <= kMostSteps)
         ways.push_back(std::move(rest));
@@ -583,7 +634,8 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const std::string& keyword : keywords_)
     maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
   for (const Rule& rule : rules_)
-    if (rule.use != Use::typed && rule.use != Use::later && (rule.use != Use::reply || replies))
+    if (rule.use != Use::typed && rule.use != Use::later && rule.use != Use::timed &&
+        (rule.use != Use::reply || replies))
       for (const Node& pattern : rule.patterns)
         if (pattern.kind == Node::Kind::choice || !has_rest(pattern))
           maker.lead(pattern,

@@ -92,7 +92,7 @@ class Grammar::Reader {
     const std::string first = word(
         "keyword, greetings, names, no-names, alarms, not-behind, passed, not-after, steps, "
         "polite, "
-        "list, typed, reply, urgent, alone, later or a functor");
+        "list, typed, reply, urgent, alone, later, timed or a functor");
     if (std::vector<std::string>* const some = words_named(first)) {
       expect(':');
       while (at_ < line_.size()) {
@@ -129,6 +129,7 @@ class Grammar::Reader {
                       : first == "urgent" ? Use::urgent
                       : first == "alone"  ? Use::alone
                       : first == "later"  ? Use::later
+                      : first == "timed"  ? Use::timed
                                           : Use::command;
       rule(use == Use::command ? first : word("a functor"), use, from);
     }

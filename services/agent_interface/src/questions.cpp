@@ -116,6 +116,11 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
     say(utterance, why(situation), true, out);
   } else if (functor == "what_can_you_do") {
     say(utterance, grammar_.paraphrase(meaning), true, out);
+  } else if (functor == "what_do_you_carry") {
+    std::string all;
+    for (const auto& [object, to] : situation.carried)
+      all += (all.empty() ? "I have " : ", and ") + object + ": I was to bring it to " + to;
+    say(utterance, all.empty() ? "I carry nothing" : all, true, out);
   } else {
     return false;
   }
@@ -164,8 +169,9 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
                                     const Situation& situation, Outputs& out) const {
   const std::string& functor = meaning.functor;
   const std::vector<Advice>& known = knowledge_.all();
-  if (functor == "where_is") {
-    const std::string person = slot(meaning, "person");
+  if (functor == "where_is" || functor == "who_has") {
+    const bool holder = functor == "who_has";
+    const std::string person = slot(meaning, holder ? "object" : "person");
     const std::string owner = place(person, situation).empty() ? owner_in(person) : std::string();
     if (!owner.empty())
       return question_about_world(with({"where_office", {}}, "person", owner), utterance, situation,
@@ -181,7 +187,9 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
     for (const maps::Feature& thing : situation.map.features)
       if (text.empty() && lowered(thing.name) == person)
         text = way_to(thing.name, situation);
-    say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
+    if (text.empty())
+      text = "nobody has told me " + (holder ? "who has the " + person : "where " + person + " is");
+    say(utterance, text, true, out);
   } else if (functor == "where_office") {
     const std::string person = slot(meaning, "person");
     const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
@@ -249,7 +257,8 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
                         (one.kind == Advice::Kind::office_of &&
                          knowledge_.place_of(one.about) == one.value)
                   : one.kind == Advice::Kind::hazard && !maps::zone_rule(one.about) &&
-                        one.about.ends_with(slot(meaning, "kind"))) &&
+                        (slot(meaning, "kind") == kDanger ||
+                         one.about.ends_with(slot(meaning, "kind")))) &&
           (at.empty() || one.value == at))
         all += (all.empty() ? "" : "; ") + as_told(one);
     if (all.empty())

@@ -132,6 +132,49 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, const Situ
   say(utterance, "I know now that " + describe(advice) + change, true, out);
 }
 
+void Dialogue::end_hazards(const Advice& ended, bool here, const Utterance& utterance,
+                           Outputs& out) {
+  using maps::ZoneRule;
+  const auto rule = maps::zone_rule(ended.about);
+  const bool all = ended.about == kDanger;
+  // A leak may have been told as a water leak.
+  const auto is_meant = [&](const Advice& one) {
+    const auto its_rule = maps::zone_rule(one.about);
+    return one.kind == Advice::Kind::hazard &&
+           (rule || its_rule ? one.about == ended.about || (all && its_rule == ZoneRule::slow)
+                             : all || one.about.ends_with(ended.about));
+  };
+  std::vector<Advice> over;
+  for (const Advice& one : knowledge_.all())
+    if (is_meant(one) && one.value == ended.value)
+      over.push_back(one);
+  if (const auto elsewhere =
+          std::find_if(knowledge_.all().begin(), knowledge_.all().end(), is_meant);
+      over.empty() && here && !rule && !all && elsewhere != knowledge_.all().end())
+    over.push_back(*elsewhere);
+  std::string text;
+  for (const Advice& one : over) {
+    const auto its_rule = maps::zone_rule(one.about);
+    text +=
+        (text.empty() ? "good: " : ", and ") +
+        (its_rule == ZoneRule::keep_out    ? "I may go to " + one.value + " again"
+         : its_rule == ZoneRule::slow      ? "I may go fast in " + one.value + " again"
+         : its_rule == ZoneRule::preferred ? "I need not prefer " + one.value + " any more"
+                                           : "no " + one.about + " at " + one.value + " any more");
+    withdraw(one.number, out);
+  }
+  if (text.empty())
+    text = rule == ZoneRule::keep_out ? "nobody told me to keep out of " + ended.value
+           : rule                     ? "I did not know that " + describe(ended)
+                  : "I knew of no " + (ended.about == "floor" ? "wet floor" : ended.about) +
+                        " at " + ended.value;
+  for (const Advice& one : knowledge_.all())
+    if (all && one.kind == Advice::Kind::hazard && one.value == ended.value &&
+        maps::zone_rule(one.about) == ZoneRule::keep_out)
+      text += "; " + as_told(one);
+  say(utterance, text, true, out);
+}
+
 bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
                       const Situation& situation, Outputs& out) {
   Advice advice;
@@ -157,33 +200,14 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     return false;
   }
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
-    const auto rule = maps::zone_rule(advice.about);
-    const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
-    if (known == nullptr && slot(meaning, "place") == "this" && !rule)
-      known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
-    if (known == nullptr) {
-      say(utterance,
-          rule == maps::ZoneRule::keep_out ? "nobody told me to keep out of " + advice.value
-          : rule == maps::ZoneRule::slow || rule == maps::ZoneRule::preferred
-              ? "I did not know that " + describe(advice)
-              : "I knew of no " + advice.about + " at " + advice.value,
-          true, out);
-    } else {
-      const std::string& place = known->value;
-      say(utterance,
-          "good: " + (rule == maps::ZoneRule::keep_out ? "I may go to " + place + " again"
-                      : rule == maps::ZoneRule::slow   ? "I may go fast in " + place + " again"
-                      : rule == maps::ZoneRule::preferred
-                          ? "I need not prefer " + place + " any more"
-                          : "no " + advice.about + " at " + place + " any more"),
-          true, out);
-      withdraw(known->number, out);
-    }
+    end_hazards(advice, slot(meaning, "place") == "this", utterance, out);
     return true;
   }
   if (!wrong.empty()) {
     refuse(utterance, wrong, out);
   } else {
+    if (const std::string day = slot(meaning, "day"); !day.empty())
+      say(utterance, "I keep that until you take it back, not only " + day, false, out);
     take(advice, utterance, situation, out);
     answer_with(advice, utterance, situation, out);
   }

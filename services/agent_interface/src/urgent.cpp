@@ -137,8 +137,10 @@ class Grammar::UrgentFinder {
         has(grammar_.keywords_, words_[at]))
       lengths.push_back(1);
     for (const auto& polite : grammar_.polite_)
-      if (polite.size() <= to - at && std::equal(polite.begin(), polite.end(),
-                                                 words_.begin() + static_cast<std::ptrdiff_t>(at)))
+      // "Let's stop" is for all.
+      if (!has(grammar_.not_behind_, polite.back()) && polite.size() <= to - at &&
+          std::equal(polite.begin(), polite.end(),
+                     words_.begin() + static_cast<std::ptrdiff_t>(at)))
         lengths.push_back(polite.size());
     return lengths;
   }

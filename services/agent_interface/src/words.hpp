@@ -14,6 +14,9 @@ namespace saphira::agent_interface {
 inline constexpr std::string_view kInstead = "instead";
 inline constexpr std::string_view kChoice = "choice";
 
+/// The kind of all hazards.
+inline constexpr const char* kDanger = "danger";
+
 /// The claim about a reply that is no answer to the question of an activity.
 inline constexpr const char* kNotUnderstood = "not-understood";
 

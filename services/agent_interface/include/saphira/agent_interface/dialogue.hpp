@@ -155,7 +155,7 @@ class Dialogue {
     std::optional<Advice> fact{};      ///< after a yes; against what the robot knows
     std::string no{};                  ///< the answer to a no; empty: the sentence is carried out
     std::vector<std::string> names{};  ///< in the sentence, for which another one may be said
-    bool asked = true;  ///< false: the robot does it; only another name is an answer, at any time
+    bool asked = true;  ///< false: the robot does it; only a correction is an answer, at any time
   };
   struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
@@ -173,7 +173,8 @@ class Dialogue {
   void ask(Question question, const Utterance& utterance);
   void ask_again(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
   void ask_for_order(Grammar::Understood understood, const Utterance& utterance, Outputs& out);
-  void prefer_answer(Grammar::Understood& understood, const Situation& situation) const;
+  void prefer_answer(Grammar::Understood& understood, const Question* question,
+                     const Situation& situation) const;
   void note_name(Grammar::Understood understood, const Utterance& utterance, const Outputs& out);
   /// The question that this utterance may answer; nullptr: none.
   const Question* question_for(const Utterance& utterance) const;
@@ -186,6 +187,11 @@ class Dialogue {
   /// The number of the sentence that is chosen of several; none: no choice.
   std::optional<std::size_t> chosen(const Question& question, const Grammar::Understood& understood,
                                     const Utterance& utterance) const;
+  /// The meanings of the sentence with other words in the place of some of its own, and its text
+  /// then. names: an unknown name counts, too.
+  std::vector<std::pair<Meaning, std::string>> corrected(const Question& question,
+                                                         const std::string& words, bool names,
+                                                         const Situation& situation) const;
   bool names_unknown(const Meaning& meaning, const Situation& situation) const;
   /// The place or person that a reply names; empty: none.
   std::string named(const Grammar::Understood& understood, const Utterance& utterance,
@@ -208,6 +214,7 @@ class Dialogue {
               Outputs& out);
   void change_pace(bool slower, const Utterance& utterance, const Situation& situation,
                    Outputs& out) const;
+  void wait_until(const Meaning& meaning, const Utterance& utterance, Outputs& out);
   /// Keeps the place where a new task begins, for "come back".
   void note_begin(const Situation& situation, const Outputs& out);
   void go_back(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -221,6 +228,8 @@ class Dialogue {
                 Outputs& out) const;
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
+  /// Ends hazards and rules of that kind at a place. here: told without the place.
+  void end_hazards(const Advice& ended, bool here, const Utterance& utterance, Outputs& out);
   bool correction(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                   Outputs& out);
   bool naming(const Meaning& meaning, const Utterance& utterance, const Situation& situation,

@@ -113,6 +113,7 @@ class Grammar {
     typed,   ///< a command that a recognizer of speech does not listen for
     reply,   ///< without the keyword, after a question of the robot
     later,   ///< a later step of a sequence
+    timed,   ///< a time, before or behind an order
     urgent,  ///< where no other rule matches; more words may follow
     alone    ///< an urgent order by itself: see urgent()
   };
@@ -142,13 +143,17 @@ class Grammar {
                            const Match& from) const;
   std::optional<std::pair<std::size_t, std::string>> decimal(const std::vector<std::string>& words,
                                                              std::size_t at) const;
-  enum class Among { usual, reply, urgent, later, alone };  ///< the rules that may match
+  enum class Among { usual, reply, urgent, later, alone, timed };  ///< the rules that may match
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
                             Among among) const;
   /// The ways to divide words and commas into sentences with one meaning each, all of them steps.
-  /// `before`: the words of the step before them.
+  /// `before`: the words of the step before them. runs_on: also where no word joins two sentences.
   std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
-                                            const std::vector<std::string>& before) const;
+                                            const std::vector<std::string>& before,
+                                            bool runs_on) const;
+  bool is_step(const Meaning& meaning) const;
+  std::vector<std::string> completed(const std::vector<std::string>& before,
+                                     const std::vector<std::string>& words) const;
   bool takes_text(const std::string& functor) const;
 
   std::vector<std::string> keywords_;
