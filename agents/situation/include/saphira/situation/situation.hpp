@@ -64,7 +64,7 @@ struct Situation {
   std::uint64_t estopped_since = 0;
   std::uint64_t stalled_since = 0;
   std::uint64_t behaviors_drove = 0;  ///< the newest cycle in which behaviors drove [0: not known]
-  std::vector<v1::Belief> beliefs;          ///< at present: the activities' beliefs
+  std::vector<v1::Belief> beliefs;    ///< at present: the activities' beliefs
   std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
   std::vector<Program> programs;            ///< at present
   std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
