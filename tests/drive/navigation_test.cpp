@@ -117,6 +117,28 @@ TEST(Navigation, AtItsEndItFacesAsAsked) {
   }
 }
 
+TEST(Navigation, AWayToANearPointEndsWithinATenthOfIt) {
+  for (const Frame frame : {Frame::robot, Frame::map})
+    for (const double way : {0.05, 0.1, 0.3, 1.0})
+      for (const double bearing : {0.0, 90.0, 180.0}) {
+        Whole whole(office());
+        whole.achieve("go_to", {saphira::point("position", {16.9, 11.0, 0.0}, Frame::map)}, 600);
+        const Pose start = whole.drive().seen().pose_in_odom;
+        const Pose asked{way * std::cos(radians(bearing)), way * std::sin(radians(bearing)), 0.0};
+        const auto status = whole.achieve(
+            "go-to-place",
+            {saphira::point("place", frame == Frame::map ? compose(whole.believed(), asked) : asked,
+                            frame)},
+            100);
+        EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+        EXPECT_TRUE(status.reason.starts_with("arrived, 0.")) << status.reason;
+        const Vec2 moved = to_frame(start, whole.drive().seen().pose_in_odom.position());
+        EXPECT_LT((moved - asked.position()).norm(), std::max(0.02, 0.1 * way))
+            << way << " m at " << bearing << ": " << moved.transpose();
+        EXPECT_TRUE(whole.at_rest());
+      }
+}
+
 // Paper 3.5.1: the passage of the door begins while the robot still follows the corridor, so that
 // it does not stop between the two. From leg to leg some behavior drives in every cycle.
 TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {

@@ -111,6 +111,22 @@ TEST_F(Navigation, WhereThePathEndsTheRobotIsAtThePlace) {
   EXPECT_TRUE(call("at-place", {"north"}).nil());
 }
 
+TEST_F(Navigation, ANearPointInTheSameRegionNeedsNoPath) {
+  const auto beside = [&](double x, double y, Frame frame) {
+    return call("beside", {Point{{x, y, 0.0}, frame}}).truthy();
+  };
+  EXPECT_TRUE(beside(3.5, 0.5, Frame::map));
+  EXPECT_TRUE(beside(-0.5, 0.0, Frame::robot));
+  EXPECT_FALSE(beside(4.5, 0.0, Frame::map));  // far
+  EXPECT_FALSE(beside(3.0, 2.0, Frame::map));  // behind a wall
+  EXPECT_TRUE(call("beside", {"hall"}).nil());
+  EXPECT_EQ(spoken(call("arrival", {Point{{0.0, -0.12, 0.0}, Frame::robot}})),
+            "arrived, 0.12 m from the point");
+  EXPECT_EQ(spoken(call("arrival", {"hall"})), "the robot is at corridor 1 (hall)");
+  robot.odom_in_map.reset();
+  EXPECT_FALSE(beside(0.5, 0.0, Frame::robot));
+}
+
 TEST_F(Navigation, NobodyIsAskedToOpenAWayThatIsOpen) {
   const auto reason_after = [&](const std::string& ending) {
     Stage stage(read_file(std::getenv("SAPHIRA_SOURCE_DIR") +
