@@ -139,6 +139,25 @@ TEST(Navigation, AWayToANearPointEndsWithinATenthOfIt) {
       }
 }
 
+// The simulated Pioneer is told whole degrees.
+TEST(Navigation, ATurnEndsWithinATenthOfItselfOrTheRobotsOwnDegree) {
+  for (const double angle : {1.3, -2.0, 3.0, -4.5, 5.0, -10.0, 90.5, -170.0}) {
+    WholeOptions options = office();
+    options.drive.errors = 0.0;
+    Whole whole(options);
+    whole.advance();
+    const double before = whole.drive().seen().pose_in_odom.th;
+    const auto status = whole.achieve(
+        "turn_to",
+        {saphira::point("position", {std::cos(radians(angle)), std::sin(radians(angle)), 0.0},
+                        Frame::robot)},
+        100);
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+    const double turned = norm2_angle(whole.drive().seen().pose_in_odom.th - before);
+    EXPECT_NEAR(degrees(turned), angle, 0.6) << status.reason;
+  }
+}
+
 // Paper 3.5.1: the passage of the door begins while the robot still follows the corridor, so that
 // it does not stop between the two. From leg to leg some behavior drives in every cycle.
 TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
