@@ -362,6 +362,8 @@ class Seeing : public testing::Test {
 
 TEST_F(Seeing, TheNearestOfItsKind) {
   EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 8 0)");
+  EXPECT_EQ(to_text(call("seen", {"person", Value()})), "(thing 8 0)");
+  EXPECT_EQ(to_text(call("seen", {"person", Point{{3.0, 0.0, 0.0}, Frame::robot}})), "(thing 7 0)");
   robot.pose_in_odom = {3.0, 0.0, 0.0};
   EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 7 0)");
   EXPECT_EQ(to_text(call("seen", {"blob"})), "(thing 9 0)");
