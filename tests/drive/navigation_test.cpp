@@ -117,6 +117,48 @@ TEST(Navigation, AtItsEndItFacesAsAsked) {
   }
 }
 
+// Within a tenth of the way and 2.5 cm of rolling out.
+TEST(Navigation, AWayToANearPointEndsWithinATenthOfIt) {
+  for (const Frame frame : {Frame::robot, Frame::map})
+    for (const double way : {0.05, 0.1, 0.3, 1.0})
+      for (const double bearing : {0.0, 90.0, 180.0}) {
+        Whole whole(office());
+        whole.achieve("go_to", {saphira::point("position", {16.9, 11.0, 0.0}, Frame::map)}, 600);
+        const Pose start = whole.drive().seen().pose_in_odom;
+        const Pose asked{way * std::cos(radians(bearing)), way * std::sin(radians(bearing)), 0.0};
+        const auto status = whole.achieve(
+            "go-to-place",
+            {saphira::point("place", frame == Frame::map ? compose(whole.believed(), asked) : asked,
+                            frame)},
+            100);
+        EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+        EXPECT_TRUE(status.reason.starts_with("arrived, 0.")) << status.reason;
+        const Vec2 moved = to_frame(start, whole.drive().seen().pose_in_odom.position());
+        EXPECT_LT((moved - asked.position()).norm(), 0.025 + 0.1 * way)
+            << way << " m at " << bearing << ": " << moved.transpose();
+        EXPECT_TRUE(whole.at_rest());
+      }
+}
+
+// The simulated Pioneer is told whole degrees.
+TEST(Navigation, ATurnEndsWithinATenthOfItselfOrTheRobotsOwnDegree) {
+  for (const double angle : {1.3, -2.0, 3.0, -4.5, 5.0, -10.0, 90.5, -170.0}) {
+    WholeOptions options = office();
+    options.drive.errors = 0.0;
+    Whole whole(options);
+    whole.advance();
+    const double before = whole.drive().seen().pose_in_odom.th;
+    const auto status = whole.achieve(
+        "turn_to",
+        {saphira::point("position", {std::cos(radians(angle)), std::sin(radians(angle)), 0.0},
+                        Frame::robot)},
+        100);
+    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+    const double turned = norm2_angle(whole.drive().seen().pose_in_odom.th - before);
+    EXPECT_NEAR(degrees(turned), angle, 0.6) << status.reason;
+  }
+}
+
 // Paper 3.5.1: the passage of the door begins while the robot still follows the corridor, so that
 // it does not stop between the two. From leg to leg some behavior drives in every cycle.
 TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
@@ -867,6 +909,36 @@ const char* const kAnnInTheCorridor =
 const char* const kQuickAnn =
     "person ann 17500 10500\n"
     "  wait 20  walk 17500 7000 1600  walk 25600 7000 1600  walk 25600 10650 1600  wait 100\n";
+
+// A Pioneer 1 drives no faster than she walks, and does not make up for its late start.
+TEST(Seeing, APersonWhoWalksIsNotLeftBehind) {
+  for (const auto& [robot, most] : {std::pair{"pioneer", 2.0}, {"p3dx", 2.8}}) {
+    WholeOptions options =
+        office(1, office_with("walking-ann",
+                              "person ann 17500 13000\n"
+                              "  wait 10  walk 17500 7000 400  walk 25000 7000 400  wait 100\n"));
+    options.drive.robot = robot;
+    options.drive.start_in_world = Pose{17.5, 14.2, -kPi / 2};
+    options.sees = true_eyes();
+    Whole whole(options);
+    const auto goal = whole.ask("follow-person");
+    double nearest = most;
+    double farthest = 0.0;
+    while (whole.cycle() < 480) {
+      whole.advance();
+      const double away = (whole.drive().scene().persons()[0].at - whole.truth().position()).norm();
+      nearest = std::min(nearest, away);
+      farthest = std::max(farthest, away);
+    }
+    EXPECT_GT(nearest, 0.8) << robot;
+    EXPECT_LT(farthest, most) << robot;
+    EXPECT_NEAR((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 1.0, 0.2)
+        << robot;
+    EXPECT_FALSE(whole.ended(goal)) << whole.status(goal).reason;
+    EXPECT_TRUE(said(whole, "I follow the nearest person"));
+    EXPECT_EQ(whole.drive().contacts(), 0);
+  }
+}
 
 TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
   Whole blind(office());

@@ -148,10 +148,12 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
   const auto whom = [&](const char* name) {
     return place_or_person(slot(meaning, name), situation);
   };
-  if (functor == "follow_me") {
-    want(meaning, utterance, "follow-person", {});
-  } else if (functor == "look_at_me") {
-    want(meaning, utterance, "attend-person", {});
+  if (functor == "follow_me" || functor == "look_at_me") {
+    // The robot sees who points, and does not know the faces of the others.
+    Arguments speaker;
+    if (situation.pointing_in_map)
+      speaker.push_back(point("near", *situation.pointing_in_map, Frame::map));
+    want(meaning, utterance, functor == "follow_me" ? "follow-person" : "attend-person", speaker);
   } else if (functor == "follow_corridor") {
     want(meaning, utterance, "find-and-follow", {});
   } else if (functor == "explore") {

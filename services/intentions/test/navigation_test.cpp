@@ -111,6 +111,22 @@ TEST_F(Navigation, WhereThePathEndsTheRobotIsAtThePlace) {
   EXPECT_TRUE(call("at-place", {"north"}).nil());
 }
 
+TEST_F(Navigation, ANearPointInTheSameRegionNeedsNoPath) {
+  const auto beside = [&](double x, double y, Frame frame) {
+    return call("beside", {Point{{x, y, 0.0}, frame}}).truthy();
+  };
+  EXPECT_TRUE(beside(3.5, 0.5, Frame::map));
+  EXPECT_TRUE(beside(-0.5, 0.0, Frame::robot));
+  EXPECT_FALSE(beside(4.5, 0.0, Frame::map));  // far
+  EXPECT_FALSE(beside(3.0, 2.0, Frame::map));  // behind a wall
+  EXPECT_TRUE(call("beside", {"hall"}).nil());
+  EXPECT_EQ(spoken(call("arrival", {Point{{0.0, -0.12, 0.0}, Frame::robot}})),
+            "arrived, 0.12 m from the point");
+  EXPECT_EQ(spoken(call("arrival", {"hall"})), "the robot is at corridor 1 (hall)");
+  robot.odom_in_map.reset();
+  EXPECT_FALSE(beside(0.5, 0.0, Frame::robot));
+}
+
 TEST_F(Navigation, NobodyIsAskedToOpenAWayThatIsOpen) {
   const auto reason_after = [&](const std::string& ending) {
     Stage stage(read_file(std::getenv("SAPHIRA_SOURCE_DIR") +
@@ -346,6 +362,8 @@ class Seeing : public testing::Test {
 
 TEST_F(Seeing, TheNearestOfItsKind) {
   EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 8 0)");
+  EXPECT_EQ(to_text(call("seen", {"person", Value()})), "(thing 8 0)");
+  EXPECT_EQ(to_text(call("seen", {"person", Point{{3.0, 0.0, 0.0}, Frame::robot}})), "(thing 7 0)");
   robot.pose_in_odom = {3.0, 0.0, 0.0};
   EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 7 0)");
   EXPECT_EQ(to_text(call("seen", {"blob"})), "(thing 9 0)");

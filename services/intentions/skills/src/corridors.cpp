@@ -272,12 +272,17 @@ void add_corridors(Functions& functions) {
                       world, arguments.empty() ? 0.0 : number_of(arguments, 0, "free-ahead")));
                 });
   functions.add(
-      "seen", 1, 1,
-      "(seen KIND): the nearest door, corridor, junction, wall, person, blob or blob-a to -c, "
-      "or nil",
+      "seen", 1, 2,
+      "(seen KIND [POINT]): the nearest door, corridor, junction, wall, person, blob or blob-a to "
+      "-c, or nil; of people and colours the one nearest to the point",
       [](const World& world, Values arguments) {
         const std::string& what = text_of(arguments, 0, "seen");
-        if (const std::optional<Value> thing = nearest_seen(world, what))
+        std::optional<Pose> place;
+        if (arguments.size() > 1 && !arguments[1].nil()) {
+          const Point point = point_at(world, arguments, 1, "seen");
+          place = in_frame(point.pose, point.frame, Frame::odom, world.robot);
+        }
+        if (const std::optional<Value> thing = nearest_seen(world, what, place))
           return *thing;
         const PointType type = what == "door"       ? PointType::door
                                : what == "corridor" ? PointType::corridor

@@ -27,6 +27,8 @@ class Follow : public Activity {
   bool change(const Arguments& arguments) override {
     distance_ = find(arguments, "distance")->number;
     speed_ = find(arguments, "speed")->number;
+    const Argument* const place = find(arguments, "place");
+    place_ = place == nullptr ? std::nullopt : std::optional(Point{place->point, place->frame});
     return true;
   }
 
@@ -37,7 +39,10 @@ class Follow : public Activity {
     auto& [who, trail] = now_;
     const std::size_t places = trail.places();
     if (!who)
-      if (const std::optional<Value> found = nearest_seen(world, "person"))
+      if (const std::optional<Value> found =
+              nearest_seen(world, "person",
+                           place_ ? in_frame(place_->pose, place_->frame, Frame::odom, world.robot)
+                                  : std::nullopt))
         if (const Reference* const person = found->reference())
           who = person->id;
     const lps::SeenThing* const thing = who ? seen_thing(world, *who) : nullptr;
@@ -69,6 +74,7 @@ class Follow : public Activity {
 
   double distance_ = 0.0;
   double speed_ = 0.0;
+  std::optional<Point> place_;  ///< of the person at the beginning
   struct Now {
     std::optional<std::uint64_t> who;
     Trail trail;
@@ -126,8 +132,13 @@ Vec2 Trail::at(double distance) const {
 Schema follow_trail() {
   Schema follow;
   follow.name = "follow-trail";
-  follow.summary = "walks behind the nearest visible person, around the same corners";
-  follow.parameters = {quantity("distance", "m", 0.5, 5.0, 1.2),
+  follow.summary =
+      "walks behind a visible person, around the same corners: the nearest one, or the nearest to "
+      "a place";
+  Parameter place;
+  place.name = "place";
+  place.kind = ArgumentKind::point;
+  follow.parameters = {place, quantity("distance", "m", 0.5, 5.0, 1.2),
                        quantity("speed", "m/s", 0.05, 1.0, 0.8)};
   follow.make = [](const Arguments& arguments) -> std::unique_ptr<Activity> {
     return std::make_unique<Follow>(arguments);

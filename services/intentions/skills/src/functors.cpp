@@ -157,6 +157,12 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
               format("the robot has not known where it is on the map for %.0f s", patience));
 }
 
+// A turn counts as made to a tenth of itself, within these limits. The robot is told whole degrees,
+// and its servo has a tolerance of up to 0.6 degrees.
+constexpr double kShareOfTurn = 0.1;
+constexpr double kLeastAngle = radians(1.1);
+constexpr double kWidestAngle = radians(5.0);
+
 /// Turns on the spot. No behavior watches obstacles: the robot is round and stays in its place.
 class TurnTo : public Activity {
  public:
@@ -187,12 +193,14 @@ class TurnTo : public Activity {
     const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
     const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
     const double left = std::abs(norm2_angle(toward - pose.th));
-    if (new_target_)
+    if (new_target_) {
       whole_turn_ = left;
+      near_ = angle_ > 0.0 ? angle_ : std::clamp(kShareOfTurn * left, kLeastAngle, kWidestAngle);
+    }
     if (std::exchange(new_target_, false) || begins(self) || waited)
       watchdog_.restart(left, self.now());
     self.intend_behavior("TurnTo", "TurnTo", kTask,
-                         {point("goal", *target), number("success_angle", angle_),
+                         {point("goal", *target), number("success_angle", near_),
                           number("turn_speed", turn_speed_)});
     self.intend_behavior("Stop", "Stop", kRest, {});
     self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
@@ -200,7 +208,7 @@ class TurnTo : public Activity {
     if (whole_turn_ > 0.0)
       self.progress(1.0 - left / whole_turn_);
     const bool satisfied =
-        left <= angle_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * angle_);
+        left <= near_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * near_);
     if (satisfied && at_rest(self.robot()))
       self.succeed(format("turned, %.1f degrees off", degrees(left)));
     else if (watchdog_.check(left, self.now()))
@@ -225,7 +233,8 @@ class TurnTo : public Activity {
   std::optional<double> heading_;  ///< [rad] in odom
   Argument target_;
   std::optional<Ticks> waiting_since_;
-  double angle_ = 0.0;
+  double angle_ = 0.0;          ///< [rad] as asked for; 0: a share of the turn
+  double near_ = kWidestAngle;  ///< [rad] counts as there
   double turn_speed_ = 0.0;
   Watchdog watchdog_;
   Motion motion_;
@@ -579,8 +588,7 @@ Registry built_in() {
   Parameter heading = quantity("heading", "rad in odom", -2.0 * kPi, 2.0 * kPi, 0.0);
   heading.usual.reset();
   heading.in_odom = true;
-  turn_to.parameters = {heading, place("position", false),
-                        quantity("angle", "rad", radians(1.0), kPi, radians(5.0)),
+  turn_to.parameters = {heading, place("position", false), quantity("angle", "rad", 0.0, kPi, 0.0),
                         // Manual Table 7-11: 0.5 is slow, 2.0 is fast.
                         quantity("turn_speed", "", 0.1, 5.0, 1.0), patience()};
   turn_to.check = [](const Arguments& arguments) -> std::string {

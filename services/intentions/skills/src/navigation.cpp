@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ using Kind = Reference::Kind;
 
 constexpr double kForget = 300.0;  ///< [s] after which a closed way may be open again
 constexpr double kThere = 0.4;     ///< [m] distance to its point at which a place is reached
+constexpr double kBeside = 3.0;    ///< [m] a nearer point in the robot's region needs no path
 constexpr double kVisited = 1.5;   ///< [m] around the robot's earlier places
 constexpr double kStep = 0.7;      ///< [m] nearer points are not worth a drive
 constexpr double kWayIn = 1.0;     ///< [m] behind a door, where a room counts as visited
@@ -366,6 +368,28 @@ bool at_place(const World& world, const Value& place) {
   });
 }
 
+bool beside(const World& world, const Value& place) {
+  const Point* const point = place.point();
+  const auto region = region_here(world);
+  if (point == nullptr || !region)
+    return false;
+  const auto ahead = in_robot(world, *point);
+  const auto at = in_frame(point->pose, point->frame, Frame::map, world.robot);
+  return ahead && at && std::hypot(ahead->x, ahead->y) < kBeside &&
+         world.around.topology->region_at(at->position(), kAstray) == region;
+}
+
+Value arrival(const World& world, Values arguments) {
+  if (arguments[0].point() != nullptr)
+    if (const auto at = in_robot(world, *arguments[0].point())) {
+      char text[64];
+      std::snprintf(text, sizeof text, "arrived, %.2f m from the point", std::hypot(at->x, at->y));
+      return Value(text);
+    }
+  const auto region = region_here(world);
+  return Value("the robot is at " + (region ? world.around.topology->text(*region) : "its place"));
+}
+
 /// The words of a text, separated by commas or blanks.
 Value split(const std::string& text) {
   Value::List words;
@@ -387,6 +411,12 @@ void add_places(Functions& functions) {
                 [](const World& world, Values arguments) {
                   return Value::truth(at_place(world, arguments[0]));
                 });
+  functions.add("beside", 1, 1, "(beside PLACE): whether it is a near point in the robot's region",
+                [](const World& world, Values arguments) {
+                  return Value::truth(beside(world, arguments[0]));
+                });
+  functions.add("arrival", 1, 1, "(arrival PLACE): in words: how near its point, or in what region",
+                arrival);
   functions.add(
       "split", 1, 1, "(split TEXT): its words, between commas or blanks",
       [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); });

@@ -25,10 +25,6 @@ std::optional<Wanted> wanted(const std::string& what) {
 
 constexpr double kInSight = 1.0;  // [s] since it was seen
 
-double distance(const World& world, const SeenThing& thing) {
-  return (thing.pose_in_odom.position() - world.robot.pose_in_odom.position()).norm();
-}
-
 /// The thing of a reference; nullptr where the argument is nil or the thing is gone.
 const SeenThing* thing_at(const World& world, Values arguments, std::string_view function) {
   if (arguments[0].nil())
@@ -71,13 +67,16 @@ double seconds_unseen(const World& world, const SeenThing& thing) {
              : 0.0;
 }
 
-std::optional<Value> nearest_seen(const World& world, const std::string& what) {
+std::optional<Value> nearest_seen(const World& world, const std::string& what,
+                                  const std::optional<Pose>& place) {
   const std::optional<Wanted> kind = wanted(what);
   if (!kind)
     return std::nullopt;
   // One out of sight is only a guess, and may have gone: it does not hide one in sight.
+  const Vec2 at = place.value_or(world.robot.pose_in_odom).position();
   const auto rank = [&](const SeenThing& thing) {
-    return std::pair(seconds_unseen(world, thing) > kInSight, distance(world, thing));
+    return std::pair(seconds_unseen(world, thing) > kInSight,
+                     (thing.pose_in_odom.position() - at).norm());
   };
   const SeenThing* best = nullptr;
   if (world.around.things != nullptr)
