@@ -209,9 +209,12 @@ class TurnTo : public Activity {
       self.progress(1.0 - left / whole_turn_);
     const bool satisfied =
         left <= near_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * near_);
-    if (satisfied && at_rest(self.robot()))
+    const bool late = watchdog_.check(left, self.now());
+    // A robot whose own servo is coarser ends where that stands.
+    const bool coarse = late && angle_ == 0.0 && left <= std::min(kWidestAngle, whole_turn_ / 2.0);
+    if ((satisfied || coarse) && at_rest(self.robot()))
       self.succeed(format("turned, %.1f degrees off", degrees(left)));
-    else if (watchdog_.check(left, self.now()))
+    else if (late)
       self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.0f degrees off",
                                          watchdog_.patience(), degrees(left)) +
                                       why_not_moving(self.robot(), motion_));
