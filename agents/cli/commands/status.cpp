@@ -85,7 +85,8 @@ class StatusView {
   }
 
   const Processes& processes() const { return processes_; }
-  bool all_heard() const { return !processes_.all().empty() && unheard(situation()).empty(); }
+  /// Somebody is heard, and no program misses another.
+  bool whole() const { return !processes_.all().empty() && !misses(situation()); }
 
  private:
   std::string silent_peers() const {
@@ -122,7 +123,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
       listen(node, stop, view.processes(), refresh, [&view] { return view.news(); });
   if (json) {
     std::printf("%s\n", to_json(view.situation()).c_str());
-    return view.all_heard() ? bus::kExitOk : bus::kExitFailed;
+    return view.whole() ? bus::kExitOk : bus::kExitFailed;
   }
   while (watch && !stop.requested()) {
     const bool terminal = isatty(STDOUT_FILENO) != 0;
@@ -142,7 +143,7 @@ int status(bool watch, bool json, const bus::NodeOptions& options, const bus::St
         "slow: the last of this was heard after %.1f s, by a network or a machine that is "
         "slow or loaded\n",
         took);
-  return view.all_heard() ? bus::kExitOk : bus::kExitFailed;
+  return watch || view.whole() ? bus::kExitOk : bus::kExitFailed;
 }
 
 /// Each robot with a program that works for it, one robot after another.

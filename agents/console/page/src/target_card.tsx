@@ -1,6 +1,6 @@
 // The card of a place on the map: goals there, and changes of the map.
 import type {RefObject} from 'preact';
-import {useEffect, useState} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {ahead, askGoal, nameOf, quoted} from './goals';
 import type {Answer, Link} from './link';
 import {add, facing, nameFor, placeOf, placeRobot, remove, rules, toUndo, undo, zoneOf, type Sketch} from './map_edit';
@@ -29,9 +29,13 @@ export function TargetCard({card, corner, link, view, target, close}:
     setTold('');
     open('');
   }, [target]);
+  // A late answer does not close the card of another place.
+  const shown = useRef<Target>();
+  shown.current = target;
+  useEffect(() => () => { shown.current = undefined; }, []);
   const tell = (answer: Answer, done = close) => {
-    if (answer.well) done();
-    else setTold(forPage(answer.text), false);
+    if (!answer.well) setTold(forPage(answer.text), false);
+    else if (shown.current === target) done();
   };
   const changed = (answer: Answer, text: string) => tell(answer, () => {
     open('');
