@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -25,6 +26,7 @@ using std::chrono::milliseconds;
 constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
+constexpr double kSilent = 3.0;            ///< [s] until missing intentions are reported
 
 struct GoalOptions {
   std::vector<std::string> words;
@@ -127,6 +129,30 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   return bus::kExitFailed;
 }
 
+/// Tells once when the program that carries out goals is silent, and when it is back.
+class Silence {
+ public:
+  void look(const std::vector<SeenProcess>& processes) {
+    if (std::any_of(processes.begin(), processes.end(), [](const SeenProcess& one) {
+          return (one.status.name == "intentions" || one.status.name == "all") &&
+                 one.age <= kSilent;
+        })) {
+      heard_ = Clock::now();
+      if (std::exchange(told_, false))
+        print("           intentions is heard again\n");
+    } else if (!told_ && seconds_since(heard_) > kSilent) {
+      told_ = true;
+      complain(
+          "saphira: intentions is not heard (saphira status); the goal goes on when it is back, "
+          "and Ctrl-C withdraws it\n");
+    }
+  }
+
+ private:
+  Clock::time_point heard_ = Clock::now();
+  bool told_ = false;
+};
+
 int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   v1::Goal goal = parse_request(options.words);
   if (goal.functor == "stop")
@@ -145,6 +171,7 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
 
   Follower follower;
   Latches latches(node);
+  Silence silence;
   const auto began = Clock::now();
   double told = 0.0;
   bool canceled = false;
@@ -164,6 +191,8 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
       return status->state == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     }
     const bool empty = processes.all().empty();
+    if (status)
+      silence.look(processes.all());
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
       complain("saphira: no answer yet: %s\n", who_is_there(processes).c_str());
