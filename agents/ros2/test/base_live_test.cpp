@@ -109,8 +109,8 @@ class FakeBase {
   std::thread thread_;
 };
 
-/// A bridge whose robot is the base, and a person who drives. Times are tested by base_test and by
-/// the tests of the bridge's core.
+/// A bridge with the base as its robot, and a driver. The tests of the bridge's core and base_test
+/// cover the times.
 class Ros2Base : public ::testing::Test {
  protected:
   void start(const std::string& options = "") {

@@ -86,8 +86,8 @@ void forget(Situation& s, const std::string& program, Known recalled) {
   known(s, program) = recalled;
 }
 
-/// A command that starts now hears nothing of a program that has been stopped for so long [s], not
-/// even what is latched: only what others say. Goals are their requesters' own.
+/// A program stopped `time` [s] before the command began: no sample of it comes, not even a latched
+/// one. The samples of other programs stay, and the goals of the requesters.
 void stopped_before(Situation& s, const std::string& program, double time) {
   remove(s, program);
   if (program == "intentions") {

@@ -392,6 +392,24 @@ TEST(TurnTo, GivesUp) {
             "on)");
 }
 
+TEST(TurnTo, EndsWhereACoarseServoStandsAfterMostOfTheTurn) {
+  Bench bench;
+  bench.world.held = true;
+  bench.begin(1, "turn_to", {number("heading", radians(60.0)), number("patience", 2.0)});
+  bench.world.robot.pose_in_odom.th = radians(57.0);
+  bench.run(1, 100);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(bench.status(1).reason, "turned, 3.0 degrees off");
+}
+
+TEST(TurnTo, ASmallTurnThatWasNotMadeHasFailed) {
+  Bench bench;
+  bench.world.held = true;
+  bench.ask(1, "turn_to", {number("heading", radians(4.0)), number("patience", 2.0)});
+  bench.run(1, 100);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
+}
+
 // Some robots do not report that their motors are off.
 TEST(GoTo, AsksForTheMotorsOfARobotThatHasNotMovedAtAll) {
   const auto reason = [](double told, bool moves_first, bool stalled) {
