@@ -491,6 +491,7 @@ TEST(Navigation, EveryRoomOfAFurnishedOfficeIsReachedAgainAndAgain) {
         EXPECT_EQ(there.state, v1::GOAL_SUCCEEDED) << seed << ": " << room << ": " << there.reason;
         EXPECT_TRUE(is_in(whole, room)) << seed << ": " << room;
       }
+    EXPECT_LE(whole.cycle(), 12 * 430) << seed;  // the guard seldom holds it beside a cupboard
     EXPECT_EQ(whole.drive().contacts(), 0);
   }
 }

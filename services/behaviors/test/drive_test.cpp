@@ -306,6 +306,28 @@ TEST(Drive, FollowsACorridor) {
   EXPECT_LE(swings, 3.5);
 }
 
+/// A cupboard leaves 1.5 m of a corridor: the way leads along the middle of what is left.
+TEST(Drive, FollowsACorridorPastACupboard) {
+  const sim::World world = hall(box(9000, 8900, 0, 12000, 200) + box(9000, 11100, 0, 12000, 200) +
+                                box(7000, 9225, 0, 900, 450));
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Drive what;
+    what.seed = seed;
+    what.behaviors = guarded({"corridor",
+                              "FollowCorridor",
+                              2,
+                              true,
+                              {point_argument("corridor", {3.0, 0.0, 0.0}),
+                               point_argument("goal", {7.0, 0.0, 0.0}),
+                               {"width", 2.0}}});
+    what.limit = 500;
+    DriveResult run;
+    EXPECT_GT(drive_until_done(world, {4, 10, radians(0)}, what, "corridor", run), 0U);
+    EXPECT_EQ(run.contacts, 0);
+    EXPECT_GE(run.min_clearance, 0.4) << "seed " << seed;
+  }
+}
+
 /// A wall with a door in it, beside a corridor; the robot comes along the corridor.
 TEST(Drive, FollowsADoorInAndOut) {
   const sim::World world = hall(box(10000, 9000, 0, 12000, 200) +  // the corridor's far wall

@@ -125,6 +125,26 @@ void nearest_beside(Call& call, const double* a, double* out) {
     note(call, kSide == Beside::left ? Area{from, to, 0.0, limit} : Area{from, to, -limit, 0.0});
 }
 
+/// sfLaneOffset(lane, berth, reach): beside the obstacles that the hull passes within `reach`.
+void lane_offset(Call& call, const double* a, double* out) {
+  const ToFrame to_lane({a[0] * kMetres, a[1] * kMetres, a[2]});
+  const double berth = a[3] * kMetres;
+  const double reach = std::clamp(a[4] * kMetres, 0.0, 10.0);
+  const Vec2 robot = to_lane(Vec2{0.0, 0.0});
+  double right = -2.0 * berth;
+  double left = 2.0 * berth;
+  for (const Vec2& point : near(call, reach + 2.0 * berth)) {
+    const Vec2 p = to_lane(point);
+    if (const double ahead = p.x() - robot.x();
+        ahead < -call.context->model.radius || ahead > reach)
+      continue;
+    (p.y() < 0.0 ? right : left) = p.y() < 0.0 ? std::max(right, p.y()) : std::min(left, p.y());
+  }
+  const double least = right + berth;
+  const double most = left - berth;
+  *out = kMillimetres * (least > most ? (right + left) / 2.0 : std::clamp(0.0, least, most));
+}
+
 constexpr double kFree = 0.8;                 ///< share of the reach that counts as a free way
 constexpr double kRoom = 0.12;                ///< [m] beside the hull on a wide way
 constexpr double kTight = 0.08;               ///< [m] beside the hull, at least
@@ -337,6 +357,13 @@ const std::vector<Function>& functions() {
        {kR, kR, kR},
        nearest_beside<Beside::right>,
        "distance of the nearest obstacle on the right, with x from, to; limit"},
+      {"sfLaneOffset",
+       kR,
+       {kP, kR, kR},
+       lane_offset,
+       "how far to the left of a lane's middle a way along it keeps that distance from the "
+       "obstacles "
+       "of both sides, or the middle between them: lane, distance, reach"},
       {"sfWay",
        kR,
        {kI, kR, kR},
