@@ -84,7 +84,9 @@ void Presence::tick() {
     for (const Part& part : parts_) {
       if (part.writer == nullptr || part.reader == nullptr)
         continue;
-      part.writer->write(&own_);
+      // Loopback loses no packets, and on it each program hears every other one of its robot.
+      if (part.side == Side::network || own_.count % 2 == 0)
+        part.writer->write(&own_);
       v1::Presence sample;
       fdds::SampleInfo info;
       while (part.reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK)
