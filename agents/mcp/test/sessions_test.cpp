@@ -20,10 +20,9 @@ Tool tool(const std::string& name) {
   return made;
 }
 
-class Talk : public test::Transcript {
+class Talk : test::Client, public test::Transcript {
  public:
-  Talk() {
-    session.set_tools({test::go_to()});
+  Talk() : Transcript(session) {
     events_.insert({{"tools",
                      [this](auto& in) {
                        std::vector<Tool> all;

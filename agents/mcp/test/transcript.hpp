@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -34,6 +35,7 @@ namespace saphira::mcp::test {
 /// A message or a call that is not written is a failure.
 class Transcript {
  public:
+  explicit Transcript(Session& session) : session_(session) {}
   virtual ~Transcript() = default;
 
   void take(const std::string& whole) {
@@ -70,7 +72,6 @@ class Transcript {
   }
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
-  Session session{"saphira", "1", "a robot"};
   std::map<std::string, Event> events_{
       {"can", [this](auto& in) { capabilities_ = Json::parse(rest(in)); }},
       {"headers", [this](auto& in) {
@@ -82,6 +83,7 @@ class Transcript {
   std::map<std::string, Fact> facts_{{"takes", [this] { return yes(takes_); }},
                                      {"call", [this] { return called(); }}};
   std::map<std::string, std::string> names_;
+  Json message_;  ///< compared last
 
  private:
   void take_one(const std::string& line) {
@@ -107,7 +109,7 @@ class Transcript {
       ADD_FAILURE() << "not understood: " << line;
     for (Call& call : turn())
       calls_.push_back(std::move(call));
-    for (Line& said : session.take_lines())
+    for (Line& said : session_.take_lines())
       heard_.push_back(std::move(said));
   }
   static Json id_of(const std::string& text) {
@@ -115,7 +117,7 @@ class Transcript {
                                                                   : Json(text);
   }
   void send(const std::string& text) {
-    takes_ = session.take(text, std::exchange(exchange_, 0), headers_ ? &*headers_ : nullptr);
+    takes_ = session_.take(text, std::exchange(exchange_, 0), headers_ ? &*headers_ : nullptr);
     headers_.reset();
   }
   std::string message(std::istringstream& in) {
@@ -176,7 +178,7 @@ class Transcript {
     const Line said = heard_.front();
     heard_.pop_front();
     SCOPED_TRACE(said.text);
-    const Json message = Json::parse(said.text);
+    message_ = Json::parse(said.text);
     for (;; in >> word) {
       if (word[0] == '@')
         EXPECT_EQ(said.exchange, std::stoull(word.substr(1)));
@@ -188,13 +190,13 @@ class Transcript {
         break;
     }
     if (word[0] == '{' || word[0] == '[')
-      return compare(message, Json::parse(word + std::string(std::istreambuf_iterator(in), {})),
+      return compare(message_, Json::parse(word + std::string(std::istreambuf_iterator(in), {})),
                      "");
     std::string kind = word;
     if (!kOperators.contains(kind))
       in >> kind;
-    compare(message["id"], id_of(kind == word ? id_ : word), "id");
-    Json result = message.value("result", Json());
+    compare(message_["id"], id_of(kind == word ? id_ : word), "id");
+    Json result = message_.value("result", Json());
     const std::string text = kind == "!" ? "" : filled(rest(in));
     int code = 0;
     if (kind == "=") {
@@ -206,9 +208,9 @@ class Transcript {
       if (!text.empty())
         compare(result["content"][0]["text"], text, "text");
     } else if (kind == "!" && in >> code) {
-      compare(message.value("error", Json())["code"], code, "code");
+      compare(message_.value("error", Json())["code"], code, "code");
       if (const std::string more = rest(in); !more.empty())
-        compare(message.value("error", Json()), Json::parse(more), "error");
+        compare(message_.value("error", Json()), Json::parse(more), "error");
     } else {
       ADD_FAILURE() << "not understood: " << kind;
     }
@@ -232,6 +234,7 @@ class Transcript {
   }
 
   inline static const std::set<std::string> kOperators{"=", "==", "!", "says", "fails"};
+  Session& session_;
   std::deque<Line> heard_;
   std::deque<Call> calls_;  ///< that the test answers
   std::string id_;          ///< sent last
@@ -255,7 +258,11 @@ int play(const std::string& file) {
       ++conversations;
     } else {
       ASSERT_TRUE(player);
-      player->take(line);
+      try {
+        player->take(line);
+      } catch (const std::exception& trouble) {
+        ADD_FAILURE() << line << ": " << trouble.what();
+      }
     }
   });
   SCOPED_TRACE("the end of " + file);
