@@ -165,7 +165,7 @@ class Visit : public DoorInMemory, public test::Transcript {
 };
 
 TEST(McpDoors, AreAsWritten) {
-  EXPECT_GT(test::play<Visit>("agents/mcp/test/doors.txt"), 30);
+  EXPECT_GT(saphira::test::play<Visit>("agents/mcp/test/doors.txt"), 30);
 }
 
 }  // namespace

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -243,32 +241,5 @@ class Transcript {
   bool takes_ = false;
   Json capabilities_ = Json::object();
 };
-
-/// Plays each conversation of a file with a player of its own. Returns how many there are.
-template <class Player>
-int play(const std::string& file) {
-  std::unique_ptr<Player> player;
-  int conversations = 0;
-  saphira::test::each_line(file, '#', [&](const std::string& line) {
-    const bool begins = line.starts_with("== ");
-    if (player && begins)
-      player->finish();
-    if (begins) {
-      player = std::make_unique<Player>();
-      ++conversations;
-    } else {
-      ASSERT_TRUE(player);
-      try {
-        player->take(line);
-      } catch (const std::exception& trouble) {
-        ADD_FAILURE() << line << ": " << trouble.what();
-      }
-    }
-  });
-  SCOPED_TRACE("the end of " + file);
-  if (player)
-    player->finish();
-  return conversations;
-}
 
 }  // namespace saphira::mcp::test

@@ -1,6 +1,5 @@
 // The requests of requests.txt, between their askers and agents.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -9,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "arguments.hpp"
 #include "lines.hpp"
 #include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/base/archive.hpp"
@@ -20,25 +20,10 @@ namespace {
 const std::vector<std::string> kCodes{"underway", "done",   "sent",     "refused", "unknown",
                                       "bad",      "nobody", "too-late", "gave-up", "lost"};
 
-/// Of "place=library", "answers=0", "place=?" (open) or "place=?P" (a variable).
-Argument argument_of(const std::string& word) {
-  const std::size_t at = word.find('=');
-  const std::string name = word.substr(0, at);
-  const std::string value = word.substr(std::min(word.size(), at + 1));
-  if (value.starts_with("?")) {
-    Argument open = text(name, value.substr(1));
-    open.kind = ArgumentKind::unbound;
-    return open;
-  }
-  return std::isdigit(static_cast<unsigned char>(value[0])) != 0 ? number(name, std::stod(value))
-                                                                 : text(name, value);
-}
-
 Arguments arguments_of(std::istringstream& in) {
-  Arguments all;
-  for (std::string word; in >> word;)
-    all.push_back(argument_of(word));
-  return all;
+  std::string text;
+  std::getline(in, text);
+  return test::arguments_of(text);
 }
 
 std::pair<std::uint64_t, std::uint64_t> id_of(const std::string& text) {
@@ -138,12 +123,12 @@ class Round {
     request.asker = 1;
     request.number = read<std::uint64_t>(in);
     request.functor = "place_of";
-    request.arguments = {argument_of("person=karen"), argument_of("place=?")};
+    std::string text = "person=karen place=?";
     if (in >> request.functor)
-      request.arguments.clear();
+      std::getline(in, text);
     else
       request.functor = "place_of";
-    for (const Argument& argument : arguments_of(in)) {
+    for (const Argument& argument : test::arguments_of(text)) {
       if (argument.name == "@within")
         request.deadline = argument.number;
       else if (argument.name == "@of")
@@ -188,7 +173,7 @@ class Round {
         made.action = read<std::string>(in);
         arguments = &made.action_arguments;
       } else {
-        arguments->push_back(argument_of(word));
+        arguments->push_back(test::arguments_of(word).at(0));
       }
     }
     facilitator_.set(made, now_);
@@ -284,18 +269,7 @@ class Round {
 };
 
 TEST(Requests, AreAsWritten) {
-  std::optional<Round> round;
-  int rounds = 0;
-  test::each_line("services/agent_interface/test/requests.txt", '#', [&](const std::string& line) {
-    if (line.starts_with("== ")) {
-      round.emplace();
-      ++rounds;
-    } else {
-      ASSERT_TRUE(round);
-      round->take(line);
-    }
-  });
-  EXPECT_GT(rounds, 35);
+  EXPECT_GT(test::play<Round>("services/agent_interface/test/requests.txt"), 35);
 }
 
 }  // namespace
