@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <exception>
+#include <memory>
 #include <sstream>
 #include <string>
 
@@ -21,6 +24,40 @@ void each_line(const std::string& file, char comment, const Use& use) {
     if (!line.empty() && line[0] != comment)
       use(line);
   }
+}
+
+/// Plays a file of cases, each with a player of its own: "== its name" begins one, and " ; " parts
+/// lines that are written as one. Returns how many cases there are.
+template <class Player>
+int play(const std::string& file) {
+  std::unique_ptr<Player> player;
+  int cases = 0;
+  const auto finish = [&] {
+    if constexpr (requires { player->finish(); })
+      if (player)
+        player->finish();
+  };
+  each_line(file, '#', [&](const std::string& line) {
+    if (line.starts_with("== ")) {
+      finish();
+      player = std::make_unique<Player>();
+      ++cases;
+      return;
+    }
+    ASSERT_TRUE(player);
+    for (std::size_t at = 0, end = 0; at < line.size(); at = end + 3) {
+      end = std::min(line.find(" ; ", at), line.size());
+      const std::string part = line.substr(at, end - at);
+      try {
+        player->take(part);
+      } catch (const std::exception& trouble) {
+        ADD_FAILURE() << part << ": " << trouble.what();
+      }
+    }
+  });
+  SCOPED_TRACE("the end of " + file);
+  finish();
+  return cases;
 }
 
 }  // namespace saphira::test

@@ -34,9 +34,8 @@ struct Client {
     EXPECT_EQ(all.size(), 1U) << line;
     return all.empty() ? Json() : all.front();
   }
-  /// The only line, and the only call, since the last time.
+  /// The only line since the last time.
   Line only() { return saphira::test::only(session.take_lines()); }
-  Call called() { return saphira::test::only(session.take_calls()); }
   Session session{"saphira", "1", "a robot"};
 };
 
@@ -48,11 +47,6 @@ inline std::string line(int id, const std::string& method,
 
 /// A call of go_to, as the parameters of a request.
 inline const Json kGo{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
-
-/// A request is given up.
-inline std::string cancelled(const Json& id) {
-  return Json{{"method", "notifications/cancelled"}, {"params", {{"requestId", id}}}}.dump();
-}
 
 /// A request of the newer era.
 inline std::string modern(const std::string& id, const std::string& method,

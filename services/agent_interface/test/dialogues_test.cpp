@@ -131,18 +131,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  std::optional<Conversation> conversation;
-  int conversations = 0;
-  test::each_line("services/agent_interface/test/dialogues.txt", '#', [&](const std::string& line) {
-    if (line.starts_with("== ")) {
-      conversation.emplace();
-      ++conversations;
-    } else {
-      ASSERT_TRUE(conversation);
-      conversation->take(line);
-    }
-  });
-  EXPECT_GT(conversations, 50);
+  EXPECT_GT(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 50);
 }
 
 }  // namespace
