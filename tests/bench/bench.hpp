@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "result.hpp"
+#include "study.hpp"
 #include "support/process.hpp"
 
 /// The common parts of the benchmark programs.

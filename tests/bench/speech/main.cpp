@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -13,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "../result.hpp"
+#include "bench/study.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
@@ -21,7 +20,6 @@
 #include "saphira/speech/conversation.hpp"
 #include "saphira/speech/voice.hpp"
 #include "support/guarded.hpp"
-#include "support/quantile.hpp"
 
 namespace {
 
@@ -202,7 +200,7 @@ std::size_t silent_end(const Sound& sound) {
 /// Counts by name. Wrong: taken for another command than a stop, and certain. Asked back: a command
 /// that is not certain. Near misses have the keyword, and meaningless words. Others: all that is no
 /// stop.
-using Tally = std::map<std::string, int>;
+using bench::Tally;
 
 class Bench {
  public:
@@ -310,21 +308,13 @@ class Bench {
   bool certain_ = false;  ///< of the newest command
 };
 
-double share(Tally& all, const std::string& part, const std::string& whole) {
-  return all[whole] > 0 ? static_cast<double>(all[part]) / all[whole] : 0.0;
-}
-
 int run(const Options& options) {
   Bench bench(options);
   Tally seen;
   Tally all[3];  // by kNoises
   nlohmann::json voices = nlohmann::json::array();
-  const auto add = [](Tally& sum, const Tally& one) {
-    for (const auto& [name, count] : one)
-      sum[name] += count;
-  };
   const auto tell = [&](const std::string& voice, const char* how, const Tally& one) {
-    nlohmann::json told(one);
+    nlohmann::json told(one.counts);
     told["voice"] = voice;
     told["sound"] = how;
     std::fprintf(stderr, "%s\n", told.dump().c_str());
@@ -337,31 +327,31 @@ int run(const Options& options) {
             options.sounds.end())
           continue;
         const Tally one = bench.run(voice, kNoises[i]);
-        add(all[i], one);
+        all[i].add(one);
         if (!unseen && kNoises[i] == Noise::none)
-          add(seen, one);
+          seen.add(one);
         tell(voice, kNames[i], one);
       }
   auto& [clean, white, babble] = all;
   Tally noise = white;
-  add(noise, babble);
+  noise.add(babble);
   Tally unseen = clean;
-  for (const auto& [name, count] : seen)
+  for (const auto& [name, count] : seen.counts)
     unseen[name] -= count;
   Tally any = clean;
-  add(any, noise);
+  any.add(noise);
   const nlohmann::json result{
-      {"lone_stops", share(clean, "lone_stops_right", "lone_stops")},
-      {"lone_stops_in_noise", share(noise, "lone_stops_right", "lone_stops")},
-      {"false_stops", share(any, "false_stops", "others")},
-      {"accept_seen", share(seen, "right", "commands")},
-      {"accept_unseen", share(unseen, "right", "commands")},
-      {"false_accept", share(clean, "keyless_taken", "keyless")},
-      {"near_misses_taken", share(clean, "near_misses_taken", "near_misses")},
-      {"wrong_in_white_noise", share(white, "wrong", "commands")},
-      {"accept_in_white_noise", share(white, "right", "commands")},
-      {"wrong_in_babble", share(babble, "wrong", "commands")},
-      {"accept_in_babble", share(babble, "right", "commands")},
+      {"lone_stops", clean.share("lone_stops_right", "lone_stops")},
+      {"lone_stops_in_noise", noise.share("lone_stops_right", "lone_stops")},
+      {"false_stops", any.share("false_stops", "others")},
+      {"accept_seen", seen.share("right", "commands")},
+      {"accept_unseen", unseen.share("right", "commands")},
+      {"false_accept", clean.share("keyless_taken", "keyless")},
+      {"near_misses_taken", clean.share("near_misses_taken", "near_misses")},
+      {"wrong_in_white_noise", white.share("wrong", "commands")},
+      {"accept_in_white_noise", white.share("right", "commands")},
+      {"wrong_in_babble", babble.share("wrong", "commands")},
+      {"accept_in_babble", babble.share("right", "commands")},
       {"um_s_p50", test::quantile(bench.um, 0.5)},
       {"um_s_p95", test::quantile(bench.um, 0.95)},
       {"voices", voices}};
