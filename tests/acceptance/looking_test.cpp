@@ -1,7 +1,6 @@
 // A person watches the running system from the command line, asks for reasons, and interrupts its
 // micro-tasks.
 #include <gtest/gtest.h>
-#include <signal.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

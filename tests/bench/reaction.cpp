@@ -4,13 +4,11 @@
 // the intentions. With --serial, bridge and robot have a serial line between them, as slow as a
 // real one, and the bound is the time that the line takes for the two packets.
 #include <poll.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <functional>
 #include <future>
 #include <nlohmann/json.hpp>

@@ -8,7 +8,6 @@
 #include <array>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 namespace saphira::mcp {
 

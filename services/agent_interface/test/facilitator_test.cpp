@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "only.hpp"
 #include "saphira/base/archive.hpp"
 #include "saphira/base/random.hpp"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent_interface/test/utterances.hpp"
 #include "bench/study.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
@@ -25,6 +25,7 @@ namespace {
 
 using namespace saphira;
 using namespace saphira::speech;
+using agent_interface::SaidAndMeant;
 
 struct Options {
   std::string utterances = "services/agent_interface/test/utterances.txt";
@@ -36,11 +37,6 @@ struct Options {
   int seed = 7;
   bool each = false;
   bool json = false;
-};
-
-struct Phrase {
-  std::string text;
-  std::string meaning;  ///< empty: none
 };
 
 /// True where the recognizer listens for these words: a way leads through the graph.
@@ -63,25 +59,18 @@ bool is_listened_for(const agent_interface::WordGraph& graph,
 }
 
 /// The phrases of the file with the keyword, without its section of replies: commands that the
-/// recognizer listens for, and sentences without a meaning.
-std::vector<Phrase> phrases(const std::string& file, const agent_interface::WordGraph& graph) {
-  std::vector<Phrase> all;
-  std::istringstream lines(read_file(file));
-  bool replies = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line[0] == '#') {
-      replies = line == "# Where the robot has asked";
+/// recognizer listens for, and sentences without a meaning, which is empty.
+std::vector<SaidAndMeant> phrases(const std::string& file,
+                                  const agent_interface::WordGraph& graph) {
+  std::vector<SaidAndMeant> all;
+  for (SaidAndMeant& phrase : agent_interface::read_utterances(read_file(file))) {
+    if (phrase.reply || phrase.meaning == "nothing")
       continue;
-    }
-    const std::size_t arrow = line.find(" => ");
-    if (replies || arrow == std::string::npos)
+    if (phrase.meaning == "what?" || phrase.meaning == "ambiguous")
+      phrase.meaning.clear();
+    else if (!is_listened_for(graph, agent_interface::words_of(phrase.text)))
       continue;
-    const std::string meaning = line.substr(arrow + 4);
-    if (meaning == "nothing")
-      continue;
-    const bool means = meaning != "what?" && meaning != "ambiguous";
-    if (!means || is_listened_for(graph, agent_interface::words_of(line.substr(0, arrow))))
-      all.push_back({line.substr(0, arrow), means ? meaning : std::string()});
+    all.push_back(phrase);
   }
   return all;
 }
@@ -104,39 +93,12 @@ constexpr std::array kLoneStops{
     "Stop it",        "No, stop",    "Stop right there", "Help! Stop!", "Halt!",       "Freeze!",
     "Emergency stop", "Stop moving", "Watch out, stop",  "Stop, please"};
 /// Speech to other people, most of it near such a stop.
-constexpr std::array kOtherSpeech{"Shop",
-                                  "Top",
-                                  "Stock",
-                                  "Step",
-                                  "Stopped",
-                                  "Start",
-                                  "Start now",
-                                  "Stuff",
-                                  "Star",
-                                  "Spot",
-                                  "Don't stop",
-                                  "Never stop",
-                                  "Stop talking",
-                                  "Did it stop",
-                                  "It stopped",
-                                  "A stop sign",
-                                  "The bus stop is over there",
-                                  "We can stop here and have lunch",
-                                  "The top shelf",
-                                  "Hold",
-                                  "Hall",
-                                  "Three",
-                                  "Breeze",
-                                  "Please",
-                                  "Hello",
-                                  "Good morning",
-                                  "Okay",
-                                  "Not now",
-                                  "Yes",
-                                  "No",
-                                  "The shop is closed",
-                                  "The weather is nice today",
-                                  "I was at the station on Tuesday"};
+constexpr const char* kOtherSpeech =
+    "Shop; Top; Stock; Step; Stopped; Start; Start now; Stuff; Star; Spot; Don't stop; "
+    "Never stop; Stop talking; Did it stop; It stopped; A stop sign; "
+    "The bus stop is over there; We can stop here and have lunch; The top shelf; Hold; "
+    "Hall; Three; Breeze; Please; Hello; Good morning; Okay; Not now; Yes; No; "
+    "The shop is closed; The weather is nice today; I was at the station on Tuesday";
 
 double power(const Sound& sound) {
   double sum = 0.0;
@@ -242,12 +204,13 @@ class Bench {
       ++tally["lone_stops"];
       tally["lone_stops_right"] += hear(text) == kStop ? 1 : 0;
     }
-    for (const char* const text : kOtherSpeech)
+    std::istringstream others(kOtherSpeech);
+    for (std::string text; std::getline(others >> std::ws, text, ';');)
       hear_other(text);
     ++tally["others"];
     tally["false_stops"] += understood(conversation, babble_, 0, false) == kStop ? 1 : 0;
     for (std::size_t i = 0; i < phrases_.size(); i += static_cast<std::size_t>(options_.every)) {
-      const Phrase& phrase = phrases_[i];
+      const SaidAndMeant& phrase = phrases_[i];
       if (phrase.meaning.empty() && noise != Noise::none)
         continue;
       const std::string heard =
@@ -303,7 +266,7 @@ class Bench {
 
   Options options_;
   agent_interface::Grammar grammar_;
-  std::vector<Phrase> phrases_;
+  std::vector<SaidAndMeant> phrases_;
   Sound babble_;
   bool certain_ = false;  ///< of the newest command
 };
