@@ -51,8 +51,9 @@ try {
   const page = await open();
   const first = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? 0);
   children.unshift(start('saphira', '--robot', name, 'goal', 'go', '16', '1'));
-  await sleep(3000);   // maps and grids are there
-  const features = await page.evaluate(() => saphira.data('map')?.artifacts.length ?? 0);
+  await page.waitForFunction(() => saphira.data('map'));
+  await sleep(3000);   // grids are there
+  const features = await page.evaluate(() => saphira.data('map').artifacts.length);
   // One page: three that are drawn by software on one machine would slow each other.
   await page.evaluate(() => {
     saphira.delays.length = 0;
