@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -124,6 +125,38 @@ std::string peer(lws* wsi) {
   lws_get_peer_simple(wsi, text.data(), text.size());
   const std::string_view address = text.data();
   return std::string(address.starts_with("::ffff:") ? address.substr(7) : address);
+}
+
+bool begin_answer(lws* wsi, int status, const std::string& type, lws_filepos_t size,
+                  const Headers& more) {
+  std::array<unsigned char, LWS_PRE + 2048> buffer{};
+  unsigned char* const begin = buffer.data() + LWS_PRE;
+  unsigned char* at = begin;
+  unsigned char* const end = buffer.data() + buffer.size() - 1;
+  if (lws_add_http_common_headers(wsi, static_cast<unsigned>(status), type.c_str(), size, &at,
+                                  end) != 0)
+    return false;
+  Headers all{{"x-content-type-options:", "nosniff"},
+              {"cache-control:", "no-cache"},
+              {"connection:", "close"}};
+  all.insert(all.end(), more.begin(), more.end());
+  for (const auto& [name, value] : all)
+    if (lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
+                                    reinterpret_cast<const unsigned char*>(value.c_str()),
+                                    static_cast<int>(value.size()), &at, end) != 0)
+      return false;
+  return lws_finalize_write_http_header(wsi, begin, &at, end) == 0;
+}
+
+bool write(lws* wsi, std::string_view content, lws_write_protocol how) {
+  std::vector<unsigned char> buffer(LWS_PRE);
+  buffer.insert(buffer.end(), content.begin(), content.end());
+  return lws_write(wsi, buffer.data() + LWS_PRE, content.size(), how) >=
+         static_cast<int>(content.size());
+}
+
+void drop(lws* wsi) {
+  lws_set_timeout(wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }
 
 std::string host_name() {

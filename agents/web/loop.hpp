@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <list>
-#include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace saphira::web {
 
@@ -27,6 +29,15 @@ bool is_here(lws* wsi);
 /// close". A second request on a connection is never read: libwebsockets 4.1 takes its first bytes
 /// for its body, and hangs.
 constexpr int kAnswered = -1;
+
+using Headers = std::vector<std::pair<const char*, std::string>>;
+/// Sends the headers of an answer, which is the only one on its connection. False: it failed.
+bool begin_answer(lws* wsi, int status, const std::string& type, lws_filepos_t size,
+                  const Headers& more);
+/// Sends a message, or a piece of an answer. False: it failed.
+bool write(lws* wsi, std::string_view content, lws_write_protocol how);
+/// Closes a connection, soon.
+void drop(lws* wsi);
 
 /// The address, port and certificate of a server.
 struct Place {

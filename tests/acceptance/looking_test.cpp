@@ -1,9 +1,7 @@
 // A person watches the running system from the command line, asks for reasons, and interrupts its
 // micro-tasks.
 #include <gtest/gtest.h>
-#include <signal.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "saphira/base/text.hpp"
@@ -118,7 +116,7 @@ TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
   system.start_all();
   const std::string page = read_file(source("docs/robots-of-others.md"));
   ASSERT_TRUE(wait_until([&] { return system.truth().cycle > 0; })) << system.output();
-  const Truth begin = system.truth();
+  const Pose begin = system.truth().pose_in_world;
   for (const auto& [command, number] : {std::pair{"move", "1"}, {"turn", "90"}}) {
     EXPECT_TRUE(has(page, std::string("`saphira ") + command + " " + number + "`"));
     Outcome done;
@@ -129,9 +127,9 @@ TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
     EXPECT_EQ(done.code, 0) << done.text << system.output();
   }
   ASSERT_TRUE(system.wait_still());
-  const Truth end = system.truth();
-  EXPECT_NEAR(std::hypot(end.x - begin.x, end.y - begin.y), 1.0, 0.1);
-  EXPECT_NEAR(std::remainder(end.th - begin.th, 2.0 * M_PI), M_PI / 2.0, 0.1);
+  const Pose moved = relative(begin, system.truth().pose_in_world);
+  EXPECT_NEAR(moved.position().norm(), 1.0, 0.1);
+  EXPECT_NEAR(norm2_angle(moved.th), kPi / 2.0, 0.1);
 }
 
 TEST_F(LookingTest, SaysThatNobodyIsThere) {

@@ -14,11 +14,11 @@ Process command_line(const System& system, const std::vector<std::string>& words
 }
 
 /// True where the robot stays still for that number of its cycles.
-bool stays_still(const System& system, long cycles) {
-  const long begin = system.truth().cycle;
+bool stays_still(const System& system, std::uint64_t cycles) {
+  const std::uint64_t begin = system.truth().cycle;
   bool still = true;
   const bool passed = wait_until([&] {
-    still = still && system.truth().still();
+    still = still && system.still();
     return system.truth().cycle >= begin + cycles;
   });
   return passed && still;
@@ -49,7 +49,7 @@ TEST(Stop, EndsAProgramThatDrives) {
   ASSERT_TRUE(system.wait_moving()) << program.output() << system.output();
   Process stop = command_line(system, {"goal", "stop"});
   EXPECT_EQ(stop.wait(), 0) << stop.output();
-  EXPECT_TRUE(system.truth().still()) << "it says that it is done once the robot is at rest";
+  EXPECT_TRUE(system.still()) << "it says that it is done once the robot is at rest";
   EXPECT_EQ(program.wait(), 1) << program.output();
   EXPECT_TRUE(stays_still(system, 20)) << system.output();
   Process again = command_line(system, {"move", "0.3"});
@@ -76,15 +76,15 @@ TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
   };
   ASSERT_TRUE(wait_until([&] {
     drive();
-    return !system.truth().still();
+    return !system.still();
   }));
   Process stop = command_line(system, {"goal", "stop"});
   EXPECT_EQ(stop.wait(), 0) << stop.output();
-  const long begin = system.truth().cycle;
+  const std::uint64_t begin = system.truth().cycle;
   bool still = true;
   EXPECT_TRUE(wait_until([&] {
     drive();
-    still = still && system.truth().still();
+    still = still && system.still();
     return system.truth().cycle >= begin + 30;
   }));
   EXPECT_TRUE(still);
@@ -93,7 +93,7 @@ TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
   command.active = true;
   EXPECT_TRUE(wait_until([&] {
     drive();
-    return !system.truth().still();
+    return !system.still();
   })) << "it has let go";
 }
 
@@ -131,11 +131,10 @@ TEST(Stop, TheEndOfAGoalsWriterIsNoticedBeforeTheRobotHasGoneFar) {
   system.start_all();
   Process client = command_line(system, {"goal", "drive", "0.3"});
   ASSERT_TRUE(system.wait_moving()) << client.output() << system.output();
-  const Truth lost = system.truth();
+  const std::uint64_t lost = system.truth().cycle;
   client.signal(SIGKILL);
-  ASSERT_TRUE(wait_until([&] { return system.stood_still(lost.cycle).has_value(); }))
-      << system.output();
-  const long took = *system.stood_still(lost.cycle) - lost.cycle;
+  ASSERT_TRUE(wait_until([&] { return system.stood_still(lost).has_value(); })) << system.output();
+  const auto took = static_cast<long>(*system.stood_still(lost) - lost);
   std::printf("stood %ld cycles after the client was killed\n", took);
   RecordProperty("cycles_to_standstill", std::to_string(took));
   EXPECT_LE(took, 30) << "a second is meant; the participant's own lease would be ten or more";

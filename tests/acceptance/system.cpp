@@ -5,13 +5,16 @@
 
 #include "node_options.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
 
-bool Truth::still() const {
-  return std::abs(velocity) < 0.005 && std::abs(rotation_velocity) < 0.01;
+namespace {
+
+bool stands(const sim::TraceRow& row) {
+  return std::abs(row.velocity) < 0.005 && std::abs(row.rotation_velocity) < 0.01;
 }
+
+}  // namespace
 
 System::System(std::string bridge_port)
     : bridge_port_(std::move(bridge_port)),
@@ -67,26 +70,25 @@ std::optional<v1::GoalStatus> System::wait_end(const v1::GoalId& goal,
   return ended ? status : std::nullopt;
 }
 
-std::vector<Truth> System::trace() const {
+std::vector<sim::TraceRow> System::trace() const {
   const std::string file = folder_.path("trace.csv");
-  std::vector<Truth> truths;
-  if (!std::filesystem::exists(file))
-    return truths;
-  for (const sim::TraceRow& row : sim::parse_trace(read_file(file), file))
-    truths.push_back({static_cast<long>(row.cycle), row.pose_in_world.x, row.pose_in_world.y,
-                      row.pose_in_world.th, row.velocity, row.rotation_velocity, row.contacts});
-  return truths;
+  return std::filesystem::exists(file) ? sim::parse_trace(read_file(file), file)
+                                       : std::vector<sim::TraceRow>();
 }
 
-Truth System::truth() const {
-  const std::vector<Truth> truths = trace();
-  return truths.empty() ? Truth{} : truths.back();
+sim::TraceRow System::truth() const {
+  const std::vector<sim::TraceRow> rows = trace();
+  return rows.empty() ? sim::TraceRow{} : rows.back();
 }
 
-std::optional<long> System::stood_still(long cycle) const {
-  for (const Truth& truth : trace())
-    if (truth.cycle >= cycle && truth.still())
-      return truth.cycle;
+bool System::still() const {
+  return stands(truth());
+}
+
+std::optional<std::uint64_t> System::stood_still(std::uint64_t cycle) const {
+  for (const sim::TraceRow& row : trace())
+    if (row.cycle >= cycle && stands(row))
+      return row.cycle;
   return std::nullopt;
 }
 
@@ -95,7 +97,7 @@ bool System::wait_moving(std::chrono::milliseconds limit) {
 }
 
 bool System::wait_still(std::chrono::milliseconds limit) {
-  return wait_until([this] { return truth().still(); }, limit);
+  return wait_until([this] { return still(); }, limit);
 }
 
 std::string System::output() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,21 +11,9 @@
 #include "goals.hpp"
 #include "process.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
-
-/// One line of the simulator's trace: the true state. [m, rad, m/s, rad/s]
-struct Truth {
-  long cycle = 0;
-  double x = 0.0;
-  double y = 0.0;
-  double th = 0.0;
-  double velocity = 0.0;
-  double rotation_velocity = 0.0;
-  long contacts = 0;
-  /// Below visible motion; the servo's last tremble does not count.
-  bool still() const;
-};
 
 /// A robot with its services as separate processes, live, in its own partition and folder, and a
 /// node of the test beside them.
@@ -52,9 +41,11 @@ class System {
       const v1::GoalId& goal, const std::function<void()>& meanwhile = [] {});
 
   /// The newest line of the trace.
-  Truth truth() const;
+  sim::TraceRow truth() const;
+  /// Below visible motion; the servo's last tremble does not count.
+  bool still() const;
   /// The first cycle from that one on with a standing robot, as far as the trace goes.
-  std::optional<long> stood_still(long cycle) const;
+  std::optional<std::uint64_t> stood_still(std::uint64_t cycle) const;
   /// Waits until the trace shows motion.
   bool wait_moving(std::chrono::milliseconds limit = std::chrono::seconds(30));
   bool wait_still(std::chrono::milliseconds limit = std::chrono::seconds(30));
@@ -62,7 +53,7 @@ class System {
   std::string output() const;
 
  private:
-  std::vector<Truth> trace() const;
+  std::vector<sim::TraceRow> trace() const;
 
   TempDir folder_;
   std::string robot_ = unique_robot();

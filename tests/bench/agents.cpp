@@ -1,11 +1,10 @@
 // The cost of a request through the facilitator: a routed request (asker, facilitator, agent,
-// asker: three hops between three processes) beside a ping over bare Fast DDS in the same run (two
-// hops), with few agents and with many, while the robot of the demo runs on the same bus.
+// asker: three hops between three processes) beside a ping over the bus in the same run (two hops
+// between two processes), with few agents and with many, while the robot of the demo runs.
 #include <stdlib.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include <stdexcept>
 
 #include "bench.hpp"
+#include "ping.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "support/guarded.hpp"
@@ -32,6 +32,7 @@ struct Options {
   unsigned requests = 500;
   bool json = false;
   bool serve = false;
+  bool echo = false;
   unsigned first = 0;
 };
 
@@ -168,9 +169,15 @@ int measure(const Options& all) {
     wait_for(asker, kProcesses);
     few = ask(node, asker, all, kProcesses);
   }
-  const double raw = nlohmann::json::parse(bench::output_of({"saphira-bench-raw-ping", "--hz",
-                                                             "100", "--count", "500", "--json"}))
-                         .at("p50_us");
+  const double ping = [] {
+    const Child answers({"saphira-bench-agents", "--echo"});
+    bench::RoundTrip trip(bus::kOpenBus);
+    for (int i = 0; i < 500; ++i) {
+      usleep(10'000);
+      trip.measure();
+    }
+    return trip.quantile(0.5);
+  }();
   const auto agents = children(all.agents, all.triggers);
   wait_for(asker, all.agents);
   const std::uint64_t before = late.count();
@@ -178,8 +185,8 @@ int measure(const Options& all) {
   const std::uint64_t late_cycles = late.count() - before;
 
   const double p50 = test::quantile(few, 0.5);
-  const nlohmann::json result{{"ratio_p50", p50 / raw},
-                              {"raw_p50_us", raw},
+  const nlohmann::json result{{"ratio_p50", p50 / ping},
+                              {"ping_p50_us", ping},
                               {"routed_p50_us", p50},
                               {"routed_p99_us", test::quantile(few, 0.99)},
                               {"many_p50_ms", test::quantile(many, 0.5) / 1000.0},
@@ -203,10 +210,13 @@ int main(int argc, char** argv) {
   app.add_option("--requests", all.requests, "to measure");
   app.add_flag("--json", all.json, "one JSON object");
   app.add_flag("--serve", all.serve, "be the agents").hidden();
+  app.add_flag("--echo", all.echo, "answer the ping").hidden();
   app.add_option("--first", all.first, "of these agents").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
   return test::guarded([&] {
+    if (all.echo)
+      bench::echo(bus::kOpenBus);
     if (all.serve)
       serve(all);
     return measure(all);

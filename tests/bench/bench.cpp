@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -11,8 +10,6 @@
 #include "saphira/base/places.hpp"
 
 namespace saphira::bench {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -81,11 +78,6 @@ std::vector<pid_t> family(pid_t pid) {
       all.push_back(child);
   }
   return all;
-}
-
-std::string name_of(pid_t pid) {
-  std::error_code error;
-  return fs::read_symlink("/proc/" + std::to_string(pid) + "/exe", error).filename().string();
 }
 
 }  // namespace saphira::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "result.hpp"
+#include "study.hpp"
 #include "support/process.hpp"
 
 /// The common parts of the benchmark programs.
@@ -27,6 +27,5 @@ double resident_mb(pid_t pid);
 double proportional_mb(pid_t pid);
 /// The process and all its descendants.
 std::vector<pid_t> family(pid_t pid);
-std::string name_of(pid_t pid);
 
 }  // namespace saphira::bench

@@ -1,16 +1,14 @@
 // Reaction time: from an information packet at the bridge's socket to the command packet that
 // answers it, with bridge and behaviors in processes of their own; beside it, at the same time, a
-// raw Fast DDS two-hop ping with payloads of the same size. The program plays the robot server and
+// two-hop ping over the bus with payloads of the same types. The program plays the robot server and
 // the intentions. With --serial, bridge and robot have a serial line between them, as slow as a
 // real one, and the bound is the time that the line takes for the two packets.
 #include <poll.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <functional>
 #include <future>
 #include <nlohmann/json.hpp>
@@ -20,6 +18,7 @@
 #include <variant>
 
 #include "bench.hpp"
+#include "ping.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
@@ -209,20 +208,24 @@ int report_serial(const std::vector<double>& ours, int unanswered, int baud, boo
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"Reaction time of bridge and behaviors beside a raw two-hop ping"};
+  CommandLine app{"Reaction time of bridge and behaviors beside a two-hop ping"};
   bool json = false;
   double hz = 10.0;
   int count = 300;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--hz", hz, "information packets a second").in_range(1.0, 50.0);
   int baud = 0;
+  bool echo = false;
+  app.add_flag("--echo", echo, "answer the ping").hidden();
   app.add_option("--count", count, "samples").in_range(10, 100000);
   app.add_option("--serial", baud, "a serial line of this baud rate between robot and bridge")
       .one_of({"9600", "19200", "38400", "57600", "115200"});
   if (const auto code = app.parse(argc, argv))
     return *code;
   return test::guarded([&] {
-    const std::string domain = "198";
+    if (echo)
+      bench::echo(bus::kOpenBus);
+    const std::string domain = std::to_string(bench::kDomain);
     const std::string name = "bench" + std::to_string(getpid());
     const std::string socket = "/tmp/saphira-" + name;
     ScriptedRobot robot(socket);
@@ -272,23 +275,23 @@ int main(int argc, char** argv) {
 
     // Both at once, out of phase: on the same machine at the same time. (A robot server must not
     // fall silent meanwhile.)
-    std::future<std::string> ping = std::async(std::launch::async, [&] {
-      return bench::output_of({"saphira-bench-raw-ping", "--hz", std::to_string(hz), "--count",
-                               std::to_string(count), "--json"});
+    const bench::Child answers({"saphira-bench-reaction", "--echo"});
+    auto ping = std::async(std::launch::async, [&] {
+      bench::RoundTrip trip(bus::kOpenBus);
+      paced([&] { trip.measure(); }, count);
+      return std::pair(trip.quantile(0.5), trip.quantile(0.99));
     });
     while (ping.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
       paced(take, 1);
-    const auto raw = nlohmann::json::parse(ping.get()).at("us").get<std::vector<double>>();
+    const auto [ping50, ping99] = ping.get();
     const double p50 = test::quantile(ours, 0.5);
     const double p99 = test::quantile(ours, 0.99);
-    const double raw50 = test::quantile(raw, 0.5);
-    const double raw99 = test::quantile(raw, 0.99);
-    bench::print({{"ratio_p50", p50 / raw50},
-                  {"ratio_p99", p99 / raw99},
+    bench::print({{"ratio_p50", p50 / ping50},
+                  {"ratio_p99", p99 / ping99},
                   {"p50_us", p50},
                   {"p99_us", p99},
-                  {"raw_p50_us", raw50},
-                  {"raw_p99_us", raw99},
+                  {"ping_p50_us", ping50},
+                  {"ping_p99_us", ping99},
                   {"unanswered", unanswered}},
                  json);
     return 0;

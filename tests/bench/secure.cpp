@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -15,93 +14,21 @@
 
 #include "bench.hpp"
 #include "intruders.hpp"
+#include "ping.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/security/authority.hpp"
 #include "support/process.hpp"
-#include "support/quantile.hpp"
 #include "support/strangers.hpp"
 
 using namespace saphira;
-using std::chrono::milliseconds;
+using bench::kDomain;
+using bench::RoundTrip;
 using Clock = std::chrono::steady_clock;
 
 namespace {
-
-constexpr std::uint32_t kDomain = 198;
-
-bus::NodeOptions options_of(const std::string& program, const std::string& security) {
-  bus::NodeOptions options;
-  options.name = program;
-  options.program = program;
-  options.robot = security == bus::kOpenBus ? "open" : "secured";
-  options.domain = kDomain;
-  options.security = security;
-  return options;
-}
-
-/// Answers each command with a state of its number, until it is ended.
-[[noreturn]] void echo(const std::string& security) {
-  bus::Node node(options_of("bridge", security));
-  auto commands = node.reader(bus::topics::kDriveTeleop);
-  auto states = node.writer(bus::topics::kRobotState);
-  v1::RobotState state;
-  for (;;) {
-    node.wait(milliseconds(1000));
-    commands.visit([&](const v1::MotorCommand& command, const bus::SampleInfo&) {
-      state.stamp.cycle = command.number;
-      states.write(state);
-    });
-  }
-}
-
-/// One side of the comparison.
-class RoundTrip {
- public:
-  explicit RoundTrip(const std::string& security)
-      : node_(options_of("bench", security)),
-        commands_(node_.writer(bus::topics::kDriveTeleop)),
-        states_(node_.reader(bus::topics::kRobotState)) {
-    const auto end = Clock::now() + std::chrono::seconds(30);
-    while (!ping(milliseconds(50)))
-      if (Clock::now() > end)
-        throw std::runtime_error("no answer over the bus with security " + security);
-  }
-
-  void measure() {
-    if (const auto time = ping(milliseconds(500)))
-      times_.push_back(*time);
-  }
-  double quantile(double share) const { return test::quantile(times_, share); }
-  std::size_t answered() const { return times_.size(); }
-
- private:
-  /// [us]
-  std::optional<double> ping(milliseconds limit) {
-    v1::MotorCommand command{.number = ++number_};
-    const auto began = Clock::now();
-    commands_.write(command);
-    while (Clock::now() - began < limit) {
-      node_.wait(limit);
-      bool answered = false;
-      states_.visit([&](const v1::RobotState& state, const bus::SampleInfo&) {
-        answered = answered || state.stamp.cycle == number_;
-      });
-      if (answered)
-        return std::chrono::duration<double, std::micro>(Clock::now() - began).count();
-    }
-    return std::nullopt;
-  }
-
-  bus::Node node_;
-  bus::Writer<v1::MotorCommand> commands_;
-  bus::Reader<v1::RobotState> states_;
-  std::uint64_t number_ = 0;
-  std::vector<double> times_;
-};
 
 /// Makes a site in that folder.
 security::Authority site_in(const std::string& folder) {
@@ -209,7 +136,7 @@ int main(int argc, char** argv) {
   if (const auto code = app.parse(argc, argv))
     return *code;
   if (!answering.empty())
-    echo(answering);
+    bench::echo(answering);
   if (!guarded.empty())
     return bench::watched(guarded, kDomain);
 

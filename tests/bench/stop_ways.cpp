@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -32,9 +30,9 @@ using Words = std::vector<std::string>;
 
 constexpr milliseconds kPatience{15000};
 constexpr double kCycle = 0.1;
-constexpr long kWatched = 30;    // [cycles] after the stop
-constexpr double kMoved = 0.02;  // [m], [rad]
-constexpr double kSpeed = 0.2;   // [m/s] of a person
+constexpr std::uint64_t kWatched = 30;  // [cycles] after the stop
+constexpr double kMoved = 0.02;         // [m], [rad]
+constexpr double kSpeed = 0.2;          // [m/s] of a person
 
 /// A robot with all programs that may move it or stop it.
 class Site {
@@ -114,7 +112,7 @@ class Site {
     armed_ = true;
   }
   /// The cycle of the trace at which the bridge had the stop.
-  const std::optional<long>& arrived() const { return arrived_; }
+  const std::optional<std::uint64_t>& arrived() const { return arrived_; }
   /// The example of direct motion control in C.
   std::string c_program() {
     const std::string out = system_.folder().path("program");
@@ -136,7 +134,7 @@ class Site {
     held_ = false;
     command({"estop", "reset"}).wait();
     command({"drive", "hand-back"}).wait();
-    until([&] { return system_.truth().still(); });
+    until([&] { return system_.still(); });
   }
 
  private:
@@ -148,7 +146,7 @@ class Site {
   bool held_ = false;
   bool armed_ = false;
   v1::StopId before_;
-  std::optional<long> arrived_;
+  std::optional<std::uint64_t> arrived_;
   v1::Stamp stamp_;
   v1::Grant grant_;
   teleop::Pilot person_{"a person"};
@@ -269,8 +267,8 @@ Result stop(Site& site, const Move& move, const Stop& way) {
                              (mover ? mover->output() : std::string()));
   site.arm();
   result.success = way.stop(site);
-  const long claimed = site.system().truth().cycle;
-  std::optional<long> stood;
+  const std::uint64_t claimed = site.system().truth().cycle;
+  std::optional<std::uint64_t> stood;
   result.stopped = site.until([&] {
     if (site.arrived())
       stood = site.system().stood_still(*site.arrived());
@@ -280,11 +278,10 @@ Result stop(Site& site, const Move& move, const Stop& way) {
     return result;
   result.false_success = way.claims_rest && result.success && claimed < *stood;
   result.still = kCycle * static_cast<double>(*stood - *site.arrived());
-  const test::Truth at = site.system().truth();
-  site.until([&] { return site.system().truth().cycle >= at.cycle + kWatched; });
-  const test::Truth after = site.system().truth();
-  result.moved_after = std::hypot(after.x - at.x, after.y - at.y) > kMoved ||
-                       std::abs(std::remainder(after.th - at.th, 2.0 * std::numbers::pi)) > kMoved;
+  const sim::TraceRow then = site.system().truth();
+  site.until([&] { return site.system().truth().cycle >= then.cycle + kWatched; });
+  const Pose moved = relative(then.pose_in_world, site.system().truth().pose_in_world);
+  result.moved_after = moved.position().norm() > kMoved || std::abs(norm2_angle(moved.th)) > kMoved;
   return result;
 }
 

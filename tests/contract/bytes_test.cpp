@@ -7,12 +7,9 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "drive/whole.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "geometry/shell/convert.hpp"

@@ -2,7 +2,6 @@
 
 #include <turbojpeg.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>

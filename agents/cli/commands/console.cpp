@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <iostream>
+#include <utility>
 
 #include "commands.hpp"
 #include "environment.hpp"
@@ -21,20 +22,6 @@ int become(const std::string& program, const bus::NodeOptions& options,
   execute(std::move(words));
 }
 
-/// A command that is a separate program, with its own options and help.
-void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* summary) {
-  CLI::App* command = app.add_subcommand(name, summary);
-  command->allow_extras();
-  command->set_help_flag();
-  const std::string program = std::string("saphira-") + name;
-  command->callback([command, program, &chosen] {
-    chosen.run = [program, rest = command->remaining()](const bus::NodeOptions& options,
-                                                        const bus::Stop&) {
-      return become(program, options, rest);
-    };
-  });
-}
-
 /// A file's name is its time and the event: 2026-05-04-101530-goal-failed.mcap.
 int box() {
   const std::vector<std::string> files = box_files();
@@ -49,35 +36,32 @@ int box() {
 
 }  // namespace
 
-void add_console(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "console",
-              "See the robot think and drive it, in a browser; or --screenshot FILE");
-}
-
-void add_mcp(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "mcp", "Let a language model send the robot (Model Context Protocol)");
-}
-
-void add_record(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "record", "Record the bus as an MCAP file");
-}
-
-void add_replay(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "replay", "Play a recording on the bus, as another robot");
+/// The commands that are separate programs, with their own options and help.
+void add_programs(CLI::App& app, Chosen& chosen) {
+  for (const auto& [name, summary] :
+       {std::pair("console",
+                  "See the robot think and drive it, in a browser; or --screenshot FILE"),
+        {"mcp", "Let a language model send the robot (Model Context Protocol)"},
+        {"record", "Record the bus as an MCAP file"},
+        {"replay", "Play a recording on the bus, as another robot"},
+        {"foxglove", "See the robot in Foxglove or Lichtblick"},
+        {"ros2", "Show the robot to ROS 2, and let ROS 2 drive it"}}) {
+    CLI::App* command = app.add_subcommand(name, summary);
+    command->allow_extras();
+    command->set_help_flag();
+    command->callback([command, &chosen] {
+      chosen.run = [program = "saphira-" + command->get_name(), rest = command->remaining()](
+                       const bus::NodeOptions& options, const bus::Stop&) {
+        return become(program, options, rest);
+      };
+    });
+  }
 }
 
 void add_box(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "box", "The recordings of the last minute after an event, the newest first");
   chosen.when(command, [](const bus::NodeOptions&, const bus::Stop&) { return box(); });
-}
-
-void add_foxglove(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "foxglove", "See the robot in Foxglove or Lichtblick");
-}
-
-void add_ros2(CLI::App& app, Chosen& chosen) {
-  add_program(app, chosen, "ros2", "Show the robot to ROS 2, and let ROS 2 drive it");
 }
 
 }  // namespace saphira::cli

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "loop.hpp"
 #include "saphira/console/access.hpp"
+#include "sockets.hpp"
 
 namespace saphira::console {
 
@@ -39,7 +38,7 @@ enum class Channel { telemetry, commands, pictures, simulator };
 /// connection. Bounded: connections, sizes, and silences.
 class Server {
  public:
-  using Connection = std::uint64_t;
+  using Connection = web::Sockets::Connection;
 
   /// The callbacks for events. Each is called from run() alone.
   struct Events {
@@ -60,23 +59,37 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  int port() const;
+  int port() const { return sockets_.port(); }
   /// At kRelayed.
-  int relayed_port() const;
+  int relayed_port() const { return lws_get_vhost_listen_port(relayed_); }
   /// From now on Events::readable is called when this is readable.
-  void watch(int fd);
+  void watch(int fd) { sockets_.watch(fd, events_.readable); }
   /// There may be something to send: next() is called soon.
-  void want(Connection connection);
+  void want(Connection connection) { sockets_.want(connection); }
   /// The same for all connections, a hundredth of a second later: simultaneous news go together.
-  void want_all_soon();
-  void close(Connection connection);
+  void want_all_soon() { sockets_.want_all_soon(); }
+  void close(Connection connection) { sockets_.close(connection); }
 
   /// Runs until `stop` is readable.
   void run(int stop);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct Page;
+  struct Http;
+
+  Caller caller_of(lws* wsi) const;
+  int answer(lws* wsi, Http& http, std::string_view path) const;
+  void opened(Connection id, lws* wsi);
+  std::optional<web::Sockets::Message> next(Connection id) const;
+  void listen(const ServerOptions& options);
+  static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+
+  AccessSettings access_;
+  std::vector<Page> pages_;
+  Events events_;
+  std::set<Connection> pictures_;  ///< what goes out is no text
+  lws_vhost* relayed_ = nullptr;   ///< null: nobody comes by a relay
+  web::Sockets sockets_;           // its end needs the rest
 };
 
 }  // namespace saphira::console

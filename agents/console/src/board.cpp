@@ -1,7 +1,6 @@
 #include "saphira/console/board.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "saphira/base/format.hpp"
 

@@ -6,15 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <map>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
-#include <vector>
-
-#include "chunks.hpp"
-#include "loop.hpp"
 
 namespace saphira::mcp {
 
@@ -63,54 +56,18 @@ std::optional<double> silence_of(lws* wsi) {
 
 }  // namespace
 
-struct HttpServer::Impl {
-  /// The record of libwebsockets for each connection; it begins as zeros.
-  struct Connection {
-    Exchange exchange;
-  };
-  struct Open {
-    lws* wsi = nullptr;
-    HttpRequest request;
-    std::optional<web::Chunks> chunks;  // nothing: the body comes whole
-    bool is_admitted = false;           // its body is kept
-    bool too_long = false;
-    bool has_come = false;
-    int status = 0;  // of the answer [0: none yet]
-    std::string type;
-    std::string session;
-    std::string body;  // to be sent
-    bool streams = false;
-    bool begun = false;  // the headers are sent
-    bool complete = false;
-    int silent = 0;  // ticks
-  };
-
-  Events events;
-  std::optional<web::Loop> loop;
-  lws_vhost* vhost = nullptr;
-  std::map<Exchange, Open> open;
-  Exchange last = 0;
-
-  int begin(lws* wsi, Connection& connection, const char* path);
-  int take(const Connection& connection, std::string_view data);
-  int complete(const Connection& connection);
-  int send(lws* wsi, Connection& connection);
-  int finish(Connection& connection);
-  static bool send_headers(lws* wsi, const Open& answer);
-  void closed(Exchange exchange);
-  void tick();
-
-  static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
-  static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+/// The record of libwebsockets for each connection; it begins as zeros.
+struct HttpServer::Connection {
+  Exchange exchange;
 };
 
 /// The headers of a request have come.
-int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) {
+int HttpServer::begin(lws* wsi, Connection& connection, const char* path) {
   if (connection.exchange != 0)
     return -1;  // a request behind another one: see web::kAnswered
   ask_for_life(lws_get_socket_fd(wsi));
-  connection.exchange = ++last;
-  Open& exchange = open[connection.exchange];
+  connection.exchange = ++last_;
+  Open& exchange = open_[connection.exchange];
   exchange.wsi = wsi;
   HttpRequest& request = exchange.request;
   request.path = path;
@@ -124,7 +81,7 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
   request.version = decoded_header(wsi, "mcp-protocol-version:");
   request.mcp_method = decoded_header(wsi, "mcp-method:");
   request.mcp_name = decoded_header(wsi, "mcp-name:");
-  exchange.is_admitted = events.admits(request);
+  exchange.is_admitted = events_.admits(request);
   if (request.method != "POST")
     return complete(connection);
   if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0) {
@@ -135,9 +92,9 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
   return length.empty() || length == "0" ? complete(connection) : 0;
 }
 
-int HttpServer::Impl::take(const Connection& connection, std::string_view data) {
-  const auto found = open.find(connection.exchange);
-  if (found == open.end())
+int HttpServer::take(const Connection& connection, std::string_view data) {
+  const auto found = open_.find(connection.exchange);
+  if (found == open_.end())
     return -1;
   Open& exchange = found->second;
   if (exchange.has_come)
@@ -155,10 +112,10 @@ int HttpServer::Impl::take(const Connection& connection, std::string_view data) 
   return exchange.chunks && exchange.chunks->ended() ? complete(connection) : 0;
 }
 
-int HttpServer::Impl::complete(const Connection& connection) {
-  const auto found = open.find(connection.exchange);
-  if (found == open.end() || found->second.has_come)
-    return found == open.end() ? -1 : 0;
+int HttpServer::complete(const Connection& connection) {
+  const auto found = open_.find(connection.exchange);
+  if (found == open_.end() || found->second.has_come)
+    return found == open_.end() ? -1 : 0;
   found->second.has_come = true;
   lws_set_timeout(found->second.wsi, NO_PENDING_TIMEOUT, 0);  // its answer may take its time
   if (found->second.too_long) {
@@ -169,34 +126,26 @@ int HttpServer::Impl::complete(const Connection& connection) {
     lws_callback_on_writable(found->second.wsi);
     return 0;
   }
-  events.came(connection.exchange, std::move(found->second.request));
+  events_.came(connection.exchange, std::move(found->second.request));
   return 0;
 }
 
-bool HttpServer::Impl::send_headers(lws* wsi, const Open& answer) {
-  std::array<unsigned char, LWS_PRE + 2048> buffer{};
-  unsigned char* const start = buffer.data() + LWS_PRE;
-  unsigned char* at = start;
-  unsigned char* const end = buffer.data() + buffer.size() - 1;
-  const auto add = [&](const char* name, const std::string& value) {
-    return lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
-                                       reinterpret_cast<const unsigned char*>(value.c_str()),
-                                       static_cast<int>(value.size()), &at, end) == 0;
-  };
-  const lws_filepos_t length = answer.streams ? LWS_ILLEGAL_HTTP_CONTENT_LEN : answer.body.size();
-  return lws_add_http_common_headers(wsi, static_cast<unsigned>(answer.status), answer.type.c_str(),
-                                     length, &at, end) == 0 &&
-         add("cache-control:", "no-cache") && add("x-accel-buffering:", "no") &&
-         add("x-content-type-options:", "nosniff") && add("connection:", "close") &&
-         (answer.session.empty() || add("mcp-session-id:", answer.session)) &&
-         (answer.status != kUnauthorized || add("www-authenticate:", "Bearer")) &&
-         (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "GET, POST, DELETE")) &&
-         lws_finalize_write_http_header(wsi, start, &at, end) == 0;
+bool HttpServer::send_headers(lws* wsi, const Open& answer) {
+  web::Headers headers{{"x-accel-buffering:", "no"}};
+  if (!answer.session.empty())
+    headers.emplace_back("mcp-session-id:", answer.session);
+  if (answer.status == kUnauthorized)
+    headers.emplace_back("www-authenticate:", "Bearer");
+  if (answer.status == HTTP_STATUS_METHOD_NOT_ALLOWED)
+    headers.emplace_back("allow:", "GET, POST, DELETE");
+  return web::begin_answer(wsi, answer.status, answer.type,
+                           answer.streams ? LWS_ILLEGAL_HTTP_CONTENT_LEN : answer.body.size(),
+                           headers);
 }
 
-int HttpServer::Impl::send(lws* wsi, Connection& connection) {
-  const auto found = open.find(connection.exchange);
-  if (found == open.end() || found->second.status == 0)
+int HttpServer::send(lws* wsi, Connection& connection) {
+  const auto found = open_.find(connection.exchange);
+  if (found == open_.end() || found->second.status == 0)
     return 0;
   Open& answer = found->second;
   if (!answer.begun) {
@@ -212,45 +161,42 @@ int HttpServer::Impl::send(lws* wsi, Connection& connection) {
   if (answer.body.empty() && !answer.complete)
     return 0;
   const std::string body = std::exchange(answer.body, {});
-  std::vector<unsigned char> buffer(LWS_PRE + body.size());
-  std::memcpy(buffer.data() + LWS_PRE, body.data(), body.size());
   const bool final = answer.complete;
-  if (lws_write(wsi, buffer.data() + LWS_PRE, body.size(),
-                final ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(body.size()))
+  if (!web::write(wsi, body, final ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
     return -1;
   return final ? finish(connection) : 0;
 }
 
 /// The answer is sent.
-int HttpServer::Impl::finish(Connection& connection) {
-  const auto found = open.find(connection.exchange);
-  open.erase(found);
+int HttpServer::finish(Connection& connection) {
+  const auto found = open_.find(connection.exchange);
+  open_.erase(found);
   connection.exchange = 0;
   return web::kAnswered;
 }
 
-void HttpServer::Impl::closed(Exchange exchange) {
-  const auto found = open.find(exchange);
-  if (found == open.end())
+void HttpServer::closed(Exchange exchange) {
+  const auto found = open_.find(exchange);
+  if (found == open_.end())
     return;
   const bool is_known = found->second.has_come;
-  open.erase(found);
+  open_.erase(found);
   if (is_known)
-    events.lost(exchange);
+    events_.lost(exchange);
 }
 
 /// libwebsockets notices the end of a client when it writes; the socket knows it at once.
-void HttpServer::Impl::tick() {
-  for (auto each = open.begin(); each != open.end();) {
+void HttpServer::tick() {
+  for (auto each = open_.begin(); each != open_.end();) {
     const auto [exchange, wsi] = std::pair(each->first, each->second.wsi);
     ++each;
     if (silence_of(wsi))
       continue;
-    lws_set_timeout(wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    web::drop(wsi);
     closed(exchange);
   }
-  events.tick();
-  for (auto& [exchange, answer] : open) {
+  events_.tick();
+  for (auto& [exchange, answer] : open_) {
     if (!answer.streams || answer.complete || !answer.body.empty() ||
         ++answer.silent < kTicksOfSilence)
       continue;
@@ -260,63 +206,53 @@ void HttpServer::Impl::tick() {
   }
 }
 
-int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, void* in,
-                           std::size_t size) {
+int HttpServer::http(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                     std::size_t size) {
   auto* const connection = static_cast<Connection*>(user);
+  const auto self = [wsi]() -> HttpServer& {
+    return *static_cast<HttpServer*>(lws_context_user(lws_get_context(wsi)));
+  };
   switch (reason) {
     case LWS_CALLBACK_HTTP:
-      return of(wsi).begin(wsi, *connection, static_cast<const char*>(in));
+      return self().begin(wsi, *connection, static_cast<const char*>(in));
     case LWS_CALLBACK_HTTP_BODY:
-      return of(wsi).take(*connection, {static_cast<const char*>(in), size});
+      return self().take(*connection, {static_cast<const char*>(in), size});
     case LWS_CALLBACK_HTTP_BODY_COMPLETION:
-      return of(wsi).complete(*connection);
+      return self().complete(*connection);
     case LWS_CALLBACK_HTTP_WRITEABLE:
-      return of(wsi).send(wsi, *connection);
+      return self().send(wsi, *connection);
     case LWS_CALLBACK_CLOSED_HTTP:
       if (connection != nullptr)
-        of(wsi).closed(connection->exchange);
+        self().closed(connection->exchange);
       return 0;
     default:
       return lws_callback_http_dummy(wsi, reason, user, in, size);
   }
 }
 
-HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()) {
-  impl_->events = std::move(events);
+HttpServer::HttpServer(int port, Events events)
+    : events_(std::move(events)), loop_(this, kMostDescriptors, false) {
   static const std::array<lws_protocols, 3> protocols{
-      {{"http", Impl::http, sizeof(Impl::Connection), 0, 0, nullptr, 0},
+      {{"http", http, sizeof(Connection), 0, 0, nullptr, 0},
        web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
-  impl_->loop.emplace(impl_.get(), kMostDescriptors, false);
   lws_context_creation_info info{};
   info.protocols = protocols.data();
   info.timeout_secs = 5;  // for clients without a complete request
   info.keepalive_timeout = 30;
   info.vhost_name = "mcp";
-  impl_->vhost = impl_->loop->listen(info, {"127.0.0.1", port, {}, {}});
-  if (impl_->vhost == nullptr)
+  vhost_ = loop_.listen(info, {"127.0.0.1", port, {}, {}});
+  if (vhost_ == nullptr)
     throw std::runtime_error("cannot listen on 127.0.0.1 port " + std::to_string(port) +
                              ": another program has it");
 }
 
-HttpServer::~HttpServer() {
-  impl_->loop.reset();  // its callbacks need the rest
-}
-
-int HttpServer::port() const {
-  return lws_get_vhost_listen_port(impl_->vhost);
-}
-
-void HttpServer::watch(int fd) {
-  impl_->loop->watch(impl_->vhost, fd, [this] { impl_->events.readable(); });
-}
-
 void HttpServer::answer(Exchange exchange, int status, const std::string& type, std::string body,
                         const std::string& session) {
-  const auto found = impl_->open.find(exchange);
-  if (found == impl_->open.end() || found->second.status != 0)
+  const auto found = open_.find(exchange);
+  if (found == open_.end() || found->second.status != 0)
     return;
-  Impl::Open& answer = found->second;
+  Open& answer = found->second;
   answer.status = status;
   answer.type = type;
   answer.body = std::move(body);
@@ -326,10 +262,10 @@ void HttpServer::answer(Exchange exchange, int status, const std::string& type, 
 }
 
 void HttpServer::event(Exchange exchange, const std::string& message, bool last) {
-  const auto found = impl_->open.find(exchange);
-  if (found == impl_->open.end() || found->second.complete)
+  const auto found = open_.find(exchange);
+  if (found == open_.end() || found->second.complete)
     return;
-  Impl::Open& answer = found->second;
+  Open& answer = found->second;
   answer.status = HTTP_STATUS_OK;
   answer.type = "text/event-stream";
   answer.streams = true;
@@ -337,18 +273,18 @@ void HttpServer::event(Exchange exchange, const std::string& message, bool last)
   answer.complete = last;
   answer.body += message.empty() ? kSign : "event: message\ndata: " + message + "\n\n";
   if (answer.body.size() > kLongestQueue)
-    lws_set_timeout(answer.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    web::drop(answer.wsi);
   lws_callback_on_writable(answer.wsi);
 }
 
 std::optional<double> HttpServer::silence(Exchange exchange) const {
-  const auto found = impl_->open.find(exchange);
-  return found == impl_->open.end() ? std::nullopt : silence_of(found->second.wsi);
+  const auto found = open_.find(exchange);
+  return found == open_.end() ? std::nullopt : silence_of(found->second.wsi);
 }
 
 void HttpServer::run(int stop) {
-  impl_->loop->every(kTick, [this] { impl_->tick(); });
-  impl_->loop->run(impl_->vhost, stop);
+  loop_.every(kTick, [this] { tick(); });
+  loop_.run(vhost_, stop);
 }
 
 }  // namespace saphira::mcp

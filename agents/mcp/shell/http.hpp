@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "chunks.hpp"
+#include "loop.hpp"
 #include "saphira/console/access.hpp"
 #include "saphira/mcp/session.hpp"
 
@@ -43,12 +46,11 @@ class HttpServer {
 
   /// port 0: any that is free. std::runtime_error where the port is taken.
   HttpServer(int port, Events events);
-  ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  int port() const;
-  void watch(int fd);
+  int port() const { return lws_get_vhost_listen_port(vhost_); }
+  void watch(int fd) { loop_.watch(vhost_, fd, events_.readable); }
 
   /// A complete answer. session: becomes the header Mcp-Session-Id [empty: none].
   void answer(Exchange exchange, int status, const std::string& type, std::string body,
@@ -66,8 +68,39 @@ class HttpServer {
   static constexpr std::size_t kLongestBody = Session::kLongestLine;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct Connection;
+  struct Open {
+    lws* wsi = nullptr;
+    HttpRequest request;
+    std::optional<web::Chunks> chunks;  // nothing: the body comes whole
+    bool is_admitted = false;           // its body is kept
+    bool too_long = false;
+    bool has_come = false;
+    int status = 0;  // of the answer [0: none yet]
+    std::string type;
+    std::string session;
+    std::string body;  // to be sent
+    bool streams = false;
+    bool begun = false;  // the headers are sent
+    bool complete = false;
+    int silent = 0;  // ticks
+  };
+
+  int begin(lws* wsi, Connection& connection, const char* path);
+  int take(const Connection& connection, std::string_view data);
+  int complete(const Connection& connection);
+  int send(lws* wsi, Connection& connection);
+  int finish(Connection& connection);
+  static bool send_headers(lws* wsi, const Open& answer);
+  void closed(Exchange exchange);
+  void tick();
+  static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+
+  Events events_;
+  std::map<Exchange, Open> open_;
+  Exchange last_ = 0;
+  lws_vhost* vhost_ = nullptr;
+  web::Loop loop_;  // its end needs the rest
 };
 
 }  // namespace saphira::mcp

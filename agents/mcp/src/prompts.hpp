@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "saphira/mcp/session.hpp"
 
 namespace saphira::mcp {

@@ -69,7 +69,7 @@ void LastMinute::keep(std::size_t source, std::string json, std::int64_t now_ns)
     newest_ = stamp;
     newest_ns_ = now_ns;
   }
-  heard_.push_back({source, std::move(json), now_ns, stamp});
+  heard_.push_back({source, std::move(json), stamp});
 }
 
 void LastMinute::poll(std::int64_t now_ns) {

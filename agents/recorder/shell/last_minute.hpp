@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -34,7 +33,6 @@ class LastMinute {
   struct Heard {
     std::size_t source = 0;
     std::string json;
-    std::int64_t came_ns = 0;
     std::pair<std::uint64_t, std::uint64_t> stamp;  ///< epoch and cycle [0: none]
   };
   void keep(std::size_t source, std::string json, std::int64_t now_ns);

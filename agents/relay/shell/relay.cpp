@@ -165,7 +165,7 @@ int Relay::Impl::dialled(lws* wsi, Leg& leg) {
     return -1;
   Gateway& gateway = gateways[leg.dialled->name];
   if (gateway.wsi != nullptr)
-    lws_set_timeout(gateway.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    web::drop(gateway.wsi);
   gateway = {wsi, {"port " + std::to_string(leg.dialled->port)}};
   lws_callback_on_writable(wsi);
   say(leg.dialled->name + " has dialled in");
@@ -178,9 +178,7 @@ int Relay::Impl::tell(lws* wsi, const Leg& leg) {
     return 0;
   const std::string line = found->second.out.front();
   found->second.out.erase(found->second.out.begin());
-  std::vector<unsigned char> buffer(LWS_PRE + line.size());
-  std::copy(line.begin(), line.end(), buffer.begin() + LWS_PRE);
-  if (lws_write(wsi, buffer.data() + LWS_PRE, line.size(), LWS_WRITE_TEXT) < 0)
+  if (!web::write(wsi, line, LWS_WRITE_TEXT))
     return -1;
   if (!found->second.out.empty())
     lws_callback_on_writable(wsi);

@@ -1,10 +1,8 @@
 #include "splice.hpp"
 
-#include <libwebsockets.h>
-
 #include <algorithm>
-#include <cstring>
-#include <vector>
+
+#include "loop.hpp"
 
 namespace saphira::relay {
 
@@ -47,10 +45,8 @@ int Splice::write(Side side) {
   if (end.out.empty())
     return other.gone ? -1 : 0;
   const std::size_t size = std::min(kPiece, end.out.size());
-  std::vector<unsigned char> buffer(LWS_PRE + size);
-  std::memcpy(buffer.data() + LWS_PRE, end.out.data(), size);
-  if (lws_write(end.wsi, buffer.data() + LWS_PRE, size,
-                end.is_websocket ? LWS_WRITE_BINARY : LWS_WRITE_RAW) < static_cast<int>(size))
+  if (!web::write(end.wsi, std::string_view(end.out).substr(0, size),
+                  end.is_websocket ? LWS_WRITE_BINARY : LWS_WRITE_RAW))
     return -1;
   end.out.erase(0, size);
   if (end.out.size() < kFull / 2)
@@ -75,7 +71,7 @@ void Splice::closed(Side side) {
 void Splice::close() {
   for (End& end : ends_) {
     if (end.wsi != nullptr && !end.gone)
-      lws_set_timeout(end.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+      web::drop(end.wsi);
     else
       end.gone = true;
   }

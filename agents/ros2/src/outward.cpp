@@ -1,6 +1,5 @@
 #include "saphira/ros2/outward.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -129,7 +129,6 @@ TEST_F(OnBus, AStoppedProgramDoesNotDriveOn) {
 
 TEST_F(OnBus, WhatSomebodyPointsOutIsAClick) {
   Process program = written(R"(
-#include <stdlib.h>
 static int clicked(int x, int y, int b) {
   sfSMessage("button %d at %.0f %.0f", b, sfScreenToWorldX(x, y), sfScreenToWorldY(x, y));
   exit(0);

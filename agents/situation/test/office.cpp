@@ -1,6 +1,5 @@
 #include "office.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "saphira/geometry/pose.hpp"

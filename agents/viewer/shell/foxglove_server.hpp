@@ -2,12 +2,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "loop.hpp"
 #include "saphira/viewer/protocol.hpp"
+#include "sockets.hpp"
 
 namespace saphira::viewer {
 
@@ -31,21 +32,35 @@ class Server {
 
   /// std::runtime_error that names the cause (the port, the certificate).
   Server(const Options& options, std::vector<Channel> channels, Events events);
-  ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  int port() const;
+  int port() const { return sockets_.port(); }
   bool wants(std::size_t channel) const;
   /// A sample of a channel, for each client that has subscribed.
   void offer(std::size_t channel, std::int64_t time_ns, const std::string& json);
-  void watch(int fd);
+  void watch(int fd) { sockets_.watch(fd, events_.readable); }
   /// Runs until `stop` is readable.
   void run(int stop);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  using Connection = web::Sockets::Connection;
+  struct Open {
+    Client client;
+    std::string key;
+  };
+
+  static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+  std::string refusal(lws* wsi) const;
+  void opened(Connection id, lws* wsi);
+  bool came(Connection id, const std::string& text);
+  std::optional<web::Sockets::Message> next(Connection id);
+
+  Options options_;
+  std::vector<Channel> channels_;
+  Events events_;
+  std::map<Connection, Open> open_;
+  web::Sockets sockets_;  // its end needs the rest
 };
 
 }  // namespace saphira::viewer

@@ -1,7 +1,5 @@
 #include "live.hpp"
 
-#include <stdexcept>
-
 #include "draw.hpp"
 #include "saphira/viewer/schema.hpp"
 

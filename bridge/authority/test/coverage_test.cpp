@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "saphira/authority/robot.hpp"
 #include "saphira/base/places.hpp"
 

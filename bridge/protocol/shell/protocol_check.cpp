@@ -5,8 +5,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -18,6 +16,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "saphira/base/stop_signals.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/check.hpp"
 #include "saphira/transport/address.hpp"
@@ -188,12 +187,7 @@ int main(int argc, char** argv) {
   if (const auto code = app.parse(argc, argv))
     return *code;
   return exit_code_of("saphira-protocol-check", [&] {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGINT);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    const int stop_fd = signalfd(-1, &signals, SFD_CLOEXEC);
+    const int stop_fd = stop_on_signals();
     Proxy proxy(transport::parse_address(listen), transport::parse_address(server), robots);
     proxy.run(stop_fd);
     std::cout << proxy.checker().summary() << std::flush;

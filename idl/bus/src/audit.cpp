@@ -1,6 +1,5 @@
 #include "saphira/bus/audit.hpp"
 
-#include <chrono>
 #include <stdexcept>
 #include <utility>
 

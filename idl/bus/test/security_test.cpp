@@ -1,8 +1,6 @@
 // The bus with security: several members of a site in one process.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <functional>

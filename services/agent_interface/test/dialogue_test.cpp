@@ -1,6 +1,5 @@
 // The dialogue: orders, tasks and their ends.
 #include <cmath>
-#include <numbers>
 
 #include "dialogue_fixture.hpp"
 #include "saphira/base/archive.hpp"

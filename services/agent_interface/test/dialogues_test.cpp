@@ -1,7 +1,6 @@
 // The conversations of dialogues.txt.
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <sstream>

@@ -1,6 +1,5 @@
 #include "saphira/intentions/gaze.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "saphira/intentions/beliefs.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "saphira/idl/map.hpp"
 #include "saphira/registration/core.hpp"
 

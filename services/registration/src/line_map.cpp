@@ -1,7 +1,6 @@
 #include "saphira/registration/line_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -13,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "../result.hpp"
+#include "bench/study.hpp"
 #include "drive/building.hpp"
 #include "floors/floor.hpp"
 #include "localization/patrol.hpp"
@@ -22,11 +21,11 @@
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/maps/topology.hpp"
 #include "support/guarded.hpp"
-#include "support/quantile.hpp"
 
 namespace {
 
 using namespace saphira;
+using bench::Tally;
 
 struct Options {
   std::uint64_t first = 3001;
@@ -86,25 +85,14 @@ test::DriveOptions drive_of(const Options& options, const Site& site) {
   return drive;
 }
 
-/// The results of a patrol of all corridors.
-struct Patrolled {
-  test::Offs offs;
-  int cycles = 0;
-  int tracking = 0;
-  int sure = 0;        ///< cycles with a confidence of 0.9 and more
-  int sure_right = 0;  ///< of these within 0.5 m
-  int doors = 0;
-  int noticed = 0;
-  int recessed = 0;  ///< of these, those that stand back
-  int recessed_noticed = 0;
-  int reported = 0;    ///< hypotheses of doors
-  int real = 0;        ///< of any door, also of one that is ajar
-  int false_lost = 0;  ///< times that it said to be lost within 0.5 m and 20 degrees of its place
-};
+bool is_right(const Pose& believed, const Pose& truth) {
+  return (believed.position() - truth.position()).norm() < 0.5 &&
+         std::abs(norm2_angle(believed.th - truth.th)) < radians(20.0);
+}
 
-Patrolled patrol(const Options& options, const Site& site) {
+/// A patrol of all corridors.
+void patrol(const Options& options, const Site& site, Tally& result) {
   constexpr double kGivenUp = 600.0;  // [cycles] for one point
-  Patrolled result;
   test::Drive robot(test::registered_on(*site.map, drive_of(options, site)));
   test::Score score(robot, site.noticeable);
   test::Score recessed(robot, site.recessed_doors);
@@ -113,8 +101,8 @@ Patrolled patrol(const Options& options, const Site& site) {
   std::size_t reached = 0;
   int since = 0;
   bool tracked = false;
-  result.cycles = static_cast<int>(options.minutes * 600.0);
-  for (int i = 0; i < result.cycles; ++i) {
+  result["cycles"] = std::lround(options.minutes * 600.0);
+  for (int i = 0; i < result("cycles"); ++i) {
     tour.act(robot, i == 0 ? robot.truth() : robot.believed());
     since = tour.reached() == reached ? since + 1 : 0;
     reached = tour.reached();
@@ -128,30 +116,29 @@ Patrolled patrol(const Options& options, const Site& site) {
     any.look(robot);
     const v1::Registration& told = robot.registered();
     const double off = (robot.believed().position() - robot.truth().position()).norm();
+    const bool right = is_right(robot.believed(), robot.truth());
     const bool tracks = told.state == v1::REGISTRATION_TRACKING;
-    if (tracked && !tracks && off < 0.5 &&
-        std::abs(norm2_angle(robot.believed().th - robot.truth().th)) < radians(20.0)) {
-      ++result.false_lost;
+    if (tracked && !tracks && right) {
+      ++result["false_lost"];  // within 0.5 m and 20 degrees of its place
       std::fprintf(stderr, "%llu: lost at the right place in cycle %d\n",
                    static_cast<unsigned long long>(site.seed), i);
     }
     tracked = tracks;
-    if (told.state == v1::REGISTRATION_TRACKING) {
-      ++result.tracking;
-      result.offs.add(robot.believed(), robot.truth());
+    if (tracks) {
+      ++result["tracking"];
+      result.values["off"].push_back(off);
     }
     if (told.confidence >= 0.9) {
-      ++result.sure;
-      result.sure_right += off <= 0.5 ? 1 : 0;
+      ++result["sure"];
+      result["sure_right"] += off <= 0.5 ? 1 : 0;
     }
   }
-  result.doors = score.doors_passed();
-  result.noticed = score.doors_found();
-  result.recessed = recessed.doors_passed();
-  result.recessed_noticed = recessed.doors_found();
-  result.reported = any.doors().reported;
-  result.real = any.doors().real;
-  return result;
+  result["doors"] = score.doors_passed();
+  result["noticed"] = score.doors_found();
+  result["recessed"] = recessed.doors_passed();
+  result["recessed_noticed"] = recessed.doors_found();
+  result["reported"] = any.doors().reported;
+  result["real"] = any.doors().real;  // of any door, also of one that is ajar
 }
 
 /// The open door of a corridor that is nearest to its middle.
@@ -171,27 +158,12 @@ const maps::Feature* door_of(const maps::Feature& corridor, const maps::Map& ope
   return best;
 }
 
-/// Goals of a robot that was carried, unseen.
-struct Carried {
-  int goals = 0;
-  int arrived = 0;
-  int false_success = 0;         ///< reported more than two metres away
-  std::vector<double> sure_way;  ///< [m] way of each with a wrong pose at a confidence of 0.9
-  /// [m] Way of each until it says that it is lost, or knows its place.
-  std::vector<double> lost_way;
-};
-
-bool is_right(const test::Whole& whole) {
-  return (whole.believed().position() - whole.truth().position()).norm() < 0.5 &&
-         std::abs(norm2_angle(whole.believed().th - whole.truth().th)) < radians(20.0);
-}
-
 /// One journey to a door; the robot is carried before it, or after `after` metres of it. `there`
 /// has its new pose.
 void carry_once(const Options& options, const Site& site, const Vec2& first,
                 const maps::Feature& door, double after,
                 const std::function<Pose(const Pose&)>& there, const std::string& name,
-                Carried& result) {
+                Tally& result) {
   constexpr double kThere = 2.0;  // [m]
   constexpr int kStands = 30;     // [cycles] before and after
   constexpr int kGivenUp = 9000;  // [cycles]
@@ -228,7 +200,7 @@ void carry_once(const Options& options, const Site& site, const Vec2& first,
     const Vec2 now = whole.truth().position();
     way += (now - before).norm();
     if (carried) {
-      const bool right = is_right(whole);
+      const bool right = is_right(whole.believed(), whole.truth());
       if (whole.registered().confidence >= 0.9 && !right)
         sure += (now - before).norm();
       if (!lost && (right || whole.registered().state != v1::REGISTRATION_TRACKING))
@@ -238,13 +210,15 @@ void carry_once(const Options& options, const Site& site, const Vec2& first,
   }
   if (!carried)
     return;
-  result.lost_way.push_back(lost.value_or(way));
-  ++result.goals;
-  result.sure_way.push_back(sure);
+  // Its way until it says that it is lost, or knows its place; and with a wrong pose at a
+  // confidence of 0.9.
+  result.values["lost_way"].push_back(lost.value_or(way));
+  result.values["sure_way"].push_back(sure);
+  ++result["carried"];
   const bool succeeded = whole.status(id).state == v1::GOAL_SUCCEEDED;
   const bool arrived = (whole.truth().position() - door.pose_in_map.position()).norm() < kThere;
-  result.arrived += succeeded && arrived ? 1 : 0;
-  result.false_success += succeeded && !arrived ? 1 : 0;
+  result["arrived"] += succeeded && arrived ? 1 : 0;
+  result["false_success"] += succeeded && !arrived ? 1 : 0;
   std::fprintf(stderr, "%llu %s: noticed after %.1f m%s, sure and wrong %.1f m, %s%s\n",
                static_cast<unsigned long long>(site.seed), name.c_str(), lost.value_or(way),
                lost ? "" : " (never)", sure, arrived ? "there" : "elsewhere",
@@ -252,8 +226,7 @@ void carry_once(const Options& options, const Site& site, const Vec2& first,
 }
 
 /// Carried to other corridors and rooms, along its way, and turned.
-Carried carry(const Options& options, const Site& site) {
-  Carried result;
+void carry(const Options& options, const Site& site, Tally& result) {
   std::vector<maps::Feature> corridors;
   std::vector<maps::Feature> rooms;
   for (const maps::Feature& feature : site.map->features) {
@@ -290,24 +263,11 @@ Carried carry(const Options& options, const Site& site) {
                  return compose(at, {0.0, 0.0, radians(std::stod(turn))});
                });
   }
-  return result;
 }
 
-/// The result of building the map of a floor from nothing.
-struct Built {
-  bool done = false;
-  std::string reason;
-  double minutes = 0.0;
-  double length = 0.0;   ///< [m] of the corridors
-  double covered = 0.0;  ///< [m] of it that built corridors and junctions cover
-  test::MapScore score;
-  test::MapScore recessed;
-  int contacts = 0;
-};
-
-Built build(const Options& options, const Site& site) {
+/// Builds the map of a floor from nothing.
+nlohmann::json build(const Options& options, const Site& site, Tally& result) {
   constexpr double kStep = 0.25;  // [m]
-  Built result;
   test::Building building(drive_of(options, site));
   building.run(static_cast<std::uint64_t>(options.building * 600.0));
   const maps::Map map = building.aligned_map();
@@ -316,27 +276,41 @@ Built build(const Options& options, const Site& site) {
       continue;
     for (double x = kStep / 2 - corridor.length / 2; x < corridor.length / 2; x += kStep) {
       const Vec2 at = transform(corridor.pose_in_map, {x, 0.0});
-      result.length += kStep;
+      ++result["steps"];
       if (std::any_of(map.features.begin(), map.features.end(), [&](const maps::Feature& one) {
             return (one.type == lps::PointType::corridor || one.type == lps::PointType::junction) &&
                    maps::contains(one, at);
           }))
-        result.covered += kStep;
+        ++result["covered"];
     }
   }
-  result.done = building.done();
-  result.reason = building.reason();
-  result.minutes = static_cast<double>(building.whole.cycle()) / 600.0;
-  result.score = test::score(map, site.noticeable);
-  result.score.doors_false = test::score(map, *site.map).doors_false;
-  result.recessed = test::score(map, site.recessed_doors);
-  result.contacts = building.whole.drive().contacts();
+  const test::MapScore score = test::score(map, site.noticeable);
+  const test::MapScore recessed = test::score(map, site.recessed_doors);
+  result["to_build"] = score.doors;
+  result["doors_built"] = score.doors_found;
+  result["doors_false"] = test::score(map, *site.map).doors_false;
+  result["recessed_to_build"] = recessed.doors;
+  result["recessed_built"] = recessed.doors_found;
+  result["well"] = building.done() && result.share("covered", "steps", 1.0) >= 0.8 &&
+                   result.share("doors_built", "to_build", 1.0) >= 0.8;
   building.draw("floor-" + std::to_string(site.seed));
-  return result;
+  return {{"built", building.done()},
+          {"reason", building.reason()},
+          {"corridors_m", kStep * static_cast<double>(result("steps"))},
+          {"minutes", static_cast<double>(building.whole.cycle()) / 600.0},
+          {"contacts", building.whole.drive().contacts()}};
 }
 
-double share(double part, double whole) {
-  return whole > 0.0 ? part / whole : 1.0;
+/// The figures of a floor, and of all.
+nlohmann::json figures_of(const Tally& all) {
+  return {{"p95_m", all.quantile("off", 0.95)},
+          {"worst_m", all.quantile("off", 1.0)},
+          {"tracking", all.share("tracking", "cycles", 1.0)},
+          {"calibration_at_90", all.share("sure_right", "sure", 1.0)},
+          {"doors_noticed", all.share("noticed", "doors", 1.0)},
+          {"explored", all.share("covered", "steps", 1.0)},
+          {"doors_built", all.share("doors_built", "to_build", 1.0)},
+          {"false_success", all("false_success")}};
 }
 
 void write(const std::string& folder, const Site& site) {
@@ -348,17 +322,7 @@ void write(const std::string& folder, const Site& site) {
 }
 
 int run(const Options& options) {
-  test::Offs offs;
-  Patrolled all;
-  Carried carried;
-  int good = 0;
-  double length = 0.0;
-  double covered = 0.0;
-  int built_doors = 0;
-  int built_found = 0;
-  int built_recessed = 0;
-  int recessed_found = 0;
-  int built_false = 0;
+  Tally all;
   nlohmann::json floors = nlohmann::json::array();
   std::vector<Site> sites;
   if (options.shipped) {
@@ -375,85 +339,44 @@ int run(const Options& options) {
       write(options.write_to, here);
       continue;
     }
-    const Carried lost = options.only_drives ? Carried{} : carry(options, here);
-    const Patrolled patrolled = options.only_carried ? Patrolled{} : patrol(options, here);
-    const Built built =
-        options.only_carried || options.only_drives ? Built{} : build(options, here);
-    const double explored = share(built.covered, built.length);
-    const double doors = share(built.score.doors_found, built.score.doors);
-    const double p95 = test::quantile(patrolled.offs.position, 0.95);
-    const double worst = test::quantile(patrolled.offs.position, 1.0);
-    good += built.done && explored >= 0.8 && doors >= 0.8 ? 1 : 0;
-    offs.position.insert(offs.position.end(), patrolled.offs.position.begin(),
-                         patrolled.offs.position.end());
-    all.cycles += patrolled.cycles;
-    all.tracking += patrolled.tracking;
-    all.sure += patrolled.sure;
-    all.sure_right += patrolled.sure_right;
-    all.doors += patrolled.doors;
-    all.noticed += patrolled.noticed;
-    all.false_lost += patrolled.false_lost;
-    carried.goals += lost.goals;
-    carried.arrived += lost.arrived;
-    carried.false_success += lost.false_success;
-    carried.sure_way.insert(carried.sure_way.end(), lost.sure_way.begin(), lost.sure_way.end());
-    carried.lost_way.insert(carried.lost_way.end(), lost.lost_way.begin(), lost.lost_way.end());
-    length += built.length;
-    covered += built.covered;
-    built_doors += built.score.doors;
-    built_found += built.score.doors_found;
-    built_recessed += built.recessed.doors;
-    recessed_found += built.recessed.doors_found;
-    built_false += built.score.doors_false;
-    all.recessed += patrolled.recessed;
-    all.recessed_noticed += patrolled.recessed_noticed;
-    all.reported += patrolled.reported;
-    all.real += patrolled.real;
-    floors.push_back({{"seed", here.seed},
-                      {"p95_m", p95},
-                      {"worst_m", worst},
-                      {"tracking", share(patrolled.tracking, patrolled.cycles)},
-                      {"calibration_at_90", share(patrolled.sure_right, patrolled.sure)},
-                      {"doors", patrolled.doors},
-                      {"doors_noticed", share(patrolled.noticed, patrolled.doors)},
-                      {"carried", lost.goals},
-                      {"arrived", lost.arrived},
-                      {"false_success", lost.false_success},
-                      {"built", built.done},
-                      {"reason", built.reason},
-                      {"corridors_m", built.length},
-                      {"explored", explored},
-                      {"doors_built", doors},
-                      {"doors_false", built.score.doors_false},
-                      {"minutes", built.minutes},
-                      {"contacts", built.contacts}});
-    std::fprintf(stderr, "%s\n", floors.back().dump().c_str());
+    Tally one;
+    if (!options.only_drives)
+      carry(options, here, one);
+    if (!options.only_carried)
+      patrol(options, here, one);
+    nlohmann::json told = nlohmann::json::object();
+    if (!options.only_carried && !options.only_drives)
+      told = build(options, here, one);
+    told.update(figures_of(one));
+    told.update({{"seed", here.seed},
+                 {"doors", one("doors")},
+                 {"carried", one("carried")},
+                 {"arrived", one("arrived")},
+                 {"doors_false", one("doors_false")}});
+    floors.push_back(told);
+    std::fprintf(stderr, "%s\n", told.dump().c_str());
+    all.add(one);
   }
   if (!options.write_to.empty())
     return 0;
-  const nlohmann::json result{{"robot", options.robot},
-                              {"errors", options.errors},
-                              {"p95_m", test::quantile(offs.position, 0.95)},
-                              {"worst_m", test::quantile(offs.position, 1.0)},
-                              {"tracking", share(all.tracking, all.cycles)},
-                              {"calibration_at_90", share(all.sure_right, all.sure)},
-                              {"false_lost", all.false_lost},
-                              {"doors_noticed", share(all.noticed, all.doors)},
-                              {"recessed_noticed", share(all.recessed_noticed, all.recessed)},
-                              {"doors_precision", share(all.real, all.reported)},
-                              {"recessed_built", share(recessed_found, built_recessed)},
-                              {"false_doors", share(built_false, options.floors)},
-                              {"explored", share(covered, length)},
-                              {"doors_built", share(built_found, built_doors)},
-                              {"built_well", good},
-                              {"carried_goals", carried.goals},
-                              {"carried_arrived", carried.arrived},
-                              {"false_success", carried.false_success},
-                              {"lost_after_m_p50", test::quantile(carried.lost_way, 0.5)},
-                              {"lost_after_m_p95", test::quantile(carried.lost_way, 0.95)},
-                              {"carried_sure_m_p50", test::quantile(carried.sure_way, 0.5)},
-                              {"carried_sure_m_p90", test::quantile(carried.sure_way, 0.9)},
-                              {"floors", floors}};
+  nlohmann::json result = figures_of(all);
+  result.update(
+      {{"robot", options.robot},
+       {"errors", options.errors},
+       {"false_lost", all("false_lost")},
+       {"recessed_noticed", all.share("recessed_noticed", "recessed", 1.0)},
+       {"doors_precision", all.share("real", "reported", 1.0)},
+       {"recessed_built", all.share("recessed_built", "recessed_to_build", 1.0)},
+       {"false_doors",
+        options.floors > 0 ? static_cast<double>(all("doors_false")) / options.floors : 1.0},
+       {"built_well", all("well")},
+       {"carried_goals", all("carried")},
+       {"carried_arrived", all("arrived")},
+       {"lost_after_m_p50", all.quantile("lost_way", 0.5)},
+       {"lost_after_m_p95", all.quantile("lost_way", 0.95)},
+       {"carried_sure_m_p50", all.quantile("sure_way", 0.5)},
+       {"carried_sure_m_p90", all.quantile("sure_way", 0.9)},
+       {"floors", floors}});
   bench::print(result, options.json);
   return 0;
 }

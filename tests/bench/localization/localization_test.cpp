@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "localization/patrol.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"

@@ -1,15 +1,14 @@
 // Every robot with sonars crosses every world, past people who stand and walk in it.
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdio>
+#include <future>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
+#include <numeric>
 
-#include "../result.hpp"
+#include "bench/study.hpp"
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -17,6 +16,8 @@
 
 namespace saphira::test {
 namespace {
+
+using bench::Tally;
 
 struct Run {
   CrossingOptions options;
@@ -66,52 +67,36 @@ void print(const Run& run) {
         result.walked_into, result.things, result.end_in_world.x(), result.end_in_world.y());
 }
 
-/// The runs of one robot, or of one crowd.
-struct Sum {
-  int runs = 0;
-  int with_way = 0;
-  int arrived = 0;  ///< of those with a way
-  int standing = 0;
-  int walking = 0;
-  int unheard = 0;
-  int things = 0;
-  int walked_into = 0;
-  double seconds = 0.0;  ///< of those who arrived...
-  double alone = 0.0;    ///< ...and of the same robots in the same worlds without people
+/// Of the runs of one robot, or of one crowd: `seconds_alone` is the time of the same robot in the
+/// same world without people.
+void add(Tally& sum, const Run& run, double seconds_alone) {
+  const CrossingResult& result = run.result;
+  ++sum["runs"];
+  sum["touched_standing"] += result.standing;
+  sum["touched_walking"] += result.walking;
+  sum["unheard"] += result.unheard;
+  sum["things"] += result.things;
+  sum["walked_into"] += result.walked_into;
+  sum["with_way"] += run.has_way ? 1 : 0;
+  if (!run.has_way || !result.arrived)
+    return;
+  ++sum["arrived"];
+  if (seconds_alone > 0.0) {
+    sum.values["seconds"].push_back(result.seconds);
+    sum.values["alone"].push_back(seconds_alone);
+  }
+}
 
-  void add(const Run& run, double seconds_alone) {
-    const CrossingResult& result = run.result;
-    ++runs;
-    standing += result.standing;
-    walking += result.walking;
-    unheard += result.unheard;
-    things += result.things;
-    walked_into += result.walked_into;
-    if (!run.has_way)
-      return;
-    ++with_way;
-    if (!result.arrived)
-      return;
-    ++arrived;
-    if (seconds_alone > 0.0) {
-      seconds += result.seconds;
-      alone += seconds_alone;
-    }
-  }
-  double slower() const { return alone > 0.0 ? seconds / alone : 0.0; }
-  double in_100(int count) const { return runs == 0 ? 0.0 : 100.0 * count / runs; }
-  double arrived_percent() const { return with_way == 0 ? 0.0 : 100.0 * arrived / with_way; }
-  nlohmann::json json() const {
-    return {{"runs", runs},
-            {"arrived_percent", arrived_percent()},
-            {"touched_standing", in_100(standing)},
-            {"touched_walking", in_100(walking)},
-            {"unheard", in_100(unheard)},
-            {"things", in_100(things)},
-            {"walked_into", in_100(walked_into)},
-            {"slower", slower()}};
-  }
-};
+nlohmann::json figures_of(const Tally& sum) {
+  nlohmann::json figures{
+      {"runs", sum("runs")},
+      {"arrived_percent", 100.0 * sum.share("arrived", "with_way")},
+      {"slower", sum.sum("alone") > 0.0 ? sum.sum("seconds") / sum.sum("alone") : 0.0}};
+  for (const char* const kind :
+       {"touched_standing", "touched_walking", "unheard", "things", "walked_into"})
+    figures[kind] = 100.0 * sum.share(kind, "runs");
+  return figures;
+}
 
 }  // namespace
 }  // namespace saphira::test
@@ -171,34 +156,22 @@ int main(int argc, char** argv) {
             runs.push_back(run);
           }
     std::atomic<std::size_t> next{0};
-    std::vector<std::thread> workers;
-    std::vector<std::string> troubles(static_cast<std::size_t>(jobs));
-    for (std::size_t worker = 0; worker < troubles.size(); ++worker)
-      workers.emplace_back([&, worker] {
-        try {
-          for (std::size_t i = next++; i < runs.size(); i = next++)
-            drive(runs[i], sonar, trace);
-        } catch (const std::exception& error) {
-          troubles[worker] = error.what();
-        }
-      });
-    for (std::thread& worker : workers)
-      worker.join();
-    for (const std::string& trouble : troubles)
-      if (!trouble.empty())
-        throw std::runtime_error(trouble);
+    std::vector<std::future<void>> workers;
+    for (int worker = 0; worker < jobs; ++worker)
+      workers.push_back(std::async(std::launch::async, [&] {
+        for (std::size_t i = next++; i < runs.size(); i = next++)
+          drive(runs[i], sonar, trace);
+      }));
+    for (std::future<void>& worker : workers)
+      worker.get();
 
-    // [s] and runs without people, by robot and world
-    std::map<std::pair<std::string, std::string>, std::pair<double, int>> alone;
+    std::map<std::pair<std::string, std::string>, std::vector<double>> alone;  // [s]
     for (const Run& run : runs)
-      if (run.options.crowd == Crowd::kNobody && run.result.arrived) {
-        auto& [seconds, count] = alone[{run.options.robot, run.options.world}];
-        seconds += run.result.seconds;
-        ++count;
-      }
-    Sum all;
-    std::map<std::string, Sum> by_robot;
-    std::array<Sum, std::size(kCrowdNames)> by_crowd;
+      if (run.options.crowd == Crowd::kNobody && run.result.arrived)
+        alone[{run.options.robot, run.options.world}].push_back(run.result.seconds);
+    Tally all;
+    std::map<std::string, Tally> by_robot;
+    std::map<std::string, Tally> by_crowd;
     double alone_s = 0.0;
     for (const Run& run : runs) {
       const CrossingResult& result = run.result;
@@ -208,27 +181,28 @@ int main(int argc, char** argv) {
         print(run);
       if (!run.possible)
         continue;
-      const auto found = alone.find({run.options.robot, run.options.world});
-      const double seconds_alone =
-          found == alone.end() ? 0.0 : found->second.first / found->second.second;
-      by_crowd[static_cast<std::size_t>(run.options.crowd)].add(run, seconds_alone);
+      const std::vector<double>& times = alone[{run.options.robot, run.options.world}];
+      const double seconds_alone = times.empty()
+                                       ? 0.0
+                                       : std::accumulate(times.begin(), times.end(), 0.0) /
+                                             static_cast<double>(times.size());
+      add(by_crowd[kCrowdNames[static_cast<int>(run.options.crowd)]], run, seconds_alone);
       if (run.options.crowd == Crowd::kNobody) {
         alone_s += result.seconds;
         continue;
       }
-      all.add(run, seconds_alone);
-      by_robot[run.options.robot].add(run, seconds_alone);
+      add(all, run, seconds_alone);
+      add(by_robot[run.options.robot], run, seconds_alone);
     }
-    nlohmann::json figures = all.json();
+    nlohmann::json figures = figures_of(all);
     for (const auto& [robot, sum] : by_robot)
-      figures["robots"][robot] = sum.json();
-    for (std::size_t i = 0; i < by_crowd.size(); ++i)
-      if (by_crowd[i].runs > 0)
-        figures["people"][kCrowdNames[i]] = by_crowd[i].json();
+      figures["robots"][robot] = figures_of(sum);
+    for (const auto& [crowd, sum] : by_crowd)
+      figures["people"][crowd] = figures_of(sum);
     figures["alone_s"] = alone_s;
     bench::print(figures, json);
-    return all.in_100(all.standing) <= 1.0 && all.in_100(all.walking) <= 5.0 &&
-                   all.arrived_percent() >= 90.0
+    return figures["touched_standing"] <= 1.0 && figures["touched_walking"] <= 5.0 &&
+                   figures["arrived_percent"] >= 90.0
                ? 0
                : 1;
   });

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -13,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "../result.hpp"
+#include "agent_interface/test/utterances.hpp"
+#include "bench/study.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
@@ -21,12 +20,12 @@
 #include "saphira/speech/conversation.hpp"
 #include "saphira/speech/voice.hpp"
 #include "support/guarded.hpp"
-#include "support/quantile.hpp"
 
 namespace {
 
 using namespace saphira;
 using namespace saphira::speech;
+using agent_interface::SaidAndMeant;
 
 struct Options {
   std::string utterances = "services/agent_interface/test/utterances.txt";
@@ -38,11 +37,6 @@ struct Options {
   int seed = 7;
   bool each = false;
   bool json = false;
-};
-
-struct Phrase {
-  std::string text;
-  std::string meaning;  ///< empty: none
 };
 
 /// True where the recognizer listens for these words: a way leads through the graph.
@@ -65,25 +59,18 @@ bool is_listened_for(const agent_interface::WordGraph& graph,
 }
 
 /// The phrases of the file with the keyword, without its section of replies: commands that the
-/// recognizer listens for, and sentences without a meaning.
-std::vector<Phrase> phrases(const std::string& file, const agent_interface::WordGraph& graph) {
-  std::vector<Phrase> all;
-  std::istringstream lines(read_file(file));
-  bool replies = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line[0] == '#') {
-      replies = line == "# Where the robot has asked";
+/// recognizer listens for, and sentences without a meaning, which is empty.
+std::vector<SaidAndMeant> phrases(const std::string& file,
+                                  const agent_interface::WordGraph& graph) {
+  std::vector<SaidAndMeant> all;
+  for (SaidAndMeant& phrase : agent_interface::read_utterances(read_file(file))) {
+    if (phrase.reply || phrase.meaning == "nothing")
       continue;
-    }
-    const std::size_t arrow = line.find(" => ");
-    if (replies || arrow == std::string::npos)
+    if (phrase.meaning == "what?" || phrase.meaning == "ambiguous")
+      phrase.meaning.clear();
+    else if (!is_listened_for(graph, agent_interface::words_of(phrase.text)))
       continue;
-    const std::string meaning = line.substr(arrow + 4);
-    if (meaning == "nothing")
-      continue;
-    const bool means = meaning != "what?" && meaning != "ambiguous";
-    if (!means || is_listened_for(graph, agent_interface::words_of(line.substr(0, arrow))))
-      all.push_back({line.substr(0, arrow), means ? meaning : std::string()});
+    all.push_back(phrase);
   }
   return all;
 }
@@ -106,39 +93,12 @@ constexpr std::array kLoneStops{
     "Stop it",        "No, stop",    "Stop right there", "Help! Stop!", "Halt!",       "Freeze!",
     "Emergency stop", "Stop moving", "Watch out, stop",  "Stop, please"};
 /// Speech to other people, most of it near such a stop.
-constexpr std::array kOtherSpeech{"Shop",
-                                  "Top",
-                                  "Stock",
-                                  "Step",
-                                  "Stopped",
-                                  "Start",
-                                  "Start now",
-                                  "Stuff",
-                                  "Star",
-                                  "Spot",
-                                  "Don't stop",
-                                  "Never stop",
-                                  "Stop talking",
-                                  "Did it stop",
-                                  "It stopped",
-                                  "A stop sign",
-                                  "The bus stop is over there",
-                                  "We can stop here and have lunch",
-                                  "The top shelf",
-                                  "Hold",
-                                  "Hall",
-                                  "Three",
-                                  "Breeze",
-                                  "Please",
-                                  "Hello",
-                                  "Good morning",
-                                  "Okay",
-                                  "Not now",
-                                  "Yes",
-                                  "No",
-                                  "The shop is closed",
-                                  "The weather is nice today",
-                                  "I was at the station on Tuesday"};
+constexpr const char* kOtherSpeech =
+    "Shop; Top; Stock; Step; Stopped; Start; Start now; Stuff; Star; Spot; Don't stop; "
+    "Never stop; Stop talking; Did it stop; It stopped; A stop sign; "
+    "The bus stop is over there; We can stop here and have lunch; The top shelf; Hold; "
+    "Hall; Three; Breeze; Please; Hello; Good morning; Okay; Not now; Yes; No; "
+    "The shop is closed; The weather is nice today; I was at the station on Tuesday";
 
 double power(const Sound& sound) {
   double sum = 0.0;
@@ -202,7 +162,7 @@ std::size_t silent_end(const Sound& sound) {
 /// Counts by name. Wrong: taken for another command than a stop, and certain. Asked back: a command
 /// that is not certain. Near misses have the keyword, and meaningless words. Others: all that is no
 /// stop.
-using Tally = std::map<std::string, int>;
+using bench::Tally;
 
 class Bench {
  public:
@@ -244,12 +204,13 @@ class Bench {
       ++tally["lone_stops"];
       tally["lone_stops_right"] += hear(text) == kStop ? 1 : 0;
     }
-    for (const char* const text : kOtherSpeech)
+    std::istringstream others(kOtherSpeech);
+    for (std::string text; std::getline(others >> std::ws, text, ';');)
       hear_other(text);
     ++tally["others"];
     tally["false_stops"] += understood(conversation, babble_, 0, false) == kStop ? 1 : 0;
     for (std::size_t i = 0; i < phrases_.size(); i += static_cast<std::size_t>(options_.every)) {
-      const Phrase& phrase = phrases_[i];
+      const SaidAndMeant& phrase = phrases_[i];
       if (phrase.meaning.empty() && noise != Noise::none)
         continue;
       const std::string heard =
@@ -305,26 +266,18 @@ class Bench {
 
   Options options_;
   agent_interface::Grammar grammar_;
-  std::vector<Phrase> phrases_;
+  std::vector<SaidAndMeant> phrases_;
   Sound babble_;
   bool certain_ = false;  ///< of the newest command
 };
-
-double share(Tally& all, const std::string& part, const std::string& whole) {
-  return all[whole] > 0 ? static_cast<double>(all[part]) / all[whole] : 0.0;
-}
 
 int run(const Options& options) {
   Bench bench(options);
   Tally seen;
   Tally all[3];  // by kNoises
   nlohmann::json voices = nlohmann::json::array();
-  const auto add = [](Tally& sum, const Tally& one) {
-    for (const auto& [name, count] : one)
-      sum[name] += count;
-  };
   const auto tell = [&](const std::string& voice, const char* how, const Tally& one) {
-    nlohmann::json told(one);
+    nlohmann::json told(one.counts);
     told["voice"] = voice;
     told["sound"] = how;
     std::fprintf(stderr, "%s\n", told.dump().c_str());
@@ -337,31 +290,31 @@ int run(const Options& options) {
             options.sounds.end())
           continue;
         const Tally one = bench.run(voice, kNoises[i]);
-        add(all[i], one);
+        all[i].add(one);
         if (!unseen && kNoises[i] == Noise::none)
-          add(seen, one);
+          seen.add(one);
         tell(voice, kNames[i], one);
       }
   auto& [clean, white, babble] = all;
   Tally noise = white;
-  add(noise, babble);
+  noise.add(babble);
   Tally unseen = clean;
-  for (const auto& [name, count] : seen)
+  for (const auto& [name, count] : seen.counts)
     unseen[name] -= count;
   Tally any = clean;
-  add(any, noise);
+  any.add(noise);
   const nlohmann::json result{
-      {"lone_stops", share(clean, "lone_stops_right", "lone_stops")},
-      {"lone_stops_in_noise", share(noise, "lone_stops_right", "lone_stops")},
-      {"false_stops", share(any, "false_stops", "others")},
-      {"accept_seen", share(seen, "right", "commands")},
-      {"accept_unseen", share(unseen, "right", "commands")},
-      {"false_accept", share(clean, "keyless_taken", "keyless")},
-      {"near_misses_taken", share(clean, "near_misses_taken", "near_misses")},
-      {"wrong_in_white_noise", share(white, "wrong", "commands")},
-      {"accept_in_white_noise", share(white, "right", "commands")},
-      {"wrong_in_babble", share(babble, "wrong", "commands")},
-      {"accept_in_babble", share(babble, "right", "commands")},
+      {"lone_stops", clean.share("lone_stops_right", "lone_stops")},
+      {"lone_stops_in_noise", noise.share("lone_stops_right", "lone_stops")},
+      {"false_stops", any.share("false_stops", "others")},
+      {"accept_seen", seen.share("right", "commands")},
+      {"accept_unseen", unseen.share("right", "commands")},
+      {"false_accept", clean.share("keyless_taken", "keyless")},
+      {"near_misses_taken", clean.share("near_misses_taken", "near_misses")},
+      {"wrong_in_white_noise", white.share("wrong", "commands")},
+      {"accept_in_white_noise", white.share("right", "commands")},
+      {"wrong_in_babble", babble.share("wrong", "commands")},
+      {"accept_in_babble", babble.share("right", "commands")},
       {"um_s_p50", test::quantile(bench.um, 0.5)},
       {"um_s_p95", test::quantile(bench.um, 0.95)},
       {"voices", voices}};

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "../../support/guarded.hpp"
-#include "../result.hpp"
 #include "agent_interface/test/utterances.hpp"
+#include "bench/study.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/command_line/command_line.hpp"
+#include "support/guarded.hpp"
 
 namespace {
 

@@ -1,7 +1,6 @@
 // The emergency stop of the bridge, with a robot that drives.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <csignal>
 
 #include "scene.hpp"

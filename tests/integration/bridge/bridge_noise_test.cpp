@@ -2,7 +2,6 @@
 // publishes no implausible state.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

@@ -1,7 +1,6 @@
 #include "saphira/base/base64.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace saphira {
 

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iterator>
 #include <stdexcept>
 
 #include "saphira/base/fnv1a.hpp"

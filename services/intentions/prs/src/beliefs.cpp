@@ -1,6 +1,5 @@
 #include "saphira/intentions/beliefs.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "saphira/intentions/functions.hpp"

@@ -1,6 +1,5 @@
 #include "saphira/intentions/journal.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <map>
 #include <optional>

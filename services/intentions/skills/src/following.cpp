@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "driving.hpp"
 #include "saphira/base/archive.hpp"
