@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/mcp/actions.hpp"
 #include "saphira/mcp/session.hpp"
 #include "saphira/mcp/surroundings.hpp"
 #include "saphira/security/door_keys.hpp"
+#include "saphira/watch/mind.hpp"
 
 namespace saphira::mcp {
 
@@ -34,7 +34,7 @@ class Robot {
   /// The activity or capability behind the tool of this name; null: another kind of tool.
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
-  const cli::Mind& mind() const { return mind_; }
+  const watch::Mind& mind() const { return mind_; }
   /// The role file of the site lets this program approve goals.
   bool may_approve() const { return may_approve_; }
   bool moves() const;
@@ -47,7 +47,7 @@ class Robot {
   Result why() const;
   Result map() const { return map_of(surroundings()); }
   Result view() const { return view_of(surroundings()); }
-  Result facts() const { return facts_of(knowledge_ ? &*knowledge_ : nullptr); }
+  Result facts() const { return facts_of(knowledge_.get()); }
 
  private:
   void make_tools();
@@ -57,26 +57,17 @@ class Robot {
   bus::Node& node_;
   const std::vector<std::string> described_;
   const bool may_approve_;
-  cli::Mind mind_;
-  bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
+  watch::Mind mind_;
+  watch::Newest<v1::ActivitySchemas> schemas_{node_, bus::topics::kActivitySchemas};
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
-  bus::Reader<v1::SonarBuckets> sonar_reader_ = node_.reader(bus::topics::kSonarBuckets);
-  bus::Reader<v1::Perception> perception_reader_ = node_.reader(bus::topics::kPerception);
-  bus::Reader<v1::Vision> vision_reader_ = node_.reader(bus::topics::kVision);
-  bus::Reader<v1::FloorMap> map_reader_ = node_.reader(bus::topics::kMap);
-  bus::Reader<v1::Registration> registration_reader_ = node_.reader(bus::topics::kRegistration);
-  bus::Reader<v1::Knowledge> knowledge_reader_ = node_.reader(bus::topics::kKnows);
-  std::optional<v1::SonarBuckets> sonars_;
-  std::optional<v1::Perception> perception_;
-  std::optional<v1::Vision> vision_;
-  std::optional<v1::FloorMap> map_;
-  std::optional<v1::Registration> registration_;
-  std::optional<v1::Knowledge> knowledge_;
+  watch::Newest<v1::SonarBuckets> sonars_{node_, bus::topics::kSonarBuckets};
+  watch::Newest<v1::Perception> perception_{node_, bus::topics::kPerception};
+  watch::Newest<v1::Vision> vision_{node_, bus::topics::kVision};
+  watch::Newest<v1::FloorMap> map_{node_, bus::topics::kMap};
+  watch::Newest<v1::Knowledge> knowledge_{node_, bus::topics::kKnows};
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
-  bool heard_schemas_ = false;
   double changed_ = 0.0;  ///< [s] the newest change of the tools
-  std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
   std::map<std::string, v1::ActivitySchema> activities_;  ///< by the tool's name
