@@ -35,8 +35,6 @@ class Robot {
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
   const watch::Mind& mind() const { return mind_; }
-  /// The role file of the site lets this program approve goals.
-  bool may_approve() const { return may_approve_; }
   bool moves() const;
   /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
   std::optional<std::string> belief(const std::string& name) const;
@@ -56,7 +54,6 @@ class Robot {
 
   bus::Node& node_;
   const std::vector<std::string> described_;
-  const bool may_approve_;
   watch::Mind mind_;
   watch::Newest<v1::ActivitySchemas> schemas_{node_, bus::topics::kActivitySchemas};
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
@@ -109,9 +106,8 @@ class Door {
     enum class For {
       goal,
       cancel,
-      request,
+      answer,  ///< of a request: its client keeps the time
       words,
-      stop,
       estop,
       event,
       belief,
@@ -126,7 +122,7 @@ class Door {
     std::string name = {};                            ///< of the event [empty: any] or belief
     std::optional<std::string> value = std::nullopt;  ///< wanted of the belief; nothing: another
     std::string before = {};                          ///< value of the belief
-    std::optional<Result> result = std::nullopt;      ///< of the request or event
+    std::optional<Result> result = std::nullopt;      ///< of the event
     bool is_task = false;
     bool had_any = true;  ///< to cancel
     double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
@@ -149,8 +145,8 @@ class Door {
   bool is_mine(const v1::GoalStatus& status) const;
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
-  bus::RequestClient::Hear end_of(std::uint64_t call,
-                                  std::function<Result(const v1::Answer&)> result);
+  void send(const Call& call, bus::RequestClient& client, v1::Request request, double patience,
+            std::function<Result(const v1::Answer&)> result);
   void cancel(const Call& call);
   void cancel_other(const Call& call, const std::optional<v1::GoalId>& id);
   std::optional<v1::GoalStatus> other(const v1::GoalId& id) const;
@@ -159,6 +155,7 @@ class Door {
   void follow(const Call& call, const v1::GoalId& id);
   void await(const Call& call, const v1::GoalId& id);
   Own* own(const v1::GoalId& id);
+  const Action* action(const v1::GoalId& id) const;
   bool has_ended(const v1::GoalId& id) const;
   bool has_words_underway() const;
   void take_back_words();
@@ -193,7 +190,7 @@ class Door {
   std::vector<Call> early_;                   ///< whose facts may still come
   bool left_ = false;                         ///< the client sends no more
   bool may_begin_ = true;
-  Actions actions_;
+  std::map<std::uint64_t, Action> actions_;  ///< by the number of their id
   std::vector<Own> own_;
   /// The words that the robot may still act on.
   struct Words {

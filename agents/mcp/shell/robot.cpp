@@ -7,7 +7,6 @@
 
 #include "door.hpp"
 #include "saphira/mcp/results.hpp"
-#include "saphira/security/credentials.hpp"
 #include "saphira/situation/why.hpp"
 #include "saphira/situation/words.hpp"
 
@@ -35,14 +34,6 @@ Json wait_of(double most) {
           {"minimum", 0},
           {"maximum", most},
           {"description", "[s] to wait at most before this answers; 20 where it is not given"}};
-}
-
-bool role_approves(const bus::NodeOptions& options) {
-  if (options.security.empty() || options.security == bus::kOpenBus)
-    return true;
-  const security::Credentials own = security::load_credentials(
-      options.security, options.program.empty() ? options.name : options.program, unix_seconds());
-  return own.roles.may_write(own.subject.role, bus::topics::kProcessRequest.name);
 }
 
 std::string tool_name(std::string name) {
@@ -237,10 +228,7 @@ std::vector<Tool> fixed_tools() {
 }  // namespace
 
 Robot::Robot(bus::Node& node, std::vector<std::string> described)
-    : node_(node),
-      described_(std::move(described)),
-      may_approve_(role_approves(node.options())),
-      mind_(node, false) {
+    : node_(node), described_(std::move(described)), mind_(node, false) {
   make_tools();
 }
 

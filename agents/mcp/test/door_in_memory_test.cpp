@@ -7,17 +7,14 @@
 #include "door.hpp"
 #include "node_options.hpp"
 #include "only.hpp"
-#include "saphira/base/boot_clock.hpp"
-#include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
-#include "saphira/security/authority.hpp"
 
 namespace saphira::mcp {
 namespace {
 
 class DoorInMemory : public testing::Test {
  protected:
-  explicit DoorInMemory(const std::string& security = {}) : security_of_node(security) {
+  DoorInMemory() {
     agents.write({.id = 7,
                   .name = "sweeper",
                   .capabilities = {bus::action("sweep", "sweeps a room",
@@ -124,16 +121,9 @@ class DoorInMemory : public testing::Test {
     return nullptr;
   }
 
-  bus::NodeOptions options() const {
-    bus::NodeOptions made = test::memory_options("mcp");
-    made.security = security_of_node;
-    return made;
-  }
-
-  const std::string security_of_node;
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node other{test::memory_options("facilitator"), memory};
-  bus::Node node{options(), memory};
+  bus::Node node{test::memory_options("mcp"), memory};
   bus::Writer<v1::Agent> agents = other.writer(bus::topics::kAgents);
   bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);
@@ -277,6 +267,26 @@ TEST_F(DoorInMemory, AClientThatMayNotBeginIsToldSoAndMayStop) {
   door->allow(true);
   begin_sweep();
   EXPECT_EQ(heard().functor, "sweep");
+}
+
+TEST_F(DoorInMemory, ARequestThatNobodyAnswersEndsWithItsClientsTime) {
+  call(1, "place_of", {{"person", "karen"}});
+  call(2, "stop", Json::object());
+  turn();
+  turn(9.9);
+  EXPECT_TRUE(result(1).is_null());
+  EXPECT_TRUE(result(2).is_null());
+  turn(0.2);
+  EXPECT_TRUE(result(1).is_null());
+  EXPECT_EQ(result(2)["content"][0]["text"],
+            "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own");
+  EXPECT_EQ(result(2)["structuredContent"]["stopped"], false);
+  EXPECT_EQ(result(2)["isError"], true);
+  turn(1.0);
+  EXPECT_EQ(result(1)["content"][0]["text"],
+            "no answer: saphira-facilitator may not run (robot_status says more)");
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_FALSE(door->is_asked());
 }
 
 TEST_F(DoorInMemory, AStopIsTheBridges) {
@@ -835,24 +845,11 @@ TEST_F(DoorInMemory, AGoalThatNeedsAnApprovalIsPutToTheClientsPerson) {
   }
 }
 
-// With security: the shipped role of this program may not approve.
-class DoorOfASite : public DoorInMemory {
- protected:
-  explicit DoorOfASite(const saphira::test::TempDir& folder = {})
-      : DoorInMemory(member_of(folder.path("authority"))) {}
-
- private:
-  static std::string member_of(const std::string& authority) {
-    const std::string roles = saphira::test::source("config/security/roles.yaml");
-    return security::Authority::make(authority, "office", read_file(roles), roles, unix_seconds())
-        .add("flakey", {"agent", "operator"}, "", 365, unix_seconds());
-  }
-};
-
-TEST_F(DoorOfASite, AGoalThatTheRoleMayNotApproveWaitsForSomebodyWhoMay) {
+TEST_F(DoorInMemory, AGoalThatTheClientMayNotApproveWaitsForSomebodyWhoMay) {
+  door = std::make_unique<Door>(node, robot, session, "model",
+                                security::DoorKey{"anna", security::DoorRight::drive, 0, ""});
   const bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
-  EXPECT_EQ(approvals.matched(), 0U) << "the bus would refuse a writer";
-
+  EXPECT_EQ(approvals.matched(), 0U);
   session.take(
       R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":"2025-06-18",)"
       R"("capabilities":{"elicitation":{}},"clientInfo":{"name":"c","version":"1"}}})");
