@@ -352,6 +352,8 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
 void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
+  chosen.reaches_all(command,
+                     [options] { return options->words == std::vector<std::string>{"stop"}; });
   command->add_option(
       "words", options->words,
       "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "
