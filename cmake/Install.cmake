@@ -38,13 +38,15 @@ endfunction()
 foreach(folder services/common/base services/common/geometry services/common/requests services/common/lps services/behaviors)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
 endforeach()
-saphira_component(base base)
+# The contract's types are plain C++: libraries without the bus have them, too.
+install(DIRECTORY ${CMAKE_BINARY_DIR}/idl/generated/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE PATTERN "*.py" EXCLUDE)
+saphira_component(base base idl)
 saphira_component(behaviors geometry requests lps behaviors)
 
 if(SAPHIRA_WITH_DDS)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
-                    ${CMAKE_BINARY_DIR}/idl/generated/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev} PATTERN "*.json" EXCLUDE PATTERN "*.py" EXCLUDE)
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
   # The contract itself, for agents in other languages and of other vendors: the types, also as JSON
   # Schema, the topics with the name of each one's QoS, and the README with the table of QoS and the
   # rule of partitions.
@@ -53,7 +55,7 @@ if(SAPHIRA_WITH_DDS)
                 ${CMAKE_SOURCE_DIR}/idl/bus/include/saphira/bus/topics.def
                 ${CMAKE_BINARY_DIR}/idl/generated/saphira/idl/schema.json
           DESTINATION ${CMAKE_INSTALL_DATADIR}/saphira/idl ${saphira_dev})
-  saphira_component(bus idl security command_line bus)
+  saphira_component(bus security command_line bus)
 endif()
 
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/saphira-config.cmake.in

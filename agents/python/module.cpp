@@ -22,7 +22,6 @@
 #include "direct.hpp"
 #include "endpoints.hpp"
 #include "environment.hpp"
-#include "inquiry.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/robot_name.hpp"
@@ -31,7 +30,8 @@
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/goal_words.hpp"
-#include "watch.hpp"
+#include "saphira/situation/why.hpp"
+#include "saphira/watch/inquiry.hpp"
 
 namespace saphira::python {
 namespace {
@@ -44,7 +44,7 @@ constexpr milliseconds kLook{100};  ///< how often a wait looks for signals
 struct Parts {
   explicit Parts(const bus::NodeOptions& options) : node(options), processes(node) {}
   bus::Node node;
-  cli::Processes processes;
+  watch::Processes processes;
   std::optional<bus::GoalClient> goals;               ///< once one is asked for: not every role may
   std::map<std::string, bus::RequestClient> clients;  ///< by topic
   std::optional<bus::Agent> agent;
@@ -53,7 +53,7 @@ struct Parts {
 };
 
 using Driver = Owned<Endpoint, cli::DirectDriver>;
-using Inquiry = Owned<Endpoint, cli::Inquiry>;
+using Inquiry = Owned<Endpoint, watch::Inquiry>;
 
 /// The explanation of the robot's behavior, as JSON.
 std::string explanation(Inquiry& asked, const std::string& wish) {
@@ -155,11 +155,11 @@ class Bus {
     }
   }
 
-  std::string who_is_there() { return cli::who_is_there(parts().processes); }
+  std::string who_is_there() { return watch::who_is_there(parts().processes); }
   bool is_empty() { return parts().processes.all().empty(); }
   /// Why the program is not heard; empty: it is, or may still be.
   std::string absence(const std::string& program) {
-    return cli::absence(node(), parts().processes, program);
+    return watch::absence(node(), parts().processes, program);
   }
 
   py::object ask_goal(py::handle goal) {
@@ -242,7 +242,7 @@ class Bus {
                                                     node().options().name)));
   }
   std::shared_ptr<Inquiry> inquiry(std::int64_t cycle) {
-    return kept(std::make_shared<Inquiry>(owner_, std::make_unique<cli::Inquiry>(node(), cycle)));
+    return kept(std::make_shared<Inquiry>(owner_, std::make_unique<watch::Inquiry>(node(), cycle)));
   }
 
   std::shared_ptr<AnyReader> reader(const std::string& topic) {

@@ -37,10 +37,6 @@ v1::SonarReading reading_of(const protocol::Sonar& sonar) {
 
 }  // namespace
 
-v1::Stamp to_bus(const Stamp& stamp) {
-  return {.epoch = stamp.epoch, .cycle = stamp.cycle};
-}
-
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
@@ -146,12 +142,12 @@ v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authorit
       .rotation_velocity = guarded.rotation_velocity,
       .heading = told.setpoints.heading_in_odom,
       .distance_left = told.distance_left,
-      .answers = to_bus(grant.answers),
+      .answers = grant.answers,
       .number = grant.number,
       .estopped = grant.estopped,
       .estop_source = grant.estop_source,
       .waits_for_hand_back = grant.waits_for_hand_back,
-      .stop = {grant.stop.asker, grant.stop.number},
+      .stop = grant.stop,
       .stop_source = grant.stop_source};
   const auto refusal = [](const authority::Refusal& one) {
     return v1::Refusal{.role = kRoles.theirs(one.role), .source = one.source, .reason = one.reason};
@@ -193,7 +189,7 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
   out.command.number = command.number;
   out.command.active = command.active;
   out.command.hand_back = command.hand_back;
-  out.command.heeds = {command.heeds.asker, command.heeds.number};
+  out.command.heeds = command.heeds;
   for (const v1::Edge& edge : command.edges)
     out.edges.push_back({{edge.x1, edge.y1}, {edge.x2, edge.y2}});
   return out;

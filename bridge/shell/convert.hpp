@@ -20,7 +20,6 @@ namespace saphira::bridge {
 
 // Between the contract's types and the libraries'. Pure functions.
 
-v1::Stamp to_bus(const Stamp& stamp);
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets);
 v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint64_t odom,

@@ -40,10 +40,10 @@ std::optional<Answer> DeviceTopics::act(const Request& request) {
   }
 }
 
-void DeviceTopics::take(const Stamp& stamp, bool session) {
+void DeviceTopics::take(const v1::Stamp& stamp, bool session) {
   session_ = session;
   desk_.take(stamp);
-  publish(to_bus(stamp));
+  publish(stamp);
 }
 
 void DeviceTopics::packet(const protocol::ServerPacket& packet, std::uint8_t type,

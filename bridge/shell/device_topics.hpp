@@ -21,7 +21,7 @@ class DeviceTopics {
   /// The robot's vision system, which outlives it; without one, requests to it are refused.
   void know(Camera& camera) { camera_ = &camera; }
   /// Takes the requests, and publishes their results. Without a session they are refused.
-  void take(const Stamp& stamp, bool session);
+  void take(const v1::Stamp& stamp, bool session);
   /// Any packet but an information packet.
   void packet(const protocol::ServerPacket& packet, std::uint8_t type, const v1::Stamp& stamp);
   /// Publishes news, if any.

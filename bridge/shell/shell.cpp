@@ -297,20 +297,20 @@ void Shell::perform(const Answered&, double) {
 }
 
 void Shell::perform(const DevicesChanged& changed, double) {
-  devices_.publish(to_bus(changed.stamp));
+  devices_.publish(changed.stamp);
 }
 
 void Shell::perform(const SessionBegan& session, double) {
   if (camera_)
     camera_->connect();
-  v1::RobotDescription description = to_bus(
-      core_.parameters(), session.robot, to_bus(session.stamp), link_.address().text(), lockstep_);
+  v1::RobotDescription description =
+      to_bus(core_.parameters(), session.robot, session.stamp, link_.address().text(), lockstep_);
   description.instance = node_.instance();
   description_writer_.write(description);
 }
 
 void Shell::perform(const CycleBegan& cycle, double now) {
-  newest_state_ = to_bus(cycle.state, to_bus(cycle.stamp), cycle.bad_packets);
+  newest_state_ = to_bus(cycle.state, cycle.stamp, cycle.bad_packets);
   std::vector<protocol::Bytes> to_camera;
   if (camera_) {
     to_camera = camera_->begin(cycle.stamp.cycle);
@@ -318,7 +318,7 @@ void Shell::perform(const CycleBegan& cycle, double now) {
   }
   state_writer_.write(newest_state_);
   if (!cycle.state.information.sonars.empty())
-    buckets_writer_.write(to_bus(cycle.state.buckets, cycle.state.odom, to_bus(cycle.stamp)));
+    buckets_writer_.write(to_bus(cycle.state.buckets, cycle.state.odom, cycle.stamp));
   for (const protocol::Bytes& words : to_camera)
     link_.write(words, now);
 }
@@ -326,22 +326,21 @@ void Shell::perform(const CycleBegan& cycle, double now) {
 void Shell::perform(const OtherPacket& other, double) {
   const auto* const seen = std::get_if<protocol::VisionPacket>(&other.packet);
   if (seen == nullptr || !camera_)
-    devices_.packet(other.packet, other.type, to_bus(other.stamp));
+    devices_.packet(other.packet, other.type, other.stamp);
   else if (other.stamp.cycle > 0)  // before, the robot's place is not known
     camera_->packet(*seen, newest_state_);
 }
 
 void Shell::perform(const GrantDecided& decided, double) {
-  const v1::Stamp stamp = to_bus(decided.stamp);
   const v1::Grant grant =
-      to_bus(decided.grant, decided.told, decided.guarded, decided.refused, stamp);
+      to_bus(decided.grant, decided.told, decided.guarded, decided.refused, decided.stamp);
   grant_writer_.write(grant);
   if (decided.stamp.epoch == 0)
     return;
   // With the grant, not with the state: services wait for the state.
   grant_recall_.write(grant);
-  if (recalled_ != stamp && newest_state_.stamp == stamp) {
-    recalled_ = stamp;
+  if (recalled_ != decided.stamp && newest_state_.stamp == decided.stamp) {
+    recalled_ = decided.stamp;
     state_recall_.write(newest_state_);
   }
 }
@@ -387,7 +386,7 @@ void Shell::perform(const StatusReport& report, double now) {
   v1::ServiceStatus& status = node_.status();
   status.state = report.condition.health;
   status.reason = report.condition.reason;
-  status.stamp = to_bus(report.stamp);
+  status.stamp = report.stamp;
   status.lockstep = lockstep_;
   status.steps = report.steps;
   status.late_cycles = report.late;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,12 @@ struct Chosen {
       return what(*options, node, stop);
     });
   }
+  /// The command reaches every robot (--robot '*'), if `so` holds for its options.
+  void reaches_all(
+      const CLI::App* command, std::function<bool()> so = [] { return true; }) {
+    reach[command] = std::move(so);
+  }
+  std::map<const CLI::App*, std::function<bool()>> reach;
 };
 
 /// A validator of finite numbers; expected: the words for its error message.

@@ -152,6 +152,7 @@ std::vector<std::string> candidates(const CLI::App& root, const std::vector<std:
 
 void add_complete(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("complete", "For the shell: what may come next");
+  chosen.reaches_all(command);
   command->group("");
   command->set_help_flag();  // --help is a word to complete
   command->prefix_command();

@@ -126,22 +126,14 @@ class Watcher {
 
   /// True when there was a new sample.
   bool poll() {
-    if (const auto description = descriptions_.take_newest()) {
-      description_ = description;
-      picture_.set_radius(description->radius);
-    }
-    if (auto grant = grants_.take_newest())
-      grant_ = std::move(grant);
-    if (const auto map = maps_.take_newest()) {
-      map_ = maps::from_bus(*map);
+    if (description_.poll())
+      picture_.set_radius(description_->radius);
+    grant_.poll();
+    const bool drawn = map_sample_.poll();
+    if (drawn)
+      map_ = maps::from_bus(*map_sample_);
+    if (registration_.poll() || drawn)
       place_walls();
-    }
-    if (const auto registration = registrations_.take_newest()) {
-      const bool placed = registration->state == v1::REGISTRATION_TRACKING;
-      odom_in_map_ =
-          placed ? std::optional(lps::from_bus(registration->odom_in_map)) : std::nullopt;
-      place_walls();
-    }
     bool any = false;
     for (const auto& sample : robots_.take()) {
       any = true;
@@ -187,7 +179,7 @@ class Watcher {
   /// The map in odom, by the robot's registration.
   void place_walls() {
     std::vector<std::pair<Vec2, Vec2>> walls;
-    if (odom_in_map_)
+    if (registration_ && registration_->state == v1::REGISTRATION_TRACKING)
       for (const maps::Feature& feature : map_.features) {
         if (feature.length <= 0.0)
           continue;
@@ -195,7 +187,7 @@ class Watcher {
             feature.width > 0.0 ? maps::corners(feature)
                                 : std::vector{maps::begin_of(feature), maps::end_of(feature)};
         for (Vec2& point : points)
-          point = to_frame(*odom_in_map_, point);
+          point = to_frame(lps::from_bus(registration_->odom_in_map), point);
         for (std::size_t i = 0; i + 1 < points.size(); ++i)
           walls.emplace_back(points[i], points[i + 1]);
         if (points.size() > 2)
@@ -238,15 +230,12 @@ class Watcher {
   Vec2 goal_;
   Picture picture_;
   bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
-  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
-  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
-  bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
+  Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
+  Newest<v1::Grant> grant_{node_, bus::topics::kGrant};
+  Newest<v1::FloorMap> map_sample_{node_, bus::topics::kMap};
+  Newest<v1::Registration> registration_{node_, bus::topics::kRegistration};
   maps::Map map_;
-  std::optional<Pose> odom_in_map_;
   std::optional<v1::RobotState> robot_;
-  std::optional<v1::RobotDescription> description_;
-  std::optional<v1::Grant> grant_;
   std::map<int, Reading> newest_;  ///< by sonar
 };
 

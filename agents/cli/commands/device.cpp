@@ -25,20 +25,14 @@ class Watch {
 
   void poll() {
     processes.poll();
-    if (auto newest = robots_.take_newest())
-      robot = std::move(newest);
-    if (auto newest = devices_.take_newest())
-      devices = std::move(newest);
+    robot.poll();
+    devices.poll();
   }
 
   bus::Node node;
   Processes processes;
-  std::optional<v1::RobotState> robot;
-  std::optional<v1::Devices> devices;
-
- private:
-  bus::Reader<v1::RobotState> robots_ = node.reader(bus::topics::kRobotState);
-  bus::Reader<v1::Devices> devices_ = node.reader(bus::topics::kDevices);
+  Newest<v1::RobotState> robot{node, bus::topics::kRobotState};
+  Newest<v1::Devices> devices{node, bus::topics::kDevices};
 };
 
 int nobody(const Watch& watch) {
@@ -55,7 +49,7 @@ int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
   }
   if (!watch.robot)
     return nobody(watch);
-  std::fputs(table(device_rows(*watch.robot, watch.devices)).c_str(), stdout);
+  std::fputs(table(device_rows(*watch.robot, watch.devices.get())).c_str(), stdout);
   return bus::kExitOk;
 }
 
@@ -74,7 +68,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
       }
       continue;
     }
-    const auto rows = device_rows(*watch.robot, watch.devices);
+    const auto rows = device_rows(*watch.robot, watch.devices.get());
     const std::set<std::vector<std::string>> now(rows.begin() + 1, rows.end());
     for (const auto& row : rows)
       if (now.contains(row) && !shown.contains(row))

@@ -26,8 +26,8 @@ class DirectDriver {
   void poll();
 
   const std::string& source() const { return source_; }
-  /// The robot's state, once it was heard.
-  const std::optional<v1::RobotState>& robot() const { return robot_; }
+  /// Null until it was heard.
+  const v1::RobotState* robot() const { return robot_.get(); }
   const std::optional<v1::Grant>& grant() const { return grant_; }
   /// True where a command of this driver goes to the wheels.
   bool drives() const;
@@ -42,11 +42,10 @@ class DirectDriver {
   bus::Node& node_;
   Processes processes_;
   bus::Writer<v1::MotorCommand> commands_;
-  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   std::string source_;
   std::uint64_t number_ = 0;
-  std::optional<v1::RobotState> robot_;
+  Newest<v1::RobotState> robot_{node_, bus::topics::kRobotState};
   std::optional<v1::Grant> grant_;
   std::string refusal_;
   bus::StopNotice stops_;

@@ -41,8 +41,7 @@ void DirectDriver::release() {
 
 void DirectDriver::poll() {
   processes_.poll();
-  if (auto robot = robots_.take_newest())
-    robot_ = std::move(robot);
+  robot_.poll();
   for (const auto& sample : grants_.take()) {
     grant_ = sample.data;
     if (std::string who = stops_.hear(*grant_); !who.empty())

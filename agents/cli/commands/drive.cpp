@@ -333,13 +333,11 @@ class Teleop {
     processes_.poll();
     goals_.poll();
     stops_.poll(now());
-    if (const auto robot = robots_.take_newest()) {
-      robot_ = *robot;
+    if (robot_.poll())
       robot_came_ = Clock::now();
-    }
-    if (const auto description = descriptions_.take_newest()) {
-      keys_.set_max_velocity(description->max_velocity);
-      joystick_.stick().set_max_velocity(description->max_velocity);
+    if (description_.poll()) {
+      keys_.set_max_velocity(description_->max_velocity);
+      joystick_.stick().set_max_velocity(description_->max_velocity);
     }
     if (!joystick_.there() && seconds_since(looked_) > 1.0) {
       joystick_.open();
@@ -347,10 +345,8 @@ class Teleop {
       if (joystick_.there())
         note_ = joystick_.describe();
     }
-    if (const auto grant = grants_.take_newest()) {
-      grant_ = *grant;
-      pilot_.heard(*grant, now());
-    }
+    if (grant_.poll())
+      pilot_.heard(*grant_, now());
     if (constant_)
       if (const auto status = goals_.status(*constant_)) {
         if (bus::ended(status->state)) {
@@ -448,9 +444,9 @@ class Teleop {
   bus::GoalClient goals_;
   bus::RequestClient stops_{node_, bus::topics::kDriveStop, person("keyboard")};
   bus::Writer<v1::MotorCommand> commands_ = node_.writer(bus::topics::kDriveTeleop);
-  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
-  bus::Reader<v1::RobotDescription> descriptions_ = node_.reader(bus::topics::kRobotDescription);
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  Newest<v1::RobotState> robot_{node_, bus::topics::kRobotState};
+  Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
+  Newest<v1::Grant> grant_{node_, bus::topics::kGrant};
 
   KeyDrive keys_;
   std::string input_;
@@ -458,9 +454,7 @@ class Teleop {
   bool quit_ = false;
   double stopped_at_ = -1e9;  ///< [s]
   std::optional<v1::GoalId> constant_;
-  std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;
-  std::optional<v1::Grant> grant_;
   std::string note_ = joystick_.describe();
 };
 

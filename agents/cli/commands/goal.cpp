@@ -40,17 +40,16 @@ struct GoalOptions {
 /// Reports once the latch that keeps a goal from driving the robot, and its end.
 class Latches {
  public:
-  explicit Latches(bus::Node& node) : grants_(node.reader(bus::topics::kGrant)) {}
+  explicit Latches(bus::Node& node) : grant_(node, bus::topics::kGrant) {}
   void poll() {
-    const auto grant = grants_.take_newest();
-    if (!grant || latched(*grant) == last_)
+    if (!grant_.poll() || latched(*grant_) == last_)
       return;
-    last_ = latched(*grant);
+    last_ = latched(*grant_);
     print("           %s\n", last_.empty() ? "autonomy may drive" : last_.c_str());
   }
 
  private:
-  bus::Reader<v1::Grant> grants_;
+  Newest<v1::Grant> grant_;
   std::string last_;
 };
 
@@ -318,13 +317,12 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
     throw std::invalid_argument("expected goal activities [ACTIVITY]");
   bus::Node node(node_options);
   Processes processes(node);
-  auto reader = node.reader(bus::topics::kActivitySchemas);
+  Newest<v1::ActivitySchemas> known(node, bus::topics::kActivitySchemas);
   const auto end = Clock::now() + milliseconds(5000);
-  std::optional<v1::ActivitySchemas> known;
   while (!known && !stop.requested() && Clock::now() < end) {
     node.wait(milliseconds(100), &stop);
     processes.poll();
-    known = reader.take_newest();
+    known.poll();
   }
   if (!known)
     return failed("nobody said what can be asked for; " + who_is_there(processes));
@@ -354,6 +352,8 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
 void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
+  chosen.reaches_all(command,
+                     [options] { return options->words == std::vector<std::string>{"stop"}; });
   command->add_option(
       "words", options->words,
       "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "

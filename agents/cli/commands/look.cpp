@@ -120,9 +120,10 @@ int echo(const std::string& topic, std::uint64_t count, bool once, double timeou
 }  // namespace
 
 void add_list(CLI::App& app, Chosen& chosen) {
-  chosen.when(app.add_subcommand(
-                  "list", "Topics, types, writers and readers with their QoS, and mismatches"),
-              list_topics);
+  CLI::App* command = app.add_subcommand(
+      "list", "Topics, types, writers and readers with their QoS, and mismatches");
+  chosen.reaches_all(command);
+  chosen.when(command, list_topics);
 }
 
 void add_echo(CLI::App& app, Chosen& chosen) {

@@ -48,18 +48,12 @@ std::string trouble_of_robots(std::string& name) {
 }
 
 /// std::invalid_argument: this command does not reach every robot.
-void expect_one_robot(const CLI::App& root) {
-  static const std::set<std::string> reach{"agents", "ask",   "complete", "estop", "help",
-                                           "list",   "renew", "status",   "stop"};
+void expect_one_robot(const CLI::App& root, const Chosen& chosen) {
   const auto commands = root.get_subcommands();
   if (commands.empty())
     return;
-  const CLI::App& command = *commands.front();
-  const auto words = [&command] { return command.get_option("words")->results(); };
-  if (command.get_name() == "goal"
-          ? words() == std::vector<std::string>{"stop"}
-          : reach.contains(command.get_name()) && command.get_subcommands().empty() &&
-                (command.get_name() != "agents" || words().empty()))
+  const auto found = chosen.reach.find(commands.front());
+  if (found != chosen.reach.end() && found->second())
     return;
   throw std::invalid_argument(
       "every robot (*) is reached by list, status, agents, ask, goal stop and estop alone: "
@@ -115,8 +109,10 @@ int main(int argc, char** argv) {
         *robot.get_validator(0) = CLI::Validator(cli::trouble_of_robots, "");
         for (cli::AddCommand* const add : cli::kCommands)
           add(app, chosen);
-        app.add_subcommand("help", "This text; with a command's name: what that takes")
-            ->add_option("command", about, "name of a command");
+        CLI::App* const help =
+            app.add_subcommand("help", "This text; with a command's name: what that takes");
+        help->add_option("command", about, "name of a command");
+        chosen.reaches_all(help);
         // --robot and the like may stand behind the subcommand as well. (Separate programs have
         // their own options, and the words of complete are for no parser.)
         for (CLI::App* command : app.get_subcommands({}))
@@ -125,7 +121,7 @@ int main(int argc, char** argv) {
       [&](bus::NodeOptions options, const bus::Stop& stop) -> int {
         options.for_terminal = true;
         if (options.robot == cli::kEveryRobot)
-          cli::expect_one_robot(*root);
+          cli::expect_one_robot(*root, chosen);
         if (chosen.run) {
           const int code = chosen.run(cli::with_running_bus(*root, options), stop);
           cli::flush_output();

@@ -50,21 +50,12 @@ class View {
   /// True where a new sample of registration came.
   bool poll() {
     deployments.poll();
-    if (const auto grant = grants_.take_newest())
-      holds = latched(*grant);
-    if (const auto description = descriptions_.take_newest())
-      radius = description->radius;
-    if (const auto beliefs = beliefs_.take_newest())
-      hazards = hazards_in(*beliefs);
-    if (auto newest = maps_.take_newest()) {
-      sample = std::move(newest);
+    grant.poll();
+    description.poll();
+    beliefs.poll();
+    if (sample.poll())
       map = maps::from_bus(*sample);
-    }
-    if (auto newest = registrations_.take_newest()) {
-      registration = std::move(newest);
-      return true;
-    }
-    return false;
+    return registration.poll();
   }
 
   /// Waits for the map, and for the registration where requested.
@@ -82,6 +73,8 @@ class View {
     return false;
   }
 
+  /// The latches, in words.
+  std::string holds() const { return grant ? latched(*grant) : ""; }
   bool tracking() const { return registration && registration->state == v1::REGISTRATION_TRACKING; }
   Vec2 position() const { return {registration->pose_in_map.x, registration->pose_in_map.y}; }
 
@@ -93,20 +86,13 @@ class View {
   bus::Node node;
   Processes processes;
   DeploymentWatch deployments;
-  std::optional<v1::FloorMap> sample;
+  Newest<v1::Grant> grant{node, bus::topics::kGrant};
+  Newest<v1::FloorMap> sample{node, bus::topics::kMap};
   maps::Map map;
-  std::optional<v1::Registration> registration;
-  std::optional<double> radius;  ///< [m] of the robot
-  v1::Belief hazards;            ///< zones by advice
+  Newest<v1::Registration> registration{node, bus::topics::kRegistration};
+  Newest<v1::BeliefSet> beliefs{node, bus::topics::kBeliefs};
+  Newest<v1::RobotDescription> description{node, bus::topics::kRobotDescription};
   bus::RequestClient registration_client{node, bus::topics::kRegistrationRequest, "saphira map"};
-  std::string holds;  ///< the latches, in words
-
- private:
-  bus::Reader<v1::Grant> grants_ = node.reader(bus::topics::kGrant);
-  bus::Reader<v1::FloorMap> maps_ = node.reader(bus::topics::kMap);
-  bus::Reader<v1::Registration> registrations_ = node.reader(bus::topics::kRegistration);
-  bus::Reader<v1::BeliefSet> beliefs_ = node.reader(bus::topics::kBeliefs);
-  bus::Reader<v1::RobotDescription> descriptions_ = node.reader(bus::topics::kRobotDescription);
 };
 
 int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
@@ -121,8 +107,8 @@ int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
   do {
     if (view.registration && seconds_since(told) >= 1.0) {
       std::printf("%8.1f s  %s%s%s\n", 0.1 * static_cast<double>(view.registration->stamp.cycle),
-                  describe(*view.registration, view.map).c_str(), view.holds.empty() ? "" : "; ",
-                  view.holds.c_str());
+                  describe(*view.registration, view.map).c_str(), view.holds().empty() ? "" : "; ",
+                  view.holds().c_str());
       std::fflush(stdout);
       told = Clock::now();
     }
@@ -252,7 +238,6 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   View view(options);
   auto grid = view.node.reader(bus::topics::kGrid);
   auto perceptions = view.node.reader(bus::topics::kPerception);
-  auto descriptions = view.node.reader(bus::topics::kRobotDescription);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   auto drawings = view.node.reader(bus::topics::kDrawings);
@@ -303,8 +288,8 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   const v1::Covariance2& c = view.registration->covariance;
   drawing.robot.emplace();
   drawing.robot->pose_in_map = lps::from_bus(view.registration->pose_in_map);
-  if (const auto description = descriptions.take_newest())
-    drawing.robot->radius = description->radius;
+  if (view.description)
+    drawing.robot->radius = view.description->radius;
   drawing.robot->xx = c.xx;
   drawing.robot->yy = c.yy;
   drawing.robot->xy = c.xy;
@@ -342,9 +327,10 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   const maps::Topology topology(view.map);
   maps::RouteSettings settings;
   settings.closed = view.closed_doors();
-  if (view.radius)
-    settings.needs_width = maps::needed_width(*view.radius);
-  settings.zones = maps::all_zones(view.map, topology, view.hazards.value, view.hazards.said_by);
+  if (view.description)
+    settings.needs_width = maps::needed_width(view.description->radius);
+  const v1::Belief hazards = view.beliefs ? hazards_in(*view.beliefs) : v1::Belief{};
+  settings.zones = maps::all_zones(view.map, topology, hazards.value, hazards.said_by);
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route)
     return failed(found.reason);
@@ -387,8 +373,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     const auto status = goals.status(goal);
     done = status && bus::ended(status->state);
     std::string news = status ? (done ? status->reason : status->step) : std::string();
-    if (!done && !view.holds.empty())
-      news += (news.empty() ? "" : "; ") + view.holds;
+    if (!done && !view.holds().empty())
+      news += (news.empty() ? "" : "; ") + view.holds();
     if (now_corridors != corridors || now_doors != doors)
       news += (news.empty() ? "" : "; ") + counted(now_corridors, "corridor") + ", " +
               counted(now_doors, "door");

@@ -4,16 +4,18 @@
 #include <stdexcept>
 
 #include "commands.hpp"
-#include "mind.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/displays.hpp"
+#include "saphira/watch/mind.hpp"
+#include "watch.hpp"
 
 namespace saphira::cli {
 
 namespace {
 
 using std::chrono::milliseconds;
+using watch::Mind;
 
 constexpr milliseconds kProcessesListen{1300};  // the status comes once a second
 constexpr double kAnswerPatience = 4.0;         // [s] for an answer

@@ -8,142 +8,104 @@
 
 #include "commands.hpp"
 #include "saphira/base/heartbeat.hpp"
+#include "saphira/watch/mind.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
 
 namespace {
 
+using watch::Mind;
+
 constexpr double kSlow = 1.5;       ///< [s] the status of each program comes once a second
 constexpr double kStarting = 15.0;  ///< [s] longer than any time of listening
 
-/// The status of all programs, and the driver of the robot.
-class StatusView {
+/// What the supervisor says of programs that it has started again.
+class Restarts {
  public:
-  explicit StatusView(bus::Node& node) : node_(node), processes_(node) {}
+  explicit Restarts(bus::Node& node) : log_(node.reader(bus::topics::kLog)) {}
 
   void poll() {
-    processes_.poll();
-    if (auto grant = grants_.take_newest())
-      grant_ = std::move(grant);
-    if (const auto robot = robots_.take_newest()) {
-      // A robot in single step may stand still.
-      robot_ = robot->stamp;
-      robot_came_ = Clock::now();
-    }
-    if (const auto behaviors = behaviors_.take_newest())
-      behaved_ = behaviors->stamp;
-    if (const auto intentions = intentions_.take_newest())
-      intended_ = intentions->stamp;
-    keep_newest(goals_, statuses_, [](const v1::GoalStatus& goal) {
-      return std::pair(goal.id.writer, goal.id.number);
-    });
     for (const auto& sample : log_.take())
       if (sample.data.text.starts_with(kStartedAgain))
-        started_again_[sample.data.instance] = sample.data.name + " was " + sample.data.text;
+        words_[sample.data.instance] = sample.data.name + " was " + sample.data.text + "\n";
   }
-
   std::string text() const {
-    const auto all = processes_.all();
-    if (all.empty())
-      return who_is_there(processes_) + "\n" + silent_peers();
-    const situation::Situation now = situation();
-    std::string text = status_table(all, unheard(now));
-    text += "drive: " + driver(now) + "\n";
-    if (const std::string trouble = situation::trouble(now); !trouble.empty())
-      text += "trouble: " + trouble + "\n";
-    if (const std::string second = second_deployment(all); !second.empty())
-      text += second + "\n";
-    text += situation::clocks_apart(all);
-    for (const auto& [instance, words] : started_again_)
-      text += words + "\n";
-    return text + silent_peers();
-  }
-
-  situation::Situation situation() const {
-    situation::Situation now = processes_.situation();
-    now.now = robot_.cycle;
-    now.cycle = now.now;
-    now.grant = grant_;
-    now.silence = seconds_since(robot_came_);
-    const auto known = [this](const v1::Stamp& stamp) {
-      const std::uint64_t cycle = stamp.epoch == robot_.epoch ? stamp.cycle : 0;
-      return situation::Known{cycle, cycle};
-    };
-    now.behaviors_known = known(behaved_);
-    now.intentions_known = known(intended_);
-    for (const auto& [id, status] : statuses_)
-      now.statuses.push_back(status);
-    return now;
-  }
-
-  /// Rises with all that is noticed, and again when it is heard.
-  std::size_t news() const {
-    const auto heard = [](const v1::Stamp& stamp) { return stamp.cycle > 0 ? 1U : 0U; };
-    return processes_.news() + robots_.matched() + behaviors_.matched() + intentions_.matched() +
-           heard(robot_) + heard(behaved_) + heard(intended_);
-  }
-
-  const Processes& processes() const { return processes_; }
-  /// Somebody is heard, and no program misses another.
-  bool whole() const { return !processes_.all().empty() && !misses(situation()); }
-
- private:
-  std::string silent_peers() const {
     std::string text;
-    for (const auto& peer : node_.silent_peers())
-      text += "peer " + peer +
-              ": nothing is heard from it; there, `saphira up` needs profile wan and domain " +
-              std::to_string(node_.options().domain) + ", and a network that lets UDP through\n";
-    for (const auto& wait : node_.network_waits())
-      text += "network: " + wait + "\n";
+    for (const auto& [instance, words] : words_)
+      text += words;
     return text;
   }
 
-  bus::Node& node_;
-  Processes processes_;
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
-  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
-  bus::Reader<v1::BehaviorSet> behaviors_ = node_.reader(bus::topics::kBehaviors);
-  bus::Reader<v1::Intentions> intentions_ = node_.reader(bus::topics::kIntentions);
-  bus::Reader<v1::GoalStatus> goals_ = node_.reader(bus::topics::kGoalStatus);
-  bus::Reader<v1::LogRecord> log_ = node_.reader(bus::topics::kLog);
-  std::optional<v1::Grant> grant_;
-  v1::Stamp robot_, behaved_, intended_;  ///< the newest
-  Clock::time_point robot_came_ = Clock::now();
-  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> statuses_;
-  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, with the reason
+ private:
+  bus::Reader<v1::LogRecord> log_;
+  std::map<std::uint64_t, std::string> words_;
 };
 
-int status(bool watch, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {
+std::string silent_peers(const bus::Node& node) {
+  std::string text;
+  for (const auto& peer : node.silent_peers())
+    text += "peer " + peer +
+            ": nothing is heard from it; there, `saphira up` needs profile wan and domain " +
+            std::to_string(node.options().domain) + ", and a network that lets UDP through\n";
+  for (const auto& wait : node.network_waits())
+    text += "network: " + wait + "\n";
+  return text;
+}
+
+/// All programs, the driver of the robot, and trouble.
+std::string text_of(const Mind& mind, const Restarts& restarts) {
+  const bus::Node& node = mind.processes().node();
+  const situation::Situation now = mind.situation();
+  if (now.programs.empty())
+    return who_is_there(mind.processes()) + "\n" + silent_peers(node);
+  std::string text = status_table(now.programs, unheard(now)) + "drive: " + driver(now) + "\n";
+  if (const std::string trouble = situation::trouble(now); !trouble.empty())
+    text += "trouble: " + trouble + "\n";
+  if (const std::string second = second_deployment(now.programs); !second.empty())
+    text += second + "\n";
+  return text + clocks_apart(now.programs) + restarts.text() + silent_peers(node);
+}
+
+/// Somebody is heard, and no program misses another.
+int code_of(const situation::Situation& now) {
+  return now.programs.empty() || misses(now) ? bus::kExitFailed : bus::kExitOk;
+}
+
+int status(bool again, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
-  StatusView view(node);
-  const auto refresh = [&view] { view.poll(); };
+  Mind mind(node, false);
+  Restarts restarts(node);
+  const auto refresh = [&] {
+    mind.poll();
+    restarts.poll();
+  };
   const double took =
-      listen(node, stop, view.processes(), refresh, [&view] { return view.news(); });
+      watch::listen(node, stop, mind.processes(), refresh, [&] { return mind.news(); });
+  const situation::Situation now = mind.situation();
   if (json) {
-    std::printf("%s\n", to_json(view.situation()).c_str());
-    return view.whole() ? bus::kExitOk : bus::kExitFailed;
+    std::printf("%s\n", to_json(now).c_str());
+    return code_of(now);
   }
-  while (watch && !stop.requested()) {
+  while (again && !stop.requested()) {
     const bool terminal = isatty(STDOUT_FILENO) != 0;
-    std::printf("%s%s%s", terminal ? "\x1b[H\x1b[2J" : "", view.text().c_str(),
+    std::printf("%s%s%s", terminal ? "\x1b[H\x1b[2J" : "", text_of(mind, restarts).c_str(),
                 terminal ? "" : "\n");
     std::fflush(stdout);
     poll_for(node, std::chrono::seconds(1), stop, refresh);
   }
-  if (!watch)
-    std::fputs(view.text().c_str(), stdout);
-  const auto all = view.processes().all();
-  const bool starting = std::any_of(all.begin(), all.end(), [](const SeenProcess& each) {
-    return each.status.uptime < kStarting;
-  });
-  if (!watch && took > kSlow && !starting)
+  if (again)
+    return bus::kExitOk;
+  std::fputs(text_of(mind, restarts).c_str(), stdout);
+  const bool starting =
+      std::any_of(now.programs.begin(), now.programs.end(),
+                  [](const situation::Program& each) { return each.status.uptime < kStarting; });
+  if (took > kSlow && !starting)
     std::printf(
         "slow: the last of this was heard after %.1f s, by a network or a machine that is "
         "slow or loaded\n",
         took);
-  return watch || view.whole() ? bus::kExitOk : bus::kExitFailed;
+  return code_of(now);
 }
 
 /// Each robot with a program that works for it, one robot after another.
@@ -171,6 +133,7 @@ void add_status(CLI::App& app, Chosen& chosen) {
   auto watch = std::make_shared<bool>(false);
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("status", "Every process, and who drives and why");
+  chosen.reaches_all(command);
   command->add_flag("--watch,-w", *watch, "again each second, until Ctrl-C");
   command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
       ->excludes("--watch");

@@ -7,15 +7,20 @@
 #include <string>
 
 #include "commands.hpp"
-#include "inquiry.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/cli/displays.hpp"
+#include "saphira/situation/why.hpp"
+#include "saphira/watch/inquiry.hpp"
+#include "watch.hpp"
 
 namespace saphira::cli {
 
 namespace {
 
 using std::chrono::milliseconds;
+using watch::Inquiry;
+using watch::kMindPatience;
+using watch::Mind;
 
 constexpr milliseconds kOthers{300};  // for programs that are discovered after the services
 constexpr double kRest = 0.5;         // [s] by then schemas and programs have come as well

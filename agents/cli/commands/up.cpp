@@ -569,6 +569,7 @@ int stop_running(const Meant& wanted, const bus::Stop& stop) {
 void add_stop(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("stop", "Stop a deployment that saphira up has started");
+  chosen.reaches_all(command);
   command->add_option("deployment", *name, "such as demo; needed where several run");
   chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop& stop) {
     return stop_running(meant_by(*name, app, options), stop);
@@ -579,6 +580,7 @@ void add_renew(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "renew", "Let a deployment take in new versions of its programs, one after the other");
+  chosen.reaches_all(command);
   command->add_option("deployment", *name, "such as demo; needed where several run");
   chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop&) {
     return renew_running(meant_by(*name, app, options));

@@ -271,19 +271,18 @@ DeviceCommand parse_device(const std::vector<std::string>& words) {
 }
 
 std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
-                                                  const std::optional<v1::Devices>& devices) {
+                                                  const v1::Devices* d) {
   std::vector<std::vector<std::string>> rows{{"device", "shows"}};
   const auto add = [&](const char* name, const std::string& value) {
     rows.push_back({name, value});
   };
-  const auto& d = devices;
   std::string battery = format("%.1f V", robot.battery);
-  if (d && d->has_charge)
+  if (d != nullptr && d->has_charge)
     battery += format(", %.0f %% charged", d->charge * 100.0);
-  if (d && d->charging != 0)
+  if (d != nullptr && d->charging != 0)
     battery += ", charging";
   add("battery", battery);
-  if (d && d->has_flags)
+  if (d != nullptr && d->has_flags)
     add("motors", std::string(d->motors_on ? "on" : "off") +
                       (d->emergency_stop ? ", EMERGENCY STOP PRESSED" : ""));
   else
@@ -299,7 +298,7 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
   add("digital output", bits(robot.digital_output));
   add("analog", format("%.2f V", robot.analog * 5.0 / 255.0));
   add("timer", std::to_string(robot.timer));
-  if (!d)
+  if (d == nullptr)
     return rows;
   if (d->front_bumpers != 0 || d->rear_bumpers != 0)
     add("bumpers", "front " + bits(d->front_bumpers) + " rear " + bits(d->rear_bumpers));

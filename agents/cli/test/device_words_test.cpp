@@ -90,7 +90,7 @@ TEST(DeviceWords, RowsShowWhatTheRobotHas) {
         return row[1];
     return std::string();
   };
-  auto rows = device_rows(robot, {});
+  auto rows = device_rows(robot, nullptr);
   EXPECT_EQ(find(rows, "battery"), "12.3 V");
   EXPECT_EQ(find(rows, "digital output"), "0b00000101");
   EXPECT_EQ(find(rows, "encoders"), "");
@@ -105,7 +105,7 @@ TEST(DeviceWords, RowsShowWhatTheRobotHas) {
                       .gripper_state = 0x12};
   devices.requests[0].source = "me";
   devices.requests[0].answer.text = "servo 1500 us: refused; why not";
-  rows = device_rows(robot, devices);
+  rows = device_rows(robot, &devices);
   EXPECT_EQ(find(rows, "battery"), "12.3 V, 50 % charged");
   EXPECT_EQ(find(rows, "motors"), "off, EMERGENCY STOP PRESSED");
   EXPECT_EQ(find(rows, "encoders"), "-3 0 ticks");

@@ -217,10 +217,7 @@ void Gateway::poll() {
     cameras_.heard(stamp_.cycle, now());
   }
   any = cameras_.poll(now()) || any;
-  if (auto grant = grants_.take_newest())
-    grant_ = std::move(grant);
-  if (auto map = maps_.take_newest())
-    map_ = std::move(map);
+  map_.poll();
   if (any)
     server_.want_all_soon();
 }
@@ -272,7 +269,8 @@ void Gateway::drive() {
 }
 
 void Gateway::press_estop() {
-  if (const auto command = pilot_.stop(grant_ && grant_->estopped))
+  const v1::Grant* const grant = mind_.grant();
+  if (const auto command = pilot_.stop(grant != nullptr && grant->estopped))
     estop_.write(*command);
 }
 
@@ -281,7 +279,7 @@ void Gateway::explain() {
   if (viewers_ == 0 || now() - explained_ < kExplain || !mind_.heard())
     return;
   explained_ = now();
-  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
+  const situation::Explanation why = situation::why(mind_.situation());
   why_ = why.sentence;
   board_.put(why_topic_, "", situation::to_json(why), now());
 }
@@ -292,7 +290,7 @@ std::vector<RobotSeen> Gateway::robots_seen() const {
                              .own = true,
                              .age = now() - heard_at_,
                              .robot = mind_.robot(),
-                             .grant = grant_ ? &*grant_ : nullptr,
+                             .grant = mind_.grant(),
                              .why = why_});
   return seen;
 }
@@ -322,7 +320,7 @@ void Gateway::look_for_occasions() {
   if ((!box_ && pages_.empty()) || now() - looked_ < kExplain || !mind_.heard())
     return;
   looked_ = now();
-  const auto occasion = occasions_.look(mind_.situation(mind_.newest_cycle(), false), looked_);
+  const auto occasion = occasions_.look(mind_.situation(), looked_);
   if (!occasion)
     return;
   if (box_)

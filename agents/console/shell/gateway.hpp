@@ -12,7 +12,6 @@
 #include "cameras.hpp"
 #include "dialer.hpp"
 #include "key.hpp"
-#include "mind.hpp"
 #include "robots.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -23,6 +22,7 @@
 #include "saphira/console/message.hpp"
 #include "saphira/teleop/control.hpp"
 #include "saphira/teleop/pilot.hpp"
+#include "saphira/watch/mind.hpp"
 #include "server.hpp"
 #include "simulator_link.hpp"
 
@@ -141,7 +141,7 @@ class Gateway {
   Board board_;
   teleop::Control control_;
   teleop::Pilot pilot_{"console"};
-  cli::Mind mind_{node_, false};
+  watch::Mind mind_{node_, false};
   bus::GoalClient goals_{node_, "console"};
   bus::RequestClient stops_{node_, bus::topics::kDriveStop, "console"};
   bus::RequestClient resets_{node_, bus::topics::kEstopReset, "console"};
@@ -151,10 +151,8 @@ class Gateway {
   bus::Writer<v1::MotorCommand> estop_ = node_.writer(bus::topics::kDriveEstop);
   bus::Writer<v1::Utterance> heard_ = node_.writer(bus::topics::kHeard);
   bus::Writer<v1::AgentEvent> pointed_out_ = node_.writer(bus::topics::kAgentEvents);
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   bus::Writer<v1::ConsolePage> own_page_ = node_.writer(bus::topics::kPage);
-  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
-  std::optional<v1::FloorMap> map_;
+  watch::Newest<v1::FloorMap> map_{node_, bus::topics::kMap};
   bus::Audit audit_{node_};
 
   std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
@@ -170,7 +168,6 @@ class Gateway {
   v1::Stamp stamp_;             ///< of the newest robot state
   double heard_at_ = -1e9;      ///< [s] likewise
   double robots_shown_ = -1e9;  ///< [s]
-  std::optional<v1::Grant> grant_;
   std::uint64_t utterances_ = 0;
   double explained_ = -1e9;  ///< [s]
   situation::Occasions occasions_;

@@ -83,7 +83,7 @@ void Robots::poll(double now) {
     if (now < member.explained + kLookAtRobots || !member.mind.heard())
       continue;
     member.explained = now;
-    member.why = situation::why(member.mind.situation(member.mind.newest_cycle(), false)).sentence;
+    member.why = situation::why(member.mind.situation()).sentence;
   }
 }
 

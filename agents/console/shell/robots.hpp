@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "mind.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/console/robots.hpp"
 #include "saphira/teleop/pilot.hpp"
+#include "saphira/watch/mind.hpp"
 
 namespace saphira::console {
 
@@ -34,7 +34,7 @@ class Robots {
   struct Member {
     Member(bus::NodeOptions options, const std::string& robot);
     bus::Node node;
-    cli::Mind mind{node, false};
+    watch::Mind mind{node, false};
     bus::Reader<v1::ConsolePage> pages = node.reader(bus::topics::kPage);
     bus::Writer<v1::MotorCommand> estop = node.writer(bus::topics::kDriveEstop);
     bus::RequestClient stops{node, bus::topics::kDriveStop, "console"};

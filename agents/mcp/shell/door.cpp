@@ -1,6 +1,7 @@
 #include "door.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "saphira/base/base64.hpp"
@@ -24,11 +25,12 @@ constexpr std::size_t kMostGoals = 4;   // underway at once
 constexpr double kNews = 1e-6;          // of progress, for new words alone
 constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
 constexpr std::size_t kLongestNote = 160;
-constexpr double kPicture = 2.0;  // [s] for a camera that was off
-constexpr double kReply = 10.0;   // [s] for the robot's or an agent's reply
-constexpr double kGrace = 15.0;   // [s] after the deadline, for the last word about a task
-constexpr double kStop = 5.0;     // [s] for a robot to stand
-constexpr double kOld = 60.0;     // [s] after which the dialogue does not act on words
+constexpr double kPicture = 2.0;       // [s] for a camera that was off
+constexpr double kReply = 10.0;        // [s] for the robot's or an agent's reply
+constexpr double kGrace = 15.0;        // [s] after the deadline, for the last word about a task
+constexpr double kStop = 5.0;          // [s] for a robot to stand
+constexpr std::size_t kMostKept = 64;  // actions that are remembered
+constexpr double kOld = 60.0;          // [s] after which the dialogue does not act on words
 
 v1::Argument argument(const std::string& name, const Json& value) {
   if (value.is_boolean())
@@ -44,6 +46,12 @@ v1::Argument argument(const std::string& name, const Json& value) {
                                         : v1::FRAME_ROBOT);
   }
   return bus::text(name, value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+/// The end of a request that no program has given.
+bool is_unheard(const v1::Answer& answer) {
+  return answer.service.empty() &&
+         (answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE);
 }
 
 /// The first line of a text for the log.
@@ -66,8 +74,12 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       goals_(node, who),
       requests_(node, bus::topics::kSolve, who),
       stops_(node, bus::topics::kDriveStop, who) {
-  if (right_ == DoorRight::operate && robot.may_approve())
-    approvals_.emplace(node, bus::topics::kProcessRequest, who);
+  try {
+    if (right_ == DoorRight::operate)
+      approvals_.emplace(node, bus::topics::kProcessRequest, who);
+  } catch (const std::invalid_argument&) {
+    approvals_.reset();  // the role file does not let this program approve
+  }
   session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
@@ -242,13 +254,12 @@ void Door::begin(const Call& call) {
   if (call.tool == "stop") {
     v1::Request stop = bus::request("stop");
     stop.person = person_;
-    const auto result = [this](const v1::Answer& answer) {
+    return send(call, stops_, std::move(stop), kStopPatience, [this](const v1::Answer& answer) {
       const bool well = bus::well(answer.code);
-      return Result{answer.text, {{"stopped", well}, {"moves", robot_.moves()}}, !well};
-    };
-    stops_.send(std::move(stop), end_of(call.number, result), kStopPatience + 1.0);
-    waiting_[call.number] = {.what = Waiting::For::stop, .until = now_ + kStopPatience};
-    return;
+      return Result{is_unheard(answer) ? kNotConfirmed : answer.text,
+                    {{"stopped", well}, {"moves", robot_.moves()}},
+                    !well};
+    });
   }
   if (const v1::ActivitySchema* const activity = robot_.activity(call.tool)) {
     ask(call, *activity);
@@ -338,29 +349,39 @@ void Door::request(const Call& call, const v1::Capability& capability) {
     request.arguments.push_back(call.arguments.contains(parameter.name)
                                     ? argument(parameter.name, call.arguments[parameter.name])
                                     : bus::open(parameter.name));
-  const double patience = request.deadline + kReply;
-  if (!capability.acts) {
-    const auto result = [declared = capability.parameters](const v1::Answer& answer) {
-      return Result{cli::line_of(answer), values_of(answer.results, declared),
-                    !bus::well(answer.code)};
-    };
-    requests_.send(std::move(request), end_of(call.number, result), patience);
-    waiting_[call.number] = {.what = Waiting::For::request, .until = now_ + kReply + 1.0};
-    return;
-  }
-  const auto hear = [this](const v1::Answer& answer) { actions_.hear(answer); };
-  v1::GoalId id{.writer = node_.instance(), .number = requests_.send(request, hear, patience)};
-  actions_.begin(id, request, capability.parameters);
+  if (!capability.acts)
+    return send(call, requests_, std::move(request), kReply + 1.0,
+                [declared = capability.parameters](const v1::Answer& answer) {
+                  return is_unheard(answer)
+                     ? Result{"no answer: saphira-facilitator may not run (robot_status says more)",
+                              nullptr, true}
+                     : Result{cli::line_of(answer), values_of(answer.results, declared),
+                              !bus::well(answer.code)};
+                });
+  for (auto each = actions_.begin(); each != actions_.end() && actions_.size() >= kMostKept;)
+    each = bus::ended(each->second.status.state) ? actions_.erase(each) : std::next(each);
+  const auto answered = [this, declared = capability.parameters](const v1::Answer& answer) {
+    Action& asked = actions_.at(answer.number);
+    const Own* const mine = own(asked.status.id);
+    take_answer(asked, answer, mine != nullptr && mine->withdrawn, declared);
+  };
+  const v1::GoalId id{.writer = node_.instance(),
+                      .number = requests_.send(request, answered, request.deadline + kReply)};
+  actions_.emplace(id.number, action_of(id, request));
   follow(call, id);
 }
 
-/// Makes the end of a request the result of its call.
-bus::RequestClient::Hear Door::end_of(std::uint64_t call,
-                                      std::function<Result(const v1::Answer&)> result) {
-  return [this, call, result = std::move(result)](const v1::Answer& answer) {
-    if (const auto asked = waiting_.find(call); asked != waiting_.end() && bus::ended(answer.code))
-      asked->second.result = result(answer);
-  };
+/// Sends a request. Its end is the result of the call, unless the client has given that up.
+void Door::send(const Call& call, bus::RequestClient& client, v1::Request request, double patience,
+                std::function<Result(const v1::Answer&)> result) {
+  client.send(
+      std::move(request),
+      [this, number = call.number, result = std::move(result)](const v1::Answer& answer) {
+        if (bus::ended(answer.code) && waiting_.erase(number) > 0)
+          session_.answer(number, result(answer));
+      },
+      patience);
+  waiting_[call.number] = {.what = Waiting::For::answer};
 }
 
 /// A goal or an action that the client has just asked for.
@@ -423,6 +444,12 @@ Door::Own* Door::own(const v1::GoalId& id) {
   return found == own_.end() ? nullptr : &*found;
 }
 
+/// Null: the id is that of a goal.
+const Action* Door::action(const v1::GoalId& id) const {
+  const auto found = actions_.find(id.number);
+  return found == actions_.end() || found->second.status.id != id ? nullptr : &found->second;
+}
+
 bool Door::has_ended(const v1::GoalId& id) const {
   const auto known = status(id);
   return known && bus::ended(known->state);
@@ -456,10 +483,10 @@ void Door::take_back_words() {
 void Door::withdraw(Own& own, const std::string& why) {
   if (std::exchange(own.withdrawn, true))
     return;
-  if (actions_.find(own.id) == nullptr)
-    return goals_.cancel(own.id, why);
-  actions_.withdraw(own.id);
-  requests_.withdraw(own.id.number);
+  if (action(own.id) == nullptr)
+    goals_.cancel(own.id, why);
+  else
+    requests_.withdraw(own.id.number);
 }
 
 /// The bus puts a checked identity before the client's name.
@@ -555,14 +582,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
                       {done + robot, {{"ended", ended}, {"moves", robot_.moves()}}, !ended});
       return true;
     }
-    case Waiting::For::request:
-      if (!late && !waiting.result)
-        return false;
-      session_.answer(
-          number, waiting.result.value_or(
-                      Result{"no answer: saphira-facilitator may not run (robot_status says more)",
-                             nullptr, true}));
-      return true;
+    case Waiting::For::answer:
+      return false;
     case Waiting::For::event:
       if (!late && !waiting.result)
         return false;
@@ -604,13 +625,6 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       session_.answer(number, result);
       return true;
     }
-    case Waiting::For::stop:
-      if (!late && !waiting.result)
-        return false;
-      session_.answer(number,
-                      waiting.result.value_or(Result{
-                          kNotConfirmed, {{"stopped", false}, {"moves", robot_.moves()}}, true}));
-      return true;
     case Waiting::For::estop: {
       const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped;
       if (!late && !latched)
@@ -642,13 +656,13 @@ void Door::press() {
 
 /// Of a goal, or of an action of this client.
 std::optional<v1::GoalStatus> Door::status(const v1::GoalId& id) const {
-  const Action* const action = actions_.find(id);
-  return action == nullptr ? goals_.status(id) : action->status;
+  const Action* const asked = action(id);
+  return asked == nullptr ? goals_.status(id) : asked->status;
 }
 
 std::string Door::words(const v1::GoalId& id, const v1::GoalStatus& status) const {
-  const Action* const action = actions_.find(id);
-  return action == nullptr ? bus::describe(status) : words_of(*action);
+  const Action* const asked = action(id);
+  return asked == nullptr ? bus::describe(status) : words_of(*asked);
 }
 
 Result Door::outcome(const v1::GoalId& id) const {
@@ -673,8 +687,8 @@ Result Door::outcome(const v1::GoalId& id) const {
   if (other(known->waits_for))
     text += "; the tool cancel ends " + bus::describe(known->waits_for) +
             " in front of it, once its person was asked";
-  const Action* const action = actions_.find(id);
-  return {text, action == nullptr ? json_of(*known) : json_of(*action), bad};
+  const Action* const asked = action(id);
+  return {text, asked == nullptr ? json_of(*known) : json_of(*asked), bad};
 }
 
 Json Door::goals() const {
@@ -683,7 +697,7 @@ Json Door::goals() const {
     all.push_back(json_of(status));
     all.back()["yours"] = status.id.writer == node_.instance() && is_mine(status);
   }
-  for (const Action& action : actions_.all()) {
+  for (const auto& [number, action] : actions_) {
     all.push_back(json_of(action));
     all.back()["yours"] = true;
   }

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/mcp/actions.hpp"
 #include "saphira/mcp/session.hpp"
 #include "saphira/mcp/surroundings.hpp"
 #include "saphira/security/door_keys.hpp"
+#include "saphira/watch/mind.hpp"
 
 namespace saphira::mcp {
 
@@ -34,9 +34,7 @@ class Robot {
   /// The activity or capability behind the tool of this name; null: another kind of tool.
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
-  const cli::Mind& mind() const { return mind_; }
-  /// The role file of the site lets this program approve goals.
-  bool may_approve() const { return may_approve_; }
+  const watch::Mind& mind() const { return mind_; }
   bool moves() const;
   /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
   std::optional<std::string> belief(const std::string& name) const;
@@ -47,7 +45,7 @@ class Robot {
   Result why() const;
   Result map() const { return map_of(surroundings()); }
   Result view() const { return view_of(surroundings()); }
-  Result facts() const { return facts_of(knowledge_ ? &*knowledge_ : nullptr); }
+  Result facts() const { return facts_of(knowledge_.get()); }
 
  private:
   void make_tools();
@@ -56,27 +54,17 @@ class Robot {
 
   bus::Node& node_;
   const std::vector<std::string> described_;
-  const bool may_approve_;
-  cli::Mind mind_;
-  bus::Reader<v1::ActivitySchemas> schema_reader_ = node_.reader(bus::topics::kActivitySchemas);
+  watch::Mind mind_;
+  watch::Newest<v1::ActivitySchemas> schemas_{node_, bus::topics::kActivitySchemas};
   bus::Reader<v1::Agent> agent_reader_ = node_.reader(bus::topics::kAgents);
-  bus::Reader<v1::SonarBuckets> sonar_reader_ = node_.reader(bus::topics::kSonarBuckets);
-  bus::Reader<v1::Perception> perception_reader_ = node_.reader(bus::topics::kPerception);
-  bus::Reader<v1::Vision> vision_reader_ = node_.reader(bus::topics::kVision);
-  bus::Reader<v1::FloorMap> map_reader_ = node_.reader(bus::topics::kMap);
-  bus::Reader<v1::Registration> registration_reader_ = node_.reader(bus::topics::kRegistration);
-  bus::Reader<v1::Knowledge> knowledge_reader_ = node_.reader(bus::topics::kKnows);
-  std::optional<v1::SonarBuckets> sonars_;
-  std::optional<v1::Perception> perception_;
-  std::optional<v1::Vision> vision_;
-  std::optional<v1::FloorMap> map_;
-  std::optional<v1::Registration> registration_;
-  std::optional<v1::Knowledge> knowledge_;
+  watch::Newest<v1::SonarBuckets> sonars_{node_, bus::topics::kSonarBuckets};
+  watch::Newest<v1::Perception> perception_{node_, bus::topics::kPerception};
+  watch::Newest<v1::Vision> vision_{node_, bus::topics::kVision};
+  watch::Newest<v1::FloorMap> map_{node_, bus::topics::kMap};
+  watch::Newest<v1::Knowledge> knowledge_{node_, bus::topics::kKnows};
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
-  bool heard_schemas_ = false;
   double changed_ = 0.0;  ///< [s] the newest change of the tools
-  std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
   std::map<std::string, v1::ActivitySchema> activities_;  ///< by the tool's name
@@ -118,9 +106,8 @@ class Door {
     enum class For {
       goal,
       cancel,
-      request,
+      answer,  ///< of a request: its client keeps the time
       words,
-      stop,
       estop,
       event,
       belief,
@@ -135,7 +122,7 @@ class Door {
     std::string name = {};                            ///< of the event [empty: any] or belief
     std::optional<std::string> value = std::nullopt;  ///< wanted of the belief; nothing: another
     std::string before = {};                          ///< value of the belief
-    std::optional<Result> result = std::nullopt;      ///< of the request or event
+    std::optional<Result> result = std::nullopt;      ///< of the event
     bool is_task = false;
     bool had_any = true;  ///< to cancel
     double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
@@ -158,8 +145,8 @@ class Door {
   bool is_mine(const v1::GoalStatus& status) const;
   void ask(const Call& call, const v1::ActivitySchema& schema);
   void request(const Call& call, const v1::Capability& capability);
-  bus::RequestClient::Hear end_of(std::uint64_t call,
-                                  std::function<Result(const v1::Answer&)> result);
+  void send(const Call& call, bus::RequestClient& client, v1::Request request, double patience,
+            std::function<Result(const v1::Answer&)> result);
   void cancel(const Call& call);
   void cancel_other(const Call& call, const std::optional<v1::GoalId>& id);
   std::optional<v1::GoalStatus> other(const v1::GoalId& id) const;
@@ -168,6 +155,7 @@ class Door {
   void follow(const Call& call, const v1::GoalId& id);
   void await(const Call& call, const v1::GoalId& id);
   Own* own(const v1::GoalId& id);
+  const Action* action(const v1::GoalId& id) const;
   bool has_ended(const v1::GoalId& id) const;
   bool has_words_underway() const;
   void take_back_words();
@@ -202,7 +190,7 @@ class Door {
   std::vector<Call> early_;                   ///< whose facts may still come
   bool left_ = false;                         ///< the client sends no more
   bool may_begin_ = true;
-  Actions actions_;
+  std::map<std::uint64_t, Action> actions_;  ///< by the number of their id
   std::vector<Own> own_;
   /// The words that the robot may still act on.
   struct Words {

@@ -7,7 +7,7 @@
 
 #include "door.hpp"
 #include "saphira/mcp/results.hpp"
-#include "saphira/security/credentials.hpp"
+#include "saphira/situation/why.hpp"
 #include "saphira/situation/words.hpp"
 
 namespace saphira::mcp {
@@ -34,14 +34,6 @@ Json wait_of(double most) {
           {"minimum", 0},
           {"maximum", most},
           {"description", "[s] to wait at most before this answers; 20 where it is not given"}};
-}
-
-bool role_approves(const bus::NodeOptions& options) {
-  if (options.security.empty() || options.security == bus::kOpenBus)
-    return true;
-  const security::Credentials own = security::load_credentials(
-      options.security, options.program.empty() ? options.name : options.program, unix_seconds());
-  return own.roles.may_write(own.subject.role, bus::topics::kProcessRequest.name);
 }
 
 std::string tool_name(std::string name) {
@@ -236,10 +228,7 @@ std::vector<Tool> fixed_tools() {
 }  // namespace
 
 Robot::Robot(bus::Node& node, std::vector<std::string> described)
-    : node_(node),
-      described_(std::move(described)),
-      may_approve_(role_approves(node.options())),
-      mind_(node, false) {
+    : node_(node), described_(std::move(described)), mind_(node, false) {
   make_tools();
 }
 
@@ -247,25 +236,12 @@ void Robot::poll(double now) {
   began_ = began_.value_or(now);
   now_ = now;
   mind_.poll();
-  const auto take = [](auto& reader, auto& newest) {
-    if (auto sample = reader.take_newest())
-      newest = std::move(sample);
-  };
-  take(sonar_reader_, sonars_);
-  take(perception_reader_, perception_);
-  take(vision_reader_, vision_);
-  take(registration_reader_, registration_);
-  take(knowledge_reader_, knowledge_);
-  bool changed = false;
-  if (auto newest = map_reader_.take_newest()) {
-    map_ = std::move(newest);
-    changed = true;
-  }
-  if (const auto newest = schema_reader_.take_newest()) {
-    schemas_ = newest->schemas;
-    heard_schemas_ = true;
-    changed = true;
-  }
+  sonars_.poll();
+  perception_.poll();
+  vision_.poll();
+  knowledge_.poll();
+  bool changed = map_.poll();
+  changed = schemas_.poll() || changed;
   for (const auto& sample : agent_reader_.take()) {
     if (sample.info.disposed)
       agents_.erase(sample.data.id);
@@ -295,7 +271,8 @@ void Robot::make_tools() {
                         [&](const Tool& tool) { return tool.name == name; });
   };
   std::set<std::string> activities;
-  for (const v1::ActivitySchema& schema : schemas_) {
+  const std::vector<v1::ActivitySchema> none;
+  for (const v1::ActivitySchema& schema : schemas_ ? schemas_->schemas : none) {
     const std::string name = tool_name(schema.name);
     activities.insert(name);
     if (is_part(schema) || !is_new(name))
@@ -353,8 +330,8 @@ bool Robot::knows_tools() const {
   std::set<bus::WriterId> announced;
   for (const auto& [id, agent] : agents_)
     announced.insert(agent.info.writer);
-  return heard_schemas_ && announced.size() >= agent_reader_.matched() &&
-         (map_ || map_reader_.matched() == 0) && now_ - std::max(changed_, *began_) >= kRest;
+  return schemas_ && announced.size() >= agent_reader_.matched() && (map_ || map_.matched() == 0) &&
+         now_ - std::max(changed_, *began_) >= kRest;
 }
 
 bool Robot::has_listened() const {
@@ -368,7 +345,7 @@ bool Robot::is_early(const Call& call) const {
       call.tool == "goal")
     return !mind_.whole(mind_.newest_cycle()) || !mind_.knows_goals();
   if (call.tool == "map")
-    return !map_ || !registration_;
+    return !map_ || mind_.registration() == nullptr;
   if (call.tool == "look")
     return !mind_.robot() || !perception_;
   if (call.tool == "knows")
@@ -387,13 +364,12 @@ const v1::Capability* Robot::capability(const std::string& tool) const {
 }
 
 Surroundings Robot::surroundings() const {
-  const auto known = [](const auto& newest) { return newest ? &*newest : nullptr; };
-  return {mind_.robot(), known(sonars_),     known(registration_),
-          known(map_),   known(perception_), known(vision_)};
+  return {mind_.robot(), sonars_.get(),     mind_.registration(),
+          map_.get(),    perception_.get(), vision_.get()};
 }
 
 Result Robot::status() const {
-  const situation::Situation now = mind_.situation(mind_.newest_cycle(), false);
+  const situation::Situation now = mind_.situation();
   std::string text = situation::driver(now);
   if (const std::string trouble = situation::trouble(now); !trouble.empty())
     text += "\n" + trouble;
@@ -411,7 +387,7 @@ Result Robot::status() const {
 }
 
 Result Robot::why() const {
-  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
+  const situation::Explanation why = situation::why(mind_.situation());
   return {situation::to_text(why), {{"sentence", why.sentence}}, false};
 }
 

@@ -19,7 +19,7 @@ namespace saphira::mcp {
 /// A client's door on a bus in memory. The test is the facilitator and its agent.
 class DoorInMemory : public testing::Test {
  protected:
-  explicit DoorInMemory(const std::string& security = {}) : security_of_node(security) {
+  DoorInMemory() {
     agents.write({.id = 7,
                   .name = "sweeper",
                   .capabilities = {bus::action("sweep", "sweeps a room",
@@ -126,16 +126,9 @@ class DoorInMemory : public testing::Test {
     return nullptr;
   }
 
-  bus::NodeOptions options() const {
-    bus::NodeOptions made = test::memory_options("mcp");
-    made.security = security_of_node;
-    return made;
-  }
-
-  const std::string security_of_node;
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node other{test::memory_options("facilitator"), memory};
-  bus::Node node{options(), memory};
+  bus::Node node{test::memory_options("mcp"), memory};
   bus::Writer<v1::Agent> agents = other.writer(bus::topics::kAgents);
   bus::Writer<v1::ActivitySchemas> schemas = other.writer(bus::topics::kActivitySchemas);
   bus::Reader<v1::Request> solve = other.reader<v1::Request>(bus::topics::kSolve);

@@ -1,8 +1,6 @@
 // The calls of a client where lines of doors.txt do not do.
 #include "door_bench.hpp"
-#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/security/authority.hpp"
 
 namespace saphira::mcp {
 namespace {
@@ -248,24 +246,31 @@ TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
   EXPECT_FALSE(properties["whose"].contains("description")) << "a name says no more twice";
 }
 
-// With security: the shipped role of this program may not approve.
-class DoorOfASite : public DoorInMemory {
- protected:
-  explicit DoorOfASite(const saphira::test::TempDir& folder = {})
-      : DoorInMemory(member_of(folder.path("authority"))) {}
+TEST_F(DoorInMemory, ARequestThatNobodyAnswersEndsWithItsClientsTime) {
+  call(1, "place_of", {{"person", "karen"}});
+  call(2, "stop", Json::object());
+  turn();
+  turn(9.9);
+  EXPECT_TRUE(result(1).is_null());
+  EXPECT_TRUE(result(2).is_null());
+  turn(0.2);
+  EXPECT_TRUE(result(1).is_null());
+  EXPECT_EQ(result(2)["content"][0]["text"],
+            "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own");
+  EXPECT_EQ(result(2)["structuredContent"]["stopped"], false);
+  EXPECT_EQ(result(2)["isError"], true);
+  turn(1.0);
+  EXPECT_EQ(result(1)["content"][0]["text"],
+            "no answer: saphira-facilitator may not run (robot_status says more)");
+  EXPECT_EQ(result(1)["isError"], true);
+  EXPECT_FALSE(door->is_asked());
+}
 
- private:
-  static std::string member_of(const std::string& authority) {
-    const std::string roles = saphira::test::source("config/security/roles.yaml");
-    return security::Authority::make(authority, "office", read_file(roles), roles, unix_seconds())
-        .add("flakey", {"agent", "operator"}, "", 365, unix_seconds());
-  }
-};
-
-TEST_F(DoorOfASite, AGoalThatTheRoleMayNotApproveWaitsForSomebodyWhoMay) {
+TEST_F(DoorInMemory, AGoalThatTheClientMayNotApproveWaitsForSomebodyWhoMay) {
+  door = std::make_unique<Door>(node, robot, session, "model",
+                                security::DoorKey{"anna", security::DoorRight::drive, 0, ""});
   const bus::Reader<v1::Request> approvals = other.reader(bus::topics::kProcessRequest);
-  EXPECT_EQ(approvals.matched(), 0U) << "the bus would refuse a writer";
-
+  EXPECT_EQ(approvals.matched(), 0U);
   session.take(
       R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"protocolVersion":"2025-06-18",)"
       R"("capabilities":{"elicitation":{}},"clientInfo":{"name":"c","version":"1"}}})");

@@ -4,6 +4,7 @@
 
 #include "foreign_topic.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/situation/why.hpp"
 
 namespace saphira::ros2 {
 
@@ -191,13 +192,14 @@ void RosRobot::poll() {
   mind_.poll();
   take_robot();
   if (inward_) {
-    const double now = std::chrono::duration<double>(cli::Clock::now().time_since_epoch()).count();
+    const double now =
+        std::chrono::duration<double>(watch::Clock::now().time_since_epoch()).count();
     take_wishes(now);
     drive(now);
     serve();
   }
-  if (cli::Clock::now() - told_ >= kSlow) {
-    told_ = cli::Clock::now();
+  if (watch::Clock::now() - told_ >= kSlow) {
+    told_ = watch::Clock::now();
     tell_slowly();
   }
   node_.publish_status();
@@ -219,9 +221,9 @@ void RosRobot::drive(double now) {
   in.driver.poll();
   if (in.driver.grant())
     in.wheels.heard(*in.driver.grant());
-  if (cli::Clock::now() - drove_ < kDrivePeriod)
+  if (watch::Clock::now() - drove_ < kDrivePeriod)
     return;
-  drove_ = cli::Clock::now();
+  drove_ = watch::Clock::now();
   if (const std::optional<v1::MotorCommand> command = in.wheels.next(now)) {
     in.driver.drive(*command);
     if (const auto news = in.driver.news(); news && !news->empty())
@@ -230,8 +232,8 @@ void RosRobot::drive(double now) {
 }
 
 PoseStamped RosRobot::placed(const PoseStamped& pose) const {
-  const auto& robot = inward_->driver.robot();
-  return robot ? in_odom(pose, robot->pose_in_odom) : pose;
+  const v1::RobotState* const robot = inward_->driver.robot();
+  return robot != nullptr ? in_odom(pose, robot->pose_in_odom) : pose;
 }
 
 void RosRobot::take_wishes(double now) {
@@ -301,7 +303,7 @@ void RosRobot::serve() {
 
 void RosRobot::tell_slowly() {
   const std::int64_t now = unix_nanoseconds();
-  const situation::Situation situation = mind_.situation(mind_.newest_cycle(), false);
+  const situation::Situation situation = mind_.situation();
   put(Outward::diagnostics(situation, now));
   if (situation.robot)
     put(Outward::why(situation::why(situation).sentence, now));

@@ -10,11 +10,11 @@
 
 #include "bytes.hpp"
 #include "direct.hpp"
-#include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/ros2/inward.hpp"
 #include "saphira/ros2/navigate.hpp"
 #include "saphira/ros2/outward.hpp"
+#include "saphira/watch/mind.hpp"
 
 namespace saphira::ros2 {
 
@@ -60,13 +60,13 @@ class RosRobot {
     }
     void answer(const Response& response, const Ticket& ticket) {
       due_.push_back({ros2::answer(bytes_of(response, distribution_), ticket), ticket,
-                      cli::Clock::now() + kLongestMatch});
+                      watch::Clock::now() + kLongestMatch});
     }
     /// Writes the answers, as soon as each client that asks is there to hear them: discovery may
     /// find its request's writer before its answer's reader.
     void flush() {
       while (!due_.empty() && (answers_->matched() >= requests_->matched() ||
-                               cli::Clock::now() > due_.front().latest)) {
+                               watch::Clock::now() > due_.front().latest)) {
         answers_->write(due_.front().bytes,
                         due_.front().ticket.head.empty() ? &due_.front().ticket.request : nullptr);
         due_.pop_front();
@@ -78,7 +78,7 @@ class RosRobot {
     struct Due {
       std::string bytes;
       Ticket ticket;
-      cli::Clock::time_point latest;
+      watch::Clock::time_point latest;
     };
     std::unique_ptr<bus::Foreign::Reader> requests_;
     std::unique_ptr<bus::Foreign::Writer> answers_;
@@ -123,7 +123,7 @@ class RosRobot {
   std::vector<bus::WriterId> writer_ids_;
   std::vector<bus::WriterId> reader_ids_;
   Outward outward_;
-  cli::Mind mind_;
+  watch::Mind mind_;
   bus::Reader<v1::RobotState> states_;
   bus::Reader<v1::RobotDescription> descriptions_;
   bus::Reader<v1::Registration> registrations_;
@@ -146,8 +146,8 @@ class RosRobot {
   Out<DiagnosticArray> diagnostics_;
   std::optional<Inward> inward_;
   std::unique_ptr<bus::Foreign::Writer> node_info_;
-  cli::Clock::time_point told_;
-  cli::Clock::time_point drove_;
+  watch::Clock::time_point told_;
+  watch::Clock::time_point drove_;
 };
 
 }  // namespace saphira::ros2

@@ -249,7 +249,7 @@ void Os::match() {
     odom_in_global = compose(said.pose_in_map, relative(robot_in_odom, Pose{}));
     update_points();
   }
-  for (const registration::Core::Matched& matched : said.matches)
+  for (const v1::Match& matched : said.matches)
     for (const auto& artifact : map_points_)
       if (matched.accepted && artifact->id == static_cast<int>(matched.artifact))
         artifact->matched = static_cast<unsigned>(cycle);

@@ -270,14 +270,6 @@ bool is_heard(const std::vector<Program>& programs, const std::string& name) {
   return program != nullptr && program->age <= kLostAge;
 }
 
-std::string missing_services(const std::vector<Program>& programs) {
-  std::vector<std::string> missing;
-  for (const char* const name : kMakeItGo)
-    if (!is_heard(programs, name))
-      missing.emplace_back(name);
-  return listed(missing);
-}
-
 std::string suspended(const Situation& situation) {
   std::string text;
   for (const v1::ProcessSet& service : situation.processes)

@@ -38,13 +38,6 @@ bool has_word(const std::string& text, const std::string& word) {
   return false;
 }
 
-std::string listed(const std::vector<std::string>& parts, const char* last) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == parts.size() ? last : ", ") + parts[i];
-  return text;
-}
-
 double clamp01(double x) {
   return std::clamp(x, 0.0, 1.0);
 }

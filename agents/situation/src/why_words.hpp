@@ -30,7 +30,6 @@ std::string angle_text(double angle);
 /// `rate`: [rad/s] instead of [rad].
 std::string turn_text(double turn, bool rate = false);
 bool has_word(const std::string& text, const std::string& word);
-std::string listed(const std::vector<std::string>& parts, const char* last = " and ");
 double clamp01(double x);
 
 enum class Channel { speed, turn };

@@ -112,4 +112,11 @@ std::string seconds_text(double seconds) {
   return seconds < 9.95 ? format("%.1f s", seconds) : format("%.0f s", seconds);
 }
 
+std::string listed(const std::vector<std::string>& parts, const char* last) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == parts.size() ? last : ", ") + parts[i];
+  return text;
+}
+
 }  // namespace saphira::situation

@@ -122,17 +122,12 @@ TEST(Condition, LateIsHeardAndHungIsNot) {
   EXPECT_FALSE(condition(s, "behaviors").heard());
 }
 
-TEST(MissingServices, AreNamed) {
+TEST(IsHeard, WhileTheStatusComes) {
   Program lost = test::program("dialogue");
   EXPECT_TRUE(is_heard({lost}, "dialogue"));
   EXPECT_FALSE(is_heard({lost}, "facilitator"));
   lost.age = 9.0;
   EXPECT_FALSE(is_heard({lost}, "dialogue"));
-  EXPECT_EQ(missing_services({}), "bridge, behaviors and intentions");
-  Program silent = program("intentions");
-  silent.age = 9.0;
-  EXPECT_EQ(missing_services({program("bridge"), silent}), "behaviors and intentions");
-  EXPECT_EQ(missing_services({program("bridge"), program("intentions"), program("behaviors")}), "");
 }
 
 TEST(Json, HoldsProgramsDriveGoalsAndTrouble) {

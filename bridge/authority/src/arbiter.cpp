@@ -223,7 +223,7 @@ void Arbiter::must_heed(Numbers& said) const {
   said.stopped = true;
 }
 
-std::vector<std::string> Arbiter::stop(const StopId& id, const std::string& source, double now,
+std::vector<std::string> Arbiter::stop(const v1::StopId& id, const std::string& source, double now,
                                        std::uint64_t cycle) {
   stop_ = {id, source};
   last_stopper_ = source;
@@ -247,7 +247,7 @@ std::string Arbiter::why_to_let_go(const Command& command) const {
   const auto said = numbers_.find({command.role, command.writer});
   if (said != numbers_.end() && !said->second.must_let_go.empty())
     return said->second.must_let_go + ": let go first, then drive";
-  if (command.role == Role::behaviors && command.heeds != stop_.id && stop_.id != StopId{})
+  if (command.role == Role::behaviors && command.heeds != stop_.id && stop_.id != v1::StopId{})
     return "stopped by " + stop_.source + ": the goals of before have not ended yet";
   return {};
 }

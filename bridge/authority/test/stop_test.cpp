@@ -12,7 +12,7 @@ using Words = std::vector<std::string>;
 struct StopScene : Scene {
   Words stop(std::uint64_t id = 1) { return arbiter.stop({7, id}, "a person", now, cycle); }
   /// The writer goes on as if nothing had happened.
-  Role goes_on(Role role, int who, StopId heeds = {}) {
+  Role goes_on(Role role, int who, v1::StopId heeds = {}) {
     wait(1);
     Command c = command(role, who);
     c.heeds = heeds;
@@ -38,9 +38,9 @@ TEST(Stop, EndsEveryRoleUntilItsWriterLetsGo) {
 
 TEST(Stop, ThePresentGrantNamesIt) {
   StopScene s;
-  EXPECT_EQ(s.grant().stop, StopId{});
+  EXPECT_EQ(s.grant().stop, v1::StopId{});
   s.stop(3);
-  EXPECT_EQ(s.grant().stop, (StopId{7, 3}));
+  EXPECT_EQ(s.grant().stop, (v1::StopId{7, 3}));
   EXPECT_EQ(s.grant().stop_source, "a person");
 }
 

@@ -113,7 +113,7 @@ std::optional<v1::AuditEntry> Reports::take(v1::AuditEntry entry, const Checked&
 }
 
 Answer Core::stop(const Request& request, double now) {
-  const StopId id{request.asker, request.number != 0 ? request.number : ++numberless_stops_};
+  const v1::StopId id{request.asker, request.number != 0 ? request.number : ++numberless_stops_};
   const Argument* const by = find(request.arguments, "by");
   const std::string source =
       by == nullptr || by->text.empty() ? request.source : by->text + ", through " + request.source;

@@ -90,7 +90,7 @@ void Rules::released(bool latched_now) {
   latched_ = latched_now;
 }
 
-void Rules::stopped(const StopId& id) {
+void Rules::stopped(const v1::StopId& id) {
   ++played_.stopped;
   stop_ = id;
   for (auto& [writer, wishes] : wishes_)
@@ -119,7 +119,7 @@ void Rules::tick() {
 
 // ---- Outputs.
 
-void Rules::begins(const Stamp& stamp) {
+void Rules::begins(const v1::Stamp& stamp) {
   if (stamp.epoch <= last_epoch_)
     wrong("the epoch is not new");
   stamp_ = stamp;
@@ -139,7 +139,7 @@ void Rules::output(const Output& output) {
   if (const auto* const session = std::get_if<SessionBegan>(&output))
     begins(session->stamp);
   if (const auto* const cycle = std::get_if<CycleBegan>(&output)) {
-    if (cycle->stamp != Stamp{stamp_.epoch, stamp_.cycle + 1})
+    if (cycle->stamp != v1::Stamp{stamp_.epoch, stamp_.cycle + 1})
       wrong("a cycle was left out");
     ++played_.cycles;
     stamp_ = cycle->stamp;

@@ -24,7 +24,7 @@ class Rules {
   void command(const DriveCommand& command);
   void writer_lost(authority::Role role, const authority::WriterId& writer);
   void released(bool latched_now);
-  void stopped(const StopId& id);
+  void stopped(const v1::StopId& id);
   void permit(std::uint64_t until) { permit_ = until; }
   void gap();
   /// The core is about to check the time.
@@ -52,13 +52,13 @@ class Rules {
   void command_sent(const protocol::Command& command);
   void moves(const std::string& what);
   bool somebody_drives() const;
-  void begins(const Stamp& stamp);
+  void begins(const v1::Stamp& stamp);
 
   CoreSettings settings_;
   Played& played_;
   double now_ = 0.0;
 
-  Stamp stamp_;  ///< epoch 0: no session
+  v1::Stamp stamp_;  ///< epoch 0: no session
   std::uint64_t last_epoch_ = 0;
   double last_packet_ = 0.0;
   double good_after_ = 0.0;  ///< [s] commands received before this time are old
@@ -67,7 +67,7 @@ class Rules {
 
   std::map<Writer, std::vector<Wish>> wishes_;  ///< of this session, since they were let go
   std::map<Writer, std::uint64_t> numbers_;     ///< the newest
-  StopId stop_;                                 ///< the newest
+  v1::StopId stop_;                             ///< the newest
   std::set<Writer> must_heed_;                  ///< drove before it, and have not let go since
   bool latched_ = false;
   std::map<authority::WriterId, double> pressed_;

@@ -34,7 +34,7 @@ TEST(Session, BeginsWithZeroSetpointsAndADescription) {
   EXPECT_LT(first<SessionBegan>(scene.said), first<CycleBegan>(scene.said));
   const std::vector<CycleBegan> cycles = scene.all<CycleBegan>();
   ASSERT_EQ(cycles.size(), 1U);
-  EXPECT_EQ(cycles[0].stamp, (Stamp{1000, 1}));
+  EXPECT_EQ(cycles[0].stamp, (v1::Stamp{1000, 1}));
 }
 
 // Its robot answers after that time [s].
@@ -205,7 +205,7 @@ TEST(Session, ASilentLinkIsGivenUpAfterTwoSeconds) {
 
 TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
   Driven scene;
-  const Stamp before = scene.core.stamp();
+  const v1::Stamp before = scene.core.stamp();
   for (int i = 0; i < 20; ++i) {
     scene.say(protocol::encode(protocol::SimStatusPacket{}));
     scene.pass_slowly(0.5);
@@ -215,7 +215,7 @@ TEST(Session, ASimulatorWhoseTimeStandsKeepsTheSessionAndTheRobotStands) {
   EXPECT_EQ(scene.core.grant().role, Role::none);
   EXPECT_EQ(scene.condition().health, v1::SERVICE_WAITING);
   scene.cycle();
-  EXPECT_EQ(scene.core.stamp(), (Stamp{before.epoch, before.cycle + 1}));
+  EXPECT_EQ(scene.core.stamp(), (v1::Stamp{before.epoch, before.cycle + 1}));
   EXPECT_EQ(scene.core.grant().role, Role::none) << "a new command is needed";
 }
 

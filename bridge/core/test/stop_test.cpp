@@ -40,7 +40,7 @@ TEST(Stop, BrakesAtOnceAndAsHardAsItCan) {
   EXPECT_EQ(answer, (Answer{AnswerCode::underway, "stopped: direct (direct)"}));
   EXPECT_TRUE(scene.was_sent(protocol::EmergencyStop{}));
   ASSERT_TRUE(scene.has<GrantDecided>());
-  EXPECT_EQ(scene.all<GrantDecided>().back().grant.stop, (StopId{7, 1}));
+  EXPECT_EQ(scene.all<GrantDecided>().back().grant.stop, (v1::StopId{7, 1}));
   EXPECT_EQ(scene.core.grant().role, Role::none);
 }
 
@@ -108,7 +108,7 @@ TEST(Stop, WithoutARobotIsDoneAtOnceAndHoldsForLater) {
   scene.deliver();
   EXPECT_EQ(scene.stop(),
             (Answer{AnswerCode::done, "stopped: direct (direct); no robot is connected"}));
-  EXPECT_EQ(scene.core.grant().stop, (StopId{7, 1}));
+  EXPECT_EQ(scene.core.grant().stop, (v1::StopId{7, 1}));
   scene.connect();
   scene.forget();
   scene.cycles(20, Role::direct, 0.3);

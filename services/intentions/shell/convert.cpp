@@ -96,7 +96,7 @@ Core::Heard::Grant from_bus(const v1::Grant& grant) {
     for (const v1::Refusal& refusal : grant.refused)
       if (refusal.role == v1::ROLE_BEHAVIORS && result.refusal.empty())
         result.refusal = refusal.reason;
-  result.stop = {grant.stop.asker, grant.stop.number};
+  result.stop = grant.stop;
   result.stop_source = grant.stop_source;
   if (grant.role == v1::ROLE_TELEOP || grant.role == v1::ROLE_DIRECT)
     result.driver = grant.source;
@@ -116,12 +116,6 @@ std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
   // A behaviors service without an age uses the intent of the cycle before.
   const double cycles = std::clamp(behaviors.input_age / kTick, 1.0, 1e6);
   return static_cast<std::uint64_t>(std::llround(std::isfinite(cycles) ? cycles : 1.0));
-}
-
-std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors) {
-  return converted(behaviors.missing, [](const v1::MissingBehavior& missing) {
-    return BehaviorTrouble{missing.name, missing.reason};
-  });
 }
 
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {

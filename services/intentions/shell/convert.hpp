@@ -29,7 +29,6 @@ Core::Heard::Grant from_bus(const v1::Grant& grant);
 std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors);
 /// [cycles] of the intentions that they evaluated.
 std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors);
-std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors);
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
 
 v1::ActivitySchema to_bus(const Schema& schema);

@@ -157,7 +157,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   const std::uint64_t cycle = turn.stamp.cycle;
   if (const v1::BehaviorSet* const behaviors = behaviors_.value()) {
     inputs.behaviors = from_bus(*behaviors);
-    inputs.troubles = troubles_from_bus(*behaviors);
+    inputs.troubles = behaviors->missing;
     inputs.behaviors_cycle = behaviors->stamp.cycle;
     inputs.intent_age = intent_age_from_bus(*behaviors);
   }
@@ -188,10 +188,7 @@ std::optional<Core::Vision> Service::vision() {
                                                       : nullptr;
   if (sample == nullptr)
     return std::nullopt;
-  Core::Vision vision{{sample->stamp.epoch, sample->stamp.cycle},
-                      sample->odom,
-                      sample->sees_people || sample->sees_colors,
-                      {}};
+  Core::Vision vision{sample->stamp, sample->odom, sample->sees_people || sample->sees_colors, {}};
   vision.things = converted(sample->things, [](const auto& thing) { return lps::from_bus(thing); });
   return vision;
 }
@@ -329,7 +326,7 @@ void Service::publish(const Core::Outputs& said) {
   v1::Intentions sample{.behavior_control = outputs.behavior_control,
                         .speed_limit = std::max(0.0, limit.speed),
                         .limit_reason = limit.reason,
-                        .heeds = {core_.executor().heeds().asker, core_.executor().heeds().number}};
+                        .heeds = core_.executor().heeds()};
   sample.behaviors =
       converted(outputs.behaviors, [](const IntendedBehavior& each) { return to_bus(each); });
   sample.nodes = converted(outputs.nodes, dated(core_.executor()), kMostNodes);

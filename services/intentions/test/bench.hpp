@@ -95,12 +95,12 @@ class Bench {
   std::uint64_t epoch = 100;
   std::uint64_t cycle = 0;
   std::vector<GoalEvent> events;
-  std::vector<BehaviorTrouble> troubles;  ///< of the next step
-  Registered registration;                ///< the registration's output
-  std::vector<lps::SeenThing> things;     ///< that the cameras see
-  double radius = 0.0;                    ///< [m] of the robot; 0: unknown
-  std::string estop;                      ///< program that pressed the emergency stop; empty: none
-  StopId stop;                            ///< the newest stop of the bridge
+  std::vector<v1::MissingBehavior> troubles;  ///< of the next step
+  Registered registration;                    ///< the registration's output
+  std::vector<lps::SeenThing> things;         ///< that the cameras see
+  double radius = 0.0;                        ///< [m] of the robot; 0: unknown
+  std::string estop;  ///< program that pressed the emergency stop; empty: none
+  v1::StopId stop;    ///< the newest stop of the bridge
   bool stop_was_before = false;
   bool confirms_stops = false;
   Outputs out;

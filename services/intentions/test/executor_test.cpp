@@ -148,8 +148,8 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   EXPECT_EQ(bench.state(7), v1::GOAL_UNDERWAY);
 }
 
-constexpr StopId kFirst{7, 1};
-constexpr StopId kSecond{7, 2};
+constexpr v1::StopId kFirst{7, 1};
+constexpr v1::StopId kSecond{7, 2};
 
 TEST(Executor, AStopOfTheBridgeEndsAllGoalsThatDrive) {
   Bench bench;
@@ -185,7 +185,7 @@ TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
   Memory memory;
   memory.work.epoch = 100;
   memory.work.heeds = kFirst;
-  for (const StopId& now : {kFirst, kSecond}) {
+  for (const v1::StopId& now : {kFirst, kSecond}) {
     Bench bench(memory);
     bench.ask(1, "drive", kSlow);
     bench.stop = now;
@@ -222,7 +222,7 @@ TEST(Executor, AGoalStopWaitsForTheBridge) {
 // Otherwise the time at which a grant comes would decide whether the behaviors drive.
 TEST(Executor, AnOverdueConfirmationDoesNotTakeBackALaterStop) {
   Bench bench;
-  for (const StopId& own : {kFirst, kSecond}) {
+  for (const v1::StopId& own : {kFirst, kSecond}) {
     bench.begin(own.number, "stop", {});
     bench.executor.heed(own);
   }
@@ -233,7 +233,7 @@ TEST(Executor, AnOverdueConfirmationDoesNotTakeBackALaterStop) {
   bench.step();
   EXPECT_EQ(bench.executor.heeds(), kSecond);
   // A foreign stop between two of our own counts until the bridge shows ours.
-  for (const StopId& shown : {StopId{8, 1}, kSecond}) {
+  for (const v1::StopId& shown : {v1::StopId{8, 1}, kSecond}) {
     bench.stop = shown;
     bench.step();
     EXPECT_EQ(bench.executor.heeds(), shown);

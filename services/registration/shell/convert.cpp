@@ -7,16 +7,6 @@ namespace {
 
 constexpr std::size_t kMostMatches = 256;  // the bound of Registration.matches
 
-v1::Match to_bus(const Core::Matched& match) {
-  return {.percept = match.percept,
-          .artifact = match.artifact,
-          .accepted = match.accepted,
-          .along = match.off.x(),
-          .across = match.off.y(),
-          .heading = match.turned,
-          .reason = match.reason};
-}
-
 }  // namespace
 
 v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) {
@@ -30,7 +20,7 @@ v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) 
       .confidence = outputs.confidence,
       .environment = outputs.environment,
       .matches = converted(
-          outputs.matches, [](const auto& match) { return to_bus(match); }, kMostMatches),
+          outputs.matches, [](const v1::Match& match) { return match; }, kMostMatches),
       .closed_doors = outputs.closed_doors};
 }
 

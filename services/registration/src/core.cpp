@@ -73,14 +73,15 @@ registration::Settings settings_for(const std::vector<lps::SonarMount>& sonars) 
   return settings;
 }
 
-Core::Matched matched(const Match& match, const maps::Map& map) {
-  Core::Matched told{match.percept, match.artifact, match.accepted, "", {0.0, 0.0}, match.turned};
-  if (!match.accepted)
-    told.reason = match.reason;
+v1::Match matched(const Match& match, const maps::Map& map) {
   const double th = match.feature ? map.features[*match.feature].pose_in_map.th : 0.0;
-  told.off = {std::cos(th) * match.offset.x() + std::sin(th) * match.offset.y(),
-              -std::sin(th) * match.offset.x() + std::cos(th) * match.offset.y()};
-  return told;
+  return {.percept = match.percept,
+          .artifact = match.artifact,
+          .accepted = match.accepted,
+          .along = std::cos(th) * match.offset.x() + std::sin(th) * match.offset.y(),
+          .across = -std::sin(th) * match.offset.x() + std::cos(th) * match.offset.y(),
+          .heading = match.turned,
+          .reason = match.accepted ? "" : match.reason};
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::uint64_t Asker::ask(Request request) {
   request.source = node_->options().name;
   request.asker = node_->instance();
   request.number = bus::next_request_number();
-  request.stamp = {cycle_->stamp().epoch, cycle_->stamp().cycle};
+  request.stamp = cycle_->stamp();
   const bool taken = writer_.write(to_bus(request)) &&
                      (!node_->options().lockstep || writer_.wait_acknowledged(kAcknowledged));
   if (!taken)
@@ -43,7 +43,7 @@ void Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functo
 
 void Ports::take_requests() {
   for (const auto& desk : desks_)
-    desk->take({cycle_.stamp().epoch, cycle_.stamp().cycle});
+    desk->take(cycle_.stamp());
 }
 
 void Ports::say(const std::vector<Note>& notes) {

@@ -57,7 +57,7 @@ ProcessesOnBus::~ProcessesOnBus() {
   states_.dispose(sample);
 }
 
-void ProcessesOnBus::step(const Stamp& stamp) {
+void ProcessesOnBus::step(const v1::Stamp& stamp) {
   stamp_ = stamp;
   desk_.take(stamp_);
   table_.step(stamp.cycle);
@@ -84,9 +84,8 @@ std::optional<Answer> ProcessesOnBus::act(const Request& request) {
 void ProcessesOnBus::publish() {
   if (!table_.take_changed())
     return;
-  v1::ProcessSet sample{.instance = node_.instance(),
-                        .service = node_.options().name,
-                        .stamp = {stamp_.epoch, stamp_.cycle}};
+  v1::ProcessSet sample{
+      .instance = node_.instance(), .service = node_.options().name, .stamp = stamp_};
   for (const Process* process : table_.processes()) {
     sample.processes.push_back({.name = process->name(),
                                 .state = state_of(*process),

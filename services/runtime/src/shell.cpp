@@ -42,15 +42,12 @@ void Shell::idle() {
 
 void Shell::step_now(const bus::Step& step) {
   stepped_ = Clock::now();
-  processes_.step({cycle_.stamp().epoch, cycle_.stamp().cycle});
+  processes_.step(cycle_.stamp());
   ports_.take_requests();
   if (step.new_epoch)
     odom_.reset();
   const std::uint64_t odom = step.robot.odom;
-  service_->step({{cycle_.stamp().epoch, cycle_.stamp().cycle},
-                  step.robot,
-                  *step.description,
-                  step.new_epoch,
+  service_->step({cycle_.stamp(), step.robot, *step.description, step.new_epoch,
                   odom_.has_value() && *odom_ != odom});
   odom_ = odom;
   // After the robot has its command.

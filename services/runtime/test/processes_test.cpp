@@ -44,7 +44,7 @@ class ProcessesOnBusTest : public ::testing::Test {
                             return cycles == 0 ? "" : "not for so long";
                           return std::nullopt;
                         }};
-  Stamp stamp;
+  v1::Stamp stamp;
   std::uint64_t number = 0;
 };
 

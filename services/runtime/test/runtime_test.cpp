@@ -9,7 +9,7 @@ namespace {
 
 /// The inputs that a service saw.
 struct Seen {
-  std::vector<Stamp> steps;
+  std::vector<v1::Stamp> steps;
   std::vector<bool> new_robot;
   std::vector<bool> new_frame;
   int between = 0;

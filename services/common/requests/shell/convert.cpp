@@ -72,7 +72,7 @@ Request from_bus(const bus::Sample<v1::Request>& sample) {
           from_bus(request.arguments),
           named(request.source.substr(0, 255), person),
           request.service,
-          {request.stamp.epoch, request.stamp.cycle},
+          request.stamp,
           request.asker,
           request.number,
           request.deadline,
@@ -80,7 +80,7 @@ Request from_bus(const bus::Sample<v1::Request>& sample) {
 }
 
 v1::Request to_bus(const Request& request) {
-  return {.stamp = {request.stamp.epoch, request.stamp.cycle},
+  return {.stamp = request.stamp,
           .asker = request.asker,
           .number = request.number,
           .source = request.source,

@@ -26,7 +26,7 @@ void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors, 
       Counter{node_.reader<v1::Request>(topic), std::move(functors), std::move(act)}));
 }
 
-void Desk::take(const Stamp& now) {
+void Desk::take(const v1::Stamp& now) {
   now_ = now;
   for (const auto& counter : counters_)
     take(*counter);
@@ -90,8 +90,7 @@ void Desk::handle(const Counter& counter, Request request) {
 
 void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
   v1::Answer sample = to_bus(answer);
-  sample.stamp.epoch = now_.epoch;
-  sample.stamp.cycle = now_.cycle;
+  sample.stamp = now_;
   sample.asker = asker;
   sample.number = number;
   sample.service = node_.options().name;

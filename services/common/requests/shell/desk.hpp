@@ -27,7 +27,7 @@ class Desk {
   void serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act);
 
   /// Carries out new requests. `now`: the newest step of this program.
-  void take(const Stamp& now);
+  void take(const v1::Stamp& now);
   /// The result of a request that was taken earlier.
   void answer(std::uint64_t asker, std::uint64_t number, const Answer& answer);
 
@@ -49,7 +49,7 @@ class Desk {
   bus::Node& node_;
   bus::Writer<v1::Answer> writer_;
   std::vector<std::unique_ptr<Counter>> counters_;
-  Stamp now_;
+  v1::Stamp now_;
   /// The newest requests, with the newest answer to each: oldest first.
   std::deque<std::pair<Id, std::optional<v1::Answer>>> known_;
   std::uint64_t refused_ = 0;

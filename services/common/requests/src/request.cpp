@@ -25,7 +25,7 @@ std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& req
   return std::nullopt;
 }
 
-bool is_due(const Request& request, const Stamp& now) {
+bool is_due(const Request& request, const v1::Stamp& now) {
   return request.stamp.cycle == 0 || request.stamp.epoch < now.epoch ||
          (request.stamp.epoch == now.epoch && request.stamp.cycle + 2 <= now.cycle);
 }

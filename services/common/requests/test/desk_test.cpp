@@ -43,7 +43,7 @@ class DeskTest : public testing::Test {
   bus::Reader<v1::Answer> answers = person.reader(bus::topics::kRegistrationAnswers);
   std::optional<bus::Node> service;
   std::optional<Desk> desk;
-  Stamp now{3, 20};
+  v1::Stamp now{3, 20};
   double total = 0.0;
   std::string order;
   Request newest;

@@ -554,13 +554,13 @@ void Executor::replace() {
 /// A stop of the bridge ends every goal that drives, as a goal "stop" does, which asks the bridge
 /// for one. Without a memory, a stop from before the start says nothing about the goals.
 void Executor::obey_stop(const Inputs& inputs) {
-  if (inputs.stop != StopId{} && inputs.stop != seen_stop_) {
+  if (inputs.stop != v1::StopId{} && inputs.stop != seen_stop_) {
     const auto found = std::find(own_stops_.begin(), own_stops_.end(), inputs.stop);
     const bool own = found != own_stops_.end();
     // The bridge comes to a later one of our own by itself.
     const bool overtaken = std::find(found, own_stops_.end(), heeds_) != own_stops_.end();
     const bool old =
-        (!own && inputs.stop == heeds_) || (inputs.stop_was_before && heeds_ == StopId{});
+        (!own && inputs.stop == heeds_) || (inputs.stop_was_before && heeds_ == v1::StopId{});
     if (!own && !old)
       end_driving("stopped by " + inputs.stop_source + ": ask anew to have it done");
     seen_stop_ = inputs.stop;
@@ -574,12 +574,12 @@ void Executor::obey_stop(const Inputs& inputs) {
   });
   if (stop_by_ && !stops) {  // never confirmed
     stop_by_.reset();
-    if (inputs.confirms_stops && seen_stop_ != StopId{})
+    if (inputs.confirms_stops && seen_stop_ != v1::StopId{})
       heeds_ = seen_stop_;
   }
 }
 
-void Executor::heed(const StopId& own) {
+void Executor::heed(const v1::StopId& own) {
   heeds_ = own;
   own_stops_.push_back(own);
   if (own_stops_.size() > kMostOwnStops)

@@ -314,8 +314,8 @@ void Forest::hear(const std::vector<BehaviorLevel>& levels, Ticks tick) {
   }
 }
 
-void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
-  for (const BehaviorTrouble& trouble : troubles) {
+void Forest::hear(const std::vector<v1::MissingBehavior>& troubles) {
+  for (const v1::MissingBehavior& trouble : troubles) {
     for (auto& [id, node] : nodes_) {
       if (node->activity || node->behavior.name != trouble.name || node->suspended ||
           finished(node->shown.state))

@@ -23,8 +23,8 @@ extern const char* const kDeviceWords;
 DeviceCommand parse_device(const std::vector<std::string>& words);
 
 /// The state of the robot's devices: name and value, of the existing ones. For a robot without
-/// robot/devices (an older bridge), from its state.
+/// robot/devices (an older bridge; null), from its state.
 std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
-                                                  const std::optional<v1::Devices>& devices);
+                                                  const v1::Devices* devices);
 
 }  // namespace saphira::cli

@@ -13,7 +13,6 @@ namespace saphira::cli {
 using situation::describe;
 using situation::kLostAge;
 using situation::latched;
-using situation::missing_services;
 using situation::name_of;
 using SeenProcess = situation::Program;
 

@@ -115,9 +115,6 @@ std::vector<std::string> unheard(const Situation& situation);
 bool misses(const Situation& situation);
 /// A program of this name is heard.
 bool is_heard(const std::vector<Program>& programs, const std::string& name);
-/// The missing or unheard ones of them, in words such as "behaviors and intentions"; empty: all are
-/// there.
-std::string missing_services(const std::vector<Program>& programs);
 
 /// Suspended micro-tasks, such as "follow of behaviors"; empty: none.
 std::string suspended(const Situation& situation);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "saphira/idl/agents.hpp"
 #include "saphira/idl/intention.hpp"
@@ -33,5 +34,7 @@ bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions
 
 /// "0.4 s", "12 s".
 std::string seconds_text(double seconds);
+/// "bridge, behaviors and intentions".
+std::string listed(const std::vector<std::string>& parts, const char* last = " and ");
 
 }  // namespace saphira::situation

@@ -9,8 +9,7 @@
 
 #include "saphira/authority/latches.hpp"
 #include "saphira/base/age.hpp"
-#include "saphira/base/stamp.hpp"
-#include "saphira/base/stop_id.hpp"
+#include "saphira/idl/common.hpp"
 
 namespace saphira::authority {
 
@@ -33,7 +32,7 @@ struct Command {
   std::uint64_t number = 0;  ///< counts the writer's commands
   bool active = false;       ///< the dead-man: false releases
   bool hand_back = false;    ///< a person's release that lets autonomy drive again
-  StopId heeds;              ///< the newest stop that its intent comes after
+  v1::StopId heeds;          ///< the newest stop that its intent comes after
   double received = 0.0;     ///< [s]
 };
 
@@ -70,9 +69,9 @@ struct Grant {
   bool estopped = false;             ///< an emergency stop is latched
   std::string estop_source;          ///< which program pressed it
   bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
-  StopId stop;                       ///< the newest stop
+  v1::StopId stop;                   ///< the newest stop
   std::string stop_source;           ///< who stopped the robot last, also by an emergency stop
-  Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
+  v1::Stamp answers;         ///< the robot state that the newest command answers; cycle 0: none
   std::uint64_t number = 0;  ///< of that command
 
   /// True where the same writer drives. A change means: stop first, then obey.
@@ -121,7 +120,7 @@ class Arbiter {
   void refuse(Role role, const std::string& source, const std::string& reason);
 
   /// Stops every driver. Returns those that asked to move, strongest first, in words.
-  std::vector<std::string> stop(const StopId& id, const std::string& source, double now,
+  std::vector<std::string> stop(const v1::StopId& id, const std::string& source, double now,
                                 std::uint64_t cycle);
   /// Releases the emergency stop. Returns the reason where it may not be released, in words; empty
   /// where it is released.
@@ -186,7 +185,7 @@ class Arbiter {
   std::uint64_t offers_ = 0;
 
   struct {
-    StopId id;
+    v1::StopId id;
     std::string source;
   } stop_;                        ///< the newest
   std::string last_stopper_;      ///< of these stops and emergency stops

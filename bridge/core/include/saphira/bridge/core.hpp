@@ -115,7 +115,7 @@ class Core {
   // ---- The present state.
 
   /// Epoch 0: no session.
-  const Stamp& stamp() const { return session_.stamp; }
+  const v1::Stamp& stamp() const { return session_.stamp; }
   bool in_session() const { return session_.stamp.epoch != 0; }
   /// The driver's answer to the newest packet is expected within a fraction of a millisecond.
   bool awaits_answer() const { return flush_at_ > 0.0; }
@@ -128,7 +128,7 @@ class Core {
  private:
   /// The state of one session with the robot, forgotten at its end.
   struct Session {
-    Stamp stamp;
+    v1::Stamp stamp;
     authority::Body body;
     authority::EchoMap echoes;
     authority::Coverage coverage;
@@ -233,7 +233,7 @@ class Core {
   double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
   double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
   struct Stopping {
-    StopId id;
+    v1::StopId id;
     std::string stopped;      ///< the stopped drivers, in words
     std::uint64_t cycle = 0;  ///< of the stop
   };

@@ -11,8 +11,6 @@
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/base/notes.hpp"
-#include "saphira/base/stamp.hpp"
-#include "saphira/base/stop_id.hpp"
 #include "saphira/geometry/edge.hpp"
 #include "saphira/idl/system.hpp"
 #include "saphira/protocol/packet.hpp"
@@ -82,12 +80,12 @@ struct Identified {
 };
 /// A session begins: the caller describes the robot on the bus.
 struct SessionBegan {
-  Stamp stamp;
+  v1::Stamp stamp;
   protocol::RobotIdentity robot;
 };
 /// A cycle begins.
 struct CycleBegan {
-  Stamp stamp;
+  v1::Stamp stamp;
   reflector::State state;
   std::uint64_t bad_packets = 0;  ///< of this session
 };
@@ -98,25 +96,25 @@ struct Told {
 };
 /// The end of a stop (Core::stop).
 struct StopEnded {
-  StopId id;
+  v1::StopId id;
   Answer answer;
 };
 /// Any packet except an information packet, for devices and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
   std::uint8_t type = 0;
-  Stamp stamp;
+  v1::Stamp stamp;
 };
 /// The devices may have news.
 struct DevicesChanged {
-  Stamp stamp;
+  v1::Stamp stamp;
 };
 struct GrantDecided {
   authority::Grant grant;
   Told told;
   authority::Guarded guarded;
   std::vector<authority::Refusal> refused;
-  Stamp stamp;
+  v1::Stamp stamp;
 };
 /// The keeper sends these bytes when the bridge falls silent.
 struct WatchLink {
@@ -142,7 +140,7 @@ struct Condition {
 };
 struct StatusReport {
   Condition condition;
-  Stamp stamp;
+  v1::Stamp stamp;
   std::uint64_t steps = 0;
   std::uint64_t late = 0;     ///< cycles whose answer did not come in time
   std::uint64_t refused = 0;  ///< motor commands

@@ -12,7 +12,6 @@
 #include "saphira/base/identity.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
-#include "saphira/base/stamp.hpp"
 #include "saphira/idl/system.hpp"
 #include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/executor.hpp"
@@ -65,7 +64,7 @@ class Core {
       std::string refusal{};
       std::string person{};              ///< that drives by teleop [empty: nobody does]
       bool waits_for_hand_back = false;  ///< a person drove last
-      StopId stop{};                     ///< the newest stop
+      v1::StopId stop{};                 ///< the newest stop
       std::string stop_source{};         ///< its asker
       std::string driver{};  ///< that drives in a stronger role than the behaviors [empty: nobody]
     };
@@ -87,14 +86,14 @@ class Core {
   };
   /// A result of a vision service.
   struct Vision {
-    Stamp stamp;
+    v1::Stamp stamp;
     std::uint64_t odom = 0;
     bool sees = false;  ///< a camera delivers
     std::vector<lps::SeenThing> things;
   };
 
   struct Inputs {
-    Stamp stamp;
+    v1::Stamp stamp;
     const lps::LpsSettings* new_robot = nullptr;  ///< the first step of an epoch
     double robot_radius = 0.0;                    ///< [m] of its hull, a circle; 0: unknown
     double deceleration = 0.0;                    ///< [m/s2] of a stop; 0: unknown
@@ -104,7 +103,7 @@ class Core {
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
     // Of the cycle before.
     std::vector<BehaviorLevel> behaviors;
-    std::vector<BehaviorTrouble> troubles;
+    std::vector<v1::MissingBehavior> troubles;
     std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
     std::uint64_t intent_age = 1;       ///< [cycles] of the intent that they were computed from
     Registered registered;

@@ -8,6 +8,7 @@
 
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
+#include "saphira/idl/map.hpp"
 #include "saphira/maps/edit.hpp"
 #include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
@@ -47,17 +48,6 @@ class Core {
     std::vector<lps::Percept> percepts;       ///< of the cycle before, in this odom frame
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
   };
-  /// The result of matching a percept.
-  struct Matched {
-    std::uint32_t percept = 0;
-    std::uint32_t artifact = 0;  ///< 0: none
-    bool accepted = false;
-    std::string reason;   ///< why it was not accepted
-    Vec2 off{0.0, 0.0};   ///< [m] seen minus expected, along the artifact and across it
-    double turned = 0.0;  ///< [rad]
-
-    bool operator==(const Matched&) const = default;
-  };
   struct Outputs {
     v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
     std::string reason;
@@ -65,7 +55,7 @@ class Core {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
     double confidence = 0.0;
     std::uint32_t environment = 0;  ///< id of the artifact around the robot; 0: none known
-    std::vector<Matched> matches;
+    std::vector<v1::Match> matches;
     std::vector<std::uint32_t> closed_doors;
     Notes notes;
 

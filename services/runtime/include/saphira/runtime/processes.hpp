@@ -25,7 +25,7 @@ class ProcessesOnBus {
   ProcessesOnBus& operator=(const ProcessesOnBus&) = delete;
 
   /// A cycle begins: takes requests, gives each process its turn, publishes changes.
-  void step(const Stamp& stamp);
+  void step(const v1::Stamp& stamp);
   /// Between cycles: takes requests and publishes changes. The cycles may stand still.
   void idle();
 
@@ -38,7 +38,7 @@ class ProcessesOnBus {
   Others others_;
   Desk desk_;
   bus::Writer<v1::ProcessSet> states_;
-  Stamp stamp_;  ///< of the newest cycle
+  v1::Stamp stamp_;  ///< of the newest cycle
 };
 
 }  // namespace saphira::runtime

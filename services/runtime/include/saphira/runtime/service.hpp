@@ -5,14 +5,14 @@
 #include <string>
 
 #include "saphira/base/process.hpp"
-#include "saphira/base/stamp.hpp"
+#include "saphira/idl/common.hpp"
 #include "saphira/runtime/ports.hpp"
 
 namespace saphira::runtime {
 
 /// The present step, for every service.
 struct Turn {
-  Stamp stamp;
+  v1::Stamp stamp;
   const v1::RobotState& robot;
   const v1::RobotDescription& description;
   bool new_robot = false;  ///< the first step of an epoch: another connection, maybe another robot

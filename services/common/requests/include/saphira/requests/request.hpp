@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "saphira/base/identity.hpp"
-#include "saphira/base/stamp.hpp"
 #include "saphira/base/withdraw.hpp"
+#include "saphira/idl/common.hpp"
 #include "saphira/requests/functor.hpp"
 
 namespace saphira {
@@ -18,7 +18,7 @@ struct Request {
   Arguments arguments{};
   std::string source{};   ///< name of the asker, for people
   std::string service{};  ///< the program; empty: each that knows the functor
-  Stamp stamp{};          ///< of the asker's step; cycle 0: none
+  v1::Stamp stamp{};      ///< of the asker's step; cycle 0: none
   std::uint64_t asker = 0;
   std::uint64_t number = 0;  ///< unique together with the asker; 0: not
   double deadline = 0.0;     ///< [s] after which an end is of no use; 0: none
@@ -67,6 +67,6 @@ std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& req
 /// True where a request may be acted on in a step of `now` so that every run acts in the same step.
 /// In lockstep a request from a service's step N is certain to be here in step N+2, since that step
 /// needs other services' results from its outputs of N.
-bool is_due(const Request& request, const Stamp& now);
+bool is_due(const Request& request, const v1::Stamp& now);
 
 }  // namespace saphira

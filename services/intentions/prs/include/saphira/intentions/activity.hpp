@@ -25,12 +25,6 @@ struct BehaviorLevel {
   double progress = 0.0;  ///< [0..1]
 };
 
-/// A behavior that the behaviors service could not make.
-struct BehaviorTrouble {
-  std::string name;  ///< of the instance
-  std::string reason;
-};
-
 /// The arguments and options by which one intention begins another (paper 3.4, Intend).
 struct Start {
   std::string_view schema;  ///< an activity or a behavior

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "saphira/base/stop_id.hpp"
+#include "saphira/idl/behavior.hpp"
+#include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
 #include "saphira/intentions/functions.hpp"
@@ -44,12 +45,12 @@ struct Inputs {
   std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
   std::vector<GoalEvent> events;      ///< since the last step, oldest first
   Surroundings around{};
-  std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
-  std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
-  std::string hold{};                       ///< the reason why all goals wait; empty: they do not
+  std::vector<v1::MissingBehavior> troubles{};  ///< behaviors that could not be made
+  std::vector<ClaimEvent> claims{};             ///< since the last step, oldest first
+  std::string hold{};    ///< the reason why all goals wait; empty: they do not
   std::string person{};  ///< why goals that drive are to wait for a person; empty: they are not
   std::string estop{};   ///< the program that pressed the latched emergency stop; empty: none
-  StopId stop{};         ///< the newest stop of the bridge
+  v1::StopId stop{};     ///< the newest stop of the bridge
   std::string stop_source{};     ///< its asker
   bool stop_was_before = false;  ///< the service has just begun: the stop may be an old one
   bool confirms_stops = false;   ///< live: the bridge's newest stop comes within some cycles
@@ -110,9 +111,9 @@ class Executor {
   News hear(const std::vector<GoalEvent>& events);
 
   /// The id of the stop that a step asked for: goals of afterwards may drive.
-  void heed(const StopId& own);
+  void heed(const v1::StopId& own);
   /// The stop that all goals that drive come after.
-  const StopId& heeds() const { return heeds_; }
+  const v1::StopId& heeds() const { return heeds_; }
 
   /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
   News robot_gone();
@@ -227,10 +228,10 @@ class Executor {
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
   std::string person_;  ///< of the newest inputs
-  StopId heeds_;
-  StopId saved_heeds_;
-  StopId seen_stop_;  ///< the bridge's
-  std::deque<StopId> own_stops_;
+  v1::StopId heeds_;
+  v1::StopId saved_heeds_;
+  v1::StopId seen_stop_;  ///< the bridge's
+  std::deque<v1::StopId> own_stops_;
   std::optional<std::string> stop_by_;  ///< requester of a stop that the bridge has not confirmed
   Ticks stop_asked_ = 0;
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/idl/behavior.hpp"
 #include "saphira/intentions/activity.hpp"
 #include "saphira/intentions/schema.hpp"
 
@@ -103,7 +104,7 @@ class Forest {
   /// which a behavior's parameters were intended does not count yet, nor an older one.
   void hear(const std::vector<BehaviorLevel>& levels, Ticks tick);
   /// A behavior that cannot be made fails the intention that began it.
-  void hear(const std::vector<BehaviorTrouble>& troubles);
+  void hear(const std::vector<v1::MissingBehavior>& troubles);
   /// One cycle: one step for each intention.
   void step(const World& world);
   void step(Ticks now, const Robot& robot);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saphira/base/archive.hpp"
-#include "saphira/base/stop_id.hpp"
+#include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
 
@@ -36,7 +36,7 @@ struct Work {
   Ticks now = 0;  ///< the clock continues as well: activities may remember times
   std::vector<GoalWork> goals;
   std::vector<Belief> beliefs;
-  StopId heeds{};  ///< the newest stop that has ended goals
+  v1::StopId heeds{};  ///< the newest stop that has ended goals
 
   bool operator==(const Work&) const = default;
 };

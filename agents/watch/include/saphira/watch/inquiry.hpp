@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "mind.hpp"
+#include "saphira/watch/mind.hpp"
 
-namespace saphira::cli {
+namespace saphira::watch {
 
 constexpr double kMindPatience = 3.0;  ///< [s] for the first sample
 
@@ -30,4 +30,4 @@ class Inquiry {
   Clock::time_point grown_ = began_;
 };
 
-}  // namespace saphira::cli
+}  // namespace saphira::watch

@@ -1,6 +1,6 @@
-#include "inquiry.hpp"
+#include "saphira/watch/inquiry.hpp"
 
-namespace saphira::cli {
+namespace saphira::watch {
 
 namespace {
 
@@ -19,7 +19,7 @@ bool Inquiry::poll() {
     cycle_ = mind_.newest_cycle();
     if (waited <= kMindPatience && !(mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0)))
       return false;
-    if (!mind_.held() && !misses(mind_.situation(cycle_, false)))
+    if (!mind_.held() && !misses(mind_.situation()))
       return true;
     // Since when is in the past.
     if (mind_.recall())
@@ -48,4 +48,4 @@ std::string Inquiry::missing() const {
          std::to_string(known.second);
 }
 
-}  // namespace saphira::cli
+}  // namespace saphira::watch

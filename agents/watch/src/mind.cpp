@@ -1,8 +1,8 @@
-#include "mind.hpp"
+#include "saphira/watch/mind.hpp"
 
 #include <algorithm>
 
-namespace saphira::cli {
+namespace saphira::watch {
 
 namespace {
 
@@ -38,8 +38,7 @@ bool Mind::recall() {
 
 void Mind::poll() {
   processes_.poll();
-  if (const auto description = description_reader_.take_newest())
-    lockstep_ = description->lockstep;
+  description_.poll();
   if (recall_) {
     robots_.take(recall_->robots);
     grants_.take(recall_->grants);
@@ -68,19 +67,23 @@ void Mind::poll() {
     else
       programs_[sample.data.instance].note(sample.data);
   }
-  if (auto schemas = schema_reader_.take_newest())
-    schemas_ = std::move(schemas);
-  if (auto beliefs = belief_reader_.take_newest())
-    beliefs_ = std::move(beliefs);
-  if (auto registration = registration_reader_.take_newest()) {
-    if (!situation::is_doubtful(*registration))
+  schemas_.poll();
+  beliefs_.poll();
+  const bool sure = registration_ && !situation::is_doubtful(*registration_);
+  if (registration_.poll()) {
+    if (!situation::is_doubtful(*registration_))
       doubtful_since_ = 0;
-    else if (registration_ && !situation::is_doubtful(*registration_))
-      doubtful_since_ = registration->stamp.cycle;
-    registration_ = std::move(registration);
+    else if (sure)
+      doubtful_since_ = registration_->stamp.cycle;
   }
   if (!heard() && seconds_since(began_) > kSilence)
     recall();
+}
+
+std::size_t Mind::news() const {
+  const auto heard = [](const auto& past) { return past.newest() != nullptr ? 1U : 0U; };
+  return processes_.news() + robot_reader_.matched() + behavior_reader_.matched() +
+         intention_reader_.matched() + heard(robots_) + heard(behaviors_) + heard(intentions_);
 }
 
 std::vector<const v1::ProgramMind*> Mind::programs() const {
@@ -139,7 +142,7 @@ std::vector<v1::GoalStatus> Mind::goals_at(std::uint64_t cycle) const {
 /// A command's effect shows in the grant of the next packet; in lockstep in the grant after the
 /// command.
 const v1::Grant* Mind::grant_for(std::uint64_t cycle) const {
-  return grants_.at(lockstep_ ? cycle : cycle + 1);
+  return grants_.at(lockstep() ? cycle : cycle + 1);
 }
 
 bool Mind::whole(std::uint64_t cycle) const {
@@ -159,7 +162,7 @@ std::uint64_t Mind::newest_cycle() const {
   for (std::uint64_t back = 0; back < 10 && back < newest; ++back)
     if (whole(newest - back))
       return newest - back;
-  return lockstep_ || newest == 0 ? newest : newest - 1;
+  return lockstep() || newest == 0 ? newest : newest - 1;
 }
 
 std::pair<std::uint64_t, std::uint64_t> Mind::known() const {
@@ -183,7 +186,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.cycle = cycle;
   now.past = past;
   now.now = robots_.known().newest;
-  now.silence = lockstep_ ? 0.0 : seconds_since(robot_came_);
+  now.silence = lockstep() ? 0.0 : seconds_since(robot_came_);
   now.listened = seconds_since(began_);
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));
@@ -230,7 +233,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
     now.beliefs = beliefs_->beliefs;
   if (registration_ && !past && registration_->stamp.epoch == robots_.epoch() &&
       registration_->stamp.cycle + kSaidLately >= robots_.known().newest) {
-    now.registration = registration_;
+    now.registration = *registration_;
     now.doubtful_since = doubtful_since_;
   }
   now.programs = processes_.all();
@@ -240,11 +243,11 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
 
 std::vector<v1::ProcessSet> Mind::services() const {
   std::vector<v1::ProcessSet> heard;
-  for (const SeenProcess& program : processes_.all())
+  for (const situation::Program& program : processes_.all())
     if (const auto found = services_.find(program.status.instance);
-        found != services_.end() && program.age <= kLostAge)
+        found != services_.end() && program.age <= situation::kLostAge)
       heard.push_back(found->second);
   return heard;
 }
 
-}  // namespace saphira::cli
+}  // namespace saphira::watch

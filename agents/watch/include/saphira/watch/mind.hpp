@@ -6,10 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "saphira/situation/why.hpp"
-#include "watch.hpp"
+#include "saphira/watch/processes.hpp"
 
-namespace saphira::cli {
+namespace saphira::watch {
 
 /// The recent samples of a cyclic topic, by cycle; those of the newest epoch only.
 template <class T>
@@ -92,15 +91,21 @@ class Mind {
   std::vector<const v1::ProgramMind*> programs() const;
   const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
-  const v1::BehaviorSchemas* schemas() const { return schemas_ ? &*schemas_ : nullptr; }
-  const v1::BeliefSet* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
+  const v1::BehaviorSchemas* schemas() const { return schemas_.get(); }
+  const v1::BeliefSet* beliefs() const { return beliefs_.get(); }
+  const v1::Registration* registration() const { return registration_.get(); }
   /// The micro-tasks of programs that are heard.
   std::vector<v1::ProcessSet> services() const;
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
   const Processes& processes() const { return processes_; }
+  /// Rises with each program and each sample of the cycle that is noticed, and again when it is
+  /// heard.
+  std::size_t news() const;
 
   /// All known data of a cycle. `past`: the cycle was requested, and is not the present one.
   situation::Situation situation(std::uint64_t cycle, bool past) const;
+  /// That of the newest cycle.
+  situation::Situation situation() const { return situation(newest_cycle(), false); }
   /// True where all samples of a cycle are there.
   bool whole(std::uint64_t cycle) const;
   /// The newest complete cycle; else the newest with any data; 0: none.
@@ -123,30 +128,27 @@ class Mind {
     bus::Reader<v1::GoalStatusSet> goals;
   };
   void take_past_goals();
+  /// A simulator in single step may stand still.
+  bool lockstep() const { return description_ && description_->lockstep; }
   std::vector<v1::GoalStatus> goals_at(std::uint64_t cycle) const;
   const v1::Grant* grant_for(std::uint64_t cycle) const;
   const v1::ProgramMind* program(const std::string& source, std::uint64_t cycle) const;
 
   bus::Node& node_;
   Processes processes_;
-  bus::Reader<v1::RobotDescription> description_reader_ =
-      node_.reader(bus::topics::kRobotDescription);
   bus::Reader<v1::RobotState> robot_reader_ = node_.reader(bus::topics::kRobotState);
   bus::Reader<v1::Grant> grant_reader_ = node_.reader(bus::topics::kGrant);
   bus::Reader<v1::BehaviorSet> behavior_reader_ = node_.reader(bus::topics::kBehaviors);
   bus::Reader<v1::Intentions> intention_reader_ = node_.reader(bus::topics::kIntentions);
   bus::Reader<v1::Goal> goal_reader_ = node_.reader(bus::topics::kGoals);
   bus::Reader<v1::GoalStatus> status_reader_ = node_.reader(bus::topics::kGoalStatus);
-  bus::Reader<v1::BehaviorSchemas> schema_reader_ = node_.reader(bus::topics::kBehaviorSchemas);
-  bus::Reader<v1::BeliefSet> belief_reader_ = node_.reader(bus::topics::kBeliefs);
-  bus::Reader<v1::Registration> registration_reader_ = node_.reader(bus::topics::kRegistration);
   bus::Reader<v1::ProcessSet> process_reader_ = node_.reader(bus::topics::kProcesses);
   bus::Reader<v1::ProgramMind> program_reader_ = node_.reader(bus::topics::kProgramMinds);
   std::unique_ptr<Recall> recall_;
   Clock::time_point began_ = Clock::now();
   Clock::time_point robot_came_ = Clock::now();
 
-  bool lockstep_ = false;
+  Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
   Past<v1::RobotState> robots_;
   Past<v1::Grant> grants_;
   Past<v1::BehaviorSet> behaviors_;
@@ -156,12 +158,12 @@ class Mind {
   std::map<Key, v1::GoalStatus> statuses_;
   /// Past goal statuses, by the epoch and cycle of their publication.
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatusSet> past_goals_;
-  std::optional<v1::BehaviorSchemas> schemas_;
-  std::optional<v1::BeliefSet> beliefs_;
-  std::optional<v1::Registration> registration_;
+  Newest<v1::BehaviorSchemas> schemas_{node_, bus::topics::kBehaviorSchemas};
+  Newest<v1::BeliefSet> beliefs_{node_, bus::topics::kBeliefs};
+  Newest<v1::Registration> registration_{node_, bus::topics::kRegistration};
   std::uint64_t doubtful_since_ = 0;  ///< cycle [0: it is not, or was so before we came]
   std::map<std::uint64_t, v1::ProcessSet> services_;         ///< by instance
   std::map<std::uint64_t, Past<v1::ProgramMind>> programs_;  ///< likewise
 };
 
-}  // namespace saphira::cli
+}  // namespace saphira::watch

@@ -1,0 +1,143 @@
+#include "saphira/watch/processes.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/status_words.hpp"
+#include "saphira/situation/words.hpp"
+
+namespace saphira::watch {
+
+void Processes::poll() {
+  for (const auto& sample : reader_.take()) {
+    Entry& entry = entries_[sample.data.instance];
+    entry.gone = sample.info.disposed;
+    if (!sample.info.disposed) {
+      entry.age = entry.samples++ == 0 ? sample.info.age : std::min(entry.age, sample.info.age);
+      entry.status = sample.data;
+      entry.came = Clock::now();
+    }
+  }
+  if (news() > news_)
+    changed_ = Clock::now();
+  news_ = news();
+}
+
+std::vector<situation::Program> Processes::all() const {
+  std::vector<situation::Program> processes;
+  for (const auto& [instance, entry] : entries_)
+    if (!entry.gone && !entry.status.name.empty())
+      // The first sample may be that of a program which hangs: old, and kept for late readers.
+      processes.push_back({entry.status, seconds_since(entry.came), bus::has_namesake(entry.status),
+                           entry.samples > 1 || entry.age < 0.0 ? entry.age : 0.0});
+  return processes;
+}
+
+situation::Situation Processes::situation() const {
+  situation::Situation now;
+  now.programs = all();
+  now.listened = seconds_since(began_);
+  return now;
+}
+
+std::uint64_t Processes::late_cycles() const {
+  std::uint64_t sum = 0;
+  for (const auto& [instance, entry] : entries_)
+    sum += entry.status.late_cycles;
+  return sum;
+}
+
+const char* name_of(bus::Profile profile) {
+  return word_of(profile, {"host", "lan", "wan"});
+}
+
+namespace {
+
+/// Further advice for an unheard program.
+const char* remedy(bus::Profile profile) {
+  switch (profile) {
+    case bus::Profile::host:
+      return "; programs of other machines need --profile lan or wan";
+    case bus::Profile::lan:
+      return "; on a network without multicast (much of WiFi) both sides need profile wan, and one "
+             "the "
+             "other's address (--peer)";
+    case bus::Profile::wan:
+      return "; one side needs the other's address (--peer)";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string who_is_there(const Processes& processes) {
+  const bus::Node& node = processes.node();
+  const bus::NodeOptions& options = node.options();
+  const situation::Situation now = processes.situation();
+  const auto& all = now.programs;
+  const std::string where = "robot " + options.robot + ", domain " +
+                            std::to_string(options.domain) + ", profile " +
+                            name_of(options.profile);
+  if (const std::string bar = node.bar(); all.empty() && !bar.empty())
+    return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
+  if (all.empty())
+    return "no program is on the bus (" + where +
+           "): is it up (saphira up demo), and are these the same on both sides?" +
+           remedy(options.profile);
+  if (const std::string missing = situation::listed(unheard(now)); !missing.empty())
+    return "not heard (" + where + "): " + missing + "; saphira status shows what is" +
+           remedy(options.profile);
+  for (const situation::Program& process : all)
+    if (process.status.state != v1::SERVICE_RUNNING && !process.status.reason.empty())
+      return process.status.name + " is " + situation::name_of(process.status.state) + ": " +
+             process.status.reason;
+  if (const std::string trouble = situation::trouble(now); !trouble.empty())
+    return trouble + " (" + where + ")";
+  std::set<std::string> heard;
+  for (const situation::Program& process : all)
+    if (process.age <= situation::kLostAge)
+      heard.insert(process.status.name);
+  return situation::listed({heard.begin(), heard.end()}) + (heard.size() == 1 ? " is" : " are") +
+         " on the bus (" + where + ")";
+}
+
+std::chrono::milliseconds listening_time(const bus::Node& node, bool heard) {
+  if (!heard && node.options().profile != bus::Profile::host)
+    return std::chrono::milliseconds(4000);
+  // With security: Fast DDS repeats a lost handshake message after a second.
+  return std::chrono::milliseconds(node.identity() ? 2600 : 1300);
+}
+
+double listen(bus::Node& node, const bus::Stop& stop, const Processes& processes,
+              const std::function<void()>& poll, const std::function<std::size_t()>& news) {
+  constexpr std::chrono::seconds kMost{10};
+  const auto began = Clock::now();
+  auto changed = began;
+  std::size_t before = news();
+  while (!stop.requested() &&
+         Clock::now() - changed < listening_time(node, processes.heard_any()) &&
+         Clock::now() - began < kMost) {
+    node.wait(std::chrono::milliseconds(50), &stop);
+    poll();
+    if (news() > before)
+      changed = Clock::now();
+    before = news();
+  }
+  return std::chrono::duration<double>(changed - began).count();
+}
+
+std::string absence(const bus::Node& node, const Processes& processes, const std::string& program) {
+  const situation::Situation known = processes.situation();
+  const std::chrono::duration<double> needed = listening_time(node, processes.heard_any());
+  if (is_heard(known.programs, program) || processes.quiet() < needed.count())
+    return {};
+  if (known.programs.empty())
+    return who_is_there(processes);
+  return "no saphira-" + program + " is heard (robot " + node.options().robot + ", domain " +
+         std::to_string(node.options().domain) +
+         "): it does not run (saphira up office has it), hangs, or is cut off";
+}
+
+}  // namespace saphira::watch
