@@ -1,45 +1,33 @@
 // The stopping time and distance of each robot model in the simulator after the loss of its driver,
 // its bridge or its line (a silent cut), or an emergency stop. The simulator's trace is the truth.
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "bench.hpp"
-#include "node_options.hpp"
-#include "process.hpp"
 #include "saphira/base/places.hpp"
-#include "saphira/base/text.hpp"
-#include "saphira/bus/node.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
-#include "saphira/sim/trace.hpp"
+#include "scene.hpp"
 #include "serial_line.hpp"
 #include "stop_ways.hpp"
 #include "support/guarded.hpp"
 
 using namespace saphira;
-using std::chrono::milliseconds;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr const char* kDomain = "196";
 constexpr double kStill = 0.003;  // [m/s]
 constexpr double kCycle = 0.1;    // [s]
-constexpr milliseconds kLimit{60000};
+constexpr std::chrono::seconds kLimit{60};
 
 enum class Loss { driver, bridge, line, estop };
 constexpr std::array kLosses{Loss::driver, Loss::bridge, Loss::line, Loss::estop};
@@ -51,128 +39,77 @@ struct Roll {
   double way = 0.0;       ///< [m]
 };
 
-/// A robot, its line, a bridge and a driver.
+/// A robot, its serial line, a bridge and a driver.
 class Ride {
  public:
-  Ride(std::string robot_file, double velocity)
-      : robot_file_(std::move(robot_file)), velocity_(velocity) {
-    std::ofstream(folder_.path("floor.wld"))
-        << "width 100000 height 20000\nposition 2000 10000 0\n";
-    simulator_ = std::make_unique<bench::Child>(std::vector<std::string>{
-        "saphira-sim", "--world", folder_.path("floor.wld"), "--robot", robot_file_, "--socket",
-        folder_.path("robot"), "--trace", folder_.path("trace.csv")});
-    line_ = std::make_unique<test::SerialLine>(folder_.path("tty"), folder_.path("robot"), 38400);
-    start_bridge();
+  Ride(const std::string& robot_file, double velocity) {
+    scene_.world = "width 100000 height 20000\nposition 2000 10000 0\n";
+    scene_.robot_file = std::filesystem::absolute(robot_file);
+    scene_.bridge_options = {"--robot-file", robot_file};
+    scene_.robot_port = "serial:" + scene_.folder.path("tty") + "@38400";
+    scene_.command.translation = v1::TRANSLATION_VELOCITY;
+    scene_.command.velocity = velocity;
+    scene_.start_simulator();
+    line_.emplace(scene_.folder.path("tty"), scene_.folder.path("robot"), 38400);
+    scene_.start_bridge();
   }
 
   Roll lose(Loss loss) {
-    drive_ = true;
-    need(until([&] { return permitted() && newest().velocity >= 0.97 * *permitted(); }),
+    scene_.drives = true;
+    std::vector<sim::TraceRow> before;
+    // The guard slows a robot that cannot hear people in time: the speed is the grant's.
+    need(scene_.until(
+             [&] {
+               const v1::Grant& grant = scene_.grant;
+               if (grant.role != v1::ROLE_DIRECT || grant.velocity <= 0.0)
+                 return false;
+               before = scene_.whole_trace();
+               return !before.empty() && before.back().velocity >= 0.97 * grant.velocity;
+             },
+             kLimit),
          "it does not drive");
-    const std::vector<sim::TraceRow> before = rows();
     if (loss == Loss::driver)
-      drive_ = false;
+      scene_.drives = false;
     else if (loss == Loss::bridge)
-      ::kill(bridge_->pid(), SIGKILL);
+      scene_.bridge->signal(SIGKILL);
     else if (loss == Loss::line)
       line_->cut(true);
-    else
-      pressed_ = true;
-    need(until([&] { return std::abs(newest().velocity) <= kStill; }), "it does not stop");
+    std::vector<sim::TraceRow> all;
+    need(scene_.until(
+             [&] {
+               if (loss == Loss::estop) {
+                 ++scene_.command.number;
+                 button_.write(scene_.command);
+               }
+               all = scene_.whole_trace();
+               return std::abs(all.back().velocity) <= kStill;
+             },
+             kLimit),
+         "it does not stop");
     // By rows, one a cycle: the cycle numbers restart with each connection.
-    const std::vector<sim::TraceRow> all = rows();
     const std::size_t lost = before.size() - 1;
     std::size_t still = lost;
     while (still + 1 < all.size() && std::abs(all[still].velocity) > kStill)
       ++still;
-    const Roll roll{
-        before.back().velocity, static_cast<double>(still - lost) * kCycle,
-        (all[still].pose_in_world.position() - all[lost].pose_in_world.position()).norm()};
-    // Restores the starting conditions.
-    grant_.reset();
-    drive_ = false;
-    pressed_ = false;
+    // The starting conditions again.
+    scene_.grant = {};
+    scene_.drives = false;
     line_->cut(false);
     if (loss == Loss::bridge)
-      start_bridge();
-    return roll;
+      scene_.start_bridge();
+    return {before.back().velocity, static_cast<double>(still - lost) * kCycle,
+            (all[still].pose_in_world.position() - all[lost].pose_in_world.position()).norm()};
   }
 
  private:
-  void start_bridge() {
-    bridge_.reset();
-    bridge_ = std::make_unique<bench::Child>(std::vector<std::string>{
-        "saphira-bridge", "--robot", robot_, "--domain", kDomain, "--robot-file", robot_file_,
-        "--robot-port", "serial:" + folder_.path("tty") + "@38400"});
-  }
-
-  /// [m/s] The speed in the driver's grant: the guard slows a robot that cannot hear people in
-  /// time.
-  std::optional<double> permitted() const {
-    return grant_ && grant_->role == v1::ROLE_DIRECT && grant_->velocity > 0.0
-               ? std::optional(grant_->velocity)
-               : std::nullopt;
-  }
-
-  std::vector<sim::TraceRow> rows() const {
-    if (!std::filesystem::exists(folder_.path("trace.csv")))
-      return {};
-    return sim::parse_trace(read_file(folder_.path("trace.csv")), "trace.csv");
-  }
-  sim::TraceRow newest() const {
-    const auto all = rows();
-    return all.empty() ? sim::TraceRow{} : all.back();
-  }
-
-  bool until(const std::function<bool()>& condition) {
-    const auto end = Clock::now() + kLimit;
-    while (Clock::now() < end) {
-      node_.wait(milliseconds(25));
-      if (const auto state = states_.take_newest())
-        state_ = *state;
-      if (auto grant = grants_.take_newest())
-        grant_ = std::move(grant);
-      if (drive_)
-        write(driver_, true);
-      if (pressed_)
-        write(button_, true);
-      if (condition())
-        return true;
-    }
-    return false;
-  }
-
-  void write(bus::Writer<v1::MotorCommand>& writer, bool active) {
-    v1::MotorCommand command{.stamp = state_.stamp, .source = "bench"};
-    command.number = ++number_;
-    command.active = active;
-    command.translation = v1::TRANSLATION_VELOCITY;
-    command.velocity = velocity_;
-    writer.write(command);
-  }
-
   void need(bool done, const std::string& what) const {
     if (!done)
-      throw std::runtime_error(robot_file_ + ": " + what);
+      throw std::runtime_error(scene_.robot_file + ": " + what);
   }
 
-  std::string robot_file_;
-  double velocity_;
-  std::string robot_ = "stops" + std::to_string(getpid());
-  test::TempDir folder_;
-  bus::Node node_{test::node_options("bench", robot_, kDomain)};
-  bus::Writer<v1::MotorCommand> driver_ = node_.writer(bus::topics::kDriveDirect);
-  bus::Writer<v1::MotorCommand> button_ = node_.writer(bus::topics::kDriveEstop);
-  bus::Reader<v1::RobotState> states_ = node_.reader(bus::topics::kRobotState);
-  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
-  std::unique_ptr<bench::Child> simulator_;
-  std::unique_ptr<test::SerialLine> line_;
-  std::unique_ptr<bench::Child> bridge_;
-  v1::RobotState state_;
-  std::optional<v1::Grant> grant_;
-  bool drive_ = false;
-  bool pressed_ = false;
-  std::uint64_t number_ = 0;
+  test::Scene scene_;
+  bus::Writer<v1::MotorCommand> button_ = scene_.node.writer(bus::topics::kDriveEstop);
+  std::optional<test::SerialLine> line_;
 };
 
 nlohmann::json measure(const std::string& file, double wanted) {

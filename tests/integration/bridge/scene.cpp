@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 
 #include "node_options.hpp"
@@ -48,7 +49,7 @@ void Scene::start_simulator() {
                                 "--world",
                                 folder.path("test.wld"),
                                 "--robot",
-                                source("config/robots/" + robot_file),
+                                std::filesystem::path(source("config/robots")) / robot_file,
                                 "--socket",
                                 folder.path("robot"),
                                 "--trace",

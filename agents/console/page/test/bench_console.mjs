@@ -8,7 +8,7 @@ import {chromium} from 'playwright-core';
 import {end, freePorts, output, sleep, start, until} from './processes.mjs';
 
 const here = process.env.SAPHIRA_SOURCE_DIR ?? join(process.env.SAPHIRA_BIN_DIR, '../../..'), pages = 3;
-const words = process.argv.slice(2), given = {'--artifacts': 5000, '--seconds': 20};
+const words = process.argv.slice(2), given = {'--artifacts': 4000, '--seconds': 20};
 const json = words.includes('--json');
 for (let i = 0; i < words.length; ++i) {
   if (words[i] === '--json') continue;
