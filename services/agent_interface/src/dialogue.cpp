@@ -35,11 +35,12 @@ bool is_fact(const Meaning& meaning) {
 
 /// The unit of a motion's distance [m].
 double meters_in(std::string_view unit) {
-  return unit == "ft"       ? 0.3048
-         : unit == "inches" ? 0.0254
-         : unit == "cm"     ? 0.01
-         : unit == "mm"     ? 0.001
-                            : 1.0;
+  return unit == "ft"               ? 0.3048
+         : unit == "inches"         ? 0.0254
+         : unit == "cm"             ? 0.01
+         : unit == "mm"             ? 0.001
+         : unit.starts_with("step") ? 0.5
+                                    : 1.0;
 }
 
 /// Puts the speaker where a slot has "me". False: the speaker has no name.

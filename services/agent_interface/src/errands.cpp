@@ -143,7 +143,8 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     if (!to.empty())
       want(with(with(meaning, "place", to), "owner", ""), utterance, "guide", {text("place", to)});
   } else if (functor == "pause") {
-    const double unit = slot(meaning, "unit").starts_with("minute") ? 60.0 : 1.0;
+    const std::string name = slot(meaning, "unit");
+    const double unit = name.starts_with("hour") ? 3600.0 : name.starts_with("minute") ? 60.0 : 1.0;
     const double seconds = number_of(meaning, "time") * unit;
     if (seconds <= 0.0 || seconds > kLongestWait)
       refuse(utterance, "I wait for up to an hour", out);
