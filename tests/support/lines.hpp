@@ -29,7 +29,7 @@ void each_line(const std::string& file, char comment, const Use& use) {
 /// Plays a file of cases, each with a player of its own: "== its name" begins one, and " ; " parts
 /// lines that are written as one. Returns how many cases there are.
 template <class Player>
-int play(const std::string& file) {
+int play(const std::string& file, char comment = '#') {
   std::unique_ptr<Player> player;
   int cases = 0;
   const auto finish = [&] {
@@ -37,7 +37,7 @@ int play(const std::string& file) {
       if (player)
         player->finish();
   };
-  each_line(file, '#', [&](const std::string& line) {
+  each_line(file, comment, [&](const std::string& line) {
     if (line.starts_with("== ")) {
       finish();
       player = std::make_unique<Player>();

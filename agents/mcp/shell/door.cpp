@@ -256,7 +256,9 @@ void Door::begin(const Call& call) {
     stop.person = person_;
     return send(call, stops_, std::move(stop), kStopPatience, [this](const v1::Answer& answer) {
       const bool well = bus::well(answer.code);
-      return Result{is_unheard(answer) ? kNotConfirmed : answer.text,
+      const bool unconfirmed =
+          answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
+      return Result{unconfirmed ? kNotConfirmed : answer.text,
                     {{"stopped", well}, {"moves", robot_.moves()}},
                     !well};
     });

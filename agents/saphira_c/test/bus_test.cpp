@@ -117,10 +117,10 @@ TEST_F(OnBus, AStoppedProgramDoesNotDriveOn) {
   const v1::Answer answer = client.ask(bus::request("stop"), 10.0);
   EXPECT_EQ(answer.code, v1::ANSWER_DONE) << answer.text;
   EXPECT_EQ(answer.text, "stopped: program (direct); the robot is at rest");
-  const long begin = system_.truth().cycle;
+  const std::uint64_t begin = system_.truth().cycle;
   bool still = true;
   EXPECT_TRUE(wait_until([&] {
-    still = still && system_.truth().still();
+    still = still && system_.still();
     return system_.truth().cycle >= begin + 40;
   }));
   EXPECT_TRUE(still) << "it commands on, and has not let go";
@@ -225,8 +225,8 @@ static void connected(void) {
 int main(void) { sfOnConnectFn(connected); sfStartup(0); return 0; }
 )");
   EXPECT_TRUE(drives("program")) << program.output();
-  EXPECT_TRUE(wait_until([&] { return system_.truth().x > 3.5; }, kPatience))
-      << system_.truth().x << program.output();
+  EXPECT_TRUE(wait_until([&] { return system_.truth().pose_in_world.x > 3.5; }, kPatience))
+      << system_.truth().pose_in_world.x << program.output();
   EXPECT_TRUE(shows("program", "find and follow", v1::PROCESS_RUNNING));
   EXPECT_TRUE(wait_until([this] {
     return has(cli({"intentions", "--once"}), "of the program program:\no find and follow");

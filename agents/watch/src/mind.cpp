@@ -50,7 +50,12 @@ void Mind::poll() {
   robots_.take(robot_reader_);
   if (robots_.known().newest != newest_before)
     robot_came_ = Clock::now();
-  grants_.take(grant_reader_);
+  grant_reader_.visit([&](const v1::Grant& grant, const bus::SampleInfo& info) {
+    if (info.disposed)
+      return;
+    grants_.note(grant);
+    grant_ = grant;
+  });
   behaviors_.take(behavior_reader_);
   intentions_.take(intention_reader_);
   for (const auto& sample : goal_reader_.take())
@@ -109,7 +114,7 @@ const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cy
 }
 
 bool Mind::held() const {
-  return (grants_.newest() != nullptr && grants_.newest()->estopped) ||
+  return (grant_ && grant_->estopped) ||
          (robots_.newest() != nullptr && stalled(*robots_.newest()));
 }
 
@@ -190,6 +195,11 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.listened = seconds_since(began_);
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));
+  // Without a robot, or between two steps, the bridge tells of a change without a new cycle.
+  if (!past && grant_ &&
+      (!now.grant || grant_->stamp.epoch != robots_.epoch() ||
+       (grant_->stamp == now.grant->stamp && grant_->estopped != now.grant->estopped)))
+    now.grant = grant_;
   if (now.grant)
     now.estopped_since = grants_.since(now.grant->stamp.cycle,
                                        [](const v1::Grant& grant) { return grant.estopped; });

@@ -102,6 +102,30 @@ TEST_F(Watch, ANewEpochEndsThePast) {
   EXPECT_EQ(mind.known(), (std::pair<std::uint64_t, std::uint64_t>{3, 3}));
 }
 
+// The bridge tells of an emergency stop without a robot, and between two steps of a simulator.
+TEST_F(Watch, AGrantWithoutANewCycleCounts) {
+  Mind mind(node, false);
+  for (const v1::Stamp& lost : {v1::Stamp{}, v1::Stamp{7, 2}}) {
+    cycle({7, 1});
+    cycle({7, 2});
+    grants.write({.stamp = lost});
+    mind.poll();
+    EXPECT_FALSE(mind.held());
+    grants.write({.stamp = lost, .estopped = true});
+    mind.poll();
+    EXPECT_TRUE(mind.held());
+    EXPECT_TRUE(mind.grant()->estopped);
+    EXPECT_TRUE(mind.situation().grant.value().estopped) << lost.cycle;
+  }
+}
+
+TEST_F(Watch, AnEmergencyStopWithoutARobotIsKnown) {
+  Mind mind(node, false);
+  grants.write({.estopped = true});
+  mind.poll();
+  EXPECT_TRUE(mind.situation().grant.value().estopped);
+}
+
 TEST_F(Watch, ADoubtfulPlaceHasItsBeginning) {
   Mind mind(node, false);
   cycle({7, 10});

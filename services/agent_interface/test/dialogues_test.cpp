@@ -1,5 +1,6 @@
 // The conversations of dialogues.txt.
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -35,8 +36,10 @@ class Conversation : public DialogueTest {
       EXPECT_EQ(fact->second(), value);
     } else if (const auto change = changes_.find(key); change != changes_.end()) {
       change->second(value);
-    } else {
+    } else if (colon < arrow && (key.empty() || std::isupper(key[0]) != 0)) {
       speak(key, value);
+    } else {
+      ADD_FAILURE() << "not understood: " << line;
     }
     if (arrow < line.size()) {
       EXPECT_EQ(answer(), arrow + 4 < line.size() ? line.substr(arrow + 4) : "");

@@ -4,7 +4,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -237,7 +236,7 @@ class Round {
          facilitator_.hear(address, 1, number, answer_of(in), now_);
        }},
       {"pass", [this](auto& in) { now_ += read<double>(in); }},
-      {"until-due", [this](auto&) { now_ = facilitator_.due().value(); }},
+      {"until-due", [this](auto&) { now_ = facilitator_.due().value_or(-1.0); }},
       {"restart", [this](auto& in) { restart(read<double>(in)); }},
       {"trigger", [this](auto& in) { trigger(in); }},
       {"take-back", [this](auto& in) { facilitator_.take_back(id_of(read<std::string>(in))); }},
@@ -256,7 +255,7 @@ class Round {
       {"run", [this](auto& in) { run(in); }}};
   const std::map<std::string, std::function<std::string()>> facts_{
       {"open", [this] { return std::to_string(facilitator_.open()); }},
-      {"due", [this] { return std::to_string(std::lround(facilitator_.due().value())); }},
+      {"due", [this] { return std::to_string(std::lround(facilitator_.due().value_or(-1.0))); }},
       {"fired", [this] { return std::to_string(fired_); }},
       {"changed", [this] { return yes(out_.changed); }},
       {"remembers nothing", [this] { return yes(saved(facilitator_) == saved(Facilitator(9))); }},

@@ -1,6 +1,6 @@
 // The activities of activities.txt.
 #include <cctype>
-#include <optional>
+#include <memory>
 #include <sstream>
 
 #include "language_bench.hpp"
@@ -26,10 +26,14 @@ std::string digits(double value) {
 /// One case.
 class Script {
  public:
-  explicit Script(const std::string& activities) : stage_(activities) {}
-
-  /// Carries out an event, or checks an expectation.
+  /// A line of the activities; or, behind them, an event or an expectation.
   void take(const std::string& line) {
+    if (line[0] == '(' || line[0] == ' ') {
+      activities_ += line + "\n";
+      return;
+    }
+    if (!stage_)
+      stage_ = std::make_unique<Stage>(activities_);
     const std::size_t colon = line.find(':');
     std::istringstream in(line.substr(0, colon));
     std::string verb;
@@ -45,22 +49,22 @@ class Script {
  private:
   std::string fact(const std::string& what, const std::string& verb, std::istringstream& in) {
     if (what == "behaviors")
-      return joined(stage_.behaviors(), " ");
+      return joined(stage_->behaviors(), " ");
     if (what == "display")
-      return stage_.display();
+      return stage_->display();
     if (what == "said")
-      return joined(stage_.messages, " | ");
+      return joined(stage_->messages, " | ");
     if (what == "last said")
-      return stage_.messages.back();
+      return stage_->messages.back();
     if (what == "sentences")
-      return std::to_string(stage_.messages.size());
+      return std::to_string(stage_->messages.size());
     if (what == "behavior control")
-      return stage_.out.behavior_control ? "yes" : "no";
+      return stage_->out.behavior_control ? "yes" : "no";
     std::string name;
     in >> name;
     if (verb == "belief")
-      return spoken(stage_.belief(name));
-    const GoalStatus& status = stage_.status(std::stoull(name));
+      return spoken(stage_->belief(name));
+    const GoalStatus& status = stage_->status(std::stoull(name));
     return verb == "goal"       ? name_of(status.state)
            : verb == "code"     ? code_words(status.code)
            : verb == "reason"   ? status.reason
@@ -77,7 +81,7 @@ class Script {
     std::uint64_t id = 0;
     int cycles = 1;
     if (verb == "begin" && in >> id >> name >> cycles) {
-      stage_.begin(id, name, cycles);
+      stage_->begin(id, name, cycles);
     } else if (verb == "ask" && in >> id >> name) {
       Arguments arguments;
       int priority = 0;
@@ -87,22 +91,22 @@ class Script {
         else
           arguments.push_back(argument(more));
       }
-      stage_.ask(id, name, arguments, priority);
+      stage_->ask(id, name, arguments, priority);
     } else if (verb == "step" && in >> cycles) {
-      stage_.step(cycles);
+      stage_->step(cycles);
     } else if (verb == "withdraw" && in >> id) {
-      stage_.dispose(id);
+      stage_->dispose(id);
     } else if ((verb == "stall" || verb == "free") && in >> cycles) {
-      stage_.stall(verb == "stall", cycles);
+      stage_->stall(verb == "stall", cycles);
     } else if ((verb == "left" || verb == "right") && in >> name) {
-      (verb == "left" ? stage_.inputs.robot.left_stalled : stage_.inputs.robot.right_stalled) =
+      (verb == "left" ? stage_->inputs.robot.left_stalled : stage_->inputs.robot.right_stalled) =
           name == "stalls";
     } else if (verb == "satisfy" && in >> name >> level >> cycles) {
-      stage_.satisfy(name, level, cycles);
+      stage_->satisfy(name, level, cycles);
     } else if (verb == "claim" && in >> name >> more) {
-      claim(stage_, name, more == "t");
+      claim(*stage_, name, more == "t");
     } else if (verb == "trouble" && std::getline(in >> std::ws, more)) {
-      stage_.inputs.troubles = {{stage_.out.behaviors.at(0).name, more}};
+      stage_->inputs.troubles = {{stage_->out.behaviors.at(0).name, more}};
     } else {
       ADD_FAILURE() << "not understood: " << verb;
     }
@@ -117,27 +121,12 @@ class Script {
                : saphira::text(text.substr(0, at), value);
   }
 
-  Stage stage_;
+  std::string activities_;
+  std::unique_ptr<Stage> stage_;
 };
 
 TEST(ActivitiesInWords, DoAsWritten) {
-  std::optional<Script> one;
-  std::string activities;
-  int cases = 0;
-  test::each_line("services/intentions/test/activities.txt", ';', [&](const std::string& line) {
-    if (line.starts_with("== ")) {
-      one.reset();
-      activities.clear();
-      ++cases;
-    } else if (line[0] == '(' || line[0] == ' ') {
-      activities += line + "\n";
-    } else {
-      if (!one)
-        one.emplace(activities);
-      one->take(line);
-    }
-  });
-  EXPECT_GT(cases, 35);
+  EXPECT_GT(test::play<Script>("services/intentions/test/activities.txt", ';'), 35);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// What the functors do where lines of goals.txt do not do.
 #include "saphira/intentions/functors.hpp"
 
 #include <gtest/gtest.h>
@@ -39,19 +40,6 @@ TEST(GoTo, IntendsTheBehaviorsAndArrives) {
   EXPECT_LE((bench.world.robot.pose_in_odom.position() - Vec2(2.0, 1.0)).norm(), 0.15);
 }
 
-TEST(GoTo, SucceedsOnlyWhenTheRobotStands) {
-  Bench bench;
-  bench.ask(1, "go_to", {point("position", {0.01, 0.0, 0.0})});
-  bench.world.robot.velocity = 0.3;
-  bench.world.held = false;
-  bench.step_without_moving();
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
-  EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/3"});
-  bench.world.robot.velocity = 0.0;
-  bench.step();
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
-}
-
 TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {0.25, 0.0, 0.0}), number("radius", 0.15)});
@@ -74,87 +62,6 @@ TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
     far.step_without_moving();
   }
   EXPECT_EQ(far.state(1), v1::GOAL_UNDERWAY);
-}
-
-TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
-  Bench bench;
-  bench.world.robot.pose_in_odom = {1.0, 1.0, kPi / 2};
-  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
-  for (int i = 0; i < 20; ++i) {
-    const Argument* const goal = find(bench.out.behaviors.at(2).parameters, "goal");
-    EXPECT_NEAR(goal->point.x, 1.0, 1e-12);
-    EXPECT_NEAR(goal->point.y, 3.0, 1e-12);
-    EXPECT_EQ(goal->frame, Frame::odom);
-    bench.step();
-  }
-}
-
-TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
-  Bench bench;
-  bench.world.robot.odom_in_map = Pose{10.0, 5.0, kPi / 2};
-  bench.begin(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::map)});
-  const auto goal = [&] {
-    for (const IntendedBehavior& behavior : bench.out.behaviors)
-      if (behavior.schema == "GoToPos")
-        return find(behavior.parameters, "goal")->point;
-    return Pose{};
-  };
-  EXPECT_NEAR(goal().x, 2.0, 1e-9);
-  EXPECT_NEAR(goal().y, 0.0, 1e-9);
-  // Registration corrects itself: the point moves in odom, and the drive continues.
-  bench.world.robot.odom_in_map = Pose{10.0, 5.5, kPi / 2};
-  bench.step();
-  EXPECT_NEAR(goal().x, 1.5, 1e-9);
-  for (int i = 0; i < 200 && bench.state(1) == v1::GOAL_UNDERWAY; ++i)
-    bench.step();
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
-  EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.5, 0.2);
-}
-
-TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
-  Bench bench;
-  bench.world.robot.odom_in_map = Pose{};
-  bench.begin(1, "go_to",
-              {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
-  EXPECT_EQ(bench.out.behaviors.size(), 4U);
-  bench.world.robot.odom_in_map.reset();
-  bench.step();
-  ASSERT_EQ(bench.out.behaviors.size(), 1U);
-  EXPECT_EQ(bench.out.behaviors.front().schema, "Stop");
-  EXPECT_EQ(bench.status(1).step, "waits to know where it is on the map");
-  bench.world.robot.odom_in_map = Pose{};
-  bench.step();
-  EXPECT_EQ(bench.out.behaviors.size(), 4U);
-  bench.world.robot.odom_in_map.reset();
-  bench.step(40);
-  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_POSITION);
-}
-
-TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
-  Bench bench;
-  bench.world.robot.odom_in_map = Pose{};
-  bench.begin(1, "go_to",
-              {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
-  const auto wait = [&](int cycles, bool known) {
-    bench.world.held = true;
-    bench.world.robot.odom_in_map = known ? std::optional(Pose{}) : std::nullopt;
-    for (int i = 0; i < cycles; ++i)
-      bench.step();
-  };
-  wait(20, false);
-  wait(20, true);
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
-  // Time before an interruption does not count after it.
-  wait(20, false);
-  bench.ask(2, "drive", {number("speed", 0.0)}, 5);
-  wait(20, false);
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUSPENDED);
-  bench.dispose(2);
-  wait(20, false);
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
-  wait(15, false);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_NO_POSITION);
 }
 
 // Motion gives more readings. Without it, or without an end to it, a given pose would be an
@@ -186,19 +93,6 @@ TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
   EXPECT_EQ(never.status(1).code, v1::CODE_NO_POSITION);
 }
 
-TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
-  Bench bench;
-  bench.world.robot.odom_in_map = Pose{};
-  bench.world.held = true;
-  bench.ask(1, "turn_to",
-            {point("position", {0.0, 5.0, 0.0}, Frame::map), number("patience", 3.0)});
-  for (int i = 0; i < 45; ++i) {
-    bench.world.robot.odom_in_map = i < 20 ? std::nullopt : std::optional(Pose{});
-    bench.step();
-  }
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
-}
-
 // Without AvoidCollision the others would drive on.
 TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
   for (const char* const missing : {"AvoidCollision", "ConstantVelocity", "Stop"}) {
@@ -215,20 +109,6 @@ TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
   }
 }
 
-TEST(GoTo, GivesUpWhenItComesNoNearer) {
-  Bench bench;
-  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
-  bench.step(20);
-  bench.world.held = true;
-  const std::uint64_t held = bench.cycle;
-  bench.run(1, 300);
-  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-  EXPECT_NEAR(static_cast<double>(bench.cycle - held), 50.0, 3.0);
-  EXPECT_NE(bench.status(1).reason.find("no nearer for 5 s, 2."), std::string::npos)
-      << bench.status(1).reason;
-}
-
 TEST(GoTo, TimesAreToldAsCyclesOfTheRobot) {
   Bench bench;
   bench.cycle = 700;
@@ -239,20 +119,6 @@ TEST(GoTo, TimesAreToldAsCyclesOfTheRobot) {
   EXPECT_EQ(bench.executor.cycle_of(bench.out.nodes[0].since), begun);
   bench.step(5);
   EXPECT_EQ(bench.executor.cycle_of(bench.out.nodes[0].since), begun);
-}
-
-TEST(GoTo, SleepOfTheServiceDoesNotCountAgainstItsPatience) {
-  Bench bench;
-  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
-  bench.step(20);
-  bench.world.held = true;
-  bench.cycle += 300;
-  bench.step();
-  const std::uint64_t awake = bench.cycle;
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
-  bench.run(1, 600);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-  EXPECT_NEAR(static_cast<double>(bench.cycle - awake), 50.0, 3.0);
 }
 
 // The way around an obstacle leads away from the point. A small robot is slow, and gets on.
@@ -300,116 +166,6 @@ TEST(FollowTrail, GoesAroundTheSameCornerAndToItsEnd) {
   EXPECT_NEAR(find(bench.out.behaviors[0].parameters, "goal")->point.y, 1.95, 0.1);
 }
 
-TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
-  Bench bench;
-  Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});
-  goal.deadline = 3.0;
-  bench.write(goal);
-  bench.step();
-  EXPECT_EQ(schemas(bench.out.behaviors),
-            (std::vector<std::string>{"AvoidCollision/0", "ConstantVelocity/2", "Stop/3"}));
-  bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
-  EXPECT_EQ(bench.status(1).elapsed, 3.0);
-  EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
-}
-
-TEST(Drive, ADistanceThatIsNotDrivenByTheDeadlineHasFailed) {
-  Bench bench;
-  Goal goal = bench.goal(1, "drive", {number("speed", 0.2), number("distance", 5.0)});
-  goal.deadline = 3.0;
-  bench.write(goal);
-  bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_DEADLINE);
-}
-
-TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {
-  Bench bench;
-  Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});
-  goal.deadline = 3.0;
-  bench.write(goal);
-  bench.step();
-  bench.ask(2, "drive", {number("speed", 0.1)}, 5);
-  bench.step(40);
-  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_DEADLINE);
-
-  Bench held;
-  held.write(goal);
-  held.step();
-  ASSERT_TRUE(held.executor.interrupt(held.out.nodes.at(0).id));
-  held.step(40);
-  EXPECT_EQ(held.status(1).code, v1::CODE_DEADLINE);
-}
-
-TEST(Drive, GivesUpWhenItDoesNotMove) {
-  Bench bench;
-  bench.world.held = true;
-  bench.ask(1, "drive", {number("speed", 0.2)});
-  bench.run(1, 400);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-  EXPECT_EQ(bench.cycle, 201U);
-}
-
-TEST(Drive, AtNoSpeedIsNotBlocked) {
-  Bench bench;
-  bench.ask(1, "drive", {number("speed", 0.0)});
-  bench.step(400);
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
-}
-
-TEST(TurnTo, TurnsToAHeading) {
-  Bench bench;
-  bench.begin(1, "turn_to", {number("heading", 2.0)});
-  EXPECT_EQ(schemas(bench.out.behaviors), (std::vector<std::string>{"TurnTo/2", "Stop/3"}));
-  const std::vector<IntendedBehavior> first = bench.out.behaviors;
-  bench.step();
-  EXPECT_EQ(bench.out.behaviors, first);
-  EXPECT_EQ(bench.status(1).step, "turning to 115 degrees");
-  bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED) << bench.status(1).reason;
-  EXPECT_NEAR(bench.world.robot.pose_in_odom.th, 2.0, radians(5.0));
-}
-
-TEST(TurnTo, TurnsToAPositionTheShortWay) {
-  Bench bench;
-  bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::robot)});
-  bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED) << bench.status(1).reason;
-  EXPECT_NEAR(bench.world.robot.pose_in_odom.th, radians(-135.0), radians(5.0));
-}
-
-TEST(TurnTo, GivesUp) {
-  Bench bench;
-  bench.world.held = true;
-  bench.world.robot.has_power = false;
-  bench.ask(1, "turn_to", {number("heading", 1.0), number("patience", 2.0)});
-  bench.run(1, 100);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-  EXPECT_EQ(bench.status(1).reason,
-            "no nearer for 2 s, 57 degrees off; the motors have no power (saphira device motors "
-            "on)");
-}
-
-TEST(TurnTo, EndsWhereACoarseServoStandsAfterMostOfTheTurn) {
-  Bench bench;
-  bench.world.held = true;
-  bench.begin(1, "turn_to", {number("heading", radians(60.0)), number("patience", 2.0)});
-  bench.world.robot.pose_in_odom.th = radians(57.0);
-  bench.run(1, 100);
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
-  EXPECT_EQ(bench.status(1).reason, "turned, 3.0 degrees off");
-}
-
-TEST(TurnTo, ASmallTurnThatWasNotMadeHasFailed) {
-  Bench bench;
-  bench.world.held = true;
-  bench.ask(1, "turn_to", {number("heading", radians(4.0)), number("patience", 2.0)});
-  bench.run(1, 100);
-  EXPECT_EQ(bench.status(1).code, v1::CODE_BLOCKED);
-}
-
 // Some robots do not report that their motors are off.
 TEST(GoTo, AsksForTheMotorsOfARobotThatHasNotMovedAtAll) {
   const auto reason = [](double told, bool moves_first, bool stalled) {
@@ -431,22 +187,6 @@ TEST(GoTo, AsksForTheMotorsOfARobotThatHasNotMovedAtAll) {
   EXPECT_EQ(reason(0.0, false, false), "no nearer for 5 s, 3.00 m from the point");
   EXPECT_EQ(reason(0.3, false, true), "no nearer for 5 s, 3.00 m from the point");
   EXPECT_EQ(reason(0.3, true, false).find("motors"), std::string::npos);
-}
-
-TEST(Stop, SucceedsWhenTheRobotIsAtRest) {
-  Bench bench;
-  bench.world.robot.velocity = 0.4;
-  bench.ask(1, "stop", {});
-  bench.step_without_moving();
-  EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/0"});
-  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
-  // Not before the effect of another goal's command would show.
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
-    bench.step();
-  }
-  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
-  EXPECT_EQ(bench.status(1).reason, "the robot is at rest");
 }
 
 }  // namespace

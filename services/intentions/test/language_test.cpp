@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "language_bench.hpp"
+#include "lines.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/intentions/navigation.hpp"
 
@@ -187,6 +188,34 @@ std::string goals(const std::string& goals) {
   return "(defintention :it :params (dest) :goals '(\n" + goals + "))";
 }
 
+/// A source, and its troubles behind it.
+class Mistakes {
+ public:
+  void take(const std::string& line) {
+    const bool of_goals = line.starts_with("goals ");
+    if (of_goals || line.starts_with("file ")) {
+      finish();
+      std::string text = line.substr(line.find(' ') + 1);
+      for (std::size_t at = 0; (at = text.find("\\n", at)) != std::string::npos;)
+        text.replace(at, 2, "\n");
+      left_ = troubles(of_goals ? goals(text) : text);
+    } else if (left_.empty()) {
+      ADD_FAILURE() << "no such trouble: " << line;
+    } else {
+      EXPECT_EQ(left_.front(), line);
+      left_.erase(left_.begin());
+    }
+  }
+  void finish() const { EXPECT_EQ(left_, List()) << "before this"; }
+
+ private:
+  List left_;
+};
+
+TEST(ActivityErrors, AreAsWritten) {
+  EXPECT_GE(test::play<Mistakes>("services/intentions/test/mistakes.txt"), 7);
+}
+
 TEST(ActivityErrors, ShowThePlaceWithACaret) {
   const Loaded loaded = load("(defintention :it\n  :goals '((GOTO :nowhere)))\n");
   ASSERT_EQ(loaded.troubles.size(), 1U);
@@ -195,95 +224,6 @@ TEST(ActivityErrors, ShowThePlaceWithACaret) {
             "a.act:2:18: no goal-set has the label :nowhere\n"
             "      :goals '((GOTO :nowhere)))\n"
             "                     ^");
-}
-
-TEST(ActivityErrors, OfParenthesesAndTexts) {
-  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t))"), List({"1:1 expected a ) for this ("}));
-  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t))))"),
-            List({"1:37 a ) too many: expected (defintention ...)"}));
-  EXPECT_EQ(troubles("(defintention :a :goals '((EXECUTE (say \"x))))"),
-            List({"1:41 expected a \" for this one"}));
-  for (const char* const wrong :
-       {"(WAIT -5s)", "(WAIT-FOR t :timeout -5)", "(WAIT-FOR t :timeout 60deg)",
-        "(INTEND :turn_to () :blocking t :timeout 2m)"})
-    EXPECT_NE(troubles(goals(wrong)).at(0).find("expected a time in seconds, such as 60s, found"),
-              std::string::npos)
-        << wrong;
-  EXPECT_EQ(troubles("(defintention :a :goals '((WAIT-FOR t :timeout 5parsec)))"),
-            List({"1:49 expected a unit (m mm cm km s ms min h deg rad m/s mm/s cm/s deg/s rad/s "
-                  "%) or none, found \"parsec\""}));
-  EXPECT_EQ(troubles("(defschema :a)"),
-            List({"1:1 expected (defintention :name ...), found \"(defschema :a)\""}));
-}
-
-TEST(ActivityErrors, AMissingParenthesisDoesNotTakeTheNextDefinition) {
-  const List all = troubles(
-      "(defintention :a :goals '((TEST t))\n"
-      "(defintention :b :goals '((GOTO :x)))\n");
-  EXPECT_EQ(all, List({"1:1 expected a ) for this (", "2:33 no goal-set has the label :x"}));
-}
-
-TEST(ActivityErrors, OfGoals) {
-  EXPECT_EQ(troubles(goals("(FLY)")),
-            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT, WAIT-FOR, ASK, "
-                  "INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, SUCCEED or FAIL"}));
-  EXPECT_EQ(troubles(goals(":plan (TEST t)")),
-            List({"2:1 expected a goal-set in parentheses: (:plan goal ...)"}));
-  EXPECT_EQ(troubles(goals("(TEST)")), List({"2:1 expected (TEST condition), found \"(TEST)\""}));
-  EXPECT_EQ(troubles(goals("(TEST t :reson 1)")),
-            List({"2:9 expected one of :else, :reason, found \":reson\""}));
-  EXPECT_EQ(troubles(goals("(INTEND :go_to ((position . (point 1 2))) :blocking 2)")),
-            List({"2:53 expected t, nil, or a degree from 0 to 1, found \"2\""}));
-  EXPECT_EQ(
-      troubles(goals("(ASK q place-of ((person . 1)))")),
-      List({"2:1 expected (ASK question functor ((slot . value) ...) :timeout seconds), found "
-            "\"(ASK q place-of ((person . 1)))\""}));
-  EXPECT_EQ(troubles(goals("(ASK q place-of (person) :timeout 5)")),
-            List({"2:18 expected (slot . value), found \"person\""}));
-  EXPECT_EQ(troubles(goals("(= *x* 1)")),
-            List({"2:4 expected a local variable; (EXECUTE (setq *x* ...)) sets an environment "
-                  "variable"}));
-}
-
-TEST(ActivityErrors, OfExpressions) {
-  EXPECT_EQ(troubles(goals("(TEST (fly dest))")), List({"2:8 unknown function \"fly\""}));
-  EXPECT_EQ(troubles(goals("(TEST (elapsd))")),
-            List({"2:8 unknown function \"elapsd\": did you mean elapsed?"}));
-  EXPECT_EQ(troubles(goals("(TEST (null dest 1))")),
-            List({"2:7 (null) expected 1 argument, found 2"}));
-  EXPECT_EQ(troubles(goals("(TEST (> dest))")),
-            List({"2:7 (>) expected 2 to 64 arguments, found 1"}));
-  EXPECT_EQ(troubles(goals("(TEST dset)")),
-            List({"2:7 unknown variable \"dset\": expected a parameter, a variable that = binds, "
-                  "*an-environment-variable* or a condition"}));
-  EXPECT_EQ(troubles(goals("(TEST (say \"x\"))")),
-            List({"2:8 \"say\" is an action: expected it within EXECUTE"}));
-}
-
-TEST(ActivityErrors, OfWhatCannotBeReached) {
-  EXPECT_EQ(troubles(goals("(GOTO :end)\n(TEST t)\n(:end)")),
-            List({"3:1 this goal-set can never be reached"}));
-  EXPECT_EQ(troubles(goals("((SUCCEED)\n(TEST t))")), List({"3:1 this goal can never be reached"}));
-  EXPECT_EQ(troubles(goals("(IF dest (GOTO :a) (GOTO :b)) (TEST t) (:a) (:b)")),
-            List({"2:31 this goal-set can never be reached"}));
-  EXPECT_EQ(troubles(goals("(:a) (:a)")), List({"2:7 the label :a is there twice"}));
-}
-
-TEST(ActivityErrors, OfSchemasAndTheirArguments) {
-  EXPECT_EQ(troubles(goals("(INTEND :fly ())")),
-            List({"2:9 unknown schema \"fly\": neither an activity nor a behavior"}));
-  EXPECT_EQ(
-      troubles(goals("(INTEND :go_to ((place . dest)))")),
-      List({"2:9 go_to needs the parameter \"position\"",
-            "2:17 go_to has no parameter \"place\": expected position, speed, radius, facing, "
-            "patience"}));
-  EXPECT_EQ(troubles(goals("(INTEND :follow-corridor ((goal . dest)))")),
-            List({"2:9 follow-corridor needs the parameter \"corridor\""}));
-  EXPECT_EQ(troubles(goals("(INTEND :it ())")), List({"2:9 it needs the parameter \"dest\""}));
-  EXPECT_EQ(troubles("(defintention :go_to :goals '((TEST t)))"),
-            List({"1:1 \"go_to\" is built in already"}));
-  EXPECT_EQ(troubles("(defintention :a :goals '((TEST t)))\n(defintention :A :goals '((TEST t)))"),
-            List({"2:1 the activity \"A\" is in a.act already"}));
 }
 
 TEST(ActivityErrors, OfAConcurrentActivityThatDrives) {
@@ -297,23 +237,6 @@ TEST(ActivityErrors, OfAFileWithoutActivities) {
   for (const std::string file : {"", "\n", "; nothing yet\n"})
     EXPECT_EQ(troubles(file),
               List({"1:1 expected (defintention :name ...); there is no activity in this file"}));
-}
-
-TEST(ActivityErrors, OfParameters) {
-  EXPECT_EQ(troubles("(defintention :a :params ((n :numbr 1)) :goals '((TEST t)))"),
-            List({"1:30 expected :number, :text, :place, :point, :list or :any, found "
-                  "\":numbr\""}));
-  EXPECT_EQ(troubles("(defintention :a :params ((n :number 9 :high 3)) :goals '((TEST t)))"),
-            List({"1:27 expected a default within :low and :high"}));
-  // A number as default, a unit or limits make it a number.
-  EXPECT_EQ(troubles("(defintention :a :params ((n 9 :high 3)) :goals '((TEST t)))"),
-            List({"1:27 expected a default within :low and :high"}));
-  EXPECT_EQ(troubles("(defintention :a :params ((n 'x :high 3)) :goals '((TEST t)))").size(), 1U);
-  EXPECT_EQ(troubles("(defintention :a :params ((n :any 'x :low 3)) :goals '((TEST t)))").size(),
-            1U);
-  EXPECT_EQ(troubles("(defintention :a :params ((n :unit m)) :goals '((TEST t)))"), List());
-  EXPECT_EQ(troubles("(defintention :a :params (n n) :goals '((TEST t)))"),
-            List({"1:29 parameter \"n\" is there twice"}));
 }
 
 TEST(ActivityErrors, SeveralOfAFileAndWarnings) {

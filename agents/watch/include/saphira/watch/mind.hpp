@@ -89,7 +89,8 @@ class Mind {
   const v1::BehaviorSet* behaviors() const { return behaviors_.newest(); }
   /// The newest states of programs with their own behaviors, if recent.
   std::vector<const v1::ProgramMind*> programs() const;
-  const v1::Grant* grant() const { return grants_.newest(); }
+  /// As it came, also without a robot.
+  const v1::Grant* grant() const { return grant_ ? &*grant_ : nullptr; }
   const v1::BehaviorSchema* schema(const std::string& name) const;
   const v1::BehaviorSchemas* schemas() const { return schemas_.get(); }
   const v1::BeliefSet* beliefs() const { return beliefs_.get(); }
@@ -151,6 +152,7 @@ class Mind {
   Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
   Past<v1::RobotState> robots_;
   Past<v1::Grant> grants_;
+  std::optional<v1::Grant> grant_;  ///< the newest
   Past<v1::BehaviorSet> behaviors_;
   Past<v1::Intentions> intentions_;
   using Key = std::pair<std::uint64_t, std::uint64_t>;
