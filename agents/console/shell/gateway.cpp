@@ -210,10 +210,8 @@ void Gateway::poll() {
   if (const v1::RobotState* const robot = mind_.robot()) {
     const bool is_new = robot->stamp.cycle != stamp_.cycle;
     stamp_ = robot->stamp;
-    if (is_new) {
-      heard_at_ = now();
+    if (is_new)
       detour();
-    }
     cameras_.heard(stamp_.cycle, now());
   }
   any = cameras_.poll(now()) || any;
@@ -285,10 +283,10 @@ void Gateway::explain() {
 }
 
 std::vector<RobotSeen> Gateway::robots_seen() const {
-  std::vector<RobotSeen> seen = robots_.seen(now());
+  std::vector<RobotSeen> seen = robots_.seen();
   seen.insert(seen.begin(), {.name = node_.options().robot,
                              .own = true,
-                             .age = now() - heard_at_,
+                             .age = mind_.silence(),
                              .robot = mind_.robot(),
                              .grant = mind_.grant(),
                              .why = why_});

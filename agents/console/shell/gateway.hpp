@@ -166,7 +166,6 @@ class Gateway {
   std::uint64_t events_ = 0;
 
   v1::Stamp stamp_;             ///< of the newest robot state
-  double heard_at_ = -1e9;      ///< [s] likewise
   double robots_shown_ = -1e9;  ///< [s]
   std::uint64_t utterances_ = 0;
   double explained_ = -1e9;  ///< [s]

@@ -71,11 +71,6 @@ void Robots::poll(double now) {
     });
     for (const bus::WriterId& writer : member.pages.take_lost())
       member.page.erase(writer);
-    if (const v1::RobotState* state = member.mind.robot();
-        state != nullptr && state->stamp.cycle != member.cycle) {
-      member.cycle = state->stamp.cycle;
-      member.came = now;
-    }
     member.stops.poll(now);
     const v1::Grant* grant = member.mind.grant();
     if (const auto command = member.pilot.stop(grant != nullptr && grant->estopped))
@@ -87,7 +82,7 @@ void Robots::poll(double now) {
   }
 }
 
-std::vector<RobotSeen> Robots::seen(double now) const {
+std::vector<RobotSeen> Robots::seen() const {
   std::vector<RobotSeen> all;
   for (const auto& [name, robot] : robots_) {
     RobotSeen& seen = all.emplace_back();
@@ -96,7 +91,7 @@ std::vector<RobotSeen> Robots::seen(double now) const {
     if (!robot.member)
       continue;
     const Member& member = *robot.member;
-    seen.age = now - member.came;
+    seen.age = member.mind.silence();
     seen.robot = member.mind.robot();
     seen.grant = member.mind.grant();
     seen.why = member.why;

@@ -27,7 +27,7 @@ class Robots {
   /// Reads the new samples, and repeats stops that the bridge has not taken yet.
   void poll(double now);
   /// The robots but for the own one. While nobody looks, their names alone.
-  std::vector<RobotSeen> seen(double now) const;
+  std::vector<RobotSeen> seen() const;
   void stop(const std::string& robot, bool latched, const std::string& person);
 
  private:
@@ -40,8 +40,6 @@ class Robots {
     bus::RequestClient stops{node, bus::topics::kDriveStop, "console"};
     teleop::Pilot pilot{"console"};
     std::map<bus::WriterId, v1::ConsolePage> page;
-    std::uint64_t cycle = 0;  ///< newest
-    double came = 0.0;        ///< [s] of that cycle
     std::string why;
     double explained = -1e9;  ///< [s]
   };

@@ -191,7 +191,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.cycle = cycle;
   now.past = past;
   now.now = robots_.known().newest;
-  now.silence = lockstep() ? 0.0 : seconds_since(robot_came_);
+  now.silence = lockstep() ? 0.0 : silence();
   now.listened = seconds_since(began_);
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));

@@ -85,6 +85,8 @@ class Mind {
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
   const v1::RobotState* robot() const { return robots_.newest(); }
+  /// [s] since that came.
+  double silence() const { return seconds_since(robot_came_); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
   const v1::BehaviorSet* behaviors() const { return behaviors_.newest(); }
   /// The newest states of programs with their own behaviors, if recent.
