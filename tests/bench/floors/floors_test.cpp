@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 
+#include "drive/building.hpp"
 #include "drive/drive.hpp"
 #include "floors/floor.hpp"
 #include "localization/patrol.hpp"
@@ -150,6 +151,29 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   EXPECT_GE(real, 0.98 * reported) << reported;
   // On the map, most of them identify the robot's place.
   EXPECT_GE(5 * all_matched, 4 * on_map) << all_matched;
+}
+
+// A wing that stands aslant turns the robot away from the way that it heard: the end of its
+// corridor is a lead all the same.
+TEST(Building, AWingThatStandsAslantIsFollowedToItsEnd) {
+  const Floor floor = make_floor(9101);
+  DriveOptions options;
+  options.made_world = std::make_shared<sim::World>(sim::parse_world(floor.world, "floor.wld"));
+  options.seed = 9101;
+  Building building(options);
+  building.run(15000);
+  EXPECT_TRUE(building.done()) << building.reason();
+  const maps::Map map = building.aligned_map();
+  const maps::Map drawn = maps::parse_map(floor.map, "floor.map");
+  const auto wing = std::find_if(drawn.features.begin(), drawn.features.end(),
+                                 [](const maps::Feature& f) { return f.name == "C4"; });
+  ASSERT_NE(wing, drawn.features.end());
+  EXPECT_TRUE(std::any_of(map.features.begin(), map.features.end(), [&](const maps::Feature& f) {
+    return f.type == lps::PointType::corridor &&
+           maps::distance_to(f, wing->pose_in_map.position()) == 0.0 &&
+           f.length > 0.9 * wing->length;
+  })) << maps::to_text(map);
+  EXPECT_EQ(building.whole.drive().contacts(), 0);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ constexpr double kAtEdge = 0.35;             // [m] from a corner of the way ove
 constexpr double kWayOverFloor = 0.8;
 constexpr double kCorridors = 0.25;  // least share of a floor of corridors
 constexpr double kHalfWidth = 1.0;   // [m] of corridors, about
+constexpr double kDoubleDoor = 1.6;  // [m] a wider gap in a wall is no door
 
 Vec2 ahead(const Vec2& point, double heading, double far) {
   return point + far * Vec2(std::cos(heading), std::sin(heading));
@@ -68,8 +69,14 @@ void Explorer::listen(const Inputs& inputs) {
   for (const lps::SonarReading& reading : inputs.readings)
     for (const lps::SonarMount& mount : settings_.sonars)
       if (mount.sonar == reading.sonar && reading.echo && reading.range < settings_.open_side &&
-          std::abs(std::abs(mount.in_robot.th) - kPi / 2) < kStraight)
-        open_way_.at(mount.in_robot.th > 0.0 ? 0 : 1) = 0.0;
+          std::abs(std::abs(mount.in_robot.th) - kPi / 2) < kStraight) {
+        double& way = open_way_.at(mount.in_robot.th > 0.0 ? 0 : 1);
+        if (way >= settings_.wide_door)
+          gaps_.push_back({transform(inputs.pose_in_map, {-way / 2, 0.0}),
+                           norm2_angle(inputs.pose_in_map.th + mount.in_robot.th),
+                           "a gap in the wall", false, true, way < kDoubleDoor});
+        way = 0.0;
+      }
   // After a turn the sonars look elsewhere.
   std::erase_if(heard_, [&](const Heard& h) {
     return h.cycle + kFresh < inputs.cycle ||
@@ -133,9 +140,24 @@ std::vector<Explorer::Lead> Explorer::leads(const Inputs& inputs) const {
   return out;
 }
 
-/// A narrow corridor looks like a wide door.
+/// A narrow corridor looks like a wide door. Beside the end of a corridor a way is no opening of
+/// the map, since only one of its posts was seen.
 std::vector<Explorer::Lead> Explorer::wide_doors(const Inputs& inputs) const {
   std::vector<Lead> out;
+  for (const Lead& gap : gaps_) {
+    const bool in_wall =
+        std::any_of(inputs.map.features.begin(), inputs.map.features.end(), [&](const Feature& f) {
+          return f.type == PointType::corridor && maps::contains(f, gap.point) &&
+                 std::abs(std::sin(f.pose_in_map.th - gap.heading)) > std::cos(kStraight);
+        });
+    const bool known =
+        std::any_of(inputs.map.features.begin(), inputs.map.features.end(), [&](const Feature& f) {
+          return (f.type == PointType::door || f.type == PointType::breach) &&
+                 (f.pose_in_map.position() - gap.point).norm() < settings_.tried;
+        });
+    if (in_wall && !known && !is_tried(gap) && !mapped_along(inputs.map, gap.point, gap.heading))
+      out.push_back(gap);
+  }
   for (const Feature& f : inputs.map.features) {
     const double inwards = norm2_angle(f.pose_in_map.th + kPi);
     const Lead lead{
@@ -386,8 +408,13 @@ void Explorer::probe(const Inputs& inputs) {
     open_ = !stuck && !away;
     if (!open_ && lead_->opening && !in_corridor_)
       leave(*lead_, stuck ? "closed" : "turned away");
-    // An end that the robot passed on the way into the open was tried too.
-    tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
+    // An end that the robot passed on the way into the open was tried too. One that turned it away
+    // may be the wall of a corridor that lies aslant to the lead.
+    if (in_corridor_ || !away)
+      tried_.push_back(
+          {point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
+    else
+      open_ = true;
     if (squeeze_) {
       finish(inputs);
       return;

@@ -18,6 +18,8 @@ using lps::PointType;
 // Corridors of a map end at the near wall of the corridor that they meet, or at the far one. Drawn
 // by hand, or built by a robot, they may miss it by this [m].
 constexpr double kReach = 0.6;
+// [m] The lanes over a free floor are near to all of it (explore::FreeFloor).
+constexpr double kBesideLane = 2.0;
 // At a smaller angle two corridors follow one another and have no crossing [rad].
 constexpr double kParallel = radians(30.0);
 // Distances behind and before a door at which its regions are searched [m]: first near, to find a
@@ -157,6 +159,8 @@ Topology::Topology(const Map& map) {
       gates.push_back(feature);
     else if (feature.type == PointType::position)
       positions_.push_back(feature);
+    else if (feature.type == PointType::wall)
+      walls_.push_back(feature);
   }
   const std::size_t of_map = regions_.size();
   for (std::size_t a = 0; a < of_map; ++a)
@@ -262,6 +266,17 @@ std::vector<std::size_t> Topology::at(const Vec2& position_in_map) const {
   return found;
 }
 
+/// True where a wall of the map is between.
+bool Topology::walled(const Vec2& from_in_map, const Vec2& to_in_map) const {
+  return std::any_of(walls_.begin(), walls_.end(), [&](const Feature& wall) {
+    const Vec2 from = to_frame(wall.pose_in_map, from_in_map);
+    const Vec2 to = to_frame(wall.pose_in_map, to_in_map);
+    return from.y() * to.y() < 0.0 &&
+           std::abs(from.x() + (to.x() - from.x()) * from.y() / (from.y() - to.y())) <
+               wall.length / 2;
+  });
+}
+
 std::optional<std::size_t> Topology::region_at(const Vec2& position_in_map,
                                                double tolerance) const {
   const auto rank = [&](std::size_t i) {
@@ -272,8 +287,11 @@ std::optional<std::size_t> Topology::region_at(const Vec2& position_in_map,
   std::optional<std::size_t> best;
   double nearest = 0.0;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    const double far = distance_to(regions_[i].area, position_in_map);
-    if (far > tolerance)
+    const Feature& area = regions_[i].area;
+    const double far = distance_to(area, position_in_map);
+    const bool beside = tolerance > 0.0 && area.type == PointType::lane && far < kBesideLane &&
+                        !walled(position_in_map, on_axis(area, position_in_map));
+    if (far > tolerance && !beside)
       continue;
     if (!best || far < nearest || (far == nearest && rank(i) < rank(*best))) {
       best = i;

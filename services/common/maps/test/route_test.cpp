@@ -32,6 +32,23 @@ TEST(Route, ASequenceOfRegionsWithThePointsToDriveThrough) {
         << point.transpose();
 }
 
+// Lanes lead over a free floor (explore::FreeFloor): the robot may stand beside them.
+TEST(Route, FromBesideALaneUnlessAWallIsBetween) {
+  const Topology room(
+      parse_map("LANE (1) 3000, 1000, 0, 6000, 1400\n"
+                "POS (2) 5000, 1000, 0 \"place-1\"\n"
+                "WALL 3000, -500, 0, 6000\n",
+                "room.map"));
+  const RouteResult beside = find_route(room, Vec2(1.0, 2.9), "place-1");
+  ASSERT_TRUE(beside.route) << beside.reason;
+  EXPECT_EQ(text(room, *beside.route), "lane 1");
+  EXPECT_EQ(beside.route->points().front(), Vec2(1.0, 1.0));
+  EXPECT_TRUE(find_route(room, Vec2(1.0, 1.0), Vec2(4.0, 2.9)).route);
+  EXPECT_EQ(find_route(room, Vec2(1.0, 3.8), "place-1").reason,
+            "the start, (1000, 3800) mm, is in no corridor, junction or room of the map");
+  EXPECT_FALSE(find_route(room, Vec2(1.0, -1.4), "place-1").route);
+}
+
 TEST(Route, AWideRobotIsNotSentThroughANarrowDoor) {
   RouteSettings settings;
   settings.needs_width = 0.85;  // the doors of this floor are 0.9 m wide

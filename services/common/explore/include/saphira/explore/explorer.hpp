@@ -122,6 +122,7 @@ class Explorer {
   std::vector<Lead> tried_;
   std::vector<Lead> left_;
   std::vector<Lead> seen_open_;  ///< openings that were heard, not yet mapped
+  std::vector<Lead> gaps_;       ///< where a side was silent for as long as a wide door
   std::vector<Vec2> shut_;       ///< places where the robot was stopped on a way it had driven
   std::vector<Vec2> path_;       ///< to the lead's point
   struct Heard {

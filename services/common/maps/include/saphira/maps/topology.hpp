@@ -58,7 +58,8 @@ class Topology {
   /// Every region that the position lies in; in the order of the regions.
   std::vector<std::size_t> at(const Vec2& position_in_map) const;
   /// The region of a robot at that position: a junction before a corridor before a room; if there
-  /// is none, the nearest within `tolerance` [m].
+  /// is none, the nearest within `tolerance` [m]. With a tolerance, the open floor beside a lane
+  /// counts as its, as far as such lanes are apart.
   std::optional<std::size_t> region_at(const Vec2& position_in_map, double tolerance = 0.0) const;
   /// By the id of an artifact, or by a name: of a region, of a position, of a door, in that order;
   /// with the exact case first, then either case; or by kind and id, "door 12" or "door-12".
@@ -70,6 +71,7 @@ class Topology {
 
  private:
   static std::string text(const Link& link);
+  bool walled(const Vec2& from_in_map, const Vec2& to_in_map) const;
   std::optional<Place> place_called(std::string_view name_or_id) const;
   void meet(std::size_t a, std::size_t b);
   void open(const Feature& gate, LinkKind kind);
@@ -78,6 +80,7 @@ class Topology {
   std::vector<Region> regions_;
   std::vector<Link> links_;
   std::vector<Feature> positions_;
+  std::vector<Feature> walls_;
 };
 
 /// True where two maps have the same regions, ways and places, so that a plan on one holds on the
