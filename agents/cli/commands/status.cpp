@@ -20,7 +20,7 @@ using watch::Mind;
 constexpr double kSlow = 1.5;       ///< [s] the status of each program comes once a second
 constexpr double kStarting = 15.0;  ///< [s] longer than any time of listening
 
-/// What the supervisor says of programs that it has started again.
+/// The supervisor's words about programs that it has started again.
 class Restarts {
  public:
   explicit Restarts(bus::Node& node) : log_(node.reader(bus::topics::kLog)) {}

@@ -124,6 +124,7 @@ class Visit : public DoorInMemory, public test::Transcript {
       return "none";
     const v1::Request request = requests_.front();
     requests_.pop_front();
+    EXPECT_TRUE(requests_.empty()) << "one more than this";
     std::string text = request.functor + (request.number == request_.number ? " again" : "");
     if (request.functor != bus::kWithdraw)
       request_ = request;
@@ -139,6 +140,7 @@ class Visit : public DoorInMemory, public test::Transcript {
       return "none";
     const v1::Goal goal = goals_.front();
     goals_.pop_front();
+    EXPECT_TRUE(goals_.empty()) << "one more than this";
     if (!goal.withdrawn.empty())
       return bus::describe(goal.id) + " withdrawn: " + goal.withdrawn;
     know({.id = goal.id, .functor = goal.functor});

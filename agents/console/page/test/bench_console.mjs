@@ -62,6 +62,8 @@ try {
   });
   await sleep(1000 * seconds);
   const {delays, times} = await page.evaluate(() => ({delays: saphira.delays, times: window.frameTimes}));
+  if (delays.length === 0 || times.length < 2)
+    throw new Error('nothing was drawn');
   const intervals = times.slice(1).map((at, i) => at - times[i]);
   while (browser.contexts().length < pages) await open();
   await sleep(3000);
