@@ -24,7 +24,7 @@ namespace saphira::mcp::test {
 ///   notification, `ID@N` comes in the exchange N, and the method `call` is that of a tool. `>>` or
 ///   `>>@N` is sent as it stands.
 /// `< ID = RESULT`, `< ID ! CODE ERROR`, `< ID says TEXT`, `< ID fails TEXT` or `< MESSAGE` is the
-///   next message for the client. What is written has to be in it, null is absent, "~text" is a
+///   next message for the client. Each written member has to be in it, null is absent, "~text" is a
 ///   part, "$name" stands for a value (the first time it is any), and `==` is the whole result.
 ///   Before it: `@N` its exchange, `last` or `more` of that, `httpN` its status. Without an id it
 ///   answers the line before. `< ...` is all that has come. `< call N` is the next call.

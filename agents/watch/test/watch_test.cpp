@@ -1,4 +1,4 @@
-// The picture of a robot on a bus in memory. The test writes what the programs do.
+// The watcher on a bus in memory. The test writes the programs' samples.
 #include <gtest/gtest.h>
 
 #include "node_options.hpp"

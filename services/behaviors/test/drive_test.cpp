@@ -283,20 +283,26 @@ TEST(Drive, FollowsALaneToItsGoalFromBesideAndAgainstIt) {
   }
 }
 
+/// Along odom's x axis, `aside` [m] to its left, up to x = `far` [m].
+Drive along_a_corridor(std::uint64_t seed, double width, double aside, double far) {
+  Drive what;
+  what.seed = seed;
+  what.behaviors = guarded({"corridor",
+                            "FollowCorridor",
+                            2,
+                            true,
+                            {point_argument("corridor", {3.0, aside, 0.0}),
+                             point_argument("goal", {far, aside, 0.0}),
+                             {"width", width}}});
+  what.limit = 500;
+  return what;
+}
+
 TEST(Drive, FollowsACorridor) {
   const sim::World world = hall(box(9000, 9000, 0, 12000, 200) + box(9000, 11000, 0, 12000, 200));
   double swings = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Drive what;
-    what.seed = seed;
-    what.behaviors = guarded({"corridor",
-                              "FollowCorridor",
-                              2,
-                              true,
-                              {point_argument("corridor", {3.0, 0.3, 0.0}),
-                               point_argument("goal", {9.0, 0.3, 0.0}),
-                               {"width", 1.8}}});
-    what.limit = 500;
+    const Drive what = along_a_corridor(seed, 1.8, 0.3, 9.0);
     DriveResult run;
     EXPECT_GT(drive_until_done(world, {4, 9.7, radians(0)}, what, "corridor", run), 0U);
     EXPECT_EQ(run.contacts, 0);
@@ -306,21 +312,12 @@ TEST(Drive, FollowsACorridor) {
   EXPECT_LE(swings, 3.5);
 }
 
-/// A cupboard leaves 1.5 m of a corridor: the way leads along the middle of what is left.
+/// A cupboard narrows a corridor to 1.5 m: the robot drives in the middle of the gap.
 TEST(Drive, FollowsACorridorPastACupboard) {
   const sim::World world = hall(box(9000, 8900, 0, 12000, 200) + box(9000, 11100, 0, 12000, 200) +
                                 box(7000, 9225, 0, 900, 450));
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Drive what;
-    what.seed = seed;
-    what.behaviors = guarded({"corridor",
-                              "FollowCorridor",
-                              2,
-                              true,
-                              {point_argument("corridor", {3.0, 0.0, 0.0}),
-                               point_argument("goal", {7.0, 0.0, 0.0}),
-                               {"width", 2.0}}});
-    what.limit = 500;
+    const Drive what = along_a_corridor(seed, 2.0, 0.0, 7.0);
     DriveResult run;
     EXPECT_GT(drive_until_done(world, {4, 10, radians(0)}, what, "corridor", run), 0U);
     EXPECT_EQ(run.contacts, 0);

@@ -1,4 +1,4 @@
-// What the functors do where lines of goals.txt do not do.
+// Tests of functors that goals.txt cannot express.
 #include "saphira/intentions/functors.hpp"
 
 #include <gtest/gtest.h>
