@@ -132,7 +132,7 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
   all.reserve(known_.size());
   for (const auto& [key, status] : known_)
     all.push_back(status);
-  std::stable_sort(all.begin(), all.end(), [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
+  std::ranges::stable_sort(all, [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
     return std::tuple(a.stamp.epoch, a.stamp.cycle, a.functor, a.id.number) <
            std::tuple(b.stamp.epoch, b.stamp.cycle, b.functor, b.id.number);
   });
@@ -153,18 +153,8 @@ bool GoalClient::delivered(int timeout_ms) {
   return writer_.wait_acknowledged(static_cast<int>(left().count()));
 }
 
-bool ended(v1::GoalState state) {
-  return state == v1::GOAL_REFUSED || state == v1::GOAL_SUCCEEDED || state == v1::GOAL_FAILED ||
-         state == v1::GOAL_CANCELED;
-}
-
 std::string describe(v1::GoalState state) {
   return name_of(state);
-}
-
-std::string describe(const v1::GoalId& id) {
-  return format("%llx:%llu", static_cast<unsigned long long>(id.writer),
-                static_cast<unsigned long long>(id.number));
 }
 
 std::optional<v1::GoalId> parse_goal_id(const std::string& text) {

@@ -28,24 +28,6 @@ constexpr const char* kName = "dialogue";
 constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
-KnownGoal::State state_of(v1::GoalState state) {
-  switch (state) {
-    case v1::GOAL_WAITING:
-      return KnownGoal::State::waiting;
-    case v1::GOAL_UNDERWAY:
-      return KnownGoal::State::underway;
-    case v1::GOAL_SUSPENDED:
-      return KnownGoal::State::suspended;
-    case v1::GOAL_REFUSED:
-    case v1::GOAL_FAILED:
-      return KnownGoal::State::failed;
-    case v1::GOAL_SUCCEEDED:
-    case v1::GOAL_CANCELED:
-      break;
-  }
-  return KnownGoal::State::over;
-}
-
 }  // namespace
 
 DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
@@ -57,16 +39,6 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       goals_(node, kName),
       registration_(node, bus::topics::kRegistrationRequest, kName),
       stops_(node, bus::topics::kDriveStop, kName),
-      heard_(node.reader(bus::topics::kHeard)),
-      messages_(node.reader(bus::topics::kMessages)),
-      beliefs_(node.reader(bus::topics::kBeliefs)),
-      registrations_(node.reader(bus::topics::kRegistration)),
-      maps_(node.reader(bus::topics::kMap)),
-      visions_(node.reader(bus::topics::kVision)),
-      robots_(node.reader(bus::topics::kRobotDescription)),
-      said_(node.writer(bus::topics::kSaid)),
-      claims_(node.writer(bus::topics::kBeliefClaims)),
-      knows_(node.writer(bus::topics::kKnows)),
       audit_(node) {
   folder_.look();
   if (!options_.memory.empty()) {
@@ -288,18 +260,13 @@ void DialogueShell::take_places() {
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : goals_.statuses()) {
-    KnownGoal& goal = goals.emplace_back();
-    goal.functor = status.functor;
-    const auto mine = std::find_if(asked_.begin(), asked_.end(),
-                                   [&](const auto& one) { return one.second == status.id; });
+    KnownGoal& goal = goals.emplace_back(namesakes_of<KnownGoal>(status));
+    const auto mine =
+        std::ranges::find_if(asked_, [&](const auto& one) { return one.second == status.id; });
     if (mine != asked_.end())
       goal.tag = mine->first;
     else if (status.id.writer != node_.instance())
       goal.asker = status.requester;
-    goal.state = state_of(status.state);
-    goal.reason = status.reason;
-    goal.note = status.note;
-    goal.step = status.step;
   }
   return goals;
 }
@@ -310,12 +277,9 @@ void DialogueShell::take_utterances() {
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
       continue;
-    Utterance utterance;
+    auto utterance = namesakes_of<Utterance>(sample.data);
     utterance.id = {sample.data.id.writer, sample.data.id.number};
     utterance.speaker = first_letters(sample.data.speaker, kLongestName);
-    utterance.text = sample.data.text;
-    utterance.confidence = sample.data.confidence;
-    utterance.time = sample.data.time;
     utterance.person = bus::asker_of(sample.info, sample.data.person);
     if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;

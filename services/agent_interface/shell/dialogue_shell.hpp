@@ -54,16 +54,16 @@ class DialogueShell {
   bus::GoalClient goals_;
   bus::RequestClient registration_;
   bus::RequestClient stops_;
-  bus::Reader<v1::Utterance> heard_;
-  bus::Reader<v1::Message> messages_;
-  bus::Reader<v1::BeliefSet> beliefs_;
-  bus::Reader<v1::Registration> registrations_;
-  bus::Reader<v1::FloorMap> maps_;
-  bus::Reader<v1::Vision> visions_;
-  bus::Reader<v1::RobotDescription> robots_;
-  bus::Writer<v1::Utterance> said_;
-  bus::Writer<v1::BeliefClaim> claims_;
-  bus::Writer<v1::Knowledge> knows_;
+  bus::Reader<v1::Utterance> heard_ = node_.reader(bus::topics::kHeard);
+  bus::Reader<v1::Message> messages_ = node_.reader(bus::topics::kMessages);
+  bus::Reader<v1::BeliefSet> beliefs_ = node_.reader(bus::topics::kBeliefs);
+  bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
+  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Reader<v1::Vision> visions_ = node_.reader(bus::topics::kVision);
+  bus::Reader<v1::RobotDescription> robots_ = node_.reader(bus::topics::kRobotDescription);
+  bus::Writer<v1::Utterance> said_ = node_.writer(bus::topics::kSaid);
+  bus::Writer<v1::BeliefClaim> claims_ = node_.writer(bus::topics::kBeliefClaims);
+  bus::Writer<v1::Knowledge> knows_ = node_.writer(bus::topics::kKnows);
   bus::Audit audit_;
   Situation situation_;
   v1::Vision seen_;                                 ///< the newest

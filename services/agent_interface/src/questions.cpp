@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::size_t kFewFacts = 3;
 
-std::string state_in_words(KnownGoal::State state) {
-  return word_of(state, {"is waiting", "is underway", "is suspended", "failed", "is over"});
+std::string state_in_words(v1::GoalState state) {
+  return word_of(state, {"is waiting", "failed", "is underway", "is suspended", "is over", "failed",
+                         "is over"});
 }
 
 /// The goal that is the reason why the robot stands or drives: the newest one that is held up,
@@ -23,20 +24,20 @@ std::string state_in_words(KnownGoal::State state) {
 /// a failure is not the reason.
 const KnownGoal* reason_of(const std::vector<KnownGoal>& goals) {
   const auto rank = [](const KnownGoal& goal) {
-    return !is_open(goal) ? 0 : goal.state == KnownGoal::State::underway ? 1 : 2;
+    return ended(goal.state) ? 0 : goal.state == v1::GOAL_UNDERWAY ? 1 : 2;
   };
   const KnownGoal* best = nullptr;
   const KnownGoal* before_stop = nullptr;
   for (const KnownGoal& goal : goals) {
     if (best == nullptr || rank(goal) >= rank(*best))
       best = &goal;
-    if (!is_open(goal) && goal.functor != "stop")
+    if (ended(goal.state) && goal.functor != "stop")
       before_stop = &goal;
   }
   const bool stopped = best != nullptr && best->functor == "stop" && rank(*best) < 2;
-  return stopped && before_stop != nullptr && before_stop->state == KnownGoal::State::failed
-             ? before_stop
-             : best;
+  const bool failed = before_stop != nullptr && (before_stop->state == v1::GOAL_FAILED ||
+                                                 before_stop->state == v1::GOAL_REFUSED);
+  return stopped && failed ? before_stop : best;
 }
 
 /// The step of a goal, such as "through-door: passes a door", as a sentence.
@@ -60,16 +61,15 @@ std::string state_of(const KnownGoal& goal) {
 std::string Dialogue::doing(const Situation& situation) const {
   std::string text = tasks_.doing();
   for (const KnownGoal& goal : situation.goals)
-    if (is_open(goal) && !goal.asker.empty())
-      text +=
-          (text.empty() ? "" : "; ") + ("for " + goal.asker) + ": " + goal.functor +
-          (goal.state == KnownGoal::State::underway ? "" : ", which " + state_in_words(goal.state));
+    if (!v1::ended(goal.state) && !goal.asker.empty())
+      text += (text.empty() ? "" : "; ") + ("for " + goal.asker) + ": " + goal.functor +
+              (goal.state == v1::GOAL_UNDERWAY ? "" : ", which " + state_in_words(goal.state));
   return text.empty() ? "nothing that I was told" : text;
 }
 
 std::string Dialogue::why(const Situation& situation) const {
   const KnownGoal* const goal = reason_of(situation.goals);
-  if (ended_ && (goal == nullptr || (!is_open(*goal) && goal->asker.empty()) ||
+  if (ended_ && (goal == nullptr || (v1::ended(goal->state) && goal->asker.empty()) ||
                  (goal->tag == stop_ && stop_ != 0 && !ended_->success)))
     return ended_->task + (ended_->success ? " is done: " : " failed: ") + ended_->reason;
   if (goal == nullptr)
@@ -227,9 +227,7 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
                    "hazards and rules for places"}};
     std::string counts;
     for (const auto& [kind, one, many] : kKinds) {
-      const auto count =
-          std::count_if(known.begin(), known.end(),
-                        [&, wanted = kind](const Advice& fact) { return fact.kind == wanted; });
+      const auto count = std::ranges::count(known, kind, &Advice::kind);
       if (count > 0)
         counts +=
             (counts.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);

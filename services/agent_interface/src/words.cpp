@@ -81,8 +81,4 @@ std::string claim_source(const Utterance& utterance) {
   return named_person(utterance.speaker) + " said \"" + utterance.text + "\"";
 }
 
-bool is_open(const KnownGoal& goal) {
-  return goal.state != KnownGoal::State::failed && goal.state != KnownGoal::State::over;
-}
-
 }  // namespace saphira::agent_interface

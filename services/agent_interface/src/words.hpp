@@ -59,8 +59,6 @@ std::string source_of(const Advice& advice);
 /// The origin of a claim that follows from an utterance.
 std::string claim_source(const Utterance& utterance);
 
-bool is_open(const KnownGoal& goal);
-
 inline constexpr const char* kLost = "I do not know where I am on the map";
 /// The robot's place in the map's words; empty: unknown, or nameless.
 std::string here(const Situation& situation);

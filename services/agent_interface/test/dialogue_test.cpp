@@ -17,22 +17,20 @@ TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
 }
 
 TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
-  using State = KnownGoal::State;
   EXPECT_EQ(said("Flakey, why are you standing?"), "I have nothing to do");
-  situation.goals = {{"go_to", "console", State::failed, "the way is blocked"}};
+  situation.goals = {{"go_to", "console", v1::GOAL_FAILED, "the way is blocked"}};
   EXPECT_EQ(said("Flakey, why?"), "go_to of console failed: the way is blocked");
-  situation.goals.push_back({"drive", "mcp", State::underway, ""});
+  situation.goals.push_back({"drive", "mcp", v1::GOAL_UNDERWAY, ""});
   EXPECT_EQ(said("Flakey, why?"), "drive of mcp is underway");
   situation.goals.insert(situation.goals.begin(),
-                         {"explore", "", State::suspended, "drive is more important"});
+                         {"explore", "", v1::GOAL_SUSPENDED, "drive is more important"});
   EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
 }
 
 TEST_F(DialogueTest, TheReasonBeginsWithTheTaskAndItsOwner) {
-  using State = KnownGoal::State;
   hear("Flakey, take the mail from EJ-231 to Alice");
   const std::uint64_t tag = last.goals.at(0).tag;
-  situation.goals = {{"deliver", "", State::underway, "", tag}};
+  situation.goals = {{"deliver", "", v1::GOAL_UNDERWAY, "", tag}};
   EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway");
   situation.goals[0].step = "through-door: passes a door or another opening";
   EXPECT_EQ(said("Flakey, why?", "Bob"),
@@ -45,23 +43,22 @@ TEST_F(DialogueTest, TheReasonBeginsWithTheTaskAndItsOwner) {
             "the mail for Alice is underway: was begun anew at its first step");
   situation.goals[0].reason = "changed by its requester";
   EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: changed by its requester");
-  situation.goals[0] = {"deliver", "", State::suspended, "drive is more important", tag};
+  situation.goals[0] = {"deliver", "", v1::GOAL_SUSPENDED, "drive is more important", tag};
   EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is suspended: drive is more important");
 }
 
 TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
-  using State = KnownGoal::State;
   const std::string failed = "the mail for Alice failed: nobody at EJ-231 gave the robot the mail";
   hear("Flakey, take the mail from EJ-231 to John");
   dialogue.ended({last.goals.at(0).tag, false, "nobody at EJ-231 gave the robot the mail"});
-  situation.goals = {{"deliver", "", State::failed, "nobody at EJ-231 gave the robot the mail"}};
+  situation.goals = {{"deliver", "", v1::GOAL_FAILED, "nobody at EJ-231 gave the robot the mail"}};
   EXPECT_EQ(said("Flakey, why?"), failed);
   hear("Flakey, stop", "Bob");
   const std::uint64_t stop = last.goals.at(0).tag;
-  situation.goals.push_back({"stop", "", State::underway, "", stop});
+  situation.goals.push_back({"stop", "", v1::GOAL_UNDERWAY, "", stop});
   EXPECT_EQ(said("Flakey, why?"), failed);
   dialogue.ended({stop, true, "the robot is at rest"});
-  situation.goals.back() = {"stop", "", State::over, "the robot is at rest"};
+  situation.goals.back() = {"stop", "", v1::GOAL_SUCCEEDED, "the robot is at rest"};
   EXPECT_EQ(said("Flakey, why?"), failed);
   // After a restart of the dialogue, too.
   Dialogue restarted{grammar()};
@@ -69,26 +66,26 @@ TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
             "deliver failed: nobody at EJ-231 gave the robot the mail");
   hear("Flakey, follow me", "Bob");
   situation.goals.push_back(
-      {"follow-person", "", State::underway, "waits for a person", last.goals.at(0).tag});
+      {"follow-person", "", v1::GOAL_UNDERWAY, "waits for a person", last.goals.at(0).tag});
   EXPECT_EQ(said("Flakey, why?"), "the walk for Bob is underway: waits for a person");
   situation.goals.pop_back();
   hear("Flakey, turn left");
   dialogue.ended({last.goals.at(0).tag, true, "turned"});
-  situation.goals.push_back({"turn_to", "", State::over, "turned"});
+  situation.goals.push_back({"turn_to", "", v1::GOAL_SUCCEEDED, "turned"});
   EXPECT_EQ(said("Flakey, why?"), "the turn for Alice is done: turned");
   hear("Flakey, stop");
   dialogue.ended({last.goals.at(0).tag, true, "at rest"});
-  situation.goals = {{"stop", "", State::over, "at rest"}};
+  situation.goals = {{"stop", "", v1::GOAL_SUCCEEDED, "at rest"}};
   EXPECT_EQ(said("Flakey, why?"), "the stop for Alice is done: at rest");
 }
 
 TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
   EXPECT_EQ(said("Flakey, what are you doing?"), "nothing that I was told");
   hear("Flakey, go to EJ-233");
-  situation.goals = {{"go-to-place", "", KnownGoal::State::suspended, ""},
-                     {"turn_to", "mcp", KnownGoal::State::over, ""},
-                     {"explore", "console", KnownGoal::State::waiting, ""},
-                     {"drive", "mcp", KnownGoal::State::underway, ""}};
+  situation.goals = {{"go-to-place", "", v1::GOAL_SUSPENDED, ""},
+                     {"turn_to", "mcp", v1::GOAL_SUCCEEDED, ""},
+                     {"explore", "console", v1::GOAL_WAITING, ""},
+                     {"drive", "mcp", v1::GOAL_UNDERWAY, ""}};
   EXPECT_EQ(said("Flakey, what are you doing?"),
             "I go to EJ-233; for console: explore, which is waiting; for mcp: drive");
 }

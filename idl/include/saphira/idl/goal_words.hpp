@@ -1,6 +1,6 @@
 #pragma once
 
-#include "saphira/idl/intention.hpp"
+#include "saphira/idl/goal_end.hpp"
 
 /// Words and order of the contract's values. In its namespace, so that a call needs none.
 namespace saphira::v1 {

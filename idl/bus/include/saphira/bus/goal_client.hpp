@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "saphira/bus/request_client.hpp"
+#include "saphira/idl/goal_end.hpp"
 
 namespace saphira::bus {
 
@@ -82,12 +83,11 @@ class GoalClient {
   std::map<Key, Own> own_;
 };
 
-/// True where a goal in this state has come to its end.
-bool ended(v1::GoalState state);
+using v1::describe;
+using v1::ended;
 /// The state in a word, such as "underway".
 std::string describe(v1::GoalState state);
-/// The id as people type it, such as "1f3a...:2". parse_goal_id reads it; nothing: not an id.
-std::string describe(const v1::GoalId& id);
+/// Reads the id as describe() writes it; nothing: not an id.
 std::optional<v1::GoalId> parse_goal_id(const std::string& text);
 /// One line: state, step, progress, reason.
 std::string describe(const v1::GoalStatus& status);

@@ -10,6 +10,7 @@
 #include "saphira/agent_interface/grammar.hpp"
 #include "saphira/agent_interface/knowledge.hpp"
 #include "saphira/agent_interface/tasks.hpp"
+#include "saphira/idl/goal_end.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/route.hpp"
 #include "saphira/requests/request.hpp"
@@ -52,10 +53,9 @@ struct Find {
 
 /// A goal of anybody.
 struct KnownGoal {
-  enum class State { waiting, underway, suspended, failed, over };
   std::string functor;
   std::string asker;  ///< empty: this dialogue
-  State state = State::underway;
+  v1::GoalState state = v1::GOAL_UNDERWAY;
   std::string reason;     ///< of the state, in words; empty: none
   std::uint64_t tag = 0;  ///< of this dialogue's goals that have not ended
   std::string note{};     ///< beside the state; empty: none

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/idl/goal_words.hpp"
@@ -29,13 +26,5 @@ struct Goal {
 
   bool operator==(const Goal&) const = default;
 };
-
-inline constexpr bool ended(GoalState state) {
-  return state == v1::GOAL_REFUSED || state == v1::GOAL_SUCCEEDED || state == v1::GOAL_FAILED ||
-         state == v1::GOAL_CANCELED;
-}
-
-/// "1f3a:2": the id as people type it.
-std::string describe(const GoalId& id);
 
 }  // namespace saphira::intentions
