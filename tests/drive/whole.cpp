@@ -80,7 +80,7 @@ const v1::GoalStatus& Whole::status(const v1::GoalId& goal) const {
 }
 
 bool Whole::ended(const v1::GoalId& goal) const {
-  return intentions::ended(status(goal).state);
+  return v1::ended(status(goal).state);
 }
 
 v1::GoalStatus Whole::achieve(std::string functor, const Arguments& arguments, int cycles) {

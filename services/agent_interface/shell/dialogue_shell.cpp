@@ -260,7 +260,13 @@ void DialogueShell::take_places() {
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : goals_.statuses()) {
-    KnownGoal& goal = goals.emplace_back(namesakes_of<KnownGoal>(status));
+    KnownGoal& goal = goals.emplace_back(KnownGoal{.functor = status.functor,
+                                                   .asker = {},
+                                                   .state = status.state,
+                                                   .reason = status.reason,
+                                                   .tag = 0,
+                                                   .note = status.note,
+                                                   .step = status.step});
     const auto mine =
         std::ranges::find_if(asked_, [&](const auto& one) { return one.second == status.id; });
     if (mine != asked_.end())
@@ -277,7 +283,10 @@ void DialogueShell::take_utterances() {
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
       continue;
-    auto utterance = namesakes_of<Utterance>(sample.data);
+    Utterance utterance;
+    utterance.text = sample.data.text;
+    utterance.confidence = sample.data.confidence;
+    utterance.time = sample.data.time;
     utterance.id = {sample.data.id.writer, sample.data.id.number};
     utterance.speaker = first_letters(sample.data.speaker, kLongestName);
     utterance.person = bus::asker_of(sample.info, sample.data.person);
