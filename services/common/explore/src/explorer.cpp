@@ -23,6 +23,7 @@ constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
 constexpr double kAtEdge = 0.35;             // [m] from a corner of the way over the free floor
 // [m/m2] Longer on the same floor, the robot's drift costs more than what it still sees is worth.
 constexpr double kWayOverFloor = 0.8;
+constexpr double kBend = radians(5.0);
 constexpr double kCorridors = 0.25;  // least share of a floor of corridors
 constexpr double kHalfWidth = 1.0;   // [m] of corridors, about
 constexpr double kDoubleDoor = 1.6;  // [m] a wider gap in a wall is no door
@@ -367,7 +368,7 @@ void Explorer::probe(const Inputs& inputs) {
   }
   const bool stuck = inputs.cycle > progress_cycle_ + settings_.patience;
   const double off = std::abs(u.x() * (here - point).y() - u.y() * (here - point).x());
-  const bool away = off > settings_.aside && done > 0.5;
+  const bool away = off > settings_.aside && done > (lead_->opening ? settings_.entering : 0.5);
   if (squeeze_ && done > *squeeze_ + 1.5) {
     squeeze_.reset();  // it was only an obstacle
     aside_ = 0.0;
@@ -381,6 +382,8 @@ void Explorer::probe(const Inputs& inputs) {
                      off < (entering ? 0.3 : settings_.aside) &&
                      std::abs(turned) < radians(entering ? 15.0 : 35.0) &&
                      heard(-turned).value_or(lps::kNothing) < settings_.front;
+  if (front && follow_bend(done, turned, inputs))
+    return;
   if (lead_->door && !in_corridor_ &&
       (front || stuck || away || (done > settings_.in_door && !walled()))) {
     output_.reason = lead_->what + ": a room";
@@ -426,6 +429,17 @@ void Explorer::probe(const Inputs& inputs) {
   }
   const double far = (entering ? 0.8 : 2.0) * settings_.look_ahead;
   head_for(point + (at + far) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
+}
+
+// The walls of a way that lies aslant to its opening turn the robot: the lead turns with it.
+bool Explorer::follow_bend(double done, double turned, const Inputs& inputs) {
+  if (in_corridor_ || !lead_->door || done < settings_.in_door || !walled() ||
+      std::abs(turned) < kBend || heard(0.0).value_or(lps::kNothing) < 2 * settings_.front)
+    return false;
+  lead_->heading = inputs.pose_in_map.th;
+  lead_->point = probe_from_ = inputs.pose_in_map.position();
+  progress_ = kNone;
+  return true;
 }
 
 // Along the path that is left.

@@ -97,6 +97,7 @@ class Explorer {
   void listen_aside(const Inputs& inputs);
   bool mostly_room(const maps::Map& map) const;
   void roam(const Inputs& inputs);
+  bool follow_bend(double done, double turned, const Inputs& inputs);
   void note_progress(const Inputs& inputs);
   bool looked(double heading, const Inputs& inputs);
   void hear_aside(double range, double heading, bool narrow, const Inputs& inputs);
