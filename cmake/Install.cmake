@@ -54,6 +54,7 @@ if(SAPHIRA_WITH_DDS)
   install(FILES ${saphira_contract} ${CMAKE_SOURCE_DIR}/idl/README.md
                 ${CMAKE_SOURCE_DIR}/idl/bus/include/saphira/bus/topics.def
                 ${CMAKE_BINARY_DIR}/idl/generated/saphira/idl/schema.json
+                ${CMAKE_BINARY_DIR}/idl/generated/saphira/idl/contract.md
           DESTINATION ${CMAKE_INSTALL_DATADIR}/saphira/idl ${saphira_dev})
   saphira_component(bus security command_line bus)
 endif()

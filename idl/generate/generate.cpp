@@ -7,7 +7,7 @@
 // includes them all; members.hpp, which visits the members of each struct with their names, keys
 // and bounds and names the enumerators (CDR, JSON and keys are made with it); and schema.json, the
 // JSON Schema of each type; v1.py, a Python dataclass or enum for each, and topics.py, the topics
-// with their types. Comments go with what they are about.
+// with their types; contract.md, a page about all of them. Comments go with what they are about.
 //
 // The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
 // with their constants, bounded sequences, strings. Anything else is an error that names the place.
@@ -319,7 +319,8 @@ class Generator {
     std::ifstream in(path);
     if (!in)
       throw std::runtime_error(path.string() + ": cannot be read");
-    const std::regex topic(R"re(SAPHIRA_(TOPIC|REQUESTS)\(k(\w+), ("[^"]+"), (\w+).*)re");
+    const std::regex topic(
+        R"re(SAPHIRA_(TOPIC|REQUESTS)\(k(\w+), ("[^"]+"), (\w+)(?:, (\w+))?\).*)re");
     std::smatch found;
     for (std::string line; std::getline(in, line);)
       if (std::regex_match(line, found, topic)) {
@@ -331,6 +332,9 @@ class Generator {
           name += static_cast<char>(std::toupper(letter));
         }
         topics_ << name << " = Topic(" << found[3] << ", v1." << type << ")\n";
+        const std::string text = found[3].str();
+        page_topics_ << "| `" << text.substr(1, text.size() - 2) << "` | " << linked(type) << " | "
+                     << (found[1] == "TOPIC" ? found[5].str() : "command") << " |\n";
       }
   }
 
@@ -352,6 +356,7 @@ class Generator {
         schemas_.str() + "\n  }\n}\n";
     all["v1.py"] = python_top + python_.str();
     all["topics.py"] = topics_top + topics_.str();
+    all["contract.md"] = page_top + page_topics_.str() + page_.str();
     return all;
   }
 
@@ -422,9 +427,21 @@ class Topic(Generic[T]):
 
 )";
 
+  static constexpr const char* page_top = R"(<!-- Generated from idl/; changes are lost. -->
+# The contract
+
+Each topic with its type and its QoS, then each type. Lengths are in m, angles in rad, times in s; a frame is part of a
+member's name.
+
+| topic | type | QoS |
+|---|---|---|
+)";
+
   void write(const Definition& item, std::ostream& out) {
-    if (!foreign_)
+    if (!foreign_) {
       python(item);
+      page(item);
+    }
     const std::string comment = item.comment.empty() ? "" : "///" + item.comment + "\n";
     switch (item.kind) {
       case Kind::open:
@@ -479,6 +496,36 @@ class Topic(Generic[T]):
     }
     if (!is_struct)
       numbers_.insert(item.name);
+  }
+
+  void page(const Definition& item) {
+    if (item.kind == Kind::constant)
+      page_ << "| `" << item.name << "` | " << item.value << " |" << item.comment << " |\n";
+    if (item.kind != Kind::enumeration && item.kind != Kind::structure && item.kind != Kind::alias)
+      return;
+    const bool is_struct = item.kind == Kind::structure;
+    page_ << "\n## " << item.name << "\n\n"
+          << (item.comment.empty() ? "" : trimmed(item.comment) + "\n\n")
+          << (is_struct ? "| member | type | |\n" : "| name | value | |\n") << "|---|---|---|\n";
+    std::size_t number = 0;
+    for (const Member& member : item.members)
+      page_ << "| `" << member.name << "` | "
+            << (is_struct ? page_type(member) : std::to_string(number++)) << " |" << member.comment
+            << " |\n";
+  }
+
+  static std::string page_type(const Member& member) {
+    const std::string& name = member.type.name;
+    return (bases.contains(name) ? name : linked(name)) +
+           (member.type.bound.empty() ? "" : ", at most " + member.type.bound) +
+           (member.key ? ", key" : "");
+  }
+
+  /// A link to the heading of a type on the page.
+  static std::string linked(const std::string& type) {
+    std::string anchor = type;
+    std::ranges::transform(anchor, anchor.begin(), [](unsigned char c) { return std::tolower(c); });
+    return "[" + type + "](#" + anchor + ")";
   }
 
   static std::string python_behind(const std::string& comment) {
@@ -644,6 +691,8 @@ class Topic(Generic[T]):
   std::ostringstream schemas_;
   std::ostringstream python_;
   std::ostringstream topics_;
+  std::ostringstream page_topics_;
+  std::ostringstream page_;
   std::set<std::string> numbers_;  // Python's enums
   std::map<std::string, std::string> aliases_;
   std::map<std::string, std::vector<std::string>> constants_;  // by their type
