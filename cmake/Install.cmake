@@ -45,7 +45,8 @@ saphira_component(base base idl)
 saphira_component(behaviors geometry requests lps behaviors)
 
 if(SAPHIRA_WITH_DDS)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/idl/include/
+                    ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
   # The contract itself, for agents in other languages and of other vendors: the types, also as JSON
   # Schema, the topics with the name of each one's QoS, and the README with the table of QoS and the

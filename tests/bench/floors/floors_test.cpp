@@ -153,9 +153,9 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   EXPECT_GE(5 * all_matched, 4 * on_map) << all_matched;
 }
 
-// A wing that stands aslant turns the robot away from the way that it heard: the end of its
-// corridor is a lead all the same.
-TEST(Building, AWingThatStandsAslantIsFollowedToItsEnd) {
+// A wing that stands aslant turns the robot away from the way that it heard (C4), or into the
+// direction of its walls (C2, of whose mouth it hears one post).
+TEST(Building, WingsThatStandAslantAreFollowedToTheirEnds) {
   const Floor floor = make_floor(9101);
   DriveOptions options;
   options.made_world = std::make_shared<sim::World>(sim::parse_world(floor.world, "floor.wld"));
@@ -165,14 +165,18 @@ TEST(Building, AWingThatStandsAslantIsFollowedToItsEnd) {
   EXPECT_TRUE(building.done()) << building.reason();
   const maps::Map map = building.aligned_map();
   const maps::Map drawn = maps::parse_map(floor.map, "floor.map");
-  const auto wing = std::find_if(drawn.features.begin(), drawn.features.end(),
-                                 [](const maps::Feature& f) { return f.name == "C4"; });
-  ASSERT_NE(wing, drawn.features.end());
-  EXPECT_TRUE(std::any_of(map.features.begin(), map.features.end(), [&](const maps::Feature& f) {
-    return f.type == lps::PointType::corridor &&
-           maps::distance_to(f, wing->pose_in_map.position()) == 0.0 &&
-           f.length > 0.9 * wing->length;
-  })) << maps::to_text(map);
+  for (const std::string name : {"C2", "C4"}) {
+    const auto wing = std::find_if(drawn.features.begin(), drawn.features.end(),
+                                   [&](const maps::Feature& f) { return f.name == name; });
+    ASSERT_NE(wing, drawn.features.end());
+    EXPECT_TRUE(std::any_of(map.features.begin(), map.features.end(),
+                            [&](const maps::Feature& f) {
+                              return f.type == lps::PointType::corridor &&
+                                     maps::distance_to(f, wing->pose_in_map.position()) == 0.0 &&
+                                     f.length > 0.9 * wing->length;
+                            }))
+        << name << maps::to_text(map);
+  }
   EXPECT_EQ(building.whole.drive().contacts(), 0);
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMost = 12;         // evidence of a cell, either way
 constexpr int kEcho = 3;          // evidence of an echo; that of a free beam is 1
 constexpr int kSure = 2;          // evidence for a free or an occupied cell
-constexpr double kReach = 2.5;    // [m] of a beam; an echo from farther away is from a wide arc
+constexpr double kBeam = 2.5;     // [m] of a beam; an echo from farther away is from a wide arc
 constexpr double kBefore = 0.15;  // [m] before an echo, a beam is free no more
 constexpr double kFreeBeam = radians(10.0);
 constexpr double kNearEcho = 1.2;  // [m] the arc of a farther echo is too wide to be something
@@ -68,9 +68,8 @@ bool FreeFloor::is_free(const Vec2& at) const {
 }
 
 void FreeFloor::add(const Pose& robot, const std::vector<lps::SonarReading>& readings) {
-  const double half = kCell * static_cast<double>(kSide) / 2;
   if (!corner_)
-    corner_ = robot.position() - Vec2(half, half);
+    corner_ = robot.position() - Vec2(kReach, kReach);
   const auto around = [&](const Vec2& at, double far, const auto& visit) {
     for (double y = at.y() - far; y <= at.y() + far; y += kCell)
       for (double x = at.x() - far; x <= at.x() + far; x += kCell)
@@ -98,11 +97,11 @@ void FreeFloor::add(const Pose& robot, const std::vector<lps::SonarReading>& rea
       if (mount.sonar != reading.sonar)
         continue;
       const Pose sonar = compose(robot, mount.in_robot);
-      around(sonar.position(), std::min(kReach, reading.range + kCell), [&](std::size_t index) {
+      around(sonar.position(), std::min(kBeam, reading.range + kCell), [&](std::size_t index) {
         const Vec2 in = to_frame(sonar, middle(index));
         const double far = in.norm();
         const double bearing = std::abs(std::atan2(in.y(), in.x()));
-        if (far < std::min(kReach, reading.range - kBefore)) {
+        if (far < std::min(kBeam, reading.range - kBefore)) {
           if (bearing < kFreeBeam)
             weigh(index, -1);
         } else if (reading.range < kNearEcho && std::abs(far - reading.range) < kCell &&
@@ -255,6 +254,15 @@ double FreeFloor::area() const {
   for (std::size_t at = 0; at < kCells; ++at)
     cells += is_free(at) ? 1U : 0U;
   return static_cast<double>(cells) * kCell * kCell;
+}
+
+bool FreeFloor::goes_on() const {
+  const auto is_border = [](long at) { return std::min(at, kSide - 1 - at) < 3; };
+  for (std::size_t at = 0; at < kCells; ++at)
+    if (is_free(at) &&
+        (is_border(static_cast<long>(at) % kSide) || is_border(static_cast<long>(at) / kSide)))
+      return true;
+  return false;
 }
 
 std::vector<Lane> FreeFloor::next_lanes(const Vec2& from, const std::vector<Lane>& lanes) const {

@@ -8,6 +8,7 @@
 #include "drive/building.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/explore/free_floor.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::explore {
@@ -94,6 +95,15 @@ TEST_P(HallEnds, DoorsBesideThemAreOnTheMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, HallEnds, ::testing::Values(1, 2, 5, 6));
+
+TEST(FreeFloor, SaysThatItGoesOnBeyondItsCells) {
+  FreeFloor floor({});
+  for (double x = 0.0; x < FreeFloor::kReach - 0.7; x += 0.1)
+    floor.add({x, 0.0, 0.0}, {});
+  EXPECT_FALSE(floor.goes_on());
+  floor.add({FreeFloor::kReach - 0.1, 0.0, 0.0}, {});
+  EXPECT_TRUE(floor.goes_on());
+}
 
 // The robot finds its way on its own map: from its present place to a door at the other end.
 TEST(Explore, TheRobotNavigatesByTheMapThatItBuilt) {

@@ -129,7 +129,12 @@ class ExploreUnknown : public Activity {
           "no corridor: a room of %.0f m2 of free floor, %d walls, %d places to go "
           "to and %d lanes between them%s",
           area, static_cast<int>(walls), places_, static_cast<int>(lanes_.size()),
-          lanes_.size() > kMostLanes ? "; the rest of the floor has no lanes" : ""));
+          lanes_.size() > kMostLanes ? "; the rest of the floor has no lanes"
+          : explorer_->floor().goes_on()
+              ? saphira::format("; it goes on beyond %.0f m from the start, which is not mapped",
+                                explore::FreeFloor::kReach)
+                    .c_str()
+              : ""));
   }
 
   void turn(Self& self, const Vec2& to) {

@@ -19,9 +19,12 @@ struct Lane {
 };
 
 /// The floor as the sonars have found it, in cells in the frame of the map: free, occupied or not
-/// yet seen. The cells cover 32 m by 32 m around the start.
+/// yet seen. The cells cover `kReach` to each side of the start.
 class FreeFloor {
  public:
+  /// [m] In a larger room the robot's drift would cost more than the farther floor is worth.
+  static constexpr double kReach = 16.0;
+
   explicit FreeFloor(std::vector<lps::SonarMount> sonars);
 
   void add(const Pose& robot_in_map, const std::vector<lps::SonarReading>& readings);
@@ -35,14 +38,16 @@ class FreeFloor {
   bool is_free(const Vec2& at) const;
   /// [m2] Of the free floor.
   double area() const;
+  /// True where the free floor goes on beyond the cells.
+  bool goes_on() const;
 
   /// Lanes to the widest place that is far from all lanes so far, from the nearest of them; of the
   /// first, from the robot's place. Empty: the lanes are near to all floor that can be reached.
   std::vector<Lane> next_lanes(const Vec2& from, const std::vector<Lane>& lanes) const;
 
  private:
-  static constexpr double kCell = 0.1;  // [m]
-  static constexpr long kSide = 320;    // cells
+  static constexpr double kCell = 0.1;                                  // [m]
+  static constexpr long kSide = 2 * static_cast<long>(kReach / kCell);  // cells
   static constexpr auto kCells = static_cast<std::size_t>(kSide * kSide);
 
   using Accept = std::function<bool(std::size_t)>;
