@@ -369,58 +369,5 @@ TEST_F(ServerTest, ThePictureHasTheWorldAndTheWay) {
   EXPECT_TRUE(plot_svg(world_, {}, 0.22).ends_with("</svg>\n"));
 }
 
-// A driver without a plan: towards the goal, away from the front sonars' echoes or, since a smooth
-// wall is not heard from everywhere, recent echoes. The suggested way of the shipped office must
-// need no more.
-TEST_F(ServerTest, TheOfficesWayNeedsNoPlan) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    ServerOptions options;
-    options.seed = seed;
-    options.single_step = true;
-    Scene scene(world_);
-    Server server(scene, parameters_, *world_.start, options);
-    for (int i = 0; i < 3; ++i)
-      server.receive(protocol::encode_sync(i));
-    server.receive(encode(protocol::Open{}));
-    server.take_output();
-    const Vec2 goal(16.0, 1.0);
-    std::vector<double> ranges(7, 5.0);
-    int x = 0;
-    int y = 0;
-    InformationPacket last;
-    // The first packet's origin is that of dead reckoning, since the robot has not moved.
-    double left = 17.0;
-    int cycles = 0;
-    for (; cycles < 1200 && left > 0.3; ++cycles) {
-      server.receive(encode(protocol::Step{}));
-      protocol::PacketParser parser;
-      parser.feed(server.take_output());
-      const auto packet = protocol::decode_information(*parser.next());
-      ASSERT_TRUE(packet);
-      const auto in = protocol::interpret(*packet, parameters_);
-      for (const auto& sonar : in.sonars)
-        ranges[sonar.number] = sonar.echo ? sonar.range : std::min(5.0, ranges[sonar.number] + 0.3);
-      x += protocol::position_difference(last.x, packet->x);
-      y += protocol::position_difference(last.y, packet->y);
-      last = *packet;
-      const Vec2 to_goal = goal - parameters_.distance_unit * Vec2(x, y);
-      left = to_goal.norm();
-      double turn = norm2_angle(std::atan2(to_goal.y(), to_goal.x()) - in.th);
-      double push = 0.0;
-      double nearest = 5.0;
-      for (std::size_t i = 1; i < 6; ++i) {
-        const double near = std::max(0.0, 1.2 - ranges[i]) / 1.2;
-        push += near * near * (i < 3 ? -1.0 : i > 3 ? 1.0 : (ranges[2] > ranges[4] ? 1.0 : -1.0));
-        nearest = std::min(nearest, ranges[i]);
-      }
-      turn = std::clamp(turn, -0.6, 0.6) * std::min(1.0, nearest) + push * 1.5;
-      server.receive(encode(protocol::RotationVelocity{std::clamp(turn, -1.0, 1.0)}));
-      server.receive(encode(protocol::Velocity{std::clamp(nearest - 0.25, 0.05, 0.35)}));
-    }
-    EXPECT_LE(left, 0.3) << "seed " << seed;
-    EXPECT_EQ(server.robot().contacts(), 0) << "seed " << seed;
-  }
-}
-
 }  // namespace
 }  // namespace saphira::sim
