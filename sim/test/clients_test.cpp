@@ -17,9 +17,6 @@ namespace {
 using protocol::Bytes;
 using protocol::ServerPacket;
 
-std::string yes(bool is) {
-  return is ? "yes" : "no";
-}
 std::string told(const Pose& at) {
   return format("%.2f %.2f %.0f", at.x, at.y, degrees(at.th));
 }

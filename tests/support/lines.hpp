@@ -99,6 +99,8 @@ class LinePlayer {
     return text;
   }
 
+  static std::string yes(bool is) { return is ? "yes" : "no"; }
+
   Events events_;
   Facts facts_;
 

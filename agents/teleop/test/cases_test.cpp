@@ -14,10 +14,6 @@
 namespace saphira::teleop {
 namespace {
 
-std::string yes(bool is) {
-  return is ? "yes" : "no";
-}
-
 /// Two operators, of whom one at a time drives.
 class Pages : public saphira::test::LinePlayer {
  public:

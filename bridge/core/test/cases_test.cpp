@@ -25,10 +25,6 @@ E valued(const std::string& name) {
                               : kEnumerators<E>.at(static_cast<std::size_t>(found - names.begin()));
 }
 
-std::string yes(bool is) {
-  return is ? "yes" : "no";
-}
-
 /// "name=value"; without "=" the value is empty.
 std::pair<std::string, std::string> split(const std::string& word) {
   const std::size_t sign = std::min(word.find('='), word.size());

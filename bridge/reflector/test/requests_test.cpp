@@ -66,10 +66,6 @@ std::string in_words(const Command& command) {
   return words + " " + joined(text, " ", [](std::uint8_t byte) { return std::to_string(byte); });
 }
 
-std::string yes(bool is) {
-  return is ? "yes" : "no";
-}
-
 /// One case.
 class Asker : public saphira::test::LinePlayer {
  public:
