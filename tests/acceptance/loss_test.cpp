@@ -64,27 +64,5 @@ INSTANTIATE_TEST_SUITE_P(EveryProgram, LossTest,
                                   (test.param.signal == SIGKILL ? "Killed" : "Stopped");
                          });
 
-TEST(TwoRobots, DoNotHearEachOther) {
-  System one;
-  System two;
-  one.start_all();
-  two.start_all();
-  auto states = two.node().reader(bus::topics::kRobotState);
-  const v1::GoalId goal = one.go_to(8.0, 0.0);
-  ASSERT_TRUE(one.wait_moving()) << one.output();
-  long count = 0;
-  ASSERT_TRUE(wait_until([&] {
-    for (const auto& sample : states.take()) {
-      EXPECT_LT(std::abs(sample.data.velocity), 0.01);
-      ++count;
-    }
-    return count >= 20;
-  })) << two.output();
-  EXPECT_TRUE(two.still());
-  EXPECT_TRUE(one.wait_moving()) << one.output();
-  two.goals().poll();
-  EXPECT_FALSE(two.goals().status(goal).has_value());
-}
-
 }  // namespace
 }  // namespace saphira::test

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <exception>
+#include <functional>
+#include <map>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "process.hpp"
@@ -59,5 +63,61 @@ int play(const std::string& file, char comment = '#') {
   finish();
   return cases;
 }
+
+/// A player whose lines are events ("verb rest") and facts ("name: value", to be equal to what the
+/// fact says). "3 times: a & b" plays its parts so often, to their
+/// first failure.
+class LinePlayer {
+ public:
+  void take(const std::string& line) {
+    const std::size_t times = line.find(" times: ");
+    if (times != std::string::npos && std::isdigit(static_cast<unsigned char>(line[0])) != 0) {
+      const bool failed = testing::Test::HasFailure();
+      for (int left = std::stoi(line); left > 0 && testing::Test::HasFailure() == failed; --left)
+        for (std::size_t at = times + 8, end = 0; at < line.size(); at = end + 3) {
+          end = std::min(line.find(" & ", at), line.size());
+          take_one(line.substr(at, end - at));
+        }
+      return;
+    }
+    take_one(line);
+  }
+
+ protected:
+  using Events = std::map<std::string, std::function<void(std::istringstream&)>>;
+  using Facts = std::map<std::string, std::function<std::string()>>;
+
+  template <class T>
+  static T read(std::istringstream& in) {
+    T value{};
+    EXPECT_TRUE(in >> value);
+    return value;
+  }
+  static std::string rest(std::istringstream& in) {
+    std::string text;
+    std::getline(in >> std::ws, text);
+    return text;
+  }
+
+  static std::string yes(bool is) { return is ? "yes" : "no"; }
+
+  Events events_;
+  Facts facts_;
+
+ private:
+  void take_one(const std::string& line) {
+    const std::size_t colon = std::min(line.find(": "), line.size());
+    if (const auto fact = facts_.find(line.substr(0, colon));
+        fact != facts_.end() && colon < line.size()) {
+      EXPECT_EQ(fact->second(), line.substr(colon + 2)) << line;
+      return;
+    }
+    std::istringstream in(line);
+    const auto event = events_.find(read<std::string>(in));
+    if (event == events_.end())
+      throw std::invalid_argument("not understood");
+    event->second(in);
+  }
+};
 
 }  // namespace saphira::test

@@ -71,13 +71,9 @@ struct Dialer::Impl {
   bool authorize(lws* wsi, void* in, std::size_t size) const;
 
   static Leg& leg_of(lws* wsi) { return *static_cast<Leg*>(lws_get_opaque_user_data(wsi)); }
-  enum class What { handshake, attached, came, writable, gone };
-  static int on_leg(lws* wsi, Splice::Side side, What what, void* in, std::size_t size);
   static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
-  static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
-                      std::size_t size);
-  static int on_server(lws* wsi, lws_callback_reasons reason, void* user, void* in,
-                       std::size_t size);
+  template <Splice::Side side>
+  static int on_leg(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
 };
 
 /// Of a failure to dial, from the words of libwebsockets.
@@ -206,7 +202,10 @@ int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, voi
   }
 }
 
-int Dialer::Impl::on_leg(lws* wsi, Splice::Side side, What what, void* in, std::size_t size) {
+/// A side of a visitor: to the relay a WebSocket, to our server bytes.
+template <Splice::Side side>
+int Dialer::Impl::on_leg(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
+                         std::size_t size) {
   if (lws_get_opaque_user_data(wsi) == nullptr)
     return 0;
   Impl& impl = *leg_of(wsi).impl;
@@ -214,56 +213,26 @@ int Dialer::Impl::on_leg(lws* wsi, Splice::Side side, What what, void* in, std::
   if (found == impl.visitors.end())
     return 0;
   Splice& splice = found->second.splice;
-  switch (what) {
-    case What::handshake:
+  switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:
       return impl.authorize(wsi, in, size) ? 0 : -1;
-    case What::attached:
+    case LWS_CALLBACK_CLIENT_ESTABLISHED:
+    case LWS_CALLBACK_RAW_CONNECTED:
       splice.attach(side, wsi, side == Splice::kNear);
       return 0;
-    case What::came:
+    case LWS_CALLBACK_CLIENT_RECEIVE:
+    case LWS_CALLBACK_RAW_RX:
       splice.came(side, {static_cast<const char*>(in), size});
       return 0;
-    case What::writable:
+    case LWS_CALLBACK_CLIENT_WRITEABLE:
+    case LWS_CALLBACK_RAW_WRITEABLE:
       return splice.write(side);
-    case What::gone:
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+    case LWS_CALLBACK_CLIENT_CLOSED:
+    case LWS_CALLBACK_RAW_CLOSE:
       lws_set_opaque_user_data(wsi, nullptr);
       impl.ended(found->first, side);
       return 0;
-  }
-  return 0;
-}
-
-int Dialer::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
-                           std::size_t size) {
-  switch (reason) {
-    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:
-      return on_leg(wsi, Splice::kNear, What::handshake, in, size);
-    case LWS_CALLBACK_CLIENT_ESTABLISHED:
-      return on_leg(wsi, Splice::kNear, What::attached, in, size);
-    case LWS_CALLBACK_CLIENT_RECEIVE:
-      return on_leg(wsi, Splice::kNear, What::came, in, size);
-    case LWS_CALLBACK_CLIENT_WRITEABLE:
-      return on_leg(wsi, Splice::kNear, What::writable, in, size);
-    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-    case LWS_CALLBACK_CLIENT_CLOSED:
-      return on_leg(wsi, Splice::kNear, What::gone, in, size);
-    default:
-      return 0;
-  }
-}
-
-int Dialer::Impl::on_server(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
-                            std::size_t size) {
-  switch (reason) {
-    case LWS_CALLBACK_RAW_CONNECTED:
-      return on_leg(wsi, Splice::kFar, What::attached, in, size);
-    case LWS_CALLBACK_RAW_RX:
-      return on_leg(wsi, Splice::kFar, What::came, in, size);
-    case LWS_CALLBACK_RAW_WRITEABLE:
-      return on_leg(wsi, Splice::kFar, What::writable, in, size);
-    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-    case LWS_CALLBACK_RAW_CLOSE:
-      return on_leg(wsi, Splice::kFar, What::gone, in, size);
     default:
       return 0;
   }
@@ -286,8 +255,8 @@ Dialer::Dialer(DialOptions options, std::function<void(int)> reached,
   impl_->lost = std::move(lost);
   static const std::array<lws_protocols, 5> protocols{
       {{kDial, Impl::on_dial, 0, 4096, 0, nullptr, 0},
-       {kCarry, Impl::on_carry, 0, 16384, 0, nullptr, 0},
-       {"server", Impl::on_server, 0, 16384, 0, nullptr, 0},
+       {kCarry, Impl::on_leg<Splice::kNear>, 0, 16384, 0, nullptr, 0},
+       {"server", Impl::on_leg<Splice::kFar>, 0, 16384, 0, nullptr, 0},
        web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
   impl_->loop.emplace(impl_.get(), 3 * kMostVisitors, true);

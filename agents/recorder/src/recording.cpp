@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <stdexcept>
 
 #include "saphira/base/text.hpp"
@@ -32,7 +33,7 @@ constexpr std::uint8_t kSummaryOffset = 14;
 constexpr std::uint8_t kDataEnd = 15;
 
 // Numbers are little-endian.
-template <class T>
+template <std::integral T>
 void put(std::string& out, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i)
     out += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xFFU);
@@ -43,12 +44,15 @@ void put(std::string& out, std::string_view text) {
   out += text;
 }
 
-std::string record(std::uint8_t code, std::string_view body) {
+template <class... Fields>
+std::string fields(const Fields&... values) {
   std::string out;
-  put(out, code);
-  put(out, static_cast<std::uint64_t>(body.size()));
-  out += body;
+  (put(out, values), ...);
   return out;
+}
+
+std::string record(std::uint8_t code, std::string_view body) {
+  return fields(code, std::uint64_t{body.size()}).append(body);
 }
 
 std::uint32_t checksum(std::string_view bytes) {
@@ -112,30 +116,17 @@ std::string decompressed(std::string_view packed, std::uint64_t size, const Fiel
 }  // namespace
 
 Writer::Writer(std::ostream& out) : out_(out) {
-  std::string body;
-  put(body, std::string_view());
-  put(body, std::string_view("saphira"));
-  write(std::string(kMagic) + record(kHeader, body));
+  write(std::string(kMagic) + record(kHeader, fields("", "saphira")));
 }
 
 std::uint16_t Writer::add_channel(const Channel& channel, const std::string& schema) {
   const auto number = static_cast<std::uint16_t>(channels_.size());
   const auto id = static_cast<std::uint16_t>(number + 1);  // 0 is no schema
-  std::string of_schema;
-  put(of_schema, id);
-  put(of_schema, std::string_view(channel.type));
-  put(of_schema, std::string_view("jsonschema"));
-  put(of_schema, std::string_view(schema));
-  std::string metadata;
-  put(metadata, std::string_view(kRobot));
-  put(metadata, std::string_view(channel.robot));
-  std::string body;
-  put(body, number);
-  put(body, id);
-  put(body, std::string_view(channel.topic));
-  put(body, std::string_view("json"));
-  put(body, std::string_view(metadata));
-  channels_.push_back({0, record(kSchema, of_schema), record(kChannel, body), {}});
+  const std::string metadata = fields(kRobot, channel.robot);
+  channels_.push_back({0,
+                       record(kSchema, fields(id, channel.type, "jsonschema", schema)),
+                       record(kChannel, fields(number, id, channel.topic, "json", metadata)),
+                       {}});
   return number;
 }
 
@@ -149,13 +140,9 @@ void Writer::add(const Sample& sample) {
   first_ = samples_ == 0 ? sample.time_ns : std::min(first_, sample.time_ns);
   last_ = samples_ == 0 ? sample.time_ns : std::max(last_, sample.time_ns);
   kept.index.emplace_back(sample.time_ns, chunk_.size());
-  std::string body;
-  put(body, sample.channel);
-  put(body, static_cast<std::uint32_t>(kept.samples));
-  put(body, sample.time_ns);
-  put(body, sample.time_ns);
-  body += sample.json;
-  chunk_ += record(kMessage, body);
+  chunk_ += record(kMessage, fields(sample.channel, static_cast<std::uint32_t>(kept.samples),
+                                    sample.time_ns, sample.time_ns) +
+                                 sample.json);
   ++kept.samples;
   ++samples_;
 }
@@ -163,16 +150,12 @@ void Writer::add(const Sample& sample) {
 bool Writer::flush() {
   if (chunk_.empty())
     return static_cast<bool>(out_);
-  std::string body;
-  put(body, chunk_first_);
-  put(body, chunk_last_);
-  put(body, static_cast<std::uint64_t>(chunk_.size()));
-  put(body, checksum(chunk_));
   const std::string packed = compressed(chunk_);
-  put(body, kZstd);
-  put(body, static_cast<std::uint64_t>(packed.size()));
-  body += packed;
-  const std::string chunk = record(kChunk, body);
+  const std::uint64_t size = chunk_.size();
+  const std::uint64_t packed_size = packed.size();
+  const std::string chunk =
+      record(kChunk, fields(chunk_first_, chunk_last_, size, checksum(chunk_), kZstd, packed_size) +
+                         packed);
   const std::uint64_t chunk_at = at_;
   std::string indices;
   std::string places;
@@ -180,30 +163,17 @@ bool Writer::flush() {
     Kept& kept = channels_[id];
     if (kept.index.empty())
       continue;
-    put(places, static_cast<std::uint16_t>(id));
-    put(places, chunk_at + chunk.size() + indices.size());
+    const auto number = static_cast<std::uint16_t>(id);
+    places += fields(number, chunk_at + chunk.size() + indices.size());
     std::string entries;
-    for (const auto& [time, place] : kept.index) {
-      put(entries, time);
-      put(entries, place);
-    }
-    std::string index;
-    put(index, static_cast<std::uint16_t>(id));
-    put(index, std::string_view(entries));
-    indices += record(kMessageIndex, index);
+    for (const auto& [time, place] : kept.index)
+      entries += fields(time, place);
+    indices += record(kMessageIndex, fields(number, entries));
     kept.index.clear();
   }
-  std::string entry;
-  put(entry, chunk_first_);
-  put(entry, chunk_last_);
-  put(entry, chunk_at);
-  put(entry, static_cast<std::uint64_t>(chunk.size()));
-  put(entry, std::string_view(places));
-  put(entry, static_cast<std::uint64_t>(indices.size()));
-  put(entry, kZstd);
-  put(entry, static_cast<std::uint64_t>(packed.size()));
-  put(entry, static_cast<std::uint64_t>(chunk_.size()));
-  chunk_indices_ += record(kChunkIndex, entry);
+  chunk_indices_ +=
+      record(kChunkIndex, fields(chunk_first_, chunk_last_, chunk_at, std::uint64_t{chunk.size()},
+                                 places, std::uint64_t{indices.size()}, kZstd, packed_size, size));
   ++chunks_;
   chunk_samples_ = 0;
   chunk_.clear();
@@ -213,19 +183,14 @@ bool Writer::flush() {
 
 bool Writer::close() {
   flush();
-  std::string end;
-  put(end, std::uint32_t{0});  // no checksum of the whole
-  write(record(kDataEnd, end));
+  constexpr std::uint32_t none = 0;
+  write(record(kDataEnd, fields(none)));  // no checksum of the whole
   const std::uint64_t summary = at_;
   std::string offsets;
   const auto group = [&](std::uint8_t code, const std::string& records) {
     if (records.empty())
       return;
-    std::string offset;
-    put(offset, code);
-    put(offset, at_);
-    put(offset, static_cast<std::uint64_t>(records.size()));
-    offsets += record(kSummaryOffset, offset);
+    offsets += record(kSummaryOffset, fields(code, at_, std::uint64_t{records.size()}));
     write(records);
   };
   std::string schemas;
@@ -239,27 +204,16 @@ bool Writer::close() {
     ++described;
     schemas += kept.schema;
     channels += kept.channel;
-    put(counts, static_cast<std::uint16_t>(id));
-    put(counts, kept.samples);
+    counts += fields(static_cast<std::uint16_t>(id), kept.samples);
   }
-  std::string statistics;
-  put(statistics, samples_);
-  put(statistics, static_cast<std::uint16_t>(described));
-  put(statistics, described);
-  put(statistics, std::uint32_t{0});  // attachments
-  put(statistics, std::uint32_t{0});  // metadata
-  put(statistics, chunks_);
-  put(statistics, first_);
-  put(statistics, last_);
-  put(statistics, std::string_view(counts));
   group(kSchema, schemas);
   group(kChannel, channels);
-  group(kStatistics, record(kStatistics, statistics));
+  // No attachments, and no metadata.
+  group(kStatistics,
+        record(kStatistics, fields(samples_, static_cast<std::uint16_t>(described), described, none,
+                                   none, chunks_, first_, last_, counts)));
   group(kChunkIndex, chunk_indices_);
-  std::string footer;
-  put(footer, summary);
-  put(footer, at_);
-  put(footer, std::uint32_t{0});
+  const std::string footer = fields(summary, at_, none);
   write(offsets + record(kFooter, footer) + std::string(kMagic));
   return static_cast<bool>(out_.flush());
 }

@@ -101,10 +101,9 @@ struct Scene {
 
   // ---- The drivers.
 
-  DriveCommand wish(authority::Role role, double velocity, int writer = 0) {
+  DriveCommand wish(authority::Role role, double velocity) {
     DriveCommand in;
     in.command.role = role;
-    in.command.writer[0] = static_cast<std::uint8_t>(writer);
     in.command.source = authority::name(role);
     in.command.epoch = core.stamp().epoch;
     in.command.cycle = core.stamp().cycle;
@@ -120,11 +119,6 @@ struct Scene {
     answer();
   }
   void drive(authority::Role role, double velocity = 0.1) { tell(wish(role, velocity)); }
-  void estop(bool press) {
-    DriveCommand in = wish(authority::Role::estop, 0.0);
-    in.command.active = press;
-    tell(in);
-  }
   /// Cycles with a driver that answers each.
   void cycles(int count, authority::Role role, double velocity = 0.1) {
     for (int i = 0; i < count; ++i) {

@@ -109,4 +109,8 @@ struct GetField {
   void operator()(std::int32_t& value) const { value = in.i32(); }
 };
 
+void each(const auto& visit, auto&... members) {
+  (visit(members), ...);
+}
+
 }  // namespace saphira::protocol

@@ -12,6 +12,15 @@ constexpr unsigned kPositionMask = 0x7FFF;
 constexpr std::size_t kMinBody = 25;  // without sonars and trailing fields
 constexpr int kCompassTurn = 181;     // [2 deg] a whole turn; some servers count it from 1
 
+// In order, behind the position, and behind the sonars.
+void each_before_sonars(auto& p, const auto& visit) {
+  each(visit, p.th, p.left_velocity, p.right_velocity, p.battery, p.left_stall, p.right_stall,
+       p.control, p.ptu, p.say);
+}
+void each_behind_sonars(auto& p, const auto& visit) {
+  each(visit, p.timer, p.analog, p.digital_input, p.digital_output);
+}
+
 // In order, up to the first that is missing.
 void each_trailing(auto& more, const auto& visit) {
   visit(more.battery) && visit(more.charge_state) && visit(more.rotation) && visit(more.faults) &&
@@ -84,15 +93,7 @@ Bytes encode(const InformationPacket& packet) {
   body.push_back(static_cast<std::uint8_t>(0x30U | static_cast<unsigned>(packet.motors)));
   put16(body, packet.x & kPositionMask);
   put16(body, packet.y & kPositionMask);
-  put16(body, packet.th);
-  put16(body, packet.left_velocity);
-  put16(body, packet.right_velocity);
-  body.push_back(packet.battery);
-  body.push_back(packet.left_stall);
-  body.push_back(packet.right_stall);
-  put16(body, packet.control);
-  put16(body, unsigned{packet.ptu});
-  body.push_back(packet.say);
+  each_before_sonars(packet, PutField{body});
   Bytes trailing;
   put_trailing(trailing, packet.trailing);
   const std::size_t count =
@@ -102,10 +103,7 @@ Bytes encode(const InformationPacket& packet) {
     body.push_back(packet.sonars[i].number);
     put16(body, unsigned{packet.sonars[i].range});
   }
-  put16(body, unsigned{packet.timer});
-  body.push_back(packet.analog);
-  body.push_back(packet.digital_input);
-  body.push_back(packet.digital_output);
+  each_behind_sonars(packet, PutField{body});
   body.insert(body.end(), trailing.begin(), trailing.end());
   return frame(body);
 }
@@ -129,15 +127,7 @@ std::optional<InformationPacket> decode_information(ByteView body) {
   }
   packet.x = static_cast<std::uint16_t>(in.u16() & kPositionMask);
   packet.y = static_cast<std::uint16_t>(in.u16() & kPositionMask);
-  packet.th = in.i16();
-  packet.left_velocity = in.i16();
-  packet.right_velocity = in.i16();
-  packet.battery = in.u8();
-  packet.left_stall = in.u8();
-  packet.right_stall = in.u8();
-  packet.control = in.i16();
-  packet.ptu = in.u16();
-  packet.say = in.u8();
+  each_before_sonars(packet, GetField{in});
   const std::size_t count = in.u8();
   for (std::size_t i = 0; i < count && !in.ended(); ++i) {
     const std::uint8_t number = in.u8();
@@ -145,10 +135,7 @@ std::optional<InformationPacket> decode_information(ByteView body) {
   }
   if (in.ended())
     return std::nullopt;
-  packet.timer = in.u16();
-  packet.analog = in.u8();
-  packet.digital_input = in.u8();
-  packet.digital_output = in.u8();
+  each_behind_sonars(packet, GetField{in});
   packet.trailing = read_trailing(in);
   packet.unknown_bytes = in.left();
   return packet;

@@ -55,10 +55,6 @@ constexpr std::pair<PacketType, std::string_view> kNames[] = {
 template <class T, class Packet>
 concept Is = std::is_same_v<std::remove_const_t<T>, Packet>;
 
-void each(const auto& visit, auto&... members) {
-  (visit(members), ...);
-}
-
 void fields(Is<ConfigPacket> auto& c, const auto& visit) {
   each(visit, c.robot_class, c.subclass, c.serial, c.four_motors, c.rotation_velocity_top,
        c.velocity_top, c.rotation_acceleration_top, c.acceleration_top, c.pwm_max, c.name, c.cycle,

@@ -115,20 +115,6 @@ TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
     }
 }
 
-TEST(BridgeSerial, ACableThatIsOutForAMoment) {
-  LineScene scene;
-  scene.drive_off();
-  scene.expect_halves();
-  const std::uint64_t epoch = scene.state.stamp.epoch;
-  scene.line.cut(true);
-  scene.watch(milliseconds(250));
-  scene.line.cut(false);
-  const std::uint64_t cycle = scene.state.stamp.cycle;
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp.epoch, epoch) << "the session goes on";
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; }));
-}
-
 TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   LineScene scene;
   scene.drive_off();
@@ -152,58 +138,6 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   EXPECT_EQ(scene.state.ptu, 0);
   for (const sim::TraceRow& row : scene.trace())
     ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
-}
-
-/// Another bridge with the same port, for another robot's name, so that its status is not taken for
-/// the first one's.
-struct SecondBridge {
-  explicit SecondBridge(Scene& first) : scene(first) {}
-  /// Waits until its status gives the reason for the missing robot, with these words.
-  std::string wait_reason(const std::string& words) {
-    std::string reason;
-    EXPECT_TRUE(scene.until([&] {
-      for (const auto& sample : statuses.take())
-        reason = sample.data.reason;
-      return reason.find(words) != std::string::npos;
-    })) << reason;
-    return reason;
-  }
-
-  Scene& scene;
-  std::string robot = scene.robot + "x";
-  Process process{{"saphira-bridge", "--robot", robot, "--domain", domain(), "--robot-port",
-                   scene.robot_port, "--robots", scene.robots_folder},
-                  scene.folder.path("second.log")};
-  bus::Node node{[this] {
-    bus::NodeOptions options = scene.node.options();
-    options.robot = robot;
-    return options;
-  }()};
-  bus::Reader<v1::ServiceStatus> statuses{node.reader(bus::topics::kStatus)};
-};
-
-TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
-  LineScene scene;
-  scene.drive_off();
-  const std::uint64_t epoch = scene.state.stamp.epoch;
-  SecondBridge second(scene);
-  const std::string reason = second.wait_reason("in use by ");
-  EXPECT_NE(reason.find("process " + std::to_string(scene.bridge->pid()) + " (saphira-bridge)"),
-            std::string::npos)
-      << reason;
-  const std::uint64_t cycle = scene.state.stamp.cycle;
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp.epoch, epoch) << "the first one is not disturbed";
-  // It drives as before. Nothing was commanded while the second node was made: let go first.
-  scene.command.active = false;
-  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
-  forward(scene.command, 0.3);
-  EXPECT_TRUE(scene.until([&] { return scene.state.velocity > 0.28; })) << scene.bridge_log();
-  // After the end of the first one, the second has the robot.
-  scene.bridge->signal(SIGTERM);
-  auto states = second.node.reader(bus::topics::kRobotState);
-  EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); }))
-      << second.process.output();
 }
 
 }  // namespace

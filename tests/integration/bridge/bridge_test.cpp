@@ -45,26 +45,6 @@ TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   EXPECT_EQ(scene.grant.role, v1::ROLE_NONE);
 }
 
-TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
-  Scene scene;
-  scene.start();
-  forward(scene.command, 0.4);
-  scene.drives = true;
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.38; })) << scene.bridge_log();
-  scene.publish();
-  const std::uint64_t last = scene.state.stamp.cycle;
-  scene.drives = false;
-  ASSERT_TRUE(scene.until([&] { return scene.grant.role == v1::ROLE_NONE; }));
-  EXPECT_NE(scene.grant.reason.find("lease of test (direct) ran out"), std::string::npos)
-      << scene.grant.reason;
-  ASSERT_TRUE(scene.until([&] { return stood_still(scene.trace(), last) != 0; }));
-  const std::uint64_t still = stood_still(scene.trace(), last);
-  RecordProperty("cycles_to_standstill", static_cast<int>(still - last));
-  std::printf("stood still %d cycles after the last command\n", static_cast<int>(still - last));
-  EXPECT_GT(still, 0U);
-  EXPECT_LE(still, last + 5 + 1) << "0.5 s, and the cycle that had begun";
-}
-
 TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   Scene scene(true);
   scene.world += "11500 8000 11500 12000\n";
@@ -86,17 +66,6 @@ TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   // Room for a person, who reaches farther than the shin's echo.
   EXPECT_GT(rows.back().clearance, 0.2);
   EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
-}
-
-TEST(Bridge, SaysWhichParameterFilesItLookedFor) {
-  Scene scene;
-  scene.start_simulator();
-  scene.robots_folder = scene.folder.path();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] {
-    return scene.status.state == v1::SERVICE_WAITING &&
-           scene.status.reason.find("psos43m.p, pioneer.p") != std::string::npos;
-  })) << scene.status.reason;
 }
 
 }  // namespace

@@ -61,8 +61,9 @@ void Scene::start_simulator() {
 }
 
 void Scene::start_bridge() {
-  std::vector<std::string> argv{"saphira-bridge", "--robot",  robot,      "--domain",   domain(),
-                                "--robot-port",   robot_port, "--robots", robots_folder};
+  std::vector<std::string> argv{"saphira-bridge", "--robot",  robot,
+                                "--domain",       domain(),   "--robot-port",
+                                robot_port,       "--robots", source("config/robots")};
   if (lockstep_)
     argv.emplace_back("--lockstep");
   argv.insert(argv.end(), bridge_options.begin(), bridge_options.end());

@@ -22,7 +22,6 @@ class Scene {
   /// 20 m x 20 m of free floor with the robot in the middle, unless a test writes another.
   std::string world = "width 20000 height 20000\nposition 10000 10000 0\n";
   std::vector<std::string> bridge_options;
-  std::string robots_folder = source("config/robots");
   std::string robot_file = "pioneer.p";  ///< of the simulator; without a folder in config/robots
   /// Instead of the simulator's socket.
   std::string robot_port;

@@ -1,0 +1,401 @@
+// The cases of cases.txt: the test is the shell, the robot and the drivers.
+#include <gtest/gtest.h>
+
+#include "lines.hpp"
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/idl/members.hpp"
+#include "scene.hpp"
+
+namespace saphira::bridge::test {
+namespace {
+
+using authority::Role;
+
+template <class E>
+std::string named(E value) {
+  return std::string(kEnumeratorNames<E>.at(static_cast<std::size_t>(value)));
+}
+template <class E>
+E valued(const std::string& name) {
+  const auto& names = kEnumeratorNames<E>;
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? throw std::invalid_argument("no " + name)
+                              : kEnumerators<E>.at(static_cast<std::size_t>(found - names.begin()));
+}
+
+/// "name=value"; without "=" the value is empty.
+std::pair<std::string, std::string> split(const std::string& word) {
+  const std::size_t sign = std::min(word.find('='), word.size());
+  return {word.substr(0, sign), word.substr(std::min(sign + 1, word.size()))};
+}
+
+std::string in_words(const Answer& answer) {
+  return named(answer.code) + ", " + answer.text;
+}
+
+/// One case.
+class Bridge : public saphira::test::LinePlayer {
+ public:
+  Bridge() {
+    events_ = {{"lockstep",
+                [this](auto& in) { begin({.lockstep = true, .free_step = !rest(in).empty()}); }},
+               {"anew", [this](auto&) { begin({}); }},
+               {"robot", [this](auto& in) { each(in, &Bridge::set_robot); }},
+               {"shows", [this](auto& in) { each(in, &Bridge::show); }},
+               {"around", [this](auto& in) { around(in); }},
+               {"parameters", [this](auto& in) { s_->has_parameters = rest(in) == "yes"; }},
+               {"mute", [this](auto&) { s_->mute = true; }},
+               {"connect", [this](auto&) { s_->connect(); }},
+               {"driven", [this](auto& in) { driven(rest(in)); }},
+               {"pass", [this](auto& in) { s_->pass(read<double>(in)); }},
+               {"slowly", [this](auto& in) { s_->pass_slowly(read<double>(in)); }},
+               {"cycle", [this](auto&) { s_->cycle(); }},
+               {"cycles", [this](auto& in) { cycles(in); }},
+               {"hears", [this](auto& in) { s_->say(packet(read<std::string>(in), in)); }},
+               {"receives",
+                [this](auto&) { s_->core.received(std::exchange(s_->to_bridge, {}), s_->now); }},
+               {"drive", [this](auto& in) { s_->tell(wish(in)); }},
+               {"late", [this](auto& in) { late_ = wish(in); }},
+               {"comes", [this](auto&) { s_->tell(late_); }},
+               {"command", [this](auto& in) { s_->core.command(wish(in), s_->now); }},
+               {"answer", [this](auto&) { s_->answer(); }},
+               {"leave",
+                [this](auto& in) {
+                  s_->core.writer_lost(valued<Role>(rest(in)), {}, s_->now);
+                  s_->answer();
+                }},
+               {"reset",
+                [this](auto& in) {
+                  s_->core.reset_estop(rest(in), s_->now);
+                  s_->deliver();
+                }},
+               {"restore",
+                [this](auto& in) {
+                  s_->core.restore({true, rest(in), authority::Wait::none});
+                  s_->deliver();
+                }},
+               {"permit",
+                [this](auto& in) {
+                  s_->core.permit(read<std::uint64_t>(in));
+                  s_->answer();
+                }},
+               {"lose",
+                [this](auto& in) {
+                  s_->core.link_closed(rest(in), s_->now);
+                  s_->deliver();
+                }},
+               {"end",
+                [this](auto&) {
+                  s_->core.end(s_->now);
+                  s_->deliver();
+                }},
+               {"forget", [this](auto&) { s_->forget(); }},
+               {"noted", [this](auto& in) { EXPECT_GT(times_noted(rest(in)), 0) << notes(); }},
+               {"noted-once", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 1) << notes(); }},
+               {"not-noted", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 0) << notes(); }}};
+    facts_ = {
+        {"drives", [this] { return named(s_->core.grant().role); }},
+        {"age", [this] { return format("%g", s_->core.grant().command_age); }},
+        {"stopped by", [this] { return stopped(); }},
+        {"granted", [this] { return granted(); }},
+        {"guarded", [this] { return guarded(); }},
+        {"refused", [this] { return refused(); }},
+        {"session", [this] { return yes(s_->core.in_session()); }},
+        {"stamp", [this] { return stamp(); }},
+        {"link", [this] { return std::string(s_->around.link_open ? "open" : "closed"); }},
+        {"protocol", [this] { return named(s_->core.parameters().protocol); }},
+        {"may connect in 1.8", [this] { return yes(s_->core.may_connect(s_->now + 1.8)); }},
+        {"may connect in 2", [this] { return yes(s_->core.may_connect(s_->now + 2.0)); }},
+        {"awaits", [this] { return yes(s_->core.awaits_answer()); }},
+        {"due soon", [this] { return yes(s_->core.due(s_->now) <= s_->now + 0.05); }},
+        {"latched", [this] { return yes(s_->core.latches().estopped); }},
+        {"kept",
+         [this] {
+           return joined(s_->all<KeepLatches>(), " ",
+                         [](const auto& kept) { return yes(kept.latches.estopped); });
+         }},
+        {"sent", [this] { return sent(); }},
+        {"commands", [this] { return commands(); }},
+        {"speeds", [this] { return speeds(); }},
+        {"steps", [this] { return std::to_string(s_->times_sent(protocol::Step{})); }},
+        {"keeper", [this] { return keeper(); }},
+        {"outputs", [this] { return outputs(s_->said); }},
+        {"piece", [this] { return s_->core.work(s_->now) ? outputs(s_->core.take()) : "none"; }},
+        {"other packets", [this] { return std::to_string(s_->all<OtherPacket>().size()); }},
+        {"bad packets", [this] { return std::to_string(newest<CycleBegan>().bad_packets); }},
+        {"motors on", [this] { return yes(information().motors_on.value_or(true)); }},
+        {"battery", [this] { return format("%g", information().battery); }},
+        {"status",
+         [this] {
+           const Condition is = s_->condition();
+           return name_of(is.health) + (is.reason.empty() ? "" : ", " + is.reason);
+         }},
+        {"done steps", [this] { return std::to_string(newest<StatusReport>().steps); }},
+        {"late", [this] { return std::to_string(newest<StatusReport>().late); }},
+        {"refused in all", [this] { return std::to_string(newest<StatusReport>().refused); }},
+        {"notes", [this] { return notes(); }},
+        {"warnings", [this] { return notes(Note::Level::warning); }},
+        {"stop", [this] { return stop({}); }},
+        {"stop by karen",
+         [this] {
+           return stop({{"by", std::string("karen")}});
+         }},
+        {"ends",
+         [this] {
+           return joined(s_->all<StopEnded>(), " | ",
+                         [](const StopEnded& end) { return in_words(end.answer); });
+         }},
+        {"audited", [this] { return audited(); }}};
+  }
+
+ private:
+  void begin(const CoreSettings& settings) { s_ = std::make_unique<Scene>(settings); }
+  void driven(const std::string& role) {
+    s_->connect();
+    s_->cycles(12, role.empty() ? Role::behaviors : valued<Role>(role));
+    s_->forget();
+  }
+  void each(std::istringstream& in,
+            void (Bridge::*use)(const std::string& name, const std::string& value)) {
+    for (std::string word; in >> word;) {
+      const auto [name, value] = split(word);
+      (this->*use)(name, value);
+    }
+  }
+  void set_robot(const std::string& name, const std::string& value) {
+    protocol::RobotParameters& robot = s_->robot;
+    if (name == "protocol")
+      robot.protocol = valued<protocol::Protocol>(value);
+    else if (name == "file")
+      robot.file = value;
+    else if (name == "assumed")
+      robot.protocol_is_assumed = true;
+    else if (name == "deceleration")
+      robot.deceleration = std::stod(value);
+    else if (name == "stop_deceleration")
+      robot.stop_deceleration = std::stod(value);
+    else
+      throw std::invalid_argument("not understood: " + name);
+  }
+  /// In the next packets. The speed is in mm/s; a sonar's range in m.
+  void show(const std::string& name, const std::string& value) {
+    protocol::InformationPacket& shown = s_->shown;
+    if (name == "x") {
+      shown.x = static_cast<std::uint16_t>(std::stoul(value));
+    } else if (name == "speed") {
+      shown.left_velocity = shown.right_velocity = static_cast<std::int16_t>(std::stoi(value));
+    } else if (name == "motors") {
+      shown.motors = valued<protocol::Motors>(value);
+    } else if (name == "flags") {
+      shown.ptu = static_cast<std::uint16_t>(std::stoul(value));
+    } else if (name == "battery") {
+      shown.trailing.battery = static_cast<std::uint16_t>(std::stoul(value));
+    } else if (name == "charge") {  // its packets end behind it, without a gap
+      shown.trailing.charge_state = shown.trailing.charge_state.value_or(0);
+      shown.trailing.rotation = shown.trailing.lateral = 0;
+      shown.trailing.faults = 0;
+      shown.trailing.temperature = 20;
+      shown.trailing.state_of_charge = static_cast<std::uint8_t>(std::stoul(value));
+    } else if (name == "charges") {
+      shown.trailing.charge_state = 1;
+    } else if (name == "sonar") {
+      shown.sonars.clear();
+      if (const std::size_t at = value.find('@'); at != std::string::npos)
+        shown.sonars = {
+            {static_cast<std::uint8_t>(std::stoul(value)),
+             static_cast<std::uint16_t>(std::stod(value.substr(at + 1)) / s_->robot.range_unit)}};
+    } else {
+      throw std::invalid_argument("not understood: " + name);
+    }
+  }
+  void around(std::istringstream& in) {
+    Surroundings& around = s_->around;
+    const auto what = read<std::string>(in);
+    if (what == "serial")
+      around.serial = true;
+    else if (what == "namesake")
+      around.namesake = rest(in);
+    else if (what == "trouble")
+      around.link_trouble = rest(in);
+    else if (what == "address")
+      around.address = rest(in);
+    else if (what == "keeper")
+      around.has_keeper = true;
+    else if (what == "new-keeper")
+      ++around.keeper_restarts;
+    else
+      throw std::invalid_argument("not understood: " + what);
+    if (around.has_keeper)
+      around.keeper_alive = rest(in) == "alive";
+  }
+  /// "cycles COUNT ROLE [SPEED]".
+  void cycles(std::istringstream& in) {
+    const int count = read<int>(in);
+    const Role role = valued<Role>(read<std::string>(in));
+    double speed = 0.1;
+    in >> speed;
+    s_->cycles(count, role, speed);
+  }
+  protocol::Bytes packet(const std::string& what, std::istringstream& in) const {
+    protocol::Bytes bytes = protocol::encode(s_->shown);
+    if (what == "config") {
+      protocol::ConfigPacket set;
+      set.deceleration = read<std::uint16_t>(in);
+      return protocol::encode(set);
+    }
+    if (what == "impossible") {  // a speed that the robot does not have
+      protocol::InformationPacket fast;
+      fast.motors = protocol::Motors::kMoving;
+      fast.left_velocity = fast.right_velocity = 30000;
+      return protocol::encode(fast);
+    }
+    if (what == "simulator")
+      return protocol::encode(protocol::SimStatusPacket{});
+    if (what == "reset")
+      return protocol::frame(protocol::Bytes{0xFE});
+    if (what == "half")
+      return {protocol::kHeader0, protocol::kHeader1, 150};
+    if (what == "damaged")
+      bytes.back() ^= 0x55U;
+    else if (what != "packet")
+      throw std::invalid_argument("not understood: " + what);
+    return bytes;
+  }
+  /// "ROLE SPEED [released] [blind] [turning] [writer=5] [cycle=-7] ...": it turns as fast.
+  DriveCommand wish(std::istringstream& in) {
+    const Role role = valued<Role>(read<std::string>(in));
+    DriveCommand made = s_->wish(role, std::stod(read<std::string>(in)));
+    for (std::string word; in >> word;) {
+      const auto [name, value] = split(word);
+      if (name == "released")
+        made.command.active = false;
+      else if (name == "blind")
+        made.command.epoch = made.command.cycle = 0;
+      else if (name == "turning")
+        made.motion.translation = reflector::Translation::none;
+      else if (name == "writer")
+        made.command.writer[0] = static_cast<std::uint8_t>(std::stoul(value));
+      else if (name == "cycle")
+        made.command.cycle += static_cast<std::uint64_t>(std::stoll(value));
+      else if (name == "epoch")
+        made.command.epoch = std::stoull(value);
+      else if (name == "number")
+        made.command.number = std::stoull(value);
+      else if (name == "contact")
+        made.contact_speed = std::stod(value);
+      else if (name == "wrong")
+        made.wrong = "unknown translation mode";
+      else
+        throw std::invalid_argument("not understood: " + name);
+    }
+    return made;
+  }
+
+  template <class What>
+  What newest() const {
+    const std::vector<What> all = s_->all<What>();
+    return all.empty() ? What{} : all.back();
+  }
+  reflector::State state() const { return newest<CycleBegan>().state; }
+  protocol::Information information() const { return state().information; }
+  int times_noted(const std::string& part) const {
+    const std::vector<Note> notes = s_->all<Note>();
+    return static_cast<int>(std::ranges::count_if(
+        notes, [&](const Note& note) { return note.text.find(part) != std::string::npos; }));
+  }
+  std::string notes(Note::Level least = Note::Level::info) const {
+    std::vector<Note> notes = s_->all<Note>();
+    std::erase_if(notes, [&](const Note& note) { return note.level < least; });
+    return joined(notes, " | ", &Note::text);
+  }
+  std::string stamp() const {
+    return format("%d.%d", static_cast<int>(s_->core.stamp().epoch),
+                  static_cast<int>(s_->core.stamp().cycle));
+  }
+  std::string granted() const {
+    return s_->has<GrantDecided>() ? named(newest<GrantDecided>().grant.role) : "nothing";
+  }
+  std::string stopped() const {
+    const authority::Grant& grant = s_->core.grant();
+    return grant.stop_source + format(", %d:%d", static_cast<int>(grant.stop.asker),
+                                      static_cast<int>(grant.stop.number));
+  }
+  std::string guarded() const {
+    const authority::Guarded is = newest<GrantDecided>().guarded;
+    return named(is.action) + format(" %.3f, ", is.velocity) + is.reason;
+  }
+  std::string refused() const {
+    std::vector<std::string> reasons;
+    for (const GrantDecided& grant : s_->all<GrantDecided>())
+      for (const authority::Refusal& refusal : grant.refused)
+        reasons.push_back(refusal.reason);
+    return joined(reasons, " | ");
+  }
+  std::string sent() const {
+    std::vector<std::string> what;
+    if (s_->was_stopped())
+      what.emplace_back("zeros");
+    if (s_->was_moved())
+      what.emplace_back("motion");
+    if (s_->was_sent(protocol::EmergencyStop{}))
+      what.emplace_back("emergency stop");
+    for (int closes = s_->times_sent(protocol::Close{}); closes > 0; --closes)
+      what.emplace_back("close");
+    return joined(what);
+  }
+  static std::string name(const protocol::Command& command) {
+    return std::string(protocol::rule(protocol::encode(command)[3])->name);
+  }
+  std::string commands() const { return joined(s_->sent, " ", name); }
+  std::string keeper() const {
+    const std::vector<WatchLink> watched = s_->all<WatchLink>();
+    if (watched.size() != 1)
+      return std::to_string(watched.size());
+    s_->forget();
+    s_->hear(watched[0].stop);
+    EXPECT_TRUE(s_->was_stopped());
+    return commands();
+  }
+  std::string speeds() const {
+    std::vector<double> all;
+    for (const protocol::Command& command : s_->sent)
+      if (const auto* const velocity = std::get_if<protocol::Velocity>(&command))
+        all.push_back(velocity->velocity);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return joined(all, " ", [](double speed) { return format("%g", speed); });
+  }
+  static std::string outputs(const std::vector<Output>& outputs) {
+    constexpr std::array<const char*, std::variant_size_v<Output>> names{
+        "send",    "answered", "identified", "session", "cycle",    "other",  "devices", "grant",
+        "stopped", "watch",    "close",      "latches", "odometry", "status", "note",    "audit"};
+    return joined(outputs, " ", [&](const Output& output) { return names.at(output.index()); });
+  }
+  std::string stop(const Arguments& arguments) {
+    const Answer answer = s_->core.stop({.functor = "stop",
+                                         .arguments = arguments,
+                                         .source = "a person",
+                                         .asker = 7,
+                                         .number = ++asked_},
+                                        s_->now);
+    s_->deliver();
+    return in_words(answer);
+  }
+  std::string audited() const {
+    return joined(s_->all<v1::AuditEntry>(), " | ", [](const v1::AuditEntry& entry) {
+      return name_of(entry.act) + (" " + entry.who);
+    });
+  }
+
+  std::unique_ptr<Scene> s_ = std::make_unique<Scene>();
+  DriveCommand late_;
+  std::uint64_t asked_ = 0;
+};
+
+TEST(Bridge, IsAsWritten) {
+  EXPECT_GT(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 60);
+}
+
+}  // namespace
+}  // namespace saphira::bridge::test

@@ -1,0 +1,193 @@
+// The requests of requests.txt: the test is their asker and the robot.
+#include <gtest/gtest.h>
+
+#include "arguments.hpp"
+#include "lines.hpp"
+#include "saphira/base/enumerators.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/reflector/devices.hpp"
+
+namespace saphira::reflector {
+namespace {
+
+using protocol::Command;
+
+/// "output bits=6"; yes and no are truths.
+Request request_of(std::istringstream& in) {
+  Request request;
+  std::string arguments;
+  std::getline(in >> request.functor, arguments);
+  request.arguments = saphira::test::arguments_of(arguments);
+  for (Argument& argument : request.arguments)
+    if (argument.text == "yes" || argument.text == "no")
+      argument = Argument(argument.name, argument.text == "yes");
+  request.source = "test";
+  request.asker = 7;
+  return request;
+}
+
+/// As the bridge makes it; std::invalid_argument says what is wrong.
+Wish wish_for(Request request) {
+  for (const Device device : kEnumerators<Device>) {
+    const auto refused = refusal(functors(device), request);
+    if (refused && refused->code == AnswerCode::unknown_functor)
+      continue;
+    if (refused)
+      throw std::invalid_argument(refused->text);
+    const Wish wish = wish_of(request);
+    EXPECT_EQ(wish.index(), static_cast<std::size_t>(device));
+    return wish;
+  }
+  throw std::invalid_argument("unknown");
+}
+
+/// The meaning of the request, or its error.
+std::string meant(const Request& request) {
+  try {
+    return text(wish_for(request));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+/// As it is sent: its name, and its argument; a string that cannot be printed byte by byte.
+std::string in_words(const Command& command) {
+  const protocol::Bytes packet = protocol::encode(command);
+  std::string words(protocol::rule(packet.at(3))->name);
+  if (packet.size() < 7)
+    return words;
+  if (packet.at(4) != 0x2B)
+    return words + (packet[4] == 0x1B ? " -" : " ") + std::to_string(packet[5] | packet[6] << 8);
+  // Its end is a NUL; otherwise its length comes first.
+  const bool ends = packet[3] == static_cast<std::uint8_t>(protocol::Number::kPolling);
+  const protocol::Bytes text(packet.begin() + (ends ? 5 : 6), packet.end() - (ends ? 3 : 2));
+  if (std::ranges::all_of(text, [](std::uint8_t byte) { return byte > ' '; }))
+    return words + " " + std::string(text.begin(), text.end());
+  return words + " " + joined(text, " ", [](std::uint8_t byte) { return std::to_string(byte); });
+}
+
+/// One case.
+class Asker : public saphira::test::LinePlayer {
+ public:
+  Asker() {
+    devices_.connect();
+    events_ = {{"robot", [this](auto& in) { robot(in); }},
+               {"shows", [this](auto& in) { shows(in); }},
+               {"deadline", [this](auto& in) { deadline_ = read<double>(in); }},
+               {"room", [this](auto& in) { room_ = read<std::size_t>(in); }},
+               {"ask", [this](auto& in) { ask(in); }},
+               {"begin", [this](auto&) { devices_.begin(parameters_); }},
+               {"connect", [this](auto&) { devices_.connect(); }},
+               {"cycles", [this](auto& in) { cycles(read<int>(in)); }},
+               {"hears", [this](auto& in) { hears(in); }},
+               {"means", [](auto& in) { means(in); }}};
+    facts_ = {{"sent", [this] { return sent(); }},
+              {"answers", [this] { return answers(); }},
+              {"changed", [this] { return yes(devices_.take_changed()); }},
+              {"troubles", [this] { return joined(devices_.take_troubles(), " | "); }},
+              {"firmware", [this] { return devices_.reports().configuration->firmware; }},
+              {"unread", [this] { return std::to_string(devices_.reports().unread.at(0x9A)); }}};
+  }
+
+ private:
+  void robot(std::istringstream& in) {
+    for (std::string word; in >> word;) {
+      const std::size_t sign = std::min(word.find('='), word.size() - 1);
+      const std::string name = word.substr(0, sign);
+      const double value = std::stod(word.substr(sign + 1));
+      if (name == "generation")
+        parameters_.protocol = static_cast<protocol::Protocol>(std::lround(value));
+      else if (name == "head")
+        parameters_.head_reach = radians(value);
+      else if (name == "stops")
+        parameters_.stop_deceleration = value;
+      else if (name == "stops-turning")
+        parameters_.stop_rotation_deceleration = value;
+      else if (name == "sonars")
+        for (std::uint8_t i = 0; i < value; ++i)
+          parameters_.sonars.push_back({i, {}});
+      else
+        throw std::invalid_argument("not understood: " + name);
+    }
+  }
+  /// In its packets.
+  void shows(std::istringstream& in) {
+    const auto what = read<std::string>(in);
+    const auto value = static_cast<std::uint16_t>(read<unsigned>(in));
+    if (what == "output")
+      packet_.digital_output = static_cast<std::uint8_t>(value);
+    else if (what == "servo" || what == "flags")
+      packet_.ptu = value;
+    else if (what == "port")
+      packet_.timer = value;
+    else if (what == "origin")
+      origin_ = value != 0;
+    else
+      throw std::invalid_argument("not understood: " + what);
+  }
+  void ask(std::istringstream& in) {
+    Request request = request_of(in);
+    request.number = ++number_;
+    request.deadline = deadline_;
+    devices_.request(request, wish_for(request), parameters_);
+  }
+  void cycles(int count) {
+    for (; count > 0; --count) {
+      devices_.reflect(packet_, protocol::interpret(packet_, parameters_), origin_);
+      for (const Command& command : devices_.due(now_ += 0.1, room_))
+        sent_.push_back(in_words(command));
+    }
+  }
+  void hears(std::istringstream& in) {
+    if (read<std::string>(in) == "unknown")
+      return devices_.reflect(protocol::OtherPacket{0x9A, {}}, 0x9A);
+    protocol::ConfigPacket configuration;
+    configuration.firmware = "1.9";
+    devices_.reflect(configuration, static_cast<std::uint8_t>(protocol::PacketType::kConfig));
+  }
+  /// "means REQUEST => its meaning, or the error; ... at its end is any end".
+  static void means(std::istringstream& in) {
+    const std::string line = rest(in);
+    const std::size_t arrow = line.find(" => ");
+    std::string wanted = line.substr(arrow + 4);
+    std::istringstream request(line.substr(0, arrow));
+    std::string is = meant(request_of(request));
+    if (wanted.ends_with("..."))
+      is = is.substr(0, wanted.size() - 3) + "...";
+    EXPECT_EQ(is, wanted);
+  }
+  /// Since the last time, in the order of the first; how often in front.
+  std::string sent() {
+    std::vector<std::string> words;
+    for (const std::string& each : sent_)
+      if (std::ranges::find(words, each) == words.end())
+        words.push_back(each);
+    const std::vector<std::string> all = std::exchange(sent_, {});
+    return joined(words, ", ", [&](const std::string& each) {
+      return std::to_string(std::ranges::count(all, each)) + " " + each;
+    });
+  }
+  std::string answers() const {
+    return joined(devices_.requests(), " | ", [](const DeviceRequest& request) {
+      const auto code = static_cast<std::size_t>(request.answer.code);
+      return std::string(kEnumeratorNames<AnswerCode>.at(code)) + ", " + request.answer.text;
+    });
+  }
+
+  protocol::RobotParameters parameters_;
+  Devices devices_;
+  protocol::InformationPacket packet_;
+  bool origin_ = false;
+  double now_ = 0.0;
+  double deadline_ = 0.0;
+  std::size_t room_ = SIZE_MAX;
+  std::uint64_t number_ = 0;
+  std::vector<std::string> sent_;
+};
+
+TEST(Requests, AreAnsweredAsWritten) {
+  EXPECT_GT(saphira::test::play<Asker>("bridge/reflector/test/requests.txt"), 18);
+}
+
+}  // namespace
+}  // namespace saphira::reflector
