@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/audit.hpp"
@@ -74,8 +75,15 @@ BridgeOptions checked(BridgeOptions options) {
 namespace {
 
 CoreSettings settings_of(const BridgeOptions& options, bool lockstep) {
-  return {lockstep,      options.free_step,     options.lease,        options.quiet,
-          options.guard, options.contact_speed, options.guard_margin, !options.state_file.empty()};
+  return {lockstep,
+          options.free_step,
+          options.lease,
+          options.quiet,
+          options.guard,
+          options.contact_speed,
+          options.guard_margin,
+          !options.state_file.empty(),
+          !options.vision.empty()};
 }
 
 }  // namespace
@@ -86,27 +94,28 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      stops_(node_, bus::topics::kDriveStop.answers),
+      stops_(node_, bus::topics::kRobotAnswers),
+      devices_(node_, bus::topics::kRobotAnswers),
       other_programs_(node_),
       link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
-      devices_(node_, core_.reflector()),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  stops_.serve(
-      bus::topics::kDriveStop,
-      {{"stop",
-        "ends whatever moves the robot, in every role; done once the robot is at rest",
-        {optional(text_parameter("by", "the person or agent behind the program"))}}},
-      [this](const Request& request) { return core_.stop(request, BootClock::seconds()); });
-  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
-               [this](const Request& request) {
-                 return core_.reset_estop(request.source, BootClock::seconds());
-               });
-  if (!options_.vision.empty()) {
+  stops_.serve(bus::topics::kDriveStop,
+               {{"stop",
+                 "ends whatever moves the robot, in every role; done once the robot is at rest",
+                 {optional(text_parameter("by", "the person or agent behind the program"))}}});
+  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
+  // In the order of reflector::Device.
+  const bus::RequestTopic* const topics[] = {
+      &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
+      &bus::topics::kAnalog,      &bus::topics::kTimer,   &bus::topics::kSonar,
+      &bus::topics::kSound,       &bus::topics::kServer,  &bus::topics::kSerial,
+      &bus::topics::kVisionSystem};
+  for (const reflector::Device device : kEnumerators<reflector::Device>)
+    devices_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
+  if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
-    devices_.know(*camera_);
-  }
   if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
     try {
       audit_file_.emplace(options_.state_file + ".audit");
@@ -237,15 +246,28 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  stops_.take(core_.stamp());
+  take_stops();
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   take_audit(now);
-  devices_.take(core_.stamp(), core_.in_session());  // nothing waits for them
+  take_devices();  // nothing waits for them
   core_.step(now);
   deliver(now);
+}
+
+void Shell::take_stops() {
+  for (const Request& request : stops_.take(core_.stamp())) {
+    const double now = BootClock::seconds();
+    stops_.answer(request, request.functor == "stop" ? core_.stop(request, now)
+                                                     : core_.reset_estop(request.source, now));
+  }
+}
+
+void Shell::take_devices() {
+  const std::vector<Request> requests = devices_.take(core_.stamp());
+  devices_.answer(requests, core_.devices(requests));
 }
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
@@ -296,8 +318,18 @@ void Shell::perform(const Answered&, double) {
   core_.answered(BootClock::seconds());
 }
 
+void Shell::perform(const DeviceAnswered& answered, double) {
+  const reflector::DeviceRequest& request = answered.request;
+  devices_.answer(request.asker, request.number, request.answer);
+}
+
 void Shell::perform(const DevicesChanged& changed, double) {
-  devices_.publish(changed.stamp);
+  devices_writer_.write(
+      to_bus(changed.requests, changed.reports, changed.information, changed.stamp));
+}
+
+void Shell::perform(const VisionSet& set, double) {
+  camera_->keep(set.text);
 }
 
 void Shell::perform(const SessionBegan& session, double) {
@@ -324,10 +356,10 @@ void Shell::perform(const CycleBegan& cycle, double now) {
 }
 
 void Shell::perform(const OtherPacket& other, double) {
+  if (const auto* const aux = std::get_if<protocol::AuxPacket>(&other.packet))
+    serial_writer_.write({.stamp = other.stamp, .port = aux->line, .data = aux->bytes});
   const auto* const seen = std::get_if<protocol::VisionPacket>(&other.packet);
-  if (seen == nullptr || !camera_)
-    devices_.packet(other.packet, other.type, other.stamp);
-  else if (other.stamp.cycle > 0)  // before, the robot's place is not known
+  if (seen != nullptr && camera_ && other.stamp.cycle > 0)  // before, the robot's place is unknown
     camera_->packet(*seen, newest_state_);
 }
 

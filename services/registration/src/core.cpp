@@ -209,6 +209,7 @@ void Core::end_building() {
 }
 
 Core::Outputs Core::step(const Inputs& inputs) {
+  std::vector<Answer> answers = between(inputs.requests);
   if (inputs.new_robot != nullptr)
     begin(*inputs.new_robot);
   now_.odom = inputs.odom;
@@ -217,6 +218,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   now_.pose_in_map = outputs.pose_in_map;
   if (!environment_.works())
     outputs.environment = 0;
+  outputs.answers = std::move(answers);
   return outputs;
 }
 
@@ -346,12 +348,16 @@ const std::vector<Functor>& Core::functors() {
   return functors;
 }
 
-Answer Core::act(const Request& request) {
-  try {
-    return {AnswerCode::done, "", obey(request)};
-  } catch (const std::exception& error) {
-    return {AnswerCode::refused, error.what(), {}};
+std::vector<Answer> Core::between(std::span<const Request> requests) {
+  std::vector<Answer> answers;
+  for (const Request& request : requests) {
+    try {
+      answers.push_back({AnswerCode::done, "", obey(request)});
+    } catch (const std::exception& error) {
+      answers.push_back({AnswerCode::refused, error.what(), {}});
+    }
   }
+  return answers;
 }
 
 Registration& Core::placed() {

@@ -5,7 +5,9 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,7 @@ struct CoreSettings {
   /// least.
   double guard_margin = 0.25;
   bool keeps_latches = false;  ///< the latches outlive a restart
+  bool vision = false;         ///< the robot's vision system is used
 };
 
 /// The bridge without bus, clock, files and sockets. It decides on: the session with the robot, old
@@ -92,6 +95,9 @@ class Core {
   Answer stop(const Request& request, double now);
   /// Releases the emergency stop, at the request of `source`.
   Answer reset_estop(const std::string& source, double now);
+  /// Takes requests to the devices (reflector::functors), and puts out what is new of earlier ones.
+  /// The outcomes, in their order; nothing: it follows as DeviceAnswered.
+  std::vector<std::optional<Answer>> devices(std::span<const Request> requests);
   /// Lockstep: the simulator may step while its cycle is less than this.
   void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
   /// All events that had come were passed on: decides, and answers.
@@ -122,8 +128,6 @@ class Core {
   const authority::Grant& grant() const { return grant_; }
   const authority::Latches& latches() const { return arbiter_.latches(); }
   const protocol::RobotParameters& parameters() const { return reflector_.parameters(); }
-  /// For the devices' requests, which the caller hands over.
-  reflector::Reflector& reflector() { return reflector_; }
 
  private:
   /// The state of one session with the robot, forgotten at its end.
@@ -173,6 +177,9 @@ class Core {
   void begin_cycle(const protocol::InformationPacket& packet, double now);
   void finish_cycle(double now);
   void other(protocol::ServerPacket any, std::uint8_t type, double now);
+  std::optional<Answer> device(const Request& request);
+  void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
+  void tell_devices();
   std::uint64_t bad_packets() const;
   void heed(const protocol::ConfigPacket& set, double now);
   void mind_brakes();
@@ -217,6 +224,11 @@ class Core {
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
+  /// The fields of the information packet that are told with the devices.
+  std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,
+             std::optional<std::uint16_t>, std::optional<std::uint8_t>, std::optional<double>,
+             std::optional<double>, std::uint8_t, std::optional<double>>
+      shown_;
   Line line_;
   double own_deceleration_ = 0.0;  ///< [m/s2] from its parameter file
   std::string robot_trouble_;      ///< why a connected robot is not served

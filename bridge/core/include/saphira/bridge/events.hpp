@@ -99,15 +99,25 @@ struct StopEnded {
   v1::StopId id;
   Answer answer;
 };
-/// Any packet except an information packet, for devices and cameras.
+/// Any packet except an information packet, for serial lines and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
-  std::uint8_t type = 0;
   v1::Stamp stamp;
 };
-/// The devices may have news.
+/// News of a request to a device (Core::devices).
+struct DeviceAnswered {
+  reflector::DeviceRequest request;
+};
+/// The requests to the devices, their reports or the shown state have changed.
 struct DevicesChanged {
+  std::vector<reflector::DeviceRequest> requests;
+  reflector::Devices::Reports reports;
+  protocol::Information information;
   v1::Stamp stamp;
+};
+/// A setting of the vision system that a request has changed.
+struct VisionSet {
+  std::string text;
 };
 struct GrantDecided {
   authority::Grant grant;
@@ -152,8 +162,9 @@ struct StatusReport {
   std::optional<Reaction> reaction;
 };
 
-using Output = std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket,
-                            DevicesChanged, GrantDecided, StopEnded, WatchLink, CloseLink,
-                            KeepLatches, KeepOdometry, StatusReport, Note, v1::AuditEntry>;
+using Output =
+    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, DeviceAnswered,
+                 DevicesChanged, VisionSet, GrantDecided, StopEnded, WatchLink, CloseLink,
+                 KeepLatches, KeepOdometry, StatusReport, Note, v1::AuditEntry>;
 
 }  // namespace saphira::bridge
