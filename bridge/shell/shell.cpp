@@ -94,18 +94,17 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      stops_(node_, bus::topics::kRobotAnswers),
-      devices_(node_, bus::topics::kRobotAnswers),
+      requests_(node_, bus::topics::kRobotAnswers),
       other_programs_(node_),
       link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  stops_.serve(bus::topics::kDriveStop,
-               {{"stop",
-                 "ends whatever moves the robot, in every role; done once the robot is at rest",
-                 {optional(text_parameter("by", "the person or agent behind the program"))}}});
-  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
+  requests_.serve(bus::topics::kDriveStop,
+                  {{"stop",
+                    "ends whatever moves the robot, in every role; done once the robot is at rest",
+                    {optional(text_parameter("by", "the person or agent behind the program"))}}});
+  requests_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
   // In the order of reflector::Device.
   const bus::RequestTopic* const topics[] = {
       &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
@@ -113,7 +112,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       &bus::topics::kSound,       &bus::topics::kServer,  &bus::topics::kSerial,
       &bus::topics::kVisionSystem};
   for (const reflector::Device device : kEnumerators<reflector::Device>)
-    devices_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
+    requests_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
   if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
   if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
@@ -246,28 +245,15 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  take_stops();
+  for (const Request& request : requests_.take(core_.stamp()))
+    requests_.answer(request, core_.request(request, BootClock::seconds()));
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   take_audit(now);
-  take_devices();  // nothing waits for them
   core_.step(now);
   deliver(now);
-}
-
-void Shell::take_stops() {
-  for (const Request& request : stops_.take(core_.stamp())) {
-    const double now = BootClock::seconds();
-    stops_.answer(request, request.functor == "stop" ? core_.stop(request, now)
-                                                     : core_.reset_estop(request.source, now));
-  }
-}
-
-void Shell::take_devices() {
-  const std::vector<Request> requests = devices_.take(core_.stamp());
-  devices_.answer(requests, core_.devices(requests));
 }
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
@@ -318,9 +304,8 @@ void Shell::perform(const Answered&, double) {
   core_.answered(BootClock::seconds());
 }
 
-void Shell::perform(const DeviceAnswered& answered, double) {
-  const reflector::DeviceRequest& request = answered.request;
-  devices_.answer(request.asker, request.number, request.answer);
+void Shell::perform(const LaterAnswer& later, double) {
+  requests_.answer(later.asker, later.number, later.answer);
 }
 
 void Shell::perform(const DevicesChanged& changed, double) {
@@ -377,10 +362,6 @@ void Shell::perform(const GrantDecided& decided, double) {
   }
 }
 
-void Shell::perform(const StopEnded& ended, double) {
-  stops_.answer(ended.id.asker, ended.id.number, ended.answer);
-}
-
 void Shell::perform(const WatchLink& watch, double) {
   if (keeper_)
     keeper_->watch(link_.fd(), watch.stop);
@@ -422,7 +403,7 @@ void Shell::perform(const StatusReport& report, double now) {
   status.lockstep = lockstep_;
   status.steps = report.steps;
   status.late_cycles = report.late;
-  status.refused_samples = report.refused + devices_.refused();
+  status.refused_samples = report.refused + requests_.refused();
   if (report.reaction) {
     status.step_ms_mean = report.reaction->mean * 1000.0;
     status.step_ms_max = report.reaction->max * 1000.0;

@@ -81,8 +81,6 @@ class Shell {
   void tend_link();
   void receive();
   void take_all(double now);
-  void take_stops();
-  void take_devices();
   void take_drives(authority::Role role, bus::Reader<v1::MotorCommand>& reader, double now);
 
   /// Executes the core's outputs until there are none.
@@ -94,11 +92,10 @@ class Shell {
   void perform(const SessionBegan& session, double now);
   void perform(const CycleBegan& cycle, double now);
   void perform(const OtherPacket& other, double now);
-  void perform(const DeviceAnswered& answered, double now);
+  void perform(const LaterAnswer& later, double now);
   void perform(const DevicesChanged& changed, double now);
   void perform(const VisionSet& set, double now);
   void perform(const GrantDecided& decided, double now);
-  void perform(const StopEnded& ended, double now);
   void perform(const WatchLink& watch, double now);
   void perform(const CloseLink& close, double now);
   void perform(const KeepLatches& keep, double now);
@@ -128,8 +125,7 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
   bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
   bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
-  Desk stops_;    ///< and resets of the emergency stop
-  Desk devices_;  ///< requests to the robot's devices
+  Desk requests_;  ///< stops, resets of the emergency stop, and those to the devices
   bus::Writer<v1::Devices> devices_writer_ = node_.writer(bus::topics::kDevices);
   bus::Writer<v1::SerialData> serial_writer_ = node_.writer(bus::topics::kSerialData);
   bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);

@@ -6,14 +6,6 @@
 
 namespace saphira::bridge {
 
-std::vector<std::optional<Answer>> Core::devices(std::span<const Request> requests) {
-  std::vector<std::optional<Answer>> outcomes;
-  for (const Request& request : requests)
-    outcomes.push_back(device(request));
-  tell_devices();
-  return outcomes;
-}
-
 std::optional<Answer> Core::device(const Request& request) {
   if (!in_session())
     return Answer{AnswerCode::nobody, "no robot is connected"};
@@ -51,7 +43,7 @@ void Core::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
 void Core::tell_devices() {
   reflector::Devices& devices = reflector_.devices();
   for (reflector::DeviceRequest& request : devices.take_answered())
-    put(DeviceAnswered{std::move(request)});
+    put(LaterAnswer{request.asker, request.number, std::move(request.answer)});
   const protocol::Information& in = reflector_.state().information;
   const auto before = std::exchange(
       shown_, {in.front_bumpers, in.rear_bumpers, in.motors_on, in.emergency_stop, in.faults,

@@ -17,19 +17,18 @@ Request servo(std::uint64_t number, double width) {
 }
 
 std::optional<Answer> ask(Scene& scene, const Request& request) {
-  std::optional<Answer> outcome = scene.core.devices({&request, 1}).front();
-  scene.deliver();
+  std::optional<Answer> outcome = scene.core.request(request, scene.now);
+  scene.answer();
   return outcome;
 }
 
 TEST(DevicesOfTheCore, WhatIsAskedForIsUnderWayAndSent) {
   Driven scene;
   EXPECT_EQ(ask(scene, servo(4, 1500)), std::nullopt);
-  const auto answered = scene.all<DeviceAnswered>();
+  const auto answered = scene.all<LaterAnswer>();
   ASSERT_EQ(answered.size(), 1U);
-  EXPECT_EQ(answered[0].request.number, 4U);
-  EXPECT_EQ(answered[0].request.answer,
-            (Answer{AnswerCode::underway, "servo 1500 us: not shown yet"}));
+  EXPECT_EQ(answered[0].number, 4U);
+  EXPECT_EQ(answered[0].answer, (Answer{AnswerCode::underway, "servo 1500 us: not shown yet"}));
   const auto told = scene.all<DevicesChanged>();
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].stamp, scene.core.stamp());
@@ -42,7 +41,7 @@ TEST(DevicesOfTheCore, WhatIsAskedForIsUnderWayAndSent) {
 TEST(DevicesOfTheCore, WithoutARobotThereIsNobodyToDoIt) {
   Scene scene;
   EXPECT_EQ(ask(scene, servo(4, 1500)), (Answer{AnswerCode::nobody, "no robot is connected"}));
-  EXPECT_FALSE(scene.has<DeviceAnswered>());
+  EXPECT_FALSE(scene.has<LaterAnswer>());
 }
 
 TEST(DevicesOfTheCore, WhatDoesNotFitTogetherIsRefused) {
@@ -56,12 +55,12 @@ TEST(DevicesOfTheCore, ANewerRequestTakesThePlaceOfAnOlderOne) {
   ask(scene, servo(4, 1500));
   scene.forget();
   ask(scene, servo(5, 1600));
-  const auto told = scene.all<DeviceAnswered>();
+  const auto told = scene.all<LaterAnswer>();
   ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0].request.number, 4U);
-  EXPECT_EQ(told[0].request.answer,
+  EXPECT_EQ(told[0].number, 4U);
+  EXPECT_EQ(told[0].answer,
             (Answer{AnswerCode::lost, "servo 1500 us: a request of a person took its place"}));
-  EXPECT_EQ(told[1].request.number, 5U);
+  EXPECT_EQ(told[1].number, 5U);
 }
 
 TEST(DevicesOfTheCore, TheVisionSystemIsAskedWhereItIsUsed) {
@@ -83,8 +82,7 @@ TEST(DevicesOfTheCore, PacketsThatNobodyReadsAreToldOnce) {
     scene.forget();
     scene.say(protocol::frame(protocol::Bytes{0x9A, 0}));
     scene.pass(0.01);
-    scene.core.devices({});
-    scene.deliver();
+    scene.answer();
     return scene.all<DevicesChanged>().size();
   };
   EXPECT_EQ(news(), 1U);

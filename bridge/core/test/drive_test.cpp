@@ -266,12 +266,12 @@ TEST(Estop, WithoutARobotItIsToldAtOnce) {
 TEST(Estop, ItsReleaseMovesNothing) {
   Driven scene(Role::teleop);
   scene.estop(true);
-  scene.core.reset_estop("another", scene.now);
+  scene.reset("another");
   scene.answer();
   EXPECT_TRUE(scene.noted("emergency stop not reset by another: estop still presses"));
   EXPECT_TRUE(scene.core.latches().estopped);
   scene.estop(false);
-  scene.core.reset_estop("another", scene.now);
+  scene.reset("another");
   scene.answer();
   EXPECT_TRUE(scene.noted("emergency stop reset by another"));
   EXPECT_FALSE(scene.core.latches().estopped);
@@ -280,7 +280,7 @@ TEST(Estop, ItsReleaseMovesNothing) {
   scene.cycles(2, Role::teleop);
   EXPECT_FALSE(scene.was_moved()) << "the person lets go first";
   scene.forget();
-  scene.core.reset_estop("another", scene.now);
+  scene.reset("another");
   scene.deliver();
   EXPECT_TRUE(scene.said.empty()) << "none is latched";
 }

@@ -298,7 +298,7 @@ void Player::ask_devices() {
   Request request = requests[script_.choice(8)];
   request.source = "a person";
   request.number = ++number_;
-  core_.devices({&request, 1});
+  core_.request(request, now_);
 }
 
 void Player::event() {
@@ -335,7 +335,7 @@ void Player::event() {
     }
     case 10:
     case 11:
-      core_.reset_estop("a person", now_);
+      core_.request({.functor = "reset", .arguments = {}, .source = "a person"}, now_);
       rules_.released(core_.latches().estopped);
       return answer();
     case 12: {
@@ -383,7 +383,7 @@ void Player::event() {
     case 21: {
       Request request{.functor = "stop", .source = "a person"};
       request.number = ++number_;
-      core_.stop(request, now_);
+      core_.request(request, now_);
       rules_.stopped({0, number_});
       return answer();
     }

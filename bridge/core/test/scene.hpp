@@ -125,6 +125,9 @@ struct Scene {
     in.command.active = press;
     tell(in);
   }
+  void reset(const std::string& who) {
+    core.request({.functor = "reset", .arguments = {}, .source = who}, now);
+  }
   /// Cycles with a driver that answers each.
   void cycles(int count, authority::Role role, double velocity = 0.1) {
     for (int i = 0; i < count; ++i) {

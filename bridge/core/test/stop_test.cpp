@@ -16,16 +16,16 @@ struct StopScene : Driven {
     shown.left_velocity = shown.right_velocity = static_cast<std::int16_t>(velocity * 1000.0);
   }
   Answer stop() {
-    const Answer answer = core.stop(
+    const auto answer = core.request(
         {.functor = "stop", .arguments = {}, .source = "a person", .asker = 7, .number = ++asked},
         now);
     deliver();
-    return answer;
+    return answer.value();
   }
   std::vector<Answer> ends() const {
     std::vector<Answer> answers;
-    for (const StopEnded& ended : all<StopEnded>())
-      answers.push_back(ended.answer);
+    for (const LaterAnswer& later : all<LaterAnswer>())
+      answers.push_back(later.answer);
     return answers;
   }
   std::uint64_t asked = 0;
@@ -120,7 +120,7 @@ TEST(Stop, NamesThePersonBehindTheProgram) {
   Request request{
       .functor = "stop", .arguments = {}, .source = "dialogue", .asker = 7, .number = 1};
   request.arguments.push_back({"by", std::string("karen")});
-  scene.core.stop(request, scene.now);
+  scene.core.request(request, scene.now);
   EXPECT_EQ(scene.core.grant().stop_source, "karen, through dialogue");
 }
 
@@ -171,12 +171,12 @@ TEST(Audit, NamesWhoPressesAndResetsTheEmergencyStop) {
   scene.estop(true);
   EXPECT_EQ(scene.acts(),
             std::vector{Audited::act(v1::AUDIT_STOPPED, scene.core.latches().estop_source)});
-  scene.core.reset_estop("karen", scene.now);
+  scene.reset("karen");
   scene.deliver();
   EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_REFUSED, "karen")})
       << "it is still pressed";
   scene.estop(false);
-  scene.core.reset_estop("karen", scene.now);
+  scene.reset("karen");
   scene.deliver();
   EXPECT_EQ(scene.acts(), std::vector{Audited::act(v1::AUDIT_RESET, "karen")});
 }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -89,15 +88,13 @@ class Core {
   void command(const DriveCommand& command, double now);
   /// A writer of motor commands is gone.
   void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
-  /// Stops every driver at once, with the hardest brakes; whoever drove has to let go, or to begin
-  /// anew. Returns the stopped drivers in words. An answer that is underway ends with StopEnded,
-  /// once the robot has been at rest.
-  Answer stop(const Request& request, double now);
-  /// Releases the emergency stop, at the request of `source`.
-  Answer reset_estop(const std::string& source, double now);
-  /// Takes requests to the devices (reflector::functors), and puts out what is new of earlier ones.
-  /// The outcomes, in their order; nothing: it follows as DeviceAnswered.
-  std::vector<std::optional<Answer>> devices(std::span<const Request> requests);
+  /// Carries out "stop", "reset" of the emergency stop, or a request to a device
+  /// (reflector::functors). Nothing, or an answer that is underway: more follows as LaterAnswer.
+  ///
+  /// A stop stops every driver at once, with the hardest brakes; whoever drove has to let go, or to
+  /// begin anew. Its answer names the stopped drivers; its end follows once the robot has been at
+  /// rest.
+  std::optional<Answer> request(const Request& request, double now);
   /// Lockstep: the simulator may step while its cycle is less than this.
   void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
   /// All events that had come were passed on: decides, and answers.
@@ -177,6 +174,8 @@ class Core {
   void begin_cycle(const protocol::InformationPacket& packet, double now);
   void finish_cycle(double now);
   void other(protocol::ServerPacket any, std::uint8_t type, double now);
+  Answer stop(const Request& request, double now);
+  Answer reset_estop(const std::string& source, double now);
   std::optional<Answer> device(const Request& request);
   void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
   void tell_devices();

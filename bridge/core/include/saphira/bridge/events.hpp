@@ -94,19 +94,16 @@ struct Told {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position
 };
-/// The end of a stop (Core::stop).
-struct StopEnded {
-  v1::StopId id;
-  Answer answer;
-};
 /// Any packet except an information packet, for serial lines and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
   v1::Stamp stamp;
 };
-/// News of a request to a device (Core::devices).
-struct DeviceAnswered {
-  reflector::DeviceRequest request;
+/// A later answer to a request (Core::request).
+struct LaterAnswer {
+  std::uint64_t asker = 0;
+  std::uint64_t number = 0;
+  Answer answer;
 };
 /// The requests to the devices, their reports or the shown state have changed.
 struct DevicesChanged {
@@ -163,8 +160,8 @@ struct StatusReport {
 };
 
 using Output =
-    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, DeviceAnswered,
-                 DevicesChanged, VisionSet, GrantDecided, StopEnded, WatchLink, CloseLink,
-                 KeepLatches, KeepOdometry, StatusReport, Note, v1::AuditEntry>;
+    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, LaterAnswer,
+                 DevicesChanged, VisionSet, GrantDecided, WatchLink, CloseLink, KeepLatches,
+                 KeepOdometry, StatusReport, Note, v1::AuditEntry>;
 
 }  // namespace saphira::bridge
