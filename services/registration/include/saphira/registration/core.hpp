@@ -48,7 +48,7 @@ class Core {
     Pose pose_in_odom;
     std::vector<lps::Percept> percepts;       ///< of the cycle before, in this odom frame
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
-    std::span<const Request> requests;        ///< that functors() can take
+    std::span<const Request> requests{};      ///< that functors() can take
   };
   struct Outputs {
     v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
