@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "saphira/base/archive.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
@@ -459,20 +458,6 @@ std::optional<Remembered> Core::remembered() const {
     now.memory.pose_in_odom = now_.pose_in_odom;
   }
   return now;
-}
-
-void Core::archive(Archive& a) {
-  a("processes", processes_)("now", now_);
-  bool placed = registration_.has_value();
-  maps::Map map = placed ? registration_->map() : maps::Map{};
-  a("placed", placed)("map", map);  // while the map is being built, still the one before
-  if (a.restores())
-    registration_.reset();
-  if (!placed)
-    return;
-  if (a.restores())
-    registration_.emplace(settings_for(now_.sonars), std::move(map));
-  a("registration", *registration_);
 }
 
 }  // namespace saphira::registration

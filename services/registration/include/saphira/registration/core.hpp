@@ -89,12 +89,8 @@ class Core {
   /// Its micro-tasks. They are stepped before the core, for the same cycle.
   ProcessTable& processes() { return processes_; }
 
-  /// Its whole learnt state: another Core continues from it to the last bit.
-  void archive(Archive& a);
-
  private:
-  /// Its whole learnt state but that of the Registration. State that a step leaves for a later one
-  /// belongs here.
+  /// Its learnt state but that of the Registration.
   struct State {
     std::string option;  ///< the map at the start of the service
     maps::Editor editor;
