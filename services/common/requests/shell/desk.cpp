@@ -51,7 +51,7 @@ void Desk::take(Counter& counter, std::vector<Request>& out) {
     });
   for (Request& request : due) {
     const v1::Answer* const known =
-        request.number == 0 ? nullptr : known_.find(request.asker, request.number);
+        request.number == 0 ? nullptr : counter.known.find(request.asker, request.number);
     if (known != nullptr && !known->service.empty())
       writer_.write(*known);  // it may not have arrived
     if (known != nullptr)
@@ -88,7 +88,8 @@ void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answe
   sample.number = number;
   sample.service = node_.options().name;
   writer_.write(sample);
-  known_.keep(sample);
+  for (const auto& counter : counters_)
+    counter->known.keep(sample);
 }
 
 }  // namespace saphira

@@ -44,6 +44,7 @@ class Desk {
     std::vector<Functor> functors;
     std::vector<Request> waiting{};  ///< lockstep: whose cycle has not come
     bool asked = false;              ///< there was an asker at the last look
+    bus::KnownRequests known{};      ///< of this topic: nobody spoils a request on another one
   };
   void take(Counter& counter, std::vector<Request>& out);
 
@@ -51,7 +52,6 @@ class Desk {
   bus::Writer<v1::Answer> writer_;
   std::vector<std::unique_ptr<Counter>> counters_;
   v1::Stamp now_;
-  bus::KnownRequests known_;
   std::uint64_t refused_ = 0;
   std::optional<bus::Audit> audit_;
 };

@@ -99,6 +99,18 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   EXPECT_EQ(total, 8.0);
 }
 
+TEST_F(DeskTest, NobodySpoilsARequestByItsNumberOnAnotherTopic) {
+  bus::Node bridge(test::memory_options("bridge"), memory);
+  Desk of_two(bridge, bus::topics::kRobotAnswers);
+  of_two.serve(bus::topics::kServo, {{"servo", "turns"}});
+  of_two.serve(bus::topics::kDriveStop, {{"stop", "stops"}});
+  auto servo = person.writer<v1::Request>(bus::topics::kServo);
+  auto stop = person.writer<v1::Request>(bus::topics::kDriveStop);
+  servo.write({.asker = 9, .number = 1, .functor = "servo"});
+  stop.write({.asker = 9, .number = 1, .functor = "stop"});
+  EXPECT_EQ(of_two.take(now).size(), 2U);
+}
+
 TEST_F(DeskTest, SaysLaterWhatBecameOfIt) {
   open();
   v1::Request request{.functor = "later"};
