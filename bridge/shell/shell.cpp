@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/audit.hpp"
@@ -74,8 +75,15 @@ BridgeOptions checked(BridgeOptions options) {
 namespace {
 
 CoreSettings settings_of(const BridgeOptions& options, bool lockstep) {
-  return {lockstep,      options.free_step,     options.lease,        options.quiet,
-          options.guard, options.contact_speed, options.guard_margin, !options.state_file.empty()};
+  return {lockstep,
+          options.free_step,
+          options.lease,
+          options.quiet,
+          options.guard,
+          options.contact_speed,
+          options.guard_margin,
+          !options.state_file.empty(),
+          !options.vision.empty()};
 }
 
 }  // namespace
@@ -86,27 +94,27 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      stops_(node_, bus::topics::kDriveStop.answers),
+      requests_(node_, bus::topics::kRobotAnswers),
       other_programs_(node_),
       link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
-      devices_(node_, core_.reflector()),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  stops_.serve(
-      bus::topics::kDriveStop,
-      {{"stop",
-        "ends whatever moves the robot, in every role; done once the robot is at rest",
-        {optional(text_parameter("by", "the person or agent behind the program"))}}},
-      [this](const Request& request) { return core_.stop(request, BootClock::seconds()); });
-  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
-               [this](const Request& request) {
-                 return core_.reset_estop(request.source, BootClock::seconds());
-               });
-  if (!options_.vision.empty()) {
+  requests_.serve(bus::topics::kDriveStop,
+                  {{"stop",
+                    "ends whatever moves the robot, in every role; done once the robot is at rest",
+                    {optional(text_parameter("by", "the person or agent behind the program"))}}});
+  requests_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
+  // In the order of reflector::Device.
+  const bus::RequestTopic* const topics[] = {
+      &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
+      &bus::topics::kAnalog,      &bus::topics::kTimer,   &bus::topics::kSonar,
+      &bus::topics::kSound,       &bus::topics::kServer,  &bus::topics::kSerial,
+      &bus::topics::kVisionSystem};
+  for (const reflector::Device device : kEnumerators<reflector::Device>)
+    requests_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
+  if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
-    devices_.know(*camera_);
-  }
   if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
     try {
       audit_file_.emplace(options_.state_file + ".audit");
@@ -237,13 +245,13 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  stops_.take(core_.stamp());
+  for (const Request& request : requests_.take(core_.stamp()))
+    requests_.answer(request, core_.request(request, BootClock::seconds()));
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   take_audit(now);
-  devices_.take(core_.stamp(), core_.in_session());  // nothing waits for them
   core_.step(now);
   deliver(now);
 }
@@ -296,8 +304,17 @@ void Shell::perform(const Answered&, double) {
   core_.answered(BootClock::seconds());
 }
 
+void Shell::perform(const LaterAnswer& later, double) {
+  requests_.answer(later.asker, later.number, later.answer);
+}
+
 void Shell::perform(const DevicesChanged& changed, double) {
-  devices_.publish(changed.stamp);
+  devices_writer_.write(
+      to_bus(changed.requests, changed.reports, changed.information, changed.stamp));
+}
+
+void Shell::perform(const VisionSet& set, double) {
+  camera_->keep(set.text);
 }
 
 void Shell::perform(const SessionBegan& session, double) {
@@ -324,10 +341,10 @@ void Shell::perform(const CycleBegan& cycle, double now) {
 }
 
 void Shell::perform(const OtherPacket& other, double) {
+  if (const auto* const aux = std::get_if<protocol::AuxPacket>(&other.packet))
+    serial_writer_.write({.stamp = other.stamp, .port = aux->line, .data = aux->bytes});
   const auto* const seen = std::get_if<protocol::VisionPacket>(&other.packet);
-  if (seen == nullptr || !camera_)
-    devices_.packet(other.packet, other.type, other.stamp);
-  else if (other.stamp.cycle > 0)  // before, the robot's place is not known
+  if (seen != nullptr && camera_ && other.stamp.cycle > 0)  // before, the robot's place is unknown
     camera_->packet(*seen, newest_state_);
 }
 
@@ -343,10 +360,6 @@ void Shell::perform(const GrantDecided& decided, double) {
     recalled_ = decided.stamp;
     state_recall_.write(newest_state_);
   }
-}
-
-void Shell::perform(const StopEnded& ended, double) {
-  stops_.answer(ended.id.asker, ended.id.number, ended.answer);
 }
 
 void Shell::perform(const WatchLink& watch, double) {
@@ -390,7 +403,7 @@ void Shell::perform(const StatusReport& report, double now) {
   status.lockstep = lockstep_;
   status.steps = report.steps;
   status.late_cycles = report.late;
-  status.refused_samples = report.refused + devices_.refused();
+  status.refused_samples = report.refused + requests_.refused();
   if (report.reaction) {
     status.step_ms_mean = report.reaction->mean * 1000.0;
     status.step_ms_max = report.reaction->max * 1000.0;

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "camera.hpp"
-#include "device_topics.hpp"
 #include "latch_file.hpp"
 #include "other_programs.hpp"
 #include "position_file.hpp"
+#include "requests/shell/desk.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/security/audit_file.hpp"
@@ -92,9 +92,10 @@ class Shell {
   void perform(const SessionBegan& session, double now);
   void perform(const CycleBegan& cycle, double now);
   void perform(const OtherPacket& other, double now);
+  void perform(const LaterAnswer& later, double now);
   void perform(const DevicesChanged& changed, double now);
+  void perform(const VisionSet& set, double now);
   void perform(const GrantDecided& decided, double now);
-  void perform(const StopEnded& ended, double now);
   void perform(const WatchLink& watch, double now);
   void perform(const CloseLink& close, double now);
   void perform(const KeepLatches& keep, double now);
@@ -124,13 +125,14 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
   bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
   bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
-  Desk stops_;  ///< and resets of the emergency stop
+  Desk requests_;  ///< stops, resets of the emergency stop, and those to the devices
+  bus::Writer<v1::Devices> devices_writer_ = node_.writer(bus::topics::kDevices);
+  bus::Writer<v1::SerialData> serial_writer_ = node_.writer(bus::topics::kSerialData);
   bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);
   OtherPrograms other_programs_;
 
   transport::Link link_;
   Core core_;
-  DeviceTopics devices_;
   std::optional<Camera> camera_;
   PositionFile position_file_;
   LatchFile latch_file_;

@@ -88,8 +88,8 @@ void Os::move_robot(const Pose& by) {
   if (robot_ && robot_->found()) {
     robot_->place(moved);
   } else if (registration_) {
-    const Answer said = registration_->act(
-        {"place", {saphira::point("position", moved, Frame::map)}, "this program"});
+    const Request place{"place", {saphira::point("position", moved, Frame::map)}, "this program"};
+    const Answer said = registration_->between({&place, 1}).front();
     if (said.code != AnswerCode::done)
       return say("sfMoveRobot: " + said.text, true);
   }

@@ -201,7 +201,7 @@ behaviors::Intended Os::intended(const Closure& closure) {
     intended.parameters.push_back(number("closure", static_cast<double>(index - closures.begin())));
     return intended;
   }
-  const behaviors::Schema* const schema = behaviors_->registry().find(closure.schema);
+  const behaviors::Schema* const schema = schemas_.find(closure.schema);
   std::size_t i = 0;
   for (const Predefined::Parameter& parameter : known->second.parameters) {
     const beh_param given = i < closure.params.size() ? closure.params[i] : beh_param{};
@@ -254,6 +254,7 @@ void Os::evaluate_behaviors() {
     const std::lock_guard lock(mutex);
     inputs.cycle = cycle;
     inputs.new_robot = behaviors_began_ ? nullptr : &model;
+    inputs.schemas = behaviors_began_ ? nullptr : &schemas_;
     behaviors_began_ = true;
     inputs.new_frame = new_frame_;
     const protocol::Information& now = state.information;

@@ -226,7 +226,9 @@ class DirectRobot final : public ServedRobot {
     seen_ = *seen;
     ++seen_count_;
   }
+  void perform(const bridge::LaterAnswer&) {}  // nothing is asked of the devices
   void perform(const bridge::DevicesChanged&) {}
+  void perform(const bridge::VisionSet&) {}
   void perform(const bridge::GrantDecided& decided) {
     const bool guards = decided.guarded.action == authority::GuardAction::stop;
     if (guards && !guarded_)
@@ -247,7 +249,6 @@ class DirectRobot final : public ServedRobot {
     const std::lock_guard lock(mutex_);
     session_lost(close.why);
   }
-  void perform(const bridge::StopEnded&) {}
   void perform(const bridge::KeepLatches&) {}
   void perform(const bridge::KeepOdometry&) {}
   void perform(const v1::AuditEntry&) {}  // nobody else is there

@@ -156,12 +156,13 @@ void Os::session_began(const std::shared_ptr<Robot>& robot) {
   }
   behaviors_ = std::make_unique<behaviors::Core>();
   interpretation_ = std::make_unique<interpretation::Core>();
+  schemas_ = {};
   try {
-    behaviors_->registry() = behaviors::load_behaviors(configuration() + "/behaviors");
+    schemas_ = behaviors::load_behaviors(configuration() + "/behaviors");
   } catch (const std::exception& error) {
     say(error.what(), true);
   }
-  register_behaviors(behaviors_->registry());
+  register_behaviors(schemas_);
   connected_ = true;
   if (starts_basic_procs)
     sfInitBasicProcs();

@@ -180,6 +180,7 @@ class Os {
 
   // For the thread of the micro-tasks alone.
   std::unique_ptr<behaviors::Core> behaviors_;
+  behaviors::Registry schemas_;  ///< for them
   std::unique_ptr<interpretation::Core> interpretation_;
   std::unique_ptr<registration::Core> registration_;
   std::optional<interpretation::Output> percepts_;

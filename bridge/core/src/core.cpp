@@ -194,7 +194,7 @@ void Core::lost(const std::string& why, double now, Note::Level level) {
     publish_grant();
   end_stops(AnswerCode::lost, "the link to the robot was lost before it was seen at rest");
   reflector_.devices().connect();
-  put(DevicesChanged{session_.stamp});
+  tell_devices();
   session_ = Session();
   flush_at_ = 0.0;
 }
@@ -264,7 +264,8 @@ void Core::other(protocol::ServerPacket any, std::uint8_t type, double now) {
     heed(*set, now);
   if (std::holds_alternative<protocol::SimStatusPacket>(any))  // a simulator whose time stands
     session_.last_heard = now;
-  put(OtherPacket{std::move(any), type, session_.stamp});
+  reflect(any, type);
+  put(OtherPacket{std::move(any), session_.stamp});
 }
 
 /// Of this session.
@@ -377,10 +378,10 @@ void Core::finish_cycle(double now) {
   session_.body.sees_ahead = session_.echoes.sees(session_.stamp.cycle, true);
   session_.body.sees_behind = session_.echoes.sees(session_.stamp.cycle, false);
   session_.low_battery = has_low_battery() ? session_.low_battery + 1 : 0;
-  put(DevicesChanged{session_.stamp});
   if (settings_.lockstep) {
     put(KeepOdometry{reflector_.odometry()});
-    return step(now);
+    step(now);
+    return tell_devices();
   }
   decide(now);
   mind_stops();
@@ -393,6 +394,7 @@ void Core::finish_cycle(double now) {
     flush_at_ = now + kWaitForDriver;
   publish_grant();
   put(KeepOdometry{reflector_.odometry()});
+  tell_devices();
 }
 
 // ---- Time.

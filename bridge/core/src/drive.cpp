@@ -112,6 +112,12 @@ std::optional<v1::AuditEntry> Reports::take(v1::AuditEntry entry, const Checked&
   return entry;
 }
 
+std::optional<Answer> Core::request(const Request& request, double now) {
+  return request.functor == "stop"    ? stop(request, now)
+         : request.functor == "reset" ? reset_estop(request.source, now)
+                                      : device(request);
+}
+
 Answer Core::stop(const Request& request, double now) {
   const v1::StopId id{request.asker, request.number != 0 ? request.number : ++numberless_stops_};
   const Argument* const by = find(request.arguments, "by");
@@ -137,7 +143,7 @@ Answer Core::stop(const Request& request, double now) {
 
 void Core::end_stops(AnswerCode code, const std::string& how) {
   for (const Stopping& each : std::exchange(stops_, {}))
-    put(StopEnded{each.id, {code, each.stopped + "; " + how}});
+    put(LaterAnswer{each.id.asker, each.id.number, {code, each.stopped + "; " + how}});
 }
 
 /// A packet came, and the driver was selected.
@@ -180,6 +186,7 @@ void Core::answer(double now) {
       flush(now);
   }
   keep_latches(now);
+  tell_devices();
 }
 
 /// Puts out changed latches, for the file and for the bus. Neither waits for a cycle of the robot:

@@ -68,7 +68,8 @@ class Bridge : public saphira::test::LinePlayer {
                 }},
                {"reset",
                 [this](auto& in) {
-                  s_->core.reset_estop(rest(in), s_->now);
+                  s_->core.request({.functor = "reset", .arguments = {}, .source = rest(in)},
+                                   s_->now);
                   s_->deliver();
                 }},
                {"restore",
@@ -144,8 +145,8 @@ class Bridge : public saphira::test::LinePlayer {
          }},
         {"ends",
          [this] {
-           return joined(s_->all<StopEnded>(), " | ",
-                         [](const StopEnded& end) { return in_words(end.answer); });
+           return joined(s_->all<LaterAnswer>(), " | ",
+                         [](const LaterAnswer& later) { return in_words(later.answer); });
          }},
         {"audited", [this] { return audited(); }}};
   }
@@ -368,19 +369,20 @@ class Bridge : public saphira::test::LinePlayer {
   }
   static std::string outputs(const std::vector<Output>& outputs) {
     constexpr std::array<const char*, std::variant_size_v<Output>> names{
-        "send",    "answered", "identified", "session", "cycle",    "other",  "devices", "grant",
-        "stopped", "watch",    "close",      "latches", "odometry", "status", "note",    "audit"};
+        "send",    "answered", "identified", "session", "cycle", "other",
+        "later",   "devices",  "vision",     "grant",   "watch", "close",
+        "latches", "odometry", "status",     "note",    "audit"};
     return joined(outputs, " ", [&](const Output& output) { return names.at(output.index()); });
   }
   std::string stop(const Arguments& arguments) {
-    const Answer answer = s_->core.stop({.functor = "stop",
-                                         .arguments = arguments,
-                                         .source = "a person",
-                                         .asker = 7,
-                                         .number = ++asked_},
-                                        s_->now);
+    const auto answer = s_->core.request({.functor = "stop",
+                                          .arguments = arguments,
+                                          .source = "a person",
+                                          .asker = 7,
+                                          .number = ++asked_},
+                                         s_->now);
     s_->deliver();
-    return in_words(answer);
+    return in_words(answer.value());
   }
   std::string audited() const {
     return joined(s_->all<v1::AuditEntry>(), " | ", [](const v1::AuditEntry& entry) {

@@ -283,19 +283,22 @@ void Player::packet() {
 }
 
 void Player::ask_devices() {
-  if (!core_.in_session())
-    return;
-  const auto value = static_cast<std::uint8_t>(script_.byte());
-  const std::array<reflector::Wish, 6> wishes{
-      reflector::ServoWish{static_cast<std::uint16_t>(8U * value)},
-      reflector::GripperWish{static_cast<reflector::GripperAction>(value % 12), value},
-      reflector::SonarWish{(value & 1U) != 0, {1, 2, value}},
-      reflector::SoundWish{{{value, value}}, 0},
-      reflector::ServerWish{static_cast<reflector::ServerAction>(value % 7), value},
-      reflector::SerialWish{static_cast<std::uint8_t>(1 + value % 3), {1, 2, value}, value}};
-  Request request{.functor = {}, .source = "a person"};
+  const unsigned value = script_.byte();
+  const std::array<const char*, 4> actions{"open", "lift up", "halt", "number"};
+  const std::array<const char*, 4> packets{"configuration", "encoders", "io", "gripper"};
+  const std::array<Request, 8> requests{
+      {{"servo", {number("width", 8.0 * value)}},
+       {"gripper", {text("action", actions[value % 4]), number("value", value)}},
+       {"sonar", {truth("on", value % 2 != 0), number("sonar", 1.0), number("sonar", value)}},
+       {"tones", {number("duration", 0.02 * value), number("pitch", value)}},
+       {"set_origin"},
+       {"motors", {truth("on", value % 2 != 0)}},
+       {"report", {text("packet", packets[value % 4]), text("often", "always")}},
+       {"serial", {number("port", 1 + value % 3), text("data", "0102"), number("answer", value)}}}};
+  Request request = requests[script_.choice(8)];
+  request.source = "a person";
   request.number = ++number_;
-  core_.reflector().request(request, wishes[script_.choice(6)]);
+  core_.request(request, now_);
 }
 
 void Player::event() {
@@ -332,7 +335,7 @@ void Player::event() {
     }
     case 10:
     case 11:
-      core_.reset_estop("a person", now_);
+      core_.request({.functor = "reset", .arguments = {}, .source = "a person"}, now_);
       rules_.released(core_.latches().estopped);
       return answer();
     case 12: {
@@ -380,7 +383,7 @@ void Player::event() {
     case 21: {
       Request request{.functor = "stop", .source = "a person"};
       request.number = ++number_;
-      core_.stop(request, now_);
+      core_.request(request, now_);
       rules_.stopped({0, number_});
       return answer();
     }

@@ -8,8 +8,6 @@
 namespace saphira::bus {
 namespace {
 
-constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
-
 v1::CapabilityParameter slot(const std::string& name, const std::string& meaning, bool required,
                              v1::ArgumentKind kind) {
   return {.name = name, .kind = kind, .meaning = meaning, .required = required};
@@ -69,20 +67,13 @@ void Agent::poll() {
 }
 
 void Agent::handle(const v1::Request& request) {
-  const Id id{request.asker, request.number};
-  const auto known =
-      std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == id; });
   const bool withdrawn = request.functor == kWithdraw;
-  if (known != known_.end()) {
-    if (withdrawn && stop_ && !ended(known->second.code))
+  if (const v1::Answer* const known = known_.find(request.asker, request.number)) {
+    if (withdrawn && stop_ && !ended(known->code))
       stop_(request);
-    answers_.write(known->second);
+    answers_.write(*known);
     return;
   }
-  v1::Answer underway{.code = v1::ANSWER_UNDERWAY};
-  known_.emplace_back(id, underway);
-  if (known_.size() > kKnown)
-    known_.pop_front();
   const auto answerer = answerers_.find(request.functor);
   v1::Answer said;
   try {
@@ -104,9 +95,7 @@ void Agent::answer(const v1::Request& request, v1::Answer answer) {
   answer.asker = request.asker;
   answer.number = request.number;
   answer.service = address_;
-  for (auto& [id, newest] : known_)
-    if (id == Id{request.asker, request.number})
-      newest = answer;
+  known_.keep(answer);
   answers_.write(answer);
 }
 

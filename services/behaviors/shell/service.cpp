@@ -41,6 +41,8 @@ void Service::step(const runtime::Turn& turn) {
   if (turn.new_robot)
     inputs.new_robot = &robot.emplace(from_bus(turn.description));
   inputs.new_frame = turn.new_frame;
+  if (std::exchange(changed_, false))
+    inputs.schemas = &registry_;
   inputs.robot = from_bus(turn.robot);
   inputs.sonars = lps::sonars_from_bus(turn.robot);
   if (const v1::Intentions* const intentions = intentions_.value())
@@ -74,7 +76,7 @@ std::optional<double> Service::command_age(const runtime::Turn& turn) {
 
 void Service::look() {
   const bool first = !std::exchange(looked_, true);
-  const Folder::News news = sources_.look(core_.registry());
+  const Folder::News news = sources_.look(registry_);
   Notes notes;
   for (const std::string& fault : news.faults)
     notes.error(fault + (first ? "" : "\nWhat this file gave before stays in use."));
@@ -86,8 +88,9 @@ void Service::look() {
     for (const std::string& file : news.taken)
       notes.info("took " + file);
   ports_.say(notes.lines());
+  changed_ = changed_ || news.changed;
   if (news.changed)
-    schemas_.write(to_bus(core_.registry(), sources_.trouble()));
+    schemas_.write(to_bus(registry_, sources_.trouble()));
 }
 
 runtime::Component component() {

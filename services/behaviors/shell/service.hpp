@@ -40,6 +40,8 @@ class Service final : public runtime::Service {
   runtime::Output<v1::BehaviorSchemas> schemas_;
   Core core_;
   Sources sources_;
+  Registry registry_;     ///< of the sources
+  bool changed_ = false;  ///< since the last step
   bool looked_ = false;
 };
 

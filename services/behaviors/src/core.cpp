@@ -34,6 +34,8 @@ Core::Outputs Core::step(const Inputs& inputs) {
 }
 
 void Core::begin(const Inputs& inputs) {
+  if (inputs.schemas != nullptr)
+    executive_.registry() = *inputs.schemas;
   if (inputs.new_robot != nullptr) {
     executive_.reset(*inputs.new_robot);
     delay_ = {};

@@ -9,8 +9,6 @@ namespace {
 
 class CoreTest : public testing::Test {
  protected:
-  CoreTest() { core_.registry() = predefined(); }
-
   /// A step with ConstantVelocity intended in the cycle before.
   Core::Outputs step() {
     inputs_.intent = Intent{inputs_.cycle, true, {{"v", "ConstantVelocity", 2, true, {}}}};
@@ -19,6 +17,7 @@ class CoreTest : public testing::Test {
   Core::Outputs step_with_that_intent() {
     ++inputs_.cycle;
     inputs_.new_robot = inputs_.cycle == 1 ? &robot_ : nullptr;
+    inputs_.schemas = inputs_.cycle == 1 ? &schemas_ : nullptr;
     core_.processes().step(inputs_.cycle);
     Core::Outputs outputs = core_.step(inputs_);
     inputs_.new_frame = false;
@@ -26,6 +25,7 @@ class CoreTest : public testing::Test {
   }
 
   const RobotModel robot_ = pioneer();
+  const Registry schemas_ = predefined();
   Core core_;
   Core::Inputs inputs_;
 };

@@ -103,7 +103,7 @@ std::string Service::missing() {
   take_maps();
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
-  if (registration == nullptr || core_.knows_map(registration->map_revision))
+  if (registration == nullptr || (map_revision_ && *map_revision_ >= registration->map_revision))
     return {};
   return std::string(bus::topics::kMap.name) + " of revision " +
          std::to_string(registration->map_revision);
@@ -119,7 +119,7 @@ void Service::step(const runtime::Turn& turn) {
   const Core::Outputs outputs = core_.step(inputs_of(turn));
   remember(outputs.intended.news);
   if (const auto& by = outputs.intended.stop)
-    core_.executor().heed({ports_.instance(), stops_.ask({"stop", {{"by", *by}}})});
+    stops_.ask({"stop", {{"by", *by}}}, std::exchange(next_stop_, bus::next_request_number()));
   publish(outputs);
   publish(outputs.intended.news);
   if (outputs.beliefs)
@@ -134,6 +134,10 @@ void Service::step(const runtime::Turn& turn) {
 void Service::between(double silence) {
   Core::Heard heard;
   take_goals(heard);
+  tell(heard, silence);
+}
+
+void Service::tell(const Core::Heard& heard, double silence) {
   const Core::Told told = core_.between(heard, silence);
   remember(told.news);
   publish(told.news);
@@ -172,10 +176,12 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
     inputs.percepts = percepts_from_bus(*perception, cycle, inputs.robot.odom);
   inputs.vision = vision();
   take_maps();
+  inputs.maps = std::exchange(new_maps_, {});
   take_goals(inputs.heard);
   take_claims(inputs.heard);
   take_grants(inputs.heard);
   take_answers(inputs.heard);
+  inputs.own_stop = {ports_.instance(), next_stop_};
   return inputs;
 }
 
@@ -194,10 +200,13 @@ std::optional<Core::Vision> Service::vision() {
 }
 
 void Service::take_maps() {
-  for (const auto& sample : maps_.take())
-    if (!sample.info.disposed)
-      core_.know_map(
-          {sample.data.revision, std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
+  for (const auto& sample : maps_.take()) {
+    if (sample.info.disposed)
+      continue;
+    map_revision_ = sample.data.revision;
+    new_maps_.push_back(
+        {*map_revision_, std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
+  }
 }
 
 void Service::take_behavior_schemas() {
@@ -207,9 +216,10 @@ void Service::take_behavior_schemas() {
   knows_behaviors_ = true;
   if (sample->schemas.empty())
     return;  // no evaluator of behaviors has none
-  const std::vector<BehaviorSignature> behaviors = from_bus(*sample);
-  folders_.know_behaviors(behaviors);
-  ports_.say(core_.know_behaviors(behaviors).lines());
+  Core::Heard heard;
+  heard.behaviors = from_bus(*sample);
+  folders_.know_behaviors(*heard.behaviors);
+  tell(heard);
 }
 
 void Service::take_goals(Core::Heard& heard) {
@@ -269,10 +279,12 @@ void Service::take_grants(Core::Heard& heard) {
 void Service::look() {
   if (knows_behaviors_ || !ports_.lockstep())
     take_behavior_schemas();
-  const ActivityFolders::News news = folders_.look();
-  ports_.say(core_.know_activities(news).lines());
+  ActivityFolders::News news = folders_.look();
   if (!news.changed)
     return;
+  Core::Heard heard;
+  heard.activities = std::move(news);
+  tell(heard);
   schemas_.write({.schemas = converted(core_.executor().registry().all(),
                                        [](const Schema* schema) { return to_bus(*schema); }),
                   .trouble = folders_.trouble()});

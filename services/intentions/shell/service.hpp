@@ -6,6 +6,7 @@
 #include <string>
 
 #include "intentions/shell/memory_file.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/core.hpp"
 #include "saphira/runtime/component.hpp"
@@ -46,6 +47,7 @@ class Service final : public runtime::Service {
 
  private:
   std::string missing();
+  void tell(const Core::Heard& heard, double silence = 0.0);
   void take_behavior_schemas();
   void take_maps();
   void take_goals(Core::Heard& heard);
@@ -86,6 +88,7 @@ class Service final : public runtime::Service {
   runtime::Asker map_requests_;
   runtime::Asker servo_;
   runtime::Asker stops_;
+  std::uint64_t next_stop_ = bus::next_request_number();
   bool robot_turns_head_ = false;
   runtime::Asker agents_;
   bus::Reader<v1::Answer> answers_;
@@ -97,7 +100,9 @@ class Service final : public runtime::Service {
   ActivityFolders folders_;
   Core core_;
   bool knows_behaviors_ = false;
-  lps::LpsSettings robot_;  ///< of this epoch
+  std::vector<Core::MapNews> new_maps_;        ///< since the last step
+  std::optional<std::uint64_t> map_revision_;  ///< of the newest map
+  lps::LpsSettings robot_;                     ///< of this epoch
 };
 
 }  // namespace saphira::intentions

@@ -46,6 +46,8 @@ Core::Core(Settings settings)
 }
 
 Core::Outputs Core::step(Inputs inputs) {
+  Outputs outputs;
+  learn(inputs.heard, outputs.notes);
   robot_here_ = true;
   intentions::Inputs now;
   now.epoch = inputs.stamp.epoch;
@@ -71,12 +73,13 @@ Core::Outputs Core::step(Inputs inputs) {
   if (!lockstep_)
     now.person = newest_grant_ ? why_to_wait(*newest_grant_) : std::string();
 
-  Outputs outputs;
   now.events = events_of(inputs.heard, outputs);
   std::string gone = who_is_gone(inputs);
   if (gone.empty() && !lockstep_)
     gone = newest_grant_ ? newest_grant_->refusal : std::string();
   outputs.intended = executor_.step(now);
+  if (outputs.intended.stop)
+    executor_.heed(inputs.own_stop);
   if (!gone.empty())
     for (GoalStatus& status : outputs.intended.news.changed)
       if (status.state == v1::GOAL_FAILED)
@@ -161,6 +164,7 @@ std::string Core::who_is_gone(const Inputs& inputs) {
 
 Core::Told Core::between(const Heard& heard, double silence) {
   Told told;
+  learn(heard, told.notes);
   told.news = executor_.hear(events_of(heard, told));
   // A single-stepped simulator may stand still for any time.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
@@ -206,6 +210,7 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
     around.things = &things_;
   }
   around.registration = inputs.registered;
+  newer_maps_.insert(newer_maps_.end(), inputs.maps.begin(), inputs.maps.end());
   take_maps(inputs.map_revision);
   around.topology = topology_;
   around.map = map_;
@@ -237,27 +242,22 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
     }
     map_ = std::move(news.map);
     lines_ = std::make_shared<const maps::LineMap>(*map_);
-    map_revision_ = news.revision;
     newer_maps_.pop_front();
   }
 }
 
-bool Core::knows_map(std::uint64_t revision) const {
-  return (map_ != nullptr && map_revision_ >= revision) ||
-         (!newer_maps_.empty() && newer_maps_.back().revision >= revision);
+void Core::learn(const Heard& heard, Notes& notes) {
+  if (heard.behaviors) {
+    executor_.know_behaviors(*heard.behaviors);
+    for (const Diagnostic& trouble : check_references(executor_.registry()))
+      notes.warn(trouble.text());
+  }
+  if (heard.activities)
+    know(*heard.activities, notes);
 }
 
-Notes Core::know_behaviors(const std::vector<BehaviorSignature>& behaviors) {
-  executor_.know_behaviors(behaviors);
-  Notes notes;
-  for (const Diagnostic& trouble : check_references(executor_.registry()))
-    notes.warn(trouble.text());
-  return notes;
-}
-
-Notes Core::know_activities(const ActivityFolders::News& news) {
+void Core::know(const ActivityFolders::News& news, Notes& notes) {
   const bool first = !std::exchange(knows_activities_, true);
-  Notes notes;
   for (const std::string& error : news.errors)
     notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
   // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
@@ -271,7 +271,6 @@ Notes Core::know_activities(const ActivityFolders::News& news) {
     if (!first)
       notes.info("took " + schema.name + " of " + schema.source);
   }
-  return notes;
 }
 
 std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,

@@ -63,6 +63,7 @@ class CoreTest : public testing::Test {
     core.processes().step(inputs_.stamp.cycle);
     Core::Outputs outputs = core.step(inputs_);
     inputs_.heard = {};
+    inputs_.maps.clear();
     inputs_.new_frame = false;
     note(outputs.intended.news);
     return outputs;
@@ -70,6 +71,15 @@ class CoreTest : public testing::Test {
   Core::Outputs ask(std::vector<Core::Heard::Goal> goals) {
     inputs_.heard.goals = std::move(goals);
     return step();
+  }
+  void know(std::uint64_t revision, maps::Map map) {
+    inputs_.maps.push_back({revision, std::make_shared<const maps::Map>(std::move(map))});
+  }
+  /// Between two cycles.
+  std::vector<Note> look(const ActivityFolders::News& news) {
+    Core::Heard heard;
+    heard.activities = news;
+    return core_.between(heard, 0.0).notes.lines();
   }
   void note(const News& news) {
     for (const GoalStatus& status : news.changed)
@@ -142,8 +152,9 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   stop.event.goal.functor = "stop";
   stop.event.goal.arguments.clear();
   inputs_.heard.goals = {stop};
+  inputs_.own_stop = {7, 1};
   EXPECT_EQ(step().intended.stop, stop.event.goal.requester);
-  core_.executor().heed({7, 1});
+  EXPECT_EQ(core_.executor().heeds(), (v1::StopId{7, 1}));
   inputs_.heard.grants.resize(1);
   inputs_.heard.grants[0].stop = {7, 1};
   for (int i = 0; i < 5; ++i)
@@ -448,17 +459,16 @@ TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
   news.errors = {"other.act:1:2: expected a name"};
   news.warnings = {"wave.act:3: it is odd"};
   using Lines = std::vector<Note>;
-  EXPECT_EQ(core_.know_activities(news).lines(),
-            (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
+  EXPECT_EQ(look(news), (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
   EXPECT_NE(core_.executor().registry().find("wave"), nullptr);
-  EXPECT_EQ(core_.know_activities(news).lines(),
+  EXPECT_EQ(look(news),
             (Lines{{Note::Level::error,
                     "other.act:1:2: expected a name\nWhat this file gave before stays in use."},
                    {Note::Level::warning, "wave.act:3: it is odd"},
                    {Note::Level::info, "took wave of wave.act"}}));
   news = {};
   news.removed = {"wave"};
-  EXPECT_TRUE(core_.know_activities(news).empty());
+  EXPECT_TRUE(look(news).empty());
   EXPECT_EQ(core_.executor().registry().find("wave"), nullptr);
 }
 
@@ -621,27 +631,26 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
   const std::string unknown = "there is no activity \"EJ-241\": saphira goal activities lists";
   Schema schema;
   schema.name = "go-to-place";
-  core_.executor().add(schema);
+  look({true, {schema}, {}, {}, {}});
   EXPECT_EQ(refusal(1, "EJ-241").find(unknown), 0U) << "there is no map yet";
   maps::Map map;
   map.features.emplace_back();
   map.features[0].id = 7;
   map.features[0].type = lps::PointType::office;
   map.features[0].name = "EJ-241";
-  core_.know_map({1, std::make_shared<const maps::Map>(map)});
+  know(1, map);
   step();
   EXPECT_EQ(refusal(2, "EJ-241"),
             "there is no activity \"EJ-241\", but a place of that name: did you mean go EJ-241?");
   EXPECT_EQ(refusal(3, "7").find("there is no activity \"7\": saphira goal activities"), 0U);
-  core_.executor().remove("go-to-place");
+  look({true, {}, {"go-to-place"}, {}, {}});
   EXPECT_EQ(refusal(4, "EJ-241").find(unknown), 0U) << "no activity goes there";
 }
 
 TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) {
-  core_.know_map({1, std::make_shared<const maps::Map>(
-                         maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
-                                         "ZONE (2) 8000, 0, 0, 2000, 2000 keep-out \"wet floor\"\n",
-                                         "a.map"))});
+  know(1, maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
+                          "ZONE (2) 8000, 0, 0, 2000, 2000 keep-out \"wet floor\"\n",
+                          "a.map"));
   inputs_.robot.odom_in_map = Pose{};
   const auto to = [](std::uint64_t number, double x, double y) {
     Core::Heard::Goal goal = written(number, kKaren);
@@ -670,10 +679,9 @@ TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) 
 }
 
 TEST_F(CoreTest, TellsTheEdgesOfTheMapNearTheRobotInOdom) {
-  core_.know_map({1, std::make_shared<const maps::Map>(
-                         maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
-                                         "OFFICE (2) 5000, 30000, 0, 4000, 4000\n",
-                                         "a.map"))});
+  know(1, maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
+                          "OFFICE (2) 5000, 30000, 0, 4000, 4000\n",
+                          "a.map"));
   inputs_.robot.odom_in_map = Pose{2.0, 0.5, 0.0};
   inputs_.registered.state = v1::REGISTRATION_LOST;
   EXPECT_TRUE(step().edges.empty()) << "its place is not sure";
@@ -691,16 +699,19 @@ class InLockstep : public CoreTest {
 
 // Plans must not depend on the map's time of arrival.
 TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
-  const auto map = std::make_shared<const maps::Map>();
-  core_.know_map({1, map});
-  core_.know_map({2, map});
-  EXPECT_TRUE(core_.knows_map(1));
-  EXPECT_TRUE(core_.knows_map(2));
-  EXPECT_FALSE(core_.knows_map(3));
+  const maps::Map hall = maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n", "a.map");
+  inputs_.robot.odom_in_map = Pose{};
+  inputs_.registered.state = v1::REGISTRATION_TRACKING;
+  know(1, {});
+  know(2, hall);
   inputs_.map_revision = 1;
-  step();
-  core_.know_map({4, map});
-  EXPECT_TRUE(core_.knows_map(3)) << "revision 3 will not come any more";
+  EXPECT_TRUE(step().edges.empty());
+  know(4, {});
+  EXPECT_TRUE(step().edges.empty());
+  inputs_.map_revision = 3;  // which was skipped
+  EXPECT_FALSE(step().edges.empty());
+  inputs_.map_revision = 4;
+  EXPECT_TRUE(step().edges.empty());
 }
 
 TEST_F(InLockstep, ASimulatorMayStandStillForAsLongAsItLikes) {

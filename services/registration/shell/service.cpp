@@ -44,9 +44,8 @@ Service::Service(runtime::Ports& ports, const Core::Settings& settings, std::str
       perception_(ports.cycle(bus::topics::kPerception)),
       registrations_(ports.each_cycle(bus::topics::kRegistration)),
       maps_(ports.changes(bus::topics::kMap)),
+      requests_(ports.requests(bus::topics::kRegistrationRequest, Core::functors())),
       saver_(ports.files() == Files::kStay ? "" : memory_file_) {
-  ports.requests(bus::topics::kRegistrationRequest, Core::functors(),
-                 [this](const Request& request) { return core_->act(request); });
   try {
     core_.emplace(settings);
   } catch (const std::invalid_argument& error) {
@@ -85,8 +84,11 @@ void Service::step(const runtime::Turn& turn) {
   if (seen != nullptr && seen->odom == inputs.odom)
     for (const v1::Percept& percept : seen->percepts)
       inputs.percepts.push_back(lps::from_bus(percept));
+  const std::vector<Request> requests = requests_.take(turn.stamp);
+  inputs.requests = requests;
 
   const Core::Outputs outputs = core_->step(inputs);
+  requests_.answer(requests, outputs.answers);
   v1::Registration sample = to_bus(outputs, inputs.pose_in_odom);
   sample.odom = inputs.odom;
   sample.map_revision = core_->map_revision();
@@ -99,6 +101,8 @@ void Service::step(const runtime::Turn& turn) {
 }
 
 void Service::between(double /*silence*/) {
+  const std::vector<Request> requests = requests_.take(ports_.stamp());
+  requests_.answer(requests, core_->between(requests));
   publish_map();
 }
 

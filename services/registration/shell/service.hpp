@@ -42,6 +42,7 @@ class Service final : public runtime::Service {
   bus::Input<v1::Perception>& perception_;
   runtime::Output<v1::Registration> registrations_;
   runtime::Output<v1::FloorMap> maps_;
+  Desk& requests_;
   std::optional<Core> core_;
   runtime::Saver saver_;
   std::optional<std::uint64_t> published_;  ///< revision of the map

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "saphira/base/archive.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
@@ -209,6 +208,7 @@ void Core::end_building() {
 }
 
 Core::Outputs Core::step(const Inputs& inputs) {
+  std::vector<Answer> answers = between(inputs.requests);
   if (inputs.new_robot != nullptr)
     begin(*inputs.new_robot);
   now_.odom = inputs.odom;
@@ -217,6 +217,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   now_.pose_in_map = outputs.pose_in_map;
   if (!environment_.works())
     outputs.environment = 0;
+  outputs.answers = std::move(answers);
   return outputs;
 }
 
@@ -346,12 +347,16 @@ const std::vector<Functor>& Core::functors() {
   return functors;
 }
 
-Answer Core::act(const Request& request) {
-  try {
-    return {AnswerCode::done, "", obey(request)};
-  } catch (const std::exception& error) {
-    return {AnswerCode::refused, error.what(), {}};
+std::vector<Answer> Core::between(std::span<const Request> requests) {
+  std::vector<Answer> answers;
+  for (const Request& request : requests) {
+    try {
+      answers.push_back({AnswerCode::done, "", obey(request)});
+    } catch (const std::exception& error) {
+      answers.push_back({AnswerCode::refused, error.what(), {}});
+    }
   }
+  return answers;
 }
 
 Registration& Core::placed() {
@@ -453,20 +458,6 @@ std::optional<Remembered> Core::remembered() const {
     now.memory.pose_in_odom = now_.pose_in_odom;
   }
   return now;
-}
-
-void Core::archive(Archive& a) {
-  a("processes", processes_)("now", now_);
-  bool placed = registration_.has_value();
-  maps::Map map = placed ? registration_->map() : maps::Map{};
-  a("placed", placed)("map", map);  // while the map is being built, still the one before
-  if (a.restores())
-    registration_.reset();
-  if (!placed)
-    return;
-  if (a.restores())
-    registration_.emplace(settings_for(now_.sonars), std::move(map));
-  a("registration", *registration_);
 }
 
 }  // namespace saphira::registration

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "saphira/base/archive.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/state.hpp"
@@ -75,7 +74,6 @@ class Registration::Self {
   void switch_on(bool on);
   const RegistrationState& state() const { return now_; }
   void set_state(RegistrationState state) { now_ = std::move(state); }
-  void archive(Archive& a) { now_.archive(a); }
   void follow_edit(const maps::Map& old);
   Memory save() const;
   void restore(const Memory& memory, const std::optional<Pose>& start);
@@ -726,10 +724,6 @@ void Registration::recall_closed(std::set<std::uint32_t> doors) {
 
 const RegistrationState& Registration::state() const {
   return self_->state();
-}
-
-void Registration::archive(Archive& a) {
-  self_->archive(a);
 }
 
 Memory Registration::save() const {

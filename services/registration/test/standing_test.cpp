@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "saphira/base/archive.hpp"
-
 namespace saphira::registration {
 namespace {
 
@@ -80,13 +78,6 @@ TEST(Standing, WhileItTurnsSlowlyEverythingChanges) {
   Standing standing;
   for (int i = 0; i < 1000; ++i)
     EXPECT_FALSE(standing.step({0.0, 0.0, radians(0.5)}, around(1.0 + 0.01 * i))) << i;
-}
-
-TEST(Standing, ARestoredOneGoesOnAsTheFirstOne) {
-  Standing standing;
-  carried(standing, around(1.0), 20);
-  auto copy = restored<Standing>(saved(standing));
-  EXPECT_EQ(carried(copy, around(3.0), 4), carried(standing, around(3.0), 4));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/bus/notes.hpp"
-#include "saphira/bus/request_client.hpp"
 
 namespace saphira::runtime {
 namespace {
@@ -22,10 +21,10 @@ Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {
   declare(bus::topics::kRobotDescription.name, Port::Use::kState);
 }
 
-std::uint64_t Asker::ask(Request request) {
+std::uint64_t Asker::ask(Request request, std::uint64_t number) {
   request.source = node_->options().name;
   request.asker = node_->instance();
-  request.number = bus::next_request_number();
+  request.number = number;
   request.stamp = cycle_->stamp();
   const bool taken = writer_.write(to_bus(request)) &&
                      (!node_->options().lockstep || writer_.wait_acknowledged(kAcknowledged));
@@ -34,16 +33,12 @@ std::uint64_t Asker::ask(Request request) {
   return request.number;
 }
 
-void Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors, Desk::Act act) {
+Desk& Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors) {
   declare(topic.name, Port::Use::kEvents);
   declare(topic.answers.name, Port::Use::kChanges);
   desks_.push_back(std::make_unique<Desk>(node_, topic.answers));
-  desks_.back()->serve(topic, std::move(functors), std::move(act));
-}
-
-void Ports::take_requests() {
-  for (const auto& desk : desks_)
-    desk->take(cycle_.stamp());
+  desks_.back()->serve(topic, std::move(functors));
+  return *desks_.back();
 }
 
 void Ports::say(const std::vector<Note>& notes) {

@@ -47,8 +47,7 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
       others_(std::move(others)),
       desk_(node, bus::topics::kProcessAnswers),
       states_(node.writer(bus::topics::kProcesses)) {
-  desk_.serve(bus::topics::kProcessRequest, functors(),
-              [this](const Request& request) { return act(request); });
+  desk_.serve(bus::topics::kProcessRequest, functors());
   publish();
 }
 
@@ -59,17 +58,22 @@ ProcessesOnBus::~ProcessesOnBus() {
 
 void ProcessesOnBus::step(const v1::Stamp& stamp) {
   stamp_ = stamp;
-  desk_.take(stamp_);
+  take();
   table_.step(stamp.cycle);
   publish();
 }
 
 void ProcessesOnBus::idle() {
-  desk_.take(stamp_);
+  take();
   publish();
 }
 
-std::optional<Answer> ProcessesOnBus::act(const Request& request) {
+void ProcessesOnBus::take() {
+  for (const Request& request : desk_.take(stamp_))
+    desk_.answer(request, act(request));
+}
+
+Answer ProcessesOnBus::act(const Request& request) {
   const std::string& process = text_of(request.arguments, "process");
   const ProcessAction action = action_of(request.functor);
   const auto cycles = static_cast<std::uint32_t>(number_of(request.arguments, "cycles"));
@@ -78,7 +82,7 @@ std::optional<Answer> ProcessesOnBus::act(const Request& request) {
     wrong = others_(process, action, cycles);
   if (!wrong)
     wrong = table_.request(process, action, cycles);
-  return Answer{wrong->empty() ? AnswerCode::done : AnswerCode::refused, *wrong};
+  return {wrong->empty() ? AnswerCode::done : AnswerCode::refused, *wrong};
 }
 
 void ProcessesOnBus::publish() {

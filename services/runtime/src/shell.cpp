@@ -43,7 +43,6 @@ void Shell::idle() {
 void Shell::step_now(const bus::Step& step) {
   stepped_ = Clock::now();
   processes_.step(cycle_.stamp());
-  ports_.take_requests();
   if (step.new_epoch)
     odom_.reset();
   const std::uint64_t odom = step.robot.odom;
@@ -58,7 +57,6 @@ void Shell::step_now(const bus::Step& step) {
 
 void Shell::between() {
   processes_.idle();
-  ports_.take_requests();
   service_->between(std::chrono::duration<double>(Clock::now() - stepped_).count());
   if (Clock::now() - looked_ >= kIdleLook)
     look();

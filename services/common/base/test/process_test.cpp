@@ -4,8 +4,6 @@
 
 #include <stdexcept>
 
-#include "saphira/base/archive.hpp"
-
 namespace saphira {
 namespace {
 
@@ -173,28 +171,6 @@ TEST(ProcessTable, TellsOfChangesButNotOfNaps) {
   EXPECT_FALSE(table.take_changed());
   table.step(9);
   EXPECT_TRUE(table.take_changed());
-}
-
-TEST(ProcessTable, GoesOnFromWhatWasSaved) {
-  ProcessTable a;
-  ProcessTable b;
-  for (ProcessTable* const table : {&a, &b})
-    for (const char* const name : {"one", "two"})
-      table->add(name, "");
-  a.step(1);
-  a.request("one", ProcessAction::suspend, 3);
-  a.request("two", ProcessAction::interrupt);
-  for (std::uint64_t cycle = 2; cycle < 8; ++cycle) {
-    restore(saved(a), b);
-    a.step(cycle);
-    b.step(cycle);
-    EXPECT_EQ(saved(a), saved(b)) << cycle;
-  }
-  EXPECT_TRUE(b.find("one")->works());
-  EXPECT_FALSE(b.find("two")->works());
-  ProcessTable none;
-  none.add("one", "");
-  EXPECT_THROW(restore(saved(a), none), std::runtime_error);
 }
 
 }  // namespace

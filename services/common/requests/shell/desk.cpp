@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "requests/shell/convert.hpp"
 #include "saphira/bus/sender.hpp"
 
 namespace saphira {
-namespace {
-
-constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
-
-}  // namespace
 
 Desk::Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers)
     : node_(node), writer_(node.writer(answers)) {
@@ -21,18 +17,20 @@ Desk::Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers)
     audit_.emplace(node);
 }
 
-void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act) {
-  counters_.push_back(std::make_unique<Counter>(
-      Counter{node_.reader<v1::Request>(topic), std::move(functors), std::move(act)}));
+void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors) {
+  counters_.push_back(
+      std::make_unique<Counter>(Counter{node_.reader<v1::Request>(topic), std::move(functors)}));
 }
 
-void Desk::take(const v1::Stamp& now) {
+std::vector<Request> Desk::take(const v1::Stamp& now) {
   now_ = now;
+  std::vector<Request> out;
   for (const auto& counter : counters_)
-    take(*counter);
+    take(*counter, out);
+  return out;
 }
 
-void Desk::take(Counter& counter) {
+void Desk::take(Counter& counter, std::vector<Request>& out) {
   // Mostly nobody has a request. The last requests of a program that has just left are still read.
   const bool asks = counter.reader.matched() > 0;
   const bool asked = std::exchange(counter.asked, asks);
@@ -51,41 +49,36 @@ void Desk::take(Counter& counter) {
     std::stable_sort(due.begin(), due.end(), [](const Request& a, const Request& b) {
       return std::tie(a.stamp.cycle, a.source) < std::tie(b.stamp.cycle, b.source);
     });
-  for (Request& request : due)
-    handle(counter, std::move(request));
+  for (Request& request : due) {
+    const v1::Answer* const known =
+        request.number == 0 ? nullptr : counter.known.find(request.asker, request.number);
+    if (known != nullptr && !known->service.empty())
+      writer_.write(*known);  // it may not have arrived
+    if (known != nullptr)
+      continue;
+    if (const auto refused = refusal(counter.functors, request))
+      answer(request, refused);
+    else
+      out.push_back(std::move(request));
+  }
 }
 
-void Desk::handle(const Counter& counter, Request request) {
-  const Id id{request.asker, request.number};
-  const auto known =
-      std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == id; });
-  if (id.second != 0 && known != known_.end()) {
-    if (known->second)
-      writer_.write(*known->second);
-    return;
-  }
-  known_.emplace_back(id, std::nullopt);
-  if (known_.size() > kKnown)
-    known_.pop_front();
-
-  std::optional<Answer> done = refusal(counter.functors, request);
-  if (!done)
-    done = counter.act(request);
-  const bool refuses = done && !well(done->code);
+void Desk::answer(const Request& request, const std::optional<Answer>& outcome) {
+  const bool refuses = outcome && !well(outcome->code);
   const bool is_own =
       request.person && (request.person->role == "services" || request.person->role == "robot");
   if (audit_ && !is_own)
     audit_->write({.act = refuses ? v1::AUDIT_REFUSED : v1::AUDIT_ASKED,
                    .who = request.source,
-                   .text = describe(request) + (refuses ? ": " + done->text : "")});
+                   .text = describe(request) + (refuses ? ": " + outcome->text : "")});
   if (refuses) {
     ++refused_;
-    node_.warn("a request of " + request.source + ": " + done->text);
+    node_.warn("a request of " + request.source + ": " + outcome->text);
   } else {
     node_.info(describe(request) + ", asked for by " + request.source);
   }
-  if (done)
-    answer(id.first, id.second, *done);
+  if (outcome)
+    answer(request.asker, request.number, *outcome);
 }
 
 void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
@@ -95,9 +88,8 @@ void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answe
   sample.number = number;
   sample.service = node_.options().name;
   writer_.write(sample);
-  for (auto& [id, newest] : known_)
-    if (id == Id{asker, number})
-      newest = sample;
+  for (const auto& counter : counters_)
+    counter->known.keep(sample);
 }
 
 }  // namespace saphira

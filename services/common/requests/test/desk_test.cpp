@@ -13,24 +13,26 @@ constexpr double kPatience = 60.0;  // [s] for expected samples
 
 class DeskTest : public testing::Test {
  protected:
-  /// A desk that counts its calls.
+  /// A desk, and serve(), which counts.
   void open(bool lockstep = false) {
     service.emplace(test::memory_options("registration", lockstep), memory);
     desk.emplace(*service, bus::topics::kRegistrationAnswers);
     desk->serve(bus::topics::kRegistrationRequest,
                 {{"count", "counts", {whole_parameter("by", "how far", 0.0, 10.0)}},
-                 {"later", "is answered later"}},
-                [this](const Request& request) -> std::optional<Answer> {
-                  newest = request;
-                  order += request.source;
-                  if (request.functor == "later")
-                    return Answer{AnswerCode::underway, "", {}};
-                  total += number_of(request.arguments, "by");
-                  return Answer{AnswerCode::done, "", {number("total", total)}};
-                });
+                 {"later", "is answered later"}});
+  }
+  void serve() {
+    for (const Request& request : desk->take(now)) {
+      newest = request;
+      order += request.source;
+      total += number_of(request.arguments, "by");
+      desk->answer(request, request.functor == "later"
+                                ? Answer{AnswerCode::underway, "", {}}
+                                : Answer{AnswerCode::done, "", {number("total", total)}});
+    }
   }
   v1::Answer ask(const v1::Request& request, double patience = kPatience) {
-    return client.ask(request, patience, nullptr, [this] { desk->take(now); });
+    return client.ask(request, patience, nullptr, [this] { serve(); });
   }
   static v1::Request count(double by) {
     return v1::Request{.functor = "count", .arguments = {bus::number("by", by)}};
@@ -79,7 +81,7 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   request.number = 1;
   for (int i = 0; i < 3; ++i) {
     writer.write(request);
-    desk->take(now);
+    serve();
   }
   EXPECT_EQ(total, 2.0);
   const auto told = answers.take();
@@ -87,21 +89,33 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   EXPECT_EQ(told[2].data, told[0].data);
   request.number = 2;
   writer.write(request);
-  desk->take(now);
+  serve();
   EXPECT_EQ(total, 4.0);
   request.number = 0;  // from an asker that does not count
   for (int i = 0; i < 2; ++i) {
     writer.write(request);
-    desk->take(now);
+    serve();
   }
   EXPECT_EQ(total, 8.0);
+}
+
+TEST_F(DeskTest, NobodySpoilsARequestByItsNumberOnAnotherTopic) {
+  bus::Node bridge(test::memory_options("bridge"), memory);
+  Desk of_two(bridge, bus::topics::kRobotAnswers);
+  of_two.serve(bus::topics::kServo, {{"servo", "turns"}});
+  of_two.serve(bus::topics::kDriveStop, {{"stop", "stops"}});
+  auto servo = person.writer<v1::Request>(bus::topics::kServo);
+  auto stop = person.writer<v1::Request>(bus::topics::kDriveStop);
+  servo.write({.asker = 9, .number = 1, .functor = "servo"});
+  stop.write({.asker = 9, .number = 1, .functor = "stop"});
+  EXPECT_EQ(of_two.take(now).size(), 2U);
 }
 
 TEST_F(DeskTest, SaysLaterWhatBecameOfIt) {
   open();
   v1::Request request{.functor = "later"};
   const v1::Answer answer = client.ask(request, kPatience, nullptr, [this] {
-    desk->take(now);
+    serve();
     if (newest.functor == "later")
       desk->answer(newest.asker, newest.number, {AnswerCode::given_up, "too heavy", {}});
   });
@@ -137,16 +151,16 @@ TEST_F(DeskTest, InLockstepServicesAreHeardInTheSameStepAndOrderInEveryRun) {
   write("b", 20, 1);
   write("c", 19, 2);
   write("a", 20, 3);
-  desk->take(now);
+  serve();
   EXPECT_EQ(order, "");
   now.cycle = 21;
-  desk->take(now);
+  serve();
   EXPECT_EQ(order, "c");
   now.cycle = 22;
-  desk->take(now);
+  serve();
   EXPECT_EQ(order, "cab");
   write("p", 0, 4);  // without cycles: at once
-  desk->take(now);
+  serve();
   EXPECT_EQ(order, "cabp");
 }
 
@@ -156,7 +170,7 @@ TEST_F(DeskTest, LiveServicesAreHeardAtOnce) {
   request.stamp.epoch = now.epoch;
   request.stamp.cycle = now.cycle;
   writer.write(request);
-  desk->take(now);
+  serve();
   EXPECT_EQ(total, 1.0);
 }
 
@@ -170,7 +184,7 @@ TEST_F(DeskTest, NamesTheAskerAsTheBusHasCheckedIt) {
   request.person = {"anna", "agent"};
   writer.write(request);
   auto audit = person.reader(bus::topics::kAudit);
-  desk->take(now);
+  serve();
   const auto entries = audit.take();
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_EQ(entries[0].data.act, v1::AUDIT_ASKED);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct CoreSettings {
   /// least.
   double guard_margin = 0.25;
   bool keeps_latches = false;  ///< the latches outlive a restart
+  bool vision = false;         ///< the robot's vision system is used
 };
 
 /// The bridge without bus, clock, files and sockets. It decides on: the session with the robot, old
@@ -86,12 +88,13 @@ class Core {
   void command(const DriveCommand& command, double now);
   /// A writer of motor commands is gone.
   void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
-  /// Stops every driver at once, with the hardest brakes; whoever drove has to let go, or to begin
-  /// anew. Returns the stopped drivers in words. An answer that is underway ends with StopEnded,
-  /// once the robot has been at rest.
-  Answer stop(const Request& request, double now);
-  /// Releases the emergency stop, at the request of `source`.
-  Answer reset_estop(const std::string& source, double now);
+  /// Carries out "stop", "reset" of the emergency stop, or a request to a device
+  /// (reflector::functors). Nothing, or an answer that is underway: more follows as LaterAnswer.
+  ///
+  /// A stop stops every driver at once, with the hardest brakes; whoever drove has to let go, or to
+  /// begin anew. Its answer names the stopped drivers; its end follows once the robot has been at
+  /// rest.
+  std::optional<Answer> request(const Request& request, double now);
   /// Lockstep: the simulator may step while its cycle is less than this.
   void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
   /// All events that had come were passed on: decides, and answers.
@@ -122,8 +125,6 @@ class Core {
   const authority::Grant& grant() const { return grant_; }
   const authority::Latches& latches() const { return arbiter_.latches(); }
   const protocol::RobotParameters& parameters() const { return reflector_.parameters(); }
-  /// For the devices' requests, which the caller hands over.
-  reflector::Reflector& reflector() { return reflector_; }
 
  private:
   /// The state of one session with the robot, forgotten at its end.
@@ -173,6 +174,11 @@ class Core {
   void begin_cycle(const protocol::InformationPacket& packet, double now);
   void finish_cycle(double now);
   void other(protocol::ServerPacket any, std::uint8_t type, double now);
+  Answer stop(const Request& request, double now);
+  Answer reset_estop(const std::string& source, double now);
+  std::optional<Answer> device(const Request& request);
+  void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
+  void tell_devices();
   std::uint64_t bad_packets() const;
   void heed(const protocol::ConfigPacket& set, double now);
   void mind_brakes();
@@ -217,6 +223,11 @@ class Core {
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
+  /// The fields of the information packet that are told with the devices.
+  std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,
+             std::optional<std::uint16_t>, std::optional<std::uint8_t>, std::optional<double>,
+             std::optional<double>, std::uint8_t, std::optional<double>>
+      shown_;
   Line line_;
   double own_deceleration_ = 0.0;  ///< [m/s2] from its parameter file
   std::string robot_trouble_;      ///< why a connected robot is not served

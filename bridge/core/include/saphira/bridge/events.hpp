@@ -94,20 +94,27 @@ struct Told {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position
 };
-/// The end of a stop (Core::stop).
-struct StopEnded {
-  v1::StopId id;
-  Answer answer;
-};
-/// Any packet except an information packet, for devices and cameras.
+/// Any packet except an information packet, for serial lines and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
-  std::uint8_t type = 0;
   v1::Stamp stamp;
 };
-/// The devices may have news.
+/// A later answer to a request (Core::request).
+struct LaterAnswer {
+  std::uint64_t asker = 0;
+  std::uint64_t number = 0;
+  Answer answer;
+};
+/// The requests to the devices, their reports or the shown state have changed.
 struct DevicesChanged {
+  std::vector<reflector::DeviceRequest> requests;
+  reflector::Devices::Reports reports;
+  protocol::Information information;
   v1::Stamp stamp;
+};
+/// A setting of the vision system that a request has changed.
+struct VisionSet {
+  std::string text;
 };
 struct GrantDecided {
   authority::Grant grant;
@@ -152,8 +159,9 @@ struct StatusReport {
   std::optional<Reaction> reaction;
 };
 
-using Output = std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket,
-                            DevicesChanged, GrantDecided, StopEnded, WatchLink, CloseLink,
-                            KeepLatches, KeepOdometry, StatusReport, Note, v1::AuditEntry>;
+using Output =
+    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, LaterAnswer,
+                 DevicesChanged, VisionSet, GrantDecided, WatchLink, CloseLink, KeepLatches,
+                 KeepOdometry, StatusReport, Note, v1::AuditEntry>;
 
 }  // namespace saphira::bridge

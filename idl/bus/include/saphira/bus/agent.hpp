@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "saphira/bus/known_requests.hpp"
 #include "saphira/bus/request_client.hpp"
 
 namespace saphira::bus {
@@ -57,7 +56,6 @@ class Agent {
   void tell(const std::string& functor, std::vector<v1::Argument> arguments);
 
  private:
-  using Id = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
   void handle(const v1::Request& request);
 
   Node& node_;
@@ -71,7 +69,7 @@ class Agent {
   RequestClient solver_;
   std::map<std::string, Answerer> answerers_;
   std::function<void(const v1::Request&)> stop_;
-  std::deque<std::pair<Id, v1::Answer>> known_;  ///< newest requests with their newest answers
+  KnownRequests known_;
   bool answering_ = false;
 };
 

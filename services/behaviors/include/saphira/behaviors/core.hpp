@@ -17,7 +17,8 @@ class Core {
   struct Inputs {
     std::uint64_t cycle = 0;
     const RobotModel* new_robot = nullptr;  ///< the first step of an epoch
-    bool new_frame = false;  ///< the odom frame has another origin since the last step
+    bool new_frame = false;             ///< the odom frame has another origin since the last step
+    const Registry* schemas = nullptr;  ///< all, where they have changed since the last step
     RobotNow robot;
     std::vector<lps::SonarReading> sonars;  ///< new ones, in firing order
     std::optional<Intent> intent;           ///< the newest, of any frame
@@ -34,7 +35,6 @@ class Core {
 
   Outputs step(const Inputs& inputs);
 
-  Registry& registry() { return executive_.registry(); }
   ProcessTable& processes() { return processes_; }
 
  private:

@@ -77,6 +77,10 @@ class Core {
     std::vector<Grant> grants;
     /// Answers of agents, by the number of the question (intentions::Outputs). For steps alone.
     std::vector<std::pair<std::uint64_t, Answer>> answers;
+    /// The schemas that the behaviors service can evaluate, where they have changed.
+    std::optional<std::vector<BehaviorSignature>> behaviors;
+    /// The activities of files that have changed.
+    std::optional<ActivityFolders::News> activities;
   };
 
   /// A map of the registration service.
@@ -108,9 +112,12 @@ class Core {
     std::uint64_t intent_age = 1;       ///< [cycles] of the intent that they were computed from
     Registered registered;
     std::optional<std::uint64_t> map_revision;  ///< used by registration; none: it was not heard
+    /// New ones. In lockstep a map counts from the step on for which registration used it.
+    std::vector<MapNews> maps;
     std::optional<std::vector<lps::Percept>> percepts;  ///< none: no interpretation
     std::optional<Vision> vision;
     Heard heard;
+    v1::StopId own_stop;  ///< of the stop that this step may ask for
   };
   struct Outputs {
     intentions::Outputs intended;
@@ -136,17 +143,7 @@ class Core {
   /// Handles inputs that need no cycle; `silence` [s] since the newest one.
   Told between(const Heard& heard, double silence);
 
-  /// Takes a map. In lockstep it counts from the step on for which registration used it.
-  void know_map(MapNews news) { newer_maps_.push_back(std::move(news)); }
-  /// True where registration's map is known.
-  bool knows_map(std::uint64_t revision) const;
-  /// The schemas that the behaviors service can evaluate.
-  Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);
-
-  /// The activities of files that have changed.
-  Notes know_activities(const ActivityFolders::News& news);
-
-  Executor& executor() { return executor_; }
+  const Executor& executor() const { return executor_; }
   ProcessTable& processes() { return processes_; }
   /// Carries out the action on an intention by its instance, its number, or I and its number
   /// (manual 6.5, 2.3.8), or approves a goal by resuming its id: empty where done, the reason where
@@ -155,6 +152,8 @@ class Core {
                                  std::uint32_t cycles);
 
  private:
+  void know(const ActivityFolders::News& news, Notes& notes);
+  void learn(const Heard& heard, Notes& notes);
   /// Out: Outputs or Told.
   template <class Out>
   std::vector<GoalEvent> events_of(const Heard& heard, Out& out);
@@ -194,9 +193,8 @@ class Core {
   std::shared_ptr<const maps::Map> map_;
   std::shared_ptr<const maps::Topology> topology_;
   std::shared_ptr<const maps::LineMap> lines_;  ///< of the map
-  std::uint64_t map_revision_ = 0;
-  std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
-  std::deque<MapNews> newer_maps_;     ///< lockstep: newer than the present cycle
+  std::uint64_t places_revision_ = 0;           ///< of the map when its topology changed last
+  std::deque<MapNews> newer_maps_;              ///< lockstep: newer than the present cycle
   std::map<GoalId, Writer> requesters_;
   /// The first asker of a goal.
   struct Owner {

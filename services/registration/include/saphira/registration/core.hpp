@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ class Core {
     Pose pose_in_odom;
     std::vector<lps::Percept> percepts;       ///< of the cycle before, in this odom frame
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+    std::span<const Request> requests{};      ///< that functors() can take
   };
   struct Outputs {
     v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
@@ -57,18 +59,19 @@ class Core {
     std::uint32_t environment = 0;  ///< id of the artifact around the robot; 0: none known
     std::vector<v1::Match> matches;
     std::vector<std::uint32_t> closed_doors;
+    std::vector<Answer> answers;  ///< to the requests, in their order
     Notes notes;
 
     bool operator==(const Outputs&) const = default;
   };
   /// The first step has to bring a robot.
   Outputs step(const Inputs& inputs);
+  /// The answers to requests between two cycles: there may be no robot.
+  std::vector<Answer> between(std::span<const Request> requests);
 
-  /// The requests of registration.
+  /// The requests of registration. A refused request has changed nothing. The result "id" is that
+  /// of the added or removed artifact.
   static const std::vector<Functor>& functors();
-  /// In a cycle or between two: carries out a request that functors() can take. A refused request
-  /// has changed nothing. The result "id" is that of the added or removed artifact.
-  Answer act(const Request& request);
 
   const maps::Map& map() const { return now_.editor.map(); }
   /// Increases with every change of the map.
@@ -86,12 +89,8 @@ class Core {
   /// Its micro-tasks. They are stepped before the core, for the same cycle.
   ProcessTable& processes() { return processes_; }
 
-  /// Its whole learnt state: another Core continues from it to the last bit.
-  void archive(Archive& a);
-
  private:
-  /// Its whole learnt state but that of the Registration. State that a step leaves for a later one
-  /// belongs here.
+  /// Its learnt state but that of the Registration.
   struct State {
     std::string option;  ///< the map at the start of the service
     maps::Editor editor;

@@ -38,10 +38,6 @@ class ObjectFinder {
   /// which tells the finder that they are on the map).
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
-  template <class Archive>
-  void archive(Archive& a) {
-    a("candidates", candidates_);
-  }
 
  private:
   struct Candidate {

@@ -57,10 +57,6 @@ class ParticleCloud {
     double drift_variance = 0.0;
   };
   Estimate estimate() const;
-  template <class Archive>
-  void archive(Archive& a) {
-    a("random", random_)("particles", particles_);
-  }
 
  private:
   struct Particle {

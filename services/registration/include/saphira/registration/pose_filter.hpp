@@ -46,10 +46,6 @@ class PoseFilter {
   void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
-  template <class Archive>
-  void archive(Archive& a) {
-    a("state", state_)("covariance", covariance_)("errors", errors_);
-  }
 
  private:
   State state_ = State::Zero();

@@ -61,10 +61,6 @@ class Presence {
     watched_.clear();
     closed_ = std::move(closed);
   }
-  template <class Archive>
-  void archive(Archive& a) {
-    a("watched", watched_)("closed", closed_);
-  }
 
  private:
   struct Watched {

@@ -22,10 +22,6 @@
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
 
-namespace saphira {
-class Archive;
-}
-
 namespace saphira::registration {
 
 /// One sigma of a pose.
@@ -163,10 +159,7 @@ class Registration {
 
   /// The learnt state, see state.hpp.
   const RegistrationState& state() const;
-  /// For one with the same map and settings.
-  void archive(Archive& a);
-
-  /// The part that the service saves over a restart: much less.
+  /// The part that the service saves over a restart.
   Memory save() const;
   /// Continues from there in the same odometry frame. In another one the pose is a guess, beside
   /// `start`: lost until the readings fit only one of them.

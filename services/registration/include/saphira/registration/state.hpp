@@ -18,9 +18,7 @@
 namespace saphira::registration {
 
 /// The whole learnt state of a Registration, without data that follow from its map or settings.
-/// Another Registration with the same map and settings continues from it to the last bit.
-///
-/// State that a step leaves for a later one belongs here. A map edit keeps this whole, so that no
+/// State that a step leaves for a later one belongs here: a map edit keeps this whole, so that no
 /// member can be forgotten.
 struct RegistrationState {
   /// A matched percept.
@@ -37,17 +35,6 @@ struct RegistrationState {
         cloud(settings.cloud),
         presence(settings.presence),
         objects(settings.objects) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a("on", on)("state", state)("filter", filter)("confirmed", confirmed)("doubted", doubted);
-    a("carried", carried)("start", start)("other_map", other_map)("cycle", cycle)("odom", odom);
-    a("pose_in_odom", pose_in_odom)("moved", moved)("way", way)("turned", turned)("turns", turns);
-    a("done", done)("used", used)("since_readings", since_readings)("trial", trial);
-    a("weighed", weighed)("lead", lead)("cloud_score", cloud_score)("leads", leads)("led", led);
-    a("cloud", cloud)("search", search)("standing", standing)("presence", presence);
-    a("objects", objects)("output", output);
-  }
-
   bool on = true;
   v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
   std::optional<PoseFilter> filter;

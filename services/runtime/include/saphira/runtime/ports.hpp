@@ -10,6 +10,7 @@
 #include "saphira/base/durable.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/bus/cycle.hpp"
+#include "saphira/bus/request_client.hpp"
 
 namespace saphira::runtime {
 
@@ -76,10 +77,10 @@ class Asker {
   Asker(bus::Node& node, const bus::Cycle& cycle, const bus::RequestTopic& topic)
       : node_(&node), cycle_(&cycle), writer_(node.writer<v1::Request>(topic)) {}
 
-  /// Sends a request; returns its number in the answers. In lockstep it returns when every program
-  /// that takes such requests has it: any program that knows the service's later samples knows the
-  /// request, too.
-  std::uint64_t ask(Request request);
+  /// Sends a request; returns its number in the answers, `number`. In lockstep it returns when
+  /// every program that takes such requests has it: any program that knows the service's later
+  /// samples knows the request, too.
+  std::uint64_t ask(Request request, std::uint64_t number = bus::next_request_number());
   /// True where some program takes such requests.
   bool is_taken() const { return writer_.matched() > 0; }
 
@@ -126,16 +127,14 @@ class Ports {
   Output<T> recall(const bus::Topic<T>& topic) {
     return output(topic, Port::Use::kRecall);
   }
-  /// Takes requests: each is checked against `functors` and passed to `act`, in a step or between
-  /// two.
-  void requests(const bus::RequestTopic& topic, std::vector<Functor> functors, Desk::Act act);
+  /// Takes requests that fit `functors`. The service takes and answers them in each step, and
+  /// between two.
+  Desk& requests(const bus::RequestTopic& topic, std::vector<Functor> functors);
   /// Sends requests on such a topic.
   Asker asker(const bus::RequestTopic& topic) {
     declare(topic.name, Port::Use::kChanges);
     return {node_, cycle_, topic};
   }
-  /// For the shell: carries out the requests.
-  void take_requests();
 
   /// Further conditions of a step, for which lockstep waits (bus::Cycle::gate).
   void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }

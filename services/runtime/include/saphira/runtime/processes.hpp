@@ -30,7 +30,8 @@ class ProcessesOnBus {
   void idle();
 
  private:
-  std::optional<Answer> act(const Request& request);
+  void take();
+  Answer act(const Request& request);
   void publish();
 
   bus::Node& node_;

@@ -99,14 +99,6 @@ class ProcessTable {
 
   std::vector<const Process*> processes() const;
 
-  /// The progress of each process. The memory of a process's own function is its owner's.
-  template <class Archive>
-  void archive(Archive& a) {
-    for (const auto& process : processes_)
-      a(process->name_, process->now_);
-    a("told", told_)("asked", asked_);
-  }
-
  private:
   std::vector<std::unique_ptr<Process>> processes_;
   std::vector<int> told_;  ///< states, as of the last take_changed()
