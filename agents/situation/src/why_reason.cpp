@@ -548,7 +548,7 @@ std::string Reason::last_known(bool brief) const {
       status->stamp.epoch != scene_.robot->stamp.epoch)
     return {};
   const double age = seconds_of(scene_.now - std::min(scene_.now, status->stamp.cycle));
-  return "last known of " + goal_of(status->id, brief) + ": " + v1::name_of(status->state) + ", " +
+  return "last known of " + goal_of(status->id, brief) + ": " + v1::word_of(status->state) + ", " +
          seconds_text(age) + " ago";
 }
 
@@ -571,7 +571,7 @@ std::string Reason::goals_reason(bool brief) const {
     return requester(newest->id) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason;
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") +
-         goal_of(newest->id, brief) + ": " + v1::name_of(newest->state) +
+         goal_of(newest->id, brief) + ": " + v1::word_of(newest->state) +
          (reason.empty() ? "" : ", " + reason);
 }
 
