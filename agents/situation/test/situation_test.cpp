@@ -136,7 +136,7 @@ TEST(Json, HoldsProgramsDriveGoalsAndTrouble) {
   s.intentions_known.newest = s.now - 40;
   const auto json = nlohmann::json::parse(to_json(s));
   EXPECT_EQ(json.at("programs").size(), 5U);
-  EXPECT_EQ(json.at("programs").at(0).at("name"), "bridge");
+  EXPECT_EQ(json.at("programs").at(0).at("name"), "behaviors");
   EXPECT_EQ(json.at("programs").at(2).at("state"), "lost");
   EXPECT_EQ(json.at("drive").at("role"), "behaviors");
   EXPECT_EQ(json.at("goals").at(0).at("functor"), "go_to");
