@@ -57,10 +57,17 @@ void merge(const Json& change, Json& situation) {
     situation.merge_patch(json);
 }
 
-/// `NAME VALUE ...` of a known change, or a change itself.
+/// `NAME VALUE ...` of a known change, a change itself, or `/PATH/TO/MEMBER JSON`.
 void change(const std::string& text, const Changes& changes, Json& situation) {
   if (text.starts_with('{') || text.starts_with('['))
     return merge(Json::parse(text), situation);
+  if (text.starts_with('/')) {
+    const std::size_t space = text.find(' ');
+    const std::uint64_t now = situation.value("now", std::uint64_t{0});
+    situation[Json::json_pointer(text.substr(0, space))] =
+        evaluated(Json::parse(text.substr(std::min(space, text.size()))), now);
+    return;
+  }
   std::istringstream in(text);
   std::string name;
   in >> name;
