@@ -15,6 +15,16 @@ namespace {
 
 namespace contract = saphira::test;
 
+Program program(const std::string& name) {
+  Program made;
+  made.age = 0.4;
+  made.status.name = name;
+  made.status.state = v1::SERVICE_RUNNING;
+  made.status.stamp = {7, 1000};
+  made.status.uptime = 60.0;
+  return made;
+}
+
 void read(const Json& json, Known& known) {
   known = {json.value("oldest", std::uint64_t{0}), json.value("newest", std::uint64_t{0})};
 }
@@ -28,10 +38,12 @@ void read(const Json& json, std::vector<T>& samples) {
 }
 void read(const Json& json, std::vector<Program>& programs) {
   for (const auto& [name, of] : json.items()) {
-    programs.push_back(program(name));
+    programs.push_back(program(name.substr(0, name.find('#'))));
     bus::internal::JsonReader().structure(of.value("status", Json::object()),
                                           programs.back().status, name);
     programs.back().age = of.value("age", programs.back().age);
+    programs.back().namesake = of.value("namesake", false);
+    programs.back().clock_behind = of.value("clock_behind", 0.0);
   }
 }
 template <class T>
@@ -85,27 +97,6 @@ Json driving_json() {
   static const Json office = evaluated(
       Json::parse(read_file(contract::source("agents/situation/test/office.json"))), 1000);
   return office;
-}
-
-Program program(const std::string& name) {
-  Program made;
-  made.age = 0.4;
-  made.status.name = name;
-  made.status.state = v1::SERVICE_RUNNING;
-  made.status.stamp = {7, 1000};
-  made.status.uptime = 60.0;
-  return made;
-}
-
-void remove(Situation& situation, const std::string& name) {
-  std::erase_if(situation.programs, [&](const Program& one) { return one.status.name == name; });
-}
-
-Program& find(Situation& situation, const std::string& name) {
-  for (Program& one : situation.programs)
-    if (one.status.name == name)
-      return one;
-  throw std::invalid_argument("no program " + name);
 }
 
 Json evaluated(const Json& json, std::uint64_t now) {
