@@ -1094,7 +1094,7 @@ TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
   for (const std::string& line : whole.said())
     trace += "says: " + line + "\n";
   const GoalStatus& status = whole.status(goal);
-  trace += std::string(name_of(status.state)) + ": " + status.reason + "\n";
+  trace += std::string(word_of(status.state)) + ": " + status.reason + "\n";
   EXPECT_TRUE(whole.ended(goal));
   EXPECT_EQ(whole.trouble(), "");
   const char* const source = std::getenv("SAPHIRA_SOURCE_DIR");

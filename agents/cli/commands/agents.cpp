@@ -221,7 +221,7 @@ int list_agents(bus::NodeOptions options, const bus::Stop& stop) {
 void add_ask(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<AskOptions>();
   CLI::App* command = app.add_subcommand("ask", "Ask whichever agent can answer");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {"ask"};
   command->add_option("functor", options->functor,
                       "what is asked for; or FUNCTOR(name=value, ...), perhaps several");
   command->add_flag("--list", options->list, "what can be asked for, as saphira agents");
@@ -265,7 +265,7 @@ void add_agents(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* command =
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
-  chosen.reaches_all(command, [words] { return words->empty(); });
+  chosen.reach[command] = {"agents", [words] { return words->empty(); }};
   command->add_option("words", *words, "withdraw ID: that trigger fires no more");
   command->footer(
       "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");

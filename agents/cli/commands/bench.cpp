@@ -58,6 +58,7 @@ void add_bench(CLI::App& app, Chosen& chosen) {
       "bench", "Run a benchmark, with its own options behind its name; without a name: list them");
   command->add_option("name", *name, "the benchmark");
   command->allow_extras();
+  chosen.apart.insert(command);
   command->callback([name, command, &chosen] {
     chosen.run = [name, rest = command->remaining()](const bus::NodeOptions&, const bus::Stop&) {
       return bench(*name, rest);

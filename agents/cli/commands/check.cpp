@@ -58,10 +58,7 @@ std::vector<ChildSpec> dry_lines(const Deployment& deployment, Places places,
                                  std::vector<std::string>& left_out) {
   places.run = folder.path();
   places.robot = options.robot;
-  std::vector<ChildSpec> children = command_lines(deployment, places, set, &left_out);
-  for (ChildSpec& child : children)
-    child.environment.merge(as_environment(options));
-  return children;
+  return command_lines_on(options, deployment, places, set, &left_out);
 }
 
 std::string program_of(const ChildSpec& child) {
@@ -144,6 +141,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
   command->add_option("--set", options->set, "name=value: a setting of the deployment")
       ->take_all()
       ->type_size(1);
+  chosen.apart.insert(command);
   command->footer("Nothing is started, and what runs is not touched. Exit code 0: it would start.");
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop&) {
     return check(options->deployment, options->set, node);

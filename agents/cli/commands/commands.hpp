@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "saphira/base/numbers.hpp"
@@ -34,12 +35,15 @@ struct Chosen {
       return what(*options, node, stop);
     });
   }
-  /// The command reaches every robot (--robot '*'), if `so` holds for its options.
-  void reaches_all(
-      const CLI::App* command, std::function<bool()> so = [] { return true; }) {
-    reach[command] = std::move(so);
-  }
-  std::map<const CLI::App*, std::function<bool()>> reach;
+  /// The command reaches every robot (--robot '*'), if `now` holds for its options. name: of what
+  /// does, for people; empty: it has to do with no robot.
+  struct Reach {
+    std::string name;
+    std::function<bool()> now = [] { return true; };
+  };
+  std::map<const CLI::App*, Reach> reach;
+  /// The commands with a bus of their own, or none: they do not join one that runs.
+  std::set<const CLI::App*> apart;
 };
 
 /// A validator of finite numbers; expected: the words for its error message.

@@ -5,9 +5,12 @@
 #include <set>
 
 #include "commands.hpp"
+#include "direct.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/cli/device_words.hpp"
+#include "saphira/cli/map_words.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -17,13 +20,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kDeclarations{1000};  // for what programs declare: a person waits for it
-
-std::vector<std::string> topics() {
-  std::vector<std::string> names;
-  for (const bus::TopicEntry& topic : bus::known_topics())
-    names.push_back(topic.name);
-  return names;
-}
 
 std::vector<std::string> commands(const CLI::App& root) {
   std::vector<std::string> names;
@@ -73,21 +69,22 @@ std::vector<std::string> fixed_words(const CLI::App& root, const Begun& line) {
   if (name == "help")
     return commands(root);
   if (name == "echo" || name == "write")
-    return topics();
+    return topic_names();
   if (name == "up" || name == "check" || name == "stop" || name == "renew")
     return names_in(config_folder() + "/deployments", ".yaml");
+  if (name == "map")
+    return map_verbs();
+  if (name == "device") {
+    std::vector<std::string> words = device_names();
+    words.insert(words.begin(), {"list", "follow"});
+    return words;
+  }
   static const std::map<std::string, std::vector<std::string>> kWords{
       {"goal", {"go", "drive", "turn", "stop", "list", "cancel", "activities"}},
       {"why", {"not"}},
       {"beliefs", {"set", "unset"}},
       {"processes", {"interrupt", "resume", "suspend"}},
-      {"knows", {"forget"}},
-      {"device",
-       {"list", "follow", "servo", "look", "gripper", "output", "analog", "timer", "sonar", "sound",
-        "motors", "origin", "bumpers", "report", "serial", "vision"}},
-      {"map",
-       {"follow", "list", "save", "show", "build", "load", "delete", "put", "remove", "place",
-        "find", "on", "off", "features", "snap", "route"}}};
+      {"knows", {"forget"}}};
   if (const auto known = kWords.find(name); known != kWords.end())
     return known->second;
   std::vector<std::string> found;
@@ -152,7 +149,7 @@ std::vector<std::string> candidates(const CLI::App& root, const std::vector<std:
 
 void add_complete(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("complete", "For the shell: what may come next");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {};
   command->group("");
   command->set_help_flag();  // --help is a word to complete
   command->prefix_command();

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -13,7 +12,6 @@
 #include "commands.hpp"
 #include "environment.hpp"
 #include "lps/shell/convert.hpp"
-#include "maps/shell/convert.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
@@ -26,7 +24,7 @@
 #include "saphira/cli/supervisor.hpp"
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
-#include "saphira/maps/topology.hpp"
+#include "saphira/viewer/picture.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -68,14 +66,8 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
                                 const std::string& run, const std::string& trace) {
   Places places = find_places();
   places.run = run;
-  Deployment deployment = load_deployment(find_deployment("demo", places));
-  deployment.bus.robot = node.robot;
-  deployment.bus.domain = node.domain;
-  deployment.bus.profile = "host";
+  Deployment deployment = own_deployment("demo", places, node, has_console(options));
   deployment.bus.lockstep = options.lockstep;
-  if (!has_console(options))
-    std::erase_if(deployment.programs,
-                  [](const Program& program) { return program.name == "console" || program.when; });
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
   if (!options.world.empty()) {
     set.push_back("world=" + options.world);
@@ -100,9 +92,7 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
       all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
     deployment.programs = {all};
   }
-  std::vector<ChildSpec> children = command_lines(deployment, places, set);
-  for (ChildSpec& child : children)
-    child.environment.merge(as_environment(node));
+  std::vector<ChildSpec> children = command_lines_on(node, deployment, places, set);
   // The simulator is the deployment's first program; with saphira-all there is only one.
   children.at(0).argv.insert(children.at(0).argv.end(), more.begin(), more.end());
   return children;
@@ -129,9 +119,9 @@ class Watcher {
     if (description_.poll())
       picture_.set_radius(description_->radius);
     grant_.poll();
-    const bool drawn = map_sample_.poll();
+    const bool drawn = map_.poll();
     if (drawn)
-      map_ = maps::from_bus(*map_sample_);
+      walls_ = viewer::plan_of(*map_).walls;
     if (registration_.poll() || drawn)
       place_walls();
     bool any = false;
@@ -176,22 +166,13 @@ class Watcher {
     double range = 0.0;
   };
 
-  /// The map in odom, by the robot's registration.
+  /// The walls of the map in odom, by the robot's registration.
   void place_walls() {
     std::vector<std::pair<Vec2, Vec2>> walls;
     if (registration_ && registration_->state == v1::REGISTRATION_TRACKING)
-      for (const maps::Feature& feature : map_.features) {
-        if (feature.length <= 0.0)
-          continue;
-        std::vector<Vec2> points =
-            feature.width > 0.0 ? maps::corners(feature)
-                                : std::vector{maps::begin_of(feature), maps::end_of(feature)};
-        for (Vec2& point : points)
-          point = to_frame(lps::from_bus(registration_->odom_in_map), point);
-        for (std::size_t i = 0; i + 1 < points.size(); ++i)
-          walls.emplace_back(points[i], points[i + 1]);
-        if (points.size() > 2)
-          walls.emplace_back(points.back(), points.front());
+      for (const viewer::Line& wall : walls_) {
+        const Pose odom = lps::from_bus(registration_->odom_in_map);
+        walls.emplace_back(to_frame(odom, wall.from), to_frame(odom, wall.to));
       }
     picture_.set_walls(std::move(walls));
   }
@@ -232,9 +213,9 @@ class Watcher {
   bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
   Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
   Newest<v1::Grant> grant_{node_, bus::topics::kGrant};
-  Newest<v1::FloorMap> map_sample_{node_, bus::topics::kMap};
+  Newest<v1::FloorMap> map_{node_, bus::topics::kMap};
   Newest<v1::Registration> registration_{node_, bus::topics::kRegistration};
-  maps::Map map_;
+  std::vector<viewer::Line> walls_;  ///< of the map
   std::optional<v1::RobotState> robot_;
   std::map<int, Reading> newest_;  ///< by sonar
 };
@@ -338,11 +319,9 @@ class Demo {
       if (lines())
         print("%s\n", address_.c_str());
     }
-    kept_.push_back((from.empty() ? "saphira" : std::string(from)) + " | " + std::string(line));
-    if (kept_.size() > kKeptLines)
-      kept_.pop_front();
+    const std::string& whole = kept_.add(from, line);
     if (options_.verbose && !screen_.on())
-      complain("%s\n", kept_.back().c_str());
+      complain("%s\n", whole.c_str());
   }
 
   bool lines() const { return !screen_.on() && !options_.json; }
@@ -463,7 +442,7 @@ class Demo {
       outcome = "interrupted; " + outcome;
     if (misused) {
       // Of the other programs, which wait for it or do not take the same, nothing.
-      for (const std::string& line : kept_)
+      for (const std::string& line : kept_.lines())
         if (line.starts_with(*misused + " | "))
           std::fprintf(stderr, "%s\n", line.c_str());
       std::fprintf(stderr, "saphira: %s does not take what it is given\n", misused->c_str());
@@ -477,7 +456,7 @@ class Demo {
       std::fprintf(stderr, "saphira: %s\n", trouble_.c_str());
     if (!summary.arrived && !interrupted && !options_.verbose) {
       std::fputs("the last that the programs said:\n", stderr);
-      for (const std::string& line : kept_)
+      for (const std::string& line : kept_.lines())
         std::fprintf(stderr, "  %s\n", line.c_str());
     }
     if (options_.json)
@@ -490,7 +469,7 @@ class Demo {
   bus::NodeOptions node_options_;
   RunFolder folder_;
   std::string trace_;
-  std::deque<std::string> kept_;  ///< newest lines of the programs
+  Kept kept_{kKeptLines};
   Screen screen_{!options_.headless && !options_.json && isatty(STDOUT_FILENO) != 0};
   Supervisor supervisor_;
   std::optional<v1::GoalStatus> status_;
@@ -505,6 +484,7 @@ class Demo {
 void add_demo(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand("demo", "A simulated robot drives to a goal in an office");
+  chosen.apart.insert(command);
   command->add_flag("--headless", options->headless, "lines in place of the picture");
   command->add_option("--seed", options->seed, "of the simulator's noise")
       ->check(whole<std::uint64_t>())

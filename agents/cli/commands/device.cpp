@@ -1,4 +1,5 @@
 // The command `saphira device`: the state of the robot's devices, and requests to them.
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
@@ -39,14 +40,18 @@ int nobody(const Watch& watch) {
   return failed("no robot: " + who_is_there(watch.processes));
 }
 
+/// Until a robot that is not heard counts as absent.
+milliseconds patience(const Watch& watch) {
+  return std::max(milliseconds(3000), listening_time(watch.node, watch.processes.heard_any()));
+}
+
 int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
   Watch watch(options);
-  const auto began = Clock::now();
   // The devices are latched: they come with the discovery, as the state does.
-  while (!stop.requested() && seconds_since(began) < 3.0 && !(watch.robot && watch.devices)) {
-    watch.node.wait(milliseconds(100), &stop);
+  wait_for(watch.node, patience(watch), stop, [&] {
     watch.poll();
-  }
+    return watch.robot && watch.devices;
+  });
   if (!watch.robot)
     return nobody(watch);
   std::fputs(table(device_rows(*watch.robot, watch.devices.get())).c_str(), stdout);
@@ -62,7 +67,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
     watch.node.wait(milliseconds(500), &stop);
     watch.poll();
     if (!watch.robot) {
-      if (seconds_since(said) > 3.0) {
+      if (Clock::now() - said > patience(watch)) {
         nobody(watch);
         said = Clock::now();
       }

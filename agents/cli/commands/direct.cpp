@@ -19,10 +19,15 @@ constexpr double kStuck = 5.0;  ///< [s] without any progress
 
 }  // namespace
 
-void expect_topic(const std::string& topic) {
+std::vector<std::string> topic_names() {
   std::vector<std::string> names;
   for (const bus::TopicEntry& entry : bus::known_topics())
     names.push_back(entry.name);
+  return names;
+}
+
+void expect_topic(const std::string& topic) {
+  const std::vector<std::string> names = topic_names();
   if (std::find(names.begin(), names.end(), topic) == names.end())
     throw std::invalid_argument("no topic \"" + topic.substr(0, 200) + '"' +
                                 did_you_mean(topic, names, ": expected one such as robot/state;") +

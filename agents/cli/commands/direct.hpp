@@ -55,6 +55,8 @@ class DirectDriver {
   std::string told_;
 };
 
+/// The names of all topics.
+std::vector<std::string> topic_names();
 /// Throws std::invalid_argument, with a guess, where there is no such topic.
 void expect_topic(const std::string& topic);
 /// The name of its QoS.

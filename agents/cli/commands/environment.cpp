@@ -55,6 +55,35 @@ bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
   return options;
 }
 
+Deployment own_deployment(const std::string& name, const Places& places,
+                          const bus::NodeOptions& options, bool with_people) {
+  Deployment deployment = load_deployment(find_deployment(name, places));
+  deployment.bus.robot = options.robot;
+  deployment.bus.domain = options.domain;
+  deployment.bus.profile = "host";
+  if (!with_people)
+    std::erase_if(deployment.programs,
+                  [](const Program& program) { return program.name == "console" || program.when; });
+  return deployment;
+}
+
+std::vector<ChildSpec> command_lines_on(const bus::NodeOptions& options,
+                                        const Deployment& deployment, const Places& places,
+                                        const std::vector<std::string>& set,
+                                        std::vector<std::string>* left_out) {
+  std::vector<ChildSpec> children = command_lines(deployment, places, set, left_out);
+  for (ChildSpec& child : children)
+    child.environment.merge(as_environment(options));
+  return children;
+}
+
+const std::string& Kept::add(std::string_view from, std::string_view line) {
+  lines_.push_back((from.empty() ? "saphira" : std::string(from)) + " | " + std::string(line));
+  if (lines_.size() > most_)
+    lines_.pop_front();
+  return lines_.back();
+}
+
 void execute(std::vector<std::string> words) {
   std::vector<char*> argv;
   for (std::string& word : words)

@@ -318,13 +318,10 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
   bus::Node node(node_options);
   Processes processes(node);
   Newest<v1::ActivitySchemas> known(node, bus::topics::kActivitySchemas);
-  const auto end = Clock::now() + milliseconds(5000);
-  while (!known && !stop.requested() && Clock::now() < end) {
-    node.wait(milliseconds(100), &stop);
-    processes.poll();
-    known.poll();
-  }
-  if (!known)
+  if (!wait_for(node, milliseconds(5000), stop, [&] {
+        processes.poll();
+        return known.poll();
+      }))
     return failed("nobody said what can be asked for; " + who_is_there(processes));
   bool any = false;
   std::vector<std::string> names;
@@ -352,8 +349,8 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
 void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
-  chosen.reaches_all(command,
-                     [options] { return options->words == std::vector<std::string>{"stop"}; });
+  chosen.reach[command] = {
+      "goal stop", [options] { return options->words == std::vector<std::string>{"stop"}; }};
   command->add_option(
       "words", options->words,
       "go X Y [m, in odom] | go PLACE | drive SPEED | turn to DEGREES | stop | "

@@ -132,6 +132,7 @@ void add_keys(CLI::App& app, Chosen& chosen) {
   words->file = usual_keys();
   CLI::App* command =
       app.add_subcommand("keys", "Keys of persons for the console's page and MCP by HTTP");
+  chosen.apart.insert(command);
   command->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& about,
                           int (*run)(const KeyWords&)) {
@@ -158,6 +159,7 @@ void add_audit(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<AuditWords>();
   CLI::App* command = app.add_subcommand(
       "audit", "Who drove, stopped, reset, asked and was refused, on the robot's machine");
+  chosen.apart.insert(command);
   command->add_option("file", words->file, "the audit [the newest of this machine]");
   command->add_flag("--check", words->check, "only say if it is whole and unchanged");
   command->add_option("--known", words->known, "a hash noted earlier, which has to be there");

@@ -122,7 +122,7 @@ int echo(const std::string& topic, std::uint64_t count, bool once, double timeou
 void add_list(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "list", "Topics, types, writers and readers with their QoS, and mismatches");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {"list"};
   chosen.when(command, list_topics);
 }
 

@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/robot_name.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/situation/words.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -53,22 +53,23 @@ void expect_one_robot(const CLI::App& root, const Chosen& chosen) {
   if (commands.empty())
     return;
   const auto found = chosen.reach.find(commands.front());
-  if (found != chosen.reach.end() && found->second())
+  if (found != chosen.reach.end() && found->second.now())
     return;
-  throw std::invalid_argument(
-      "every robot (*) is reached by list, status, agents, ask, goal stop and estop alone: "
-      "--robot NAME; saphira list names them");
+  std::vector<std::string> names;
+  for (const CLI::App* const command : root.get_subcommands({}))
+    if (const auto known = chosen.reach.find(command);
+        known != chosen.reach.end() && !known->second.name.empty())
+      names.push_back(known->second.name);
+  throw std::invalid_argument("every robot (*) is reached by " + situation::listed(names) +
+                              " alone: --robot NAME; saphira list names them");
 }
 
 /// A command joins a running bus of this machine, as far as its options leave that open.
-bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
-  static const std::set<std::string> others{"demo",  "scenario", "up",    "check", "stop",
-                                            "renew", "security", "bench", "keys",  "audit"};
+bus::NodeOptions with_running_bus(const CLI::App& root, const Chosen& chosen,
+                                  bus::NodeOptions options) {
   const auto commands = root.get_subcommands();
-  if (commands.empty() || others.contains(commands.front()->get_name()))
+  if (commands.empty() || chosen.apart.contains(commands.front()))
     return options;
-  if (commands.front()->get_name() == "log" && !commands.front()->get_subcommands().empty())
-    return options;  // of a file
   const auto given = [&](const char* option) { return root.get_option(option)->count() > 0; };
   const RunningBus usual = bus_of("", options);
   std::vector<RunningBus> running = running_buses();
@@ -112,7 +113,7 @@ int main(int argc, char** argv) {
         CLI::App* const help =
             app.add_subcommand("help", "This text; with a command's name: what that takes");
         help->add_option("command", about, "name of a command");
-        chosen.reaches_all(help);
+        chosen.reach[help] = {};
         // --robot and the like may stand behind the subcommand as well. (Separate programs have
         // their own options, and the words of complete are for no parser.)
         for (CLI::App* command : app.get_subcommands({}))
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
         if (options.robot == cli::kEveryRobot)
           cli::expect_one_robot(*root, chosen);
         if (chosen.run) {
-          const int code = chosen.run(cli::with_running_bus(*root, options), stop);
+          const int code = chosen.run(cli::with_running_bus(*root, chosen, options), stop);
           cli::flush_output();
           if (const std::string lost = cli::out().trouble(); code == bus::kExitOk && !lost.empty())
             throw std::runtime_error(lost);

@@ -18,6 +18,7 @@
 #include "saphira/cli/printer.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/route.hpp"
+#include "saphira/viewer/picture.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -61,13 +62,12 @@ class View {
   /// Waits for the map, and for the registration where requested.
   bool wait_for_map(const bus::Stop& stop, bool and_registration = true) {
     const auto began = Clock::now();
-    while (!stop.requested() && seconds_since(began) < kMapPatience) {
-      poll();
-      if (sample && (registration || !and_registration) && seconds_since(began) >= kAllHeard) {
-        deployments.settle(stop);
-        return true;
-      }
-      node.wait(milliseconds(100), &stop);
+    if (wait_for(node, std::chrono::duration<double>(kMapPatience), stop, [&] {
+          poll();
+          return sample && (registration || !and_registration) && seconds_since(began) >= kAllHeard;
+        })) {
+      deployments.settle(stop);
+      return true;
     }
     std::cerr << "saphira: no map: registration is not heard; " << who_is_there(processes) << '\n';
     return false;
@@ -138,46 +138,21 @@ int save(const std::string& path, const bus::NodeOptions& options, const bus::St
   return write_out(path, maps::to_text(view.map));
 }
 
-/// A raster of the grid's tiles, in the map.
-std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
+/// The grid as a raster of the map.
+std::optional<maps::Raster> raster_of(const viewer::Tiles& tiles,
                                       const v1::Registration& registration) {
-  std::optional<maps::Raster> raster;
-  int left = 0;
-  int low = 0;
-  int right = 0;
-  int high = 0;
-  const v1::GridTile* first = nullptr;
-  for (const v1::GridTile& tile : tiles) {
-    if (tile.odom != registration.odom || tile.side == 0)
-      continue;
-    left = first == nullptr ? tile.column : std::min<int>(left, tile.column);
-    right = first == nullptr ? tile.column : std::max<int>(right, tile.column);
-    low = first == nullptr ? tile.row : std::min<int>(low, tile.row);
-    high = first == nullptr ? tile.row : std::max<int>(high, tile.row);
-    first = first == nullptr ? &tile : first;
-  }
-  if (first == nullptr)
-    return raster;
-  const int side = static_cast<int>(first->side);
-  const double edge = side * first->resolution;
-  raster.emplace();
-  raster->cell = first->resolution;
-  raster->width = (right - left + 1) * side;
-  raster->height = (high - low + 1) * side;
-  raster->lower_left_in_map =
-      compose(lps::from_bus(registration.odom_in_map), {left * edge, low * edge, 0.0});
-  raster->occupied.assign(
-      static_cast<std::size_t>(raster->width) * static_cast<std::size_t>(raster->height), -1.0F);
-  for (const v1::GridTile& tile : tiles) {
-    if (tile.odom != registration.odom || static_cast<int>(tile.side) != side)
-      continue;
-    for (std::size_t i = 0; i < tile.cells.size(); ++i) {
-      const int x = (tile.column - left) * side + static_cast<int>(i) % side;
-      const int y = (tile.row - low) * side + static_cast<int>(i) / side;
-      if (tile.cells[i] <= 200 && y < raster->height)
-        raster->occupied[static_cast<std::size_t>(y * raster->width + x)] =
-            static_cast<float>(tile.cells[i]) / 200.0F;
-    }
+  const std::optional<viewer::Cells> grid = tiles.whole();
+  if (!grid || grid->odom != registration.odom)
+    return std::nullopt;
+  maps::Raster raster{.lower_left_in_map =
+                          compose(lps::from_bus(registration.odom_in_map), {grid->x, grid->y, 0.0}),
+                      .cell = grid->resolution,
+                      .width = static_cast<int>(grid->columns),
+                      .height = static_cast<int>(grid->rows),
+                      .occupied = {}};
+  for (const char cell : grid->cells) {
+    const auto value = static_cast<std::uint8_t>(cell);
+    raster.occupied.push_back(value <= 200 ? static_cast<float>(value) / 200.0F : -1.0F);
   }
   return raster;
 }
@@ -244,12 +219,12 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::Drawing> drawn;
   maps::Drawing drawing;
   maps::Trajectory way{"where the robot believes to be", {}};
-  std::map<std::pair<std::int32_t, std::int32_t>, v1::GridTile> tiles;
+  viewer::Tiles tiles(0.0);
   std::map<std::uint32_t, Pose> percepts;
   const auto began = Clock::now();
   do {
-    keep_newest(grid, tiles,
-                [](const v1::GridTile& tile) { return std::pair(tile.column, tile.row); });
+    for (const auto& sample : grid.take())
+      tiles.note(sample.data, sample.info.disposed);
     keep_newest(drawings, drawn,
                 [](const v1::Drawing& one) { return std::pair(one.instance, one.number); });
     if (const auto seen = perceptions.take_newest())
@@ -271,10 +246,6 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
     }
     view.node.wait(milliseconds(100), &stop);
   } while (!stop.requested() && seconds_since(began) < seconds);
-  std::vector<v1::GridTile> all;
-  all.reserve(tiles.size());
-  for (auto& [key, tile] : tiles)
-    all.push_back(std::move(tile));
   for (const auto& [key, one] : drawn)
     add(one, *view.registration, drawing);
   drawing.map = view.map;
@@ -282,7 +253,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   const maps::Feature* const in = maps::find(view.map, view.registration->environment);
   drawing.title =
       name_of(view.registration->state) + (in == nullptr ? std::string() : ", in " + describe(*in));
-  drawing.raster = raster_of(all, *view.registration);
+  drawing.raster = raster_of(tiles, *view.registration);
   if (!way.points_in_map.empty())
     drawing.trajectories.push_back(std::move(way));
   const v1::Covariance2& c = view.registration->covariance;

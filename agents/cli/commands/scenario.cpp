@@ -1,6 +1,5 @@
 // The paper's story (4.6): people tell the robot where they are, and send it for a report.
 #include <cstdio>
-#include <deque>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -63,23 +62,11 @@ struct Ending {
   std::string said;  ///< "speaker: text" a line
 };
 
-/// The last lines of the programs' output, shown after a failure.
-class Kept {
- public:
-  void add(std::string_view from, std::string_view line) {
-    lines_.push_back(std::string(from) + " | " + std::string(line));
-    if (lines_.size() > kKeptLines)
-      lines_.pop_front();
-  }
-  void show(const std::string& trouble) const {
-    complain("saphira: %s; the last that the programs said:\n", trouble.c_str());
-    for (const std::string& line : lines_)
-      complain("  %s\n", line.c_str());
-  }
-
- private:
-  std::deque<std::string> lines_;
-};
+void show(const Kept& kept, const std::string& trouble) {
+  complain("saphira: %s; the last that the programs said:\n", trouble.c_str());
+  for (const std::string& line : kept.lines())
+    complain("  %s\n", line.c_str());
+}
 
 Places places_of(const Run& run) {
   Places places = find_places();
@@ -89,12 +76,7 @@ Places places_of(const Run& run) {
 
 Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Places& places) {
   const story::Cast people = run.people();
-  Deployment deployment = load_deployment(find_deployment(people.deployment(), places));
-  deployment.bus.robot = node.robot;
-  deployment.bus.domain = node.domain;
-  deployment.bus.profile = "host";
-  std::erase_if(deployment.programs,
-                [](const Program& program) { return program.name == "console" || program.when; });
+  Deployment deployment = own_deployment(people.deployment(), places, node, false);
   // The simulator is the deployment's first program.
   std::vector<Placed>& simulator = deployment.programs.at(0).arguments;
   simulator.insert(simulator.end(), {Placed{"--trace"}, Placed{run.trace()}});
@@ -106,12 +88,9 @@ Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Pla
 std::vector<ChildSpec> programs(const ScenarioOptions& options, const Run& run,
                                 const bus::NodeOptions& node) {
   const Places places = places_of(run);
-  std::vector<ChildSpec> children =
-      command_lines(deployment_of(run, node, places), places,
-                    {"seed=" + std::to_string(run.seed), "rate=" + std::to_string(options.rate)});
-  for (ChildSpec& child : children)
-    child.environment.merge(as_environment(node));
-  return children;
+  return command_lines_on(
+      node, deployment_of(run, node, places), places,
+      {"seed=" + std::to_string(run.seed), "rate=" + std::to_string(options.rate)});
 }
 
 /// The whole system in one process, with the people.
@@ -127,8 +106,7 @@ std::vector<ChildSpec> one_program(const ScenarioOptions& options, const Run& ru
       all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
   deployment.programs = {all};
   std::vector<ChildSpec> children =
-      command_lines(deployment, places, {"seed=" + std::to_string(run.seed)});
-  children.at(0).environment.merge(as_environment(node));
+      command_lines_on(node, deployment, places, {"seed=" + std::to_string(run.seed)});
   children.at(0).argv.insert(children.at(0).argv.end(),
                              {"--step", "--free-step", "--grammar", "flakey", "--people", run.cast,
                               "--time-limit", std::to_string(options.time_limit)});
@@ -137,7 +115,7 @@ std::vector<ChildSpec> one_program(const ScenarioOptions& options, const Run& ru
 
 Ending play_live(const ScenarioOptions& options, const Run& run,
                  const bus::NodeOptions& node_options, const bus::Stop& stop) {
-  Kept kept;
+  Kept kept(kKeptLines);
   Supervisor supervisor(
       programs(options, run, node_options),
       [&](std::string_view from, std::string_view line) { kept.add(from, line); });
@@ -167,7 +145,7 @@ Ending play_live(const ScenarioOptions& options, const Run& run,
   }
   supervisor.stop();
   if (!trouble.empty())
-    kept.show(trouble);
+    show(kept, trouble);
   return {
       played.well(), played.handed_over(), played.time(), played.utterances(), played.hash(), {},
       said};
@@ -175,7 +153,7 @@ Ending play_live(const ScenarioOptions& options, const Run& run,
 
 Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
                         const bus::NodeOptions& node, const bus::Stop& stop) {
-  Kept kept;
+  Kept kept(kKeptLines);
   Ending ending;
   std::string said;
   bool told = false;
@@ -208,7 +186,7 @@ Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
     supervisor.step(milliseconds(200), {stop.fd()});
   supervisor.stop();
   if (!told && !stop.requested())
-    kept.show("saphira-all ended before the story");
+    show(kept, "saphira-all ended before the story");
   ending.said = said;
   return ending;
 }
@@ -223,7 +201,7 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
   if (!std::filesystem::exists(speech))
     throw std::runtime_error("--audio: there is no saphira-speech beside this program; " + text +
                              " has what was said. To hear it, " + kInstallSpeech);
-  Kept kept;
+  Kept kept(kKeptLines);
   ChildSpec reader{"speech", {speech, "--read", text, "--speaker", folder}, {}, false};
   Supervisor supervisor(
       {reader}, [&](std::string_view from, std::string_view line) { kept.add(from, line); });
@@ -231,7 +209,7 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
   while (!stop.requested() && !supervisor.finished())
     supervisor.step(milliseconds(200), {stop.fd()});
   if (!std::filesystem::exists(folder + "/dialogue.wav"))
-    kept.show("saphira-speech wrote no sound");
+    show(kept, "saphira-speech wrote no sound");
 }
 
 Ending play(const ScenarioOptions& options, const std::string& cast, std::uint64_t seed,
@@ -348,6 +326,7 @@ void add_scenario(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "scenario",
       "A robot follows its supervisor through an office, is told who is where, and gets a report");
+  chosen.apart.insert(command);
   command->add_option("--cast", options->casts, "the people: names of config/people, or files")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the simulator's noise")

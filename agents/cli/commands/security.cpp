@@ -149,6 +149,7 @@ void add_security(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "security",
       "Keys and certificates of a site, and the roles of its members (docs/security.md)");
+  chosen.apart.insert(command);
   command->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& about,
                           int (*run)(const Words&)) {

@@ -133,7 +133,7 @@ void add_status(CLI::App& app, Chosen& chosen) {
   auto watch = std::make_shared<bool>(false);
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("status", "Every process, and who drives and why");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {"status"};
   command->add_flag("--watch,-w", *watch, "again each second, until Ctrl-C");
   command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
       ->excludes("--watch");

@@ -197,14 +197,11 @@ int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const
 std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const bus::Stop& stop) {
   auto reader = node.reader(bus::topics::kKnows);
   std::optional<v1::Knowledge> knowledge;
-  const auto began = Clock::now();
-  while (!stop.requested() && !knowledge && seconds_since(began) < kSilence) {
-    node.wait(milliseconds(100), &stop);
+  wait_for(node, std::chrono::duration<double>(kSilence), stop, [&] {
     processes.poll();
     knowledge = reader.take_newest();
-    if (!absence(node, processes, kDialogue).empty())
-      break;
-  }
+    return knowledge || !absence(node, processes, kDialogue).empty();
+  });
   return knowledge;
 }
 

@@ -322,14 +322,12 @@ int up(const std::string& name, const std::vector<std::string>& set,
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<std::string> left_out;
-  std::vector<ChildSpec> children = command_lines(deployment, places, set, &left_out);
+  std::vector<ChildSpec> children = command_lines_on(options, deployment, places, set, &left_out);
   ProgramLocks locks;
-  for (ChildSpec& child : children) {
-    child.environment.merge(as_environment(options));
+  for (const ChildSpec& child : children)
     if (!child.robot.empty())
       locks.hold(child.name, child.robot, deployment.bus.domain.value_or(options.domain),
                  deployment.file + " (process " + std::to_string(getpid()) + ")");
-  }
 
   if (!handed_over) {
     if (const std::string why = refusal(deployment, places, set, options); !why.empty()) {
@@ -569,7 +567,8 @@ int stop_running(const Meant& wanted, const bus::Stop& stop) {
 void add_stop(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("stop", "Stop a deployment that saphira up has started");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {};
+  chosen.apart.insert(command);
   command->add_option("deployment", *name, "such as demo; needed where several run");
   chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop& stop) {
     return stop_running(meant_by(*name, app, options), stop);
@@ -580,7 +579,8 @@ void add_renew(CLI::App& app, Chosen& chosen) {
   auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "renew", "Let a deployment take in new versions of its programs, one after the other");
-  chosen.reaches_all(command);
+  chosen.reach[command] = {};
+  chosen.apart.insert(command);
   command->add_option("deployment", *name, "such as demo; needed where several run");
   chosen.when(command, [&app, name](const bus::NodeOptions& options, const bus::Stop&) {
     return renew_running(meant_by(*name, app, options));
@@ -596,6 +596,7 @@ void add_up(CLI::App& app, Chosen& chosen) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("up", "Start and supervise what a deployment file lists");
+  chosen.apart.insert(command);
   command->add_option("deployment", options->deployment, "a file, or a shipped one such as demo")
       ->required();
   command->add_option("--set", options->set, "name=value: a setting of the deployment")

@@ -21,6 +21,7 @@ using watch::Newest;
 using watch::poll_for;
 using watch::Processes;
 using watch::seconds_since;
+using watch::wait_for;
 using watch::who_is_there;
 
 /// Warns once when two deployments have this robot, in any command.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "saphira/base/places.hpp"
@@ -20,16 +21,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string line_of(const std::string& text, int number) {
-  std::size_t begin = 0;
-  for (int i = 1; i < number && begin != std::string::npos; ++i) {
-    begin = text.find('\n', begin);
-    if (begin != std::string::npos)
-      ++begin;
-  }
-  if (begin == std::string::npos)
-    return {};
-  return text.substr(begin, text.find('\n', begin) - begin);
+[[noreturn]] void fail_at(const Deployment& deployment, const Placed& at,
+                          const std::string& message) {
+  std::istringstream lines(deployment.text);
+  std::string line;
+  for (int i = 0; i < at.line; ++i)
+    if (!std::getline(lines, line))
+      line.clear();
+  throw FileError(deployment.file, at.line, at.column, message, line);
 }
 
 /// Reads one file, and its errors.
@@ -48,8 +47,7 @@ class Parser {
       fail(error.mark,
            "expected a deployment in YAML, such as config/deployments/demo.yaml: " + error.msg);
     }
-    if (!root.IsMap())
-      fail(root.Mark(), "expected a deployment (keys such as programs:), found " + kind(root));
+    expect(root.IsMap(), root, "a deployment (keys such as programs:)");
     keys(root, {{"robot", [this](const auto& n) { deployment_.bus.robot = robot(n); }},
                 {"domain", [this](const auto& n) { deployment_.bus.domain = domain(n); }},
                 {"profile", [this](const auto& n) { deployment_.bus.profile = profile(n); }},
@@ -78,9 +76,14 @@ class Parser {
   using Handlers = std::vector<std::pair<std::string, Handler>>;
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
-    const int line = std::max(mark.line, 0) + 1;
-    const int column = std::max(mark.column, 0) + 1;
-    throw FileError(deployment_.file, line, column, message, line_of(deployment_.text, line));
+    fail_at(deployment_, {"", std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1}, message);
+  }
+  void expect(bool good, const YAML::Node& node, const std::string& what) const {
+    if (!good)
+      fail(node.Mark(), "expected " + what + ", found " + kind(node));
+  }
+  static Placed placed(const YAML::Node& node) {
+    return {node.Scalar(), node.Mark().line + 1, node.Mark().column + 1};
   }
 
   static std::string kind(const YAML::Node& node) {
@@ -115,15 +118,14 @@ class Parser {
   }
 
   std::string word(const YAML::Node& node, const std::string& what) const {
-    if (!node.IsScalar() || node.Scalar().empty())
-      fail(node.Mark(), "expected " + what + ", found " + kind(node));
+    expect(node.IsScalar() && !node.Scalar().empty(), node, what);
     return node.Scalar();
   }
 
   bool boolean(const YAML::Node& node, const std::string& what) const {
     bool value = false;
-    if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value))
-      fail(node.Mark(), "expected true or false (" + what + "), found " + kind(node));
+    expect(node.IsScalar() && YAML::convert<bool>::decode(node, value), node,
+           "true or false (" + what + ")");
     return value;
   }
 
@@ -136,8 +138,8 @@ class Parser {
 
   std::uint32_t domain(const YAML::Node& node) const {
     unsigned value = 0;
-    if (!node.IsScalar() || !YAML::convert<unsigned>::decode(node, value) || value > 231)
-      fail(node.Mark(), "expected a DDS domain between 0 and 231, found " + kind(node));
+    expect(node.IsScalar() && YAML::convert<unsigned>::decode(node, value) && value <= 231, node,
+           "a DDS domain between 0 and 231");
     return value;
   }
 
@@ -149,37 +151,30 @@ class Parser {
   }
 
   std::string profile(const YAML::Node& node) const {
-    std::string name = word(node, "a network profile: host, lan or wan");
-    if (name != "host" && name != "lan" && name != "wan")
-      fail(node.Mark(), "expected a network profile: host, lan or wan, found \"" + name + "\"");
+    constexpr const char* kExpected = "a network profile: host, lan or wan";
+    std::string name = word(node, kExpected);
+    expect(name == "host" || name == "lan" || name == "wan", node, kExpected);
     return name;
   }
 
   std::vector<Placed> words(const YAML::Node& node, const std::string& what) const {
-    if (!node.IsSequence())
-      fail(node.Mark(), "expected " + what + ", found " + kind(node));
+    expect(node.IsSequence(), node, what);
     std::vector<Placed> all;
     for (const auto& entry : node) {
-      if (!entry.IsScalar())
-        fail(entry.Mark(), "expected a word or a number, found " + kind(entry));
-      all.push_back({entry.Scalar(), entry.Mark().line + 1, entry.Mark().column + 1});
+      expect(entry.IsScalar(), entry, "a word or a number");
+      all.push_back(placed(entry));
     }
     return all;
   }
 
   void settings(const YAML::Node& node) {
-    if (!node.IsMap())
-      fail(node.Mark(), "expected settings with their defaults (name: value), found " + kind(node));
+    expect(node.IsMap(), node, "settings with their defaults (name: value)");
     for (const auto& entry : node) {
       const std::string name = word(entry.first, "the name of a setting");
       if (name == "config" || name == "run" || name == "robot")
         fail(entry.first.Mark(), "${" + name + "} is built in: expected another name");
-      if (!entry.second.IsScalar())
-        fail(entry.second.Mark(),
-             "expected the default of " + name + ", found " + kind(entry.second));
-      const Placed value{entry.second.Scalar(), entry.second.Mark().line + 1,
-                         entry.second.Mark().column + 1};
-      if (!deployment_.settings.emplace(name, value).second)
+      expect(entry.second.IsScalar(), entry.second, "the default of " + name);
+      if (!deployment_.settings.emplace(name, placed(entry.second)).second)
         fail(entry.first.Mark(), "the setting \"" + name + "\" is there already");
     }
   }
@@ -193,20 +188,19 @@ class Parser {
   }
 
   void programs(const YAML::Node& node) {
-    if (!node.IsSequence())
-      fail(node.Mark(), "expected a list of programs (- program: NAME), found " + kind(node));
+    expect(node.IsSequence(), node, "a list of programs (- program: NAME)");
     for (const auto& entry : node)
       program(entry);
   }
 
   void program(const YAML::Node& node) {
-    if (!node.IsMap())
-      fail(node.Mark(), "expected a program (program: NAME), found " + kind(node));
+    expect(node.IsMap(), node, "a program (program: NAME)");
     Program made;
     keys(node,
          {{"program",
            [&](const auto& n) {
-             made.program = {word(n, "a program"), n.Mark().line + 1, n.Mark().column + 1};
+             word(n, "a program");
+             made.program = placed(n);
            }},
           {"name", [&](const auto& n) { made.name = word(n, "a name"); }},
           {"arguments", [&](const auto& n) { made.arguments = words(n, "a list of arguments"); }},
@@ -214,8 +208,8 @@ class Parser {
           {"bus", [&](const auto& n) { made.bus = boolean(n, "bus"); }},
           {"restart", [&](const auto& n) { made.restart = boolean(n, "restart"); }},
           {"when", [&](const auto& n) {
-             made.when = {word(n, "on, off or a ${setting}"), n.Mark().line + 1,
-                          n.Mark().column + 1};
+             word(n, "on, off or a ${setting}");
+             made.when = placed(n);
            }}});
     if (made.program.text.empty())
       fail(node.Mark(), "expected program: in this entry");
@@ -232,11 +226,6 @@ class Parser {
 
   Deployment deployment_;
 };
-
-[[noreturn]] void fail_at(const Deployment& deployment, const Placed& at,
-                          const std::string& message) {
-  throw FileError(deployment.file, at.line, at.column, message, line_of(deployment.text, at.line));
-}
 
 std::string replaced(const Deployment& deployment, const Placed& at,
                      const std::map<std::string, std::string>& values) {

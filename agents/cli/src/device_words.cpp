@@ -1,6 +1,7 @@
 #include "saphira/cli/device_words.hpp"
 
 #include <array>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -34,20 +35,6 @@ const char* const kDeviceWords =
 
 namespace {
 
-/// People's words, and the bridge's.
-constexpr std::array<std::pair<const char*, const char*>, 11> kGripperWords{
-    {{"open", "open"},
-     {"close", "close"},
-     {"stop", "stop"},
-     {"up", "lift up"},
-     {"down", "lift down"},
-     {"lift-stop", "lift stop"},
-     {"store", "store"},
-     {"deploy", "deploy"},
-     {"halt", "halt"},
-     {"pressure", "pressure"},
-     {"carry", "carry"}}};
-
 [[noreturn]] void fail(const std::string& expected, const std::string& found) {
   throw std::invalid_argument("expected " + expected +
                               (found.empty() ? "" : ", found \"" + found + "\""));
@@ -71,6 +58,11 @@ bool on_off(const std::string& word) {
   return word == "on";
 }
 
+/// An argument that is a whole number, as typed.
+Argument whole_of(const char* name, const std::string& word, long high, const std::string& what) {
+  return {name, static_cast<double>(whole(word, 0, high, what))};
+}
+
 /// The words after the device, each taken once.
 class Words {
  public:
@@ -80,6 +72,10 @@ class Words {
     if (!more())
       fail(what, "");
     return words_[at_++];
+  }
+  /// An argument that is a whole number.
+  Argument number(const char* name, long high, const std::string& what) {
+    return whole_of(name, next(what), high, what);
   }
   void end() const {
     if (more())
@@ -91,27 +87,22 @@ class Words {
   std::size_t at_ = 1;
 };
 
-/// An argument that is a whole number, as typed.
-Argument whole_of(const char* name, const std::string& word, long high, const std::string& what) {
-  return {name, static_cast<double>(whole(word, 0, high, what))};
-}
-
 Request gripper(Words& words) {
+  constexpr const char* kExpected =
+      "open, close, stop, up, down, lift-stop, store, deploy, halt, pressure, carry, or a number";
+  // The bridge's words where they are others.
+  static const std::map<std::string, std::string> lift{
+      {"up", "lift up"}, {"down", "lift down"}, {"lift-stop", "lift stop"}};
   const std::string word = words.next("what the gripper is to do");
-  for (std::size_t i = 0; i < kGripperWords.size(); ++i) {
-    if (word != kGripperWords.at(i).first)
-      continue;
-    const std::string action = kGripperWords.at(i).second;
-    Request out{"gripper", {{"action", action}}};
-    if (action == "pressure" || action == "carry")
-      out.arguments.push_back(whole_of("value", words.next("a value"), 0xFFFF, "a value"));
-    return out;
-  }
+  if (word == "pressure" || word == "carry")
+    return {"gripper", {{"action", word}, words.number("value", 0xFFFF, "a value")}};
+  if (const auto found = lift.find(word); found != lift.end())
+    return {"gripper", {{"action", found->second}}};
+  for (const char* const same : {"open", "close", "stop", "store", "deploy", "halt"})
+    if (word == same)
+      return {"gripper", {{"action", word}}};
   return {"gripper",
-          {{"action", std::string("number")},
-           whole_of("value", word, 0xFFFF,
-                    "open, close, stop, up, down, lift-stop, store, deploy, halt, "
-                    "pressure, carry, or a number")}};
+          {{"action", std::string("number")}, whole_of("value", word, 0xFFFF, kExpected)}};
 }
 
 Request sound(Words& words) {
@@ -181,51 +172,59 @@ Request sonar(Words& words) {
   return out;
 }
 
-DeviceCommand parse(const std::string& device, Words& words) {
+Request output(Words& words) {
+  Request out{"output", {words.number("bits", 255, "bits")}};
+  if (words.more())
+    out.arguments.push_back(words.number("mask", 255, "a mask"));
+  return out;
+}
+
+Request look(Words& words) {
+  const char* const what = "an angle [degrees]";
+  const auto angle = static_cast<double>(whole(words.next(what), -180, 180, what));
+  return {"look", {{"angle", radians(angle)}}};
+}
+
+struct Device {
+  const char* name;
+  const bus::RequestTopic& topic;
+  Request (*request)(Words& words);
+};
+const std::vector<Device>& devices() {
   using namespace bus::topics;
-  if (device == "servo")
-    return {&kServo,
-            {"servo",
-             {whole_of("width", words.next("a pulse width [us]"), 0xFFFF, "a pulse width [us]")}}};
-  if (device == "look")
-    return {&kServo,
-            {"look",
-             {{"angle", radians(static_cast<double>(whole(words.next("an angle [degrees]"), -180,
-                                                          180, "an angle [degrees]")))}}}};
-  if (device == "gripper")
-    return {&kGripper, gripper(words)};
-  if (device == "output") {
-    Request out{"output", {whole_of("bits", words.next("bits"), 255, "bits")}};
-    if (words.more())
-      out.arguments.push_back(whole_of("mask", words.next(""), 255, "a mask"));
-    return {&kDigitalOutput, out};
-  }
-  if (device == "analog")
-    return {&kAnalog, {"analog", {whole_of("port", words.next("a port"), 255, "a port")}}};
-  if (device == "timer")
-    return {&kTimer, {"timer", {whole_of("pin", words.next("a pin"), 7, "a pin")}}};
-  if (device == "sonar")
-    return {&kSonar, sonar(words)};
-  if (device == "sound")
-    return {&kSound, sound(words)};
-  if (device == "report")
-    return {&kServer, report(words)};
-  if (device == "serial")
-    return {&kSerial, serial(words)};
-  if (device == "vision")
-    return {&kVisionSystem, {"say", {{"text", words.next("a setting, such as pioneer_a_mode=1")}}}};
-  if (device == "motors")
-    return {&kServer, {"motors", {{"on", on_off(words.next("on or off"))}}}};
-  if (device == "origin")
-    return {&kServer, {"set_origin"}};
-  if (device == "bumpers")
-    return {&kServer, {"bump_stall", {whole_of("value", words.next("0..3"), 3, "which bumpers")}}};
-  const std::vector<std::string> devices{"servo",   "look",   "gripper", "output", "analog",
-                                         "timer",   "sonar",  "sound",   "motors", "origin",
-                                         "bumpers", "report", "serial",  "vision"};
-  throw std::invalid_argument("expected a device (" + joined(devices) + ")" +
-                              (device.empty() ? "" : ", found \"" + device + "\"") +
-                              did_you_mean(device, devices));
+  static const std::vector<Device> all{
+      {"servo", kServo,
+       [](Words& w) {
+         return Request{"servo", {w.number("width", 0xFFFF, "a pulse width [us]")}};
+       }},
+      {"look", kServo, look},
+      {"gripper", kGripper, gripper},
+      {"output", kDigitalOutput, output},
+      {"analog", kAnalog,
+       [](Words& w) {
+         return Request{"analog", {w.number("port", 255, "a port")}};
+       }},
+      {"timer", kTimer,
+       [](Words& w) {
+         return Request{"timer", {w.number("pin", 7, "a pin")}};
+       }},
+      {"sonar", kSonar, sonar},
+      {"sound", kSound, sound},
+      {"motors", kServer,
+       [](Words& w) {
+         return Request{"motors", {{"on", on_off(w.next("on or off"))}}};
+       }},
+      {"origin", kServer, [](Words&) { return Request{"set_origin"}; }},
+      {"bumpers", kServer,
+       [](Words& w) {
+         return Request{"bump_stall", {whole_of("value", w.next("0..3"), 3, "which bumpers")}};
+       }},
+      {"report", kServer, report},
+      {"serial", kSerial, serial},
+      {"vision", kVisionSystem, [](Words& w) {
+         return Request{"say", {{"text", w.next("a setting, such as pioneer_a_mode=1")}}};
+       }}};
+  return all;
 }
 
 std::string bits(unsigned value) {
@@ -261,13 +260,26 @@ std::string gripper_words(unsigned state) {
 
 }  // namespace
 
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const Device& device : devices())
+    names.emplace_back(device.name);
+  return names;
+}
+
 DeviceCommand parse_device(const std::vector<std::string>& words) {
   if (words.empty())
     fail("a device", "");
   Words rest(words);
-  DeviceCommand out = parse(words[0], rest);
-  rest.end();
-  return out;
+  for (const Device& device : devices())
+    if (words[0] == device.name) {
+      DeviceCommand out{&device.topic, device.request(rest)};
+      rest.end();
+      return out;
+    }
+  throw std::invalid_argument("expected a device (" + joined(device_names()) + ")" +
+                              (words[0].empty() ? "" : ", found \"" + words[0] + "\"") +
+                              did_you_mean(words[0], device_names()));
 }
 
 std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,

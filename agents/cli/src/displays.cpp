@@ -155,10 +155,8 @@ std::string value_text(const v1::Argument& argument) {
       break;
   }
   const v1::Pose2& point = argument.point;
-  const char* const frame = argument.frame == v1::FRAME_ROBOT ? "robot"
-                            : argument.frame == v1::FRAME_MAP ? "map"
-                                                              : "odom";
-  return format("(%.2f, %.2f, %.0f deg) in %s", point.x, point.y, degrees(point.th), frame);
+  return format("(%.2f, %.2f, %.0f deg) in %s", point.x, point.y, degrees(point.th),
+                situation::name_of(argument.frame));
 }
 
 std::string intentions_display(const v1::Intentions& intentions, const v1::BehaviorSet* behaviors) {

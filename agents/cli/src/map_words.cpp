@@ -15,6 +15,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/base/units.hpp"
 #include "saphira/maps/artifact_traits.hpp"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -46,19 +47,14 @@ constexpr std::array<Form, 16> kForms{
      {"route", " PLACE"}}};
 
 [[noreturn]] void complain(const std::vector<std::string>& words) {
-  std::string verbs;
-  std::vector<std::string> all;
-  for (const Form& form : kForms) {
+  for (const Form& form : kForms)
     if (!words.empty() && form.verb == words.front())
       throw std::invalid_argument("expected " + std::string(form.verb) + std::string(form.rest) +
                                   ", found " + counted(words.size() - 1, "word") + " after it");
-    all.emplace_back(form.verb);
-    verbs.append(verbs.empty() ? "" : &form == &kForms.back() ? " or " : ", ").append(form.verb);
-  }
-  throw std::invalid_argument(
-      "expected " + verbs +
-      (words.empty() ? ""
-                     : ", found \"" + words.front() + "\"" + did_you_mean(words.front(), all)));
+  throw std::invalid_argument("expected " + situation::listed(map_verbs(), " or ") +
+                              (words.empty() ? ""
+                                             : ", found \"" + words.front() + "\"" +
+                                                   did_you_mean(words.front(), map_verbs())));
 }
 
 double number(const std::string& word, const std::string& what, const char* unit) {
@@ -138,6 +134,13 @@ Request parse_map_request(const std::vector<std::string>& words, const maps::Map
   if (verb == "snap" && count == 2)
     return {"snap", {{"on", on_or_off(words[1])}}};
   complain(words);
+}
+
+std::vector<std::string> map_verbs() {
+  std::vector<std::string> all;
+  for (const Form& form : kForms)
+    all.emplace_back(form.verb);
+  return all;
 }
 
 void check_map_words(const std::vector<std::string>& words) {

@@ -1,7 +1,6 @@
 #include "saphira/cli/talk_words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,39 +11,23 @@
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/numbers.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/words.hpp"
 
 namespace saphira::cli {
 namespace {
 
-struct CodeWords {
-  v1::AnswerCode code;
-  const char* name;  ///< for programs
-  const char* word;  ///< for people; empty where the text says it
-};
-constexpr std::array<CodeWords, 10> kCodes{
-    {{v1::ANSWER_UNDERWAY, "underway", ""},
-     {v1::ANSWER_DONE, "done", ""},
-     {v1::ANSWER_SENT, "sent", ""},
-     {v1::ANSWER_REFUSED, "refused", "refused"},
-     {v1::ANSWER_UNKNOWN_FUNCTOR, "unknown_functor", "not known"},
-     {v1::ANSWER_BAD_ARGUMENT, "bad_argument", "bad argument"},
-     {v1::ANSWER_NOBODY, "nobody", "nobody can"},
-     {v1::ANSWER_TOO_LATE, "too_late", "too late"},
-     {v1::ANSWER_GIVEN_UP, "given_up", "given up"},
-     {v1::ANSWER_LOST, "lost", "lost"}}};
-static_assert(kCodes.size() == kEnumerators<v1::AnswerCode>.size());
-
-CodeWords words_of(v1::AnswerCode code) {
-  for (const CodeWords& known : kCodes)
-    if (known.code == code)
-      return known;
-  return {code, "?", "?"};
+/// For programs, such as bad_argument.
+std::string name_of(v1::AnswerCode code) {
+  constexpr auto& kNames = kEnumeratorNames<v1::AnswerCode>;
+  const auto at = static_cast<std::size_t>(code);
+  return at < kNames.size() ? lowered(kNames[at].substr(std::string_view("ANSWER_").size())) : "?";
 }
-
-const char* frame_name(v1::Frame frame) {
-  return frame == v1::FRAME_ROBOT ? "robot" : frame == v1::FRAME_MAP ? "map" : "odom";
+/// For people; empty where the text says it.
+const char* words_of(v1::AnswerCode code) {
+  return word_of(code, {"", "", "", "refused", "not known", "bad argument", "nobody can",
+                        "too late", "given up", "lost"});
 }
 
 nlohmann::ordered_json value_of(const v1::Argument& argument) {
@@ -59,7 +42,7 @@ nlohmann::ordered_json value_of(const v1::Argument& argument) {
       return {{"x", argument.point.x},
               {"y", argument.point.y},
               {"th", argument.point.th},
-              {"frame", frame_name(argument.frame)}};
+              {"frame", situation::name_of(argument.frame)}};
     case v1::ARGUMENT_UNBOUND:
       break;
   }
@@ -151,7 +134,7 @@ std::string line_of(const v1::Utterance& utterance, const std::string& robot) {
 }
 
 std::string line_of(const v1::Answer& answer) {
-  const std::string code = words_of(answer.code).word;
+  const std::string code = words_of(answer.code);
   std::string line = answer.service + ":";
   if (!code.empty())
     line += " " + code + (answer.text.empty() ? "" : ":");
@@ -168,7 +151,7 @@ bool repeats(const v1::Answer& answer, const v1::Answer& before) {
 
 std::string to_json(const v1::Answer& answer, const std::string& robot) {
   nlohmann::ordered_json json{{"agent", answer.service},
-                              {"code", words_of(answer.code).name},
+                              {"code", name_of(answer.code)},
                               {"text", answer.text},
                               {"values", nlohmann::ordered_json::object()}};
   if (!robot.empty())

@@ -19,27 +19,6 @@ const std::vector<SeenProcess> kTwo{process("bridge", 1, false), process("bridge
                                     process("intentions", 2, false),
                                     process("intentions", 9, true)};
 
-TEST(SecondDeployment, IsNamedByWhatIsThereASecondTime) {
-  EXPECT_EQ(second_deployment(kOne), "");
-  const std::string words = second_deployment(kTwo);
-  EXPECT_NE(words.find("a second time there are: bridge (process 8 at attic), intentions (process "
-                       "9 at attic)."),
-            std::string::npos)
-      << words;
-  SeenProcess waits = process("bridge", 8, true);
-  waits.status.state = v1::SERVICE_WAITING;
-  EXPECT_NE(second_deployment({waits}).find("bridge (waits, process 8 at attic)"),
-            std::string::npos);
-  EXPECT_NE(words.find("saphira up"), std::string::npos);
-  EXPECT_NE(words.find("--robot"), std::string::npos);
-}
-
-TEST(SecondDeployment, WhatIsNotHeardAnyMoreDoesNotCount) {
-  auto lost = process("bridge", 8, true);
-  lost.age = kLostAge + 0.1;
-  EXPECT_EQ(second_deployment({process("bridge", 1, false), lost}), "");
-}
-
 TEST(SecondDeployment, IsToldOnceWhenItIsCertain) {
   SecondDeployment second;
   EXPECT_FALSE(second.news(kOne, 0.0));

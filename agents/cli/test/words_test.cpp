@@ -1,60 +1,231 @@
+// What people type, and what they read: the lines of words.txt.
 #include "saphira/cli/words.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include <stdexcept>
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <tuple>
 
+#include "asked.hpp"
+#include "lines.hpp"
+#include "sample.hpp"
+#include "saphira/cli/device_words.hpp"
+#include "saphira/cli/displays.hpp"
+#include "saphira/cli/done.hpp"
+#include "saphira/cli/goal_words.hpp"
+#include "saphira/cli/map_words.hpp"
+#include "saphira/cli/second_deployment.hpp"
+#include "saphira/cli/talk_words.hpp"
+#include "saphira/geometry/pose.hpp"
 #include "trouble.hpp"
 
 namespace saphira::cli {
 namespace {
 
-SeenProcess process(const std::string& name, double age) {
-  SeenProcess seen;
-  seen.status.name = name;
-  seen.status.state = v1::SERVICE_RUNNING;
-  seen.status.late_cycles = 7;
-  seen.status.pid = 42;
-  seen.age = age;
-  return seen;
+using Json = nlohmann::json;
+using test::sample;
+using test::samples;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream in(text);
+  for (std::string word; in >> std::quoted(word);)
+    all.push_back(word);
+  return all;
 }
 
-TEST(Table, AlignsColumns) {
-  EXPECT_EQ(table({{"NAME", "N", "WHY"}, {"a", "100", "x"}, {"long name", "7", ""}}),
-            "NAME       N    WHY\n"
-            "a          100  x\n"
-            "long name    7\n");
+maps::Map a_map() {
+  return maps::parse_map(
+      "CORRIDOR (1) 0, 0, 0, 10000, 2000 \"hall\"\nPOS (9) 1000, 2000, 90 \"start\"\n"
+      "DOOR (3) 2000, 1000, -90, 900\n",
+      "a.map");
 }
 
-TEST(Words, ALongTextTakesTwoLines) {
-  using Lines = std::array<std::string, 2>;
-  EXPECT_EQ(two_lines("it stands", 9), (Lines{"it stands", ""}));
-  EXPECT_EQ(two_lines("it stands now", 9), (Lines{"it stands", "now"}));
-  EXPECT_EQ(two_lines("it stands now", 8), (Lines{"it", "stands n"}));
-  EXPECT_EQ(two_lines("abcdefgh", 3), (Lines{"abc", "def"}));
+/// The object of that name in a JSON; nothing: it has none.
+template <class T>
+std::optional<T> part(const Json& json, const char* name) {
+  return json.contains(name) ? std::optional(sample<T>(json[name])) : std::nullopt;
+}
+template <class T>
+const T* address(const std::optional<T>& known) {
+  return known ? &*known : nullptr;
 }
 
-TEST(StatusTable, SaysWhoIsLost) {
-  const std::string text = status_table({process("intentions", 0.5), process("behaviors", 3.5)});
-  const std::size_t behaviors = text.find("behaviors");
-  const std::size_t intentions = text.find("intentions");
-  ASSERT_NE(behaviors, std::string::npos);
-  ASSERT_NE(intentions, std::string::npos);
-  EXPECT_LT(behaviors, intentions);
-  EXPECT_LT(behaviors, text.find("lost"));
-  EXPECT_LT(text.find("lost"), intentions);
-  EXPECT_EQ(text.find("lost", intentions), std::string::npos);
-  EXPECT_NE(text.find("running", intentions), std::string::npos);
+SeenProcess program(const Json& json) {
+  return {.status = sample<v1::ServiceStatus>(json.value("status", Json::object())),
+          .age = json.value("age", 0.0),
+          .namesake = json.value("namesake", false)};
+}
+std::vector<SeenProcess> programs(const Json& json) {
+  std::vector<SeenProcess> all;
+  std::transform(json.begin(), json.end(), std::back_inserter(all), program);
+  return all;
 }
 
-TEST(StatusTable, HasARowForWhoIsMissed) {
-  const std::string text =
-      status_table({process("intentions", 3.5)}, {"intentions", "registration"});
-  EXPECT_TRUE(text.ends_with("\nregistration  not heard\n")) << text;
-  EXPECT_EQ(text.find("intentions"), text.rfind("intentions")) << text;
+std::string text_of(const DeviceCommand& command) {
+  return std::string(command.topic->name) + ": " + saphira::describe(command.request);
 }
 
-TEST(Ending, IsThatOfTheContent) {
+Move move_of(const Json& json) {
+  static const std::map<std::string, Move::Kind> kinds{
+      {"move", Move::Kind::move}, {"turn", Move::Kind::turn}, {"speed", Move::Kind::speed}};
+  const double value = json.at("value");
+  const std::string name = json.at("move");
+  return {kinds.at(name), name, name == "turn" ? radians(value) : value, json.value("speed", 0.0)};
+}
+
+/// What is told about a way: that it is done, and its rest.
+std::string progress(const Json& json) {
+  const Move move = move_of(json);
+  const auto grant = part<v1::Grant>(json, "grant").value_or(v1::Grant());
+  const auto robot = part<v1::RobotState>(json, "robot").value_or(v1::RobotState());
+  return (done(move, grant, robot) ? "done" : "not done") + rest_of(move, grant, robot);
+}
+
+using In = const std::string&;
+using Words = std::vector<std::string>;
+
+template <class T>
+T of(In input) {
+  return sample<T>(Json::parse(input));
+}
+/// The first word, and the others.
+std::pair<std::string, Words> headed(In input) {
+  Words words = words_of(input);
+  const std::string first = words.at(0);
+  words.erase(words.begin());
+  return {first, words};
+}
+
+std::string devices_of(const Json& json) {
+  const auto devices = part<v1::Devices>(json, "devices");
+  return table(device_rows(sample<v1::RobotState>(json.at("robot")), address(devices)));
+}
+std::string intentions_of(const Json& json) {
+  const auto behaviors = part<v1::BehaviorSet>(json, "behaviors");
+  return intentions_display(sample<v1::Intentions>(json.at("intentions")), address(behaviors));
+}
+std::string behavior_of(const Json& json) {
+  const auto intended = part<v1::IntendedBehavior>(json, "intended");
+  const auto schema = part<v1::BehaviorSchema>(json, "schema");
+  return behavior_display(sample<v1::BehaviorState>(json.at("state")), address(intended),
+                          address(schema));
+}
+std::string question_of(const v1::Request& request) {
+  std::string text = request.functor;
+  for (const v1::Argument& argument : request.arguments)
+    text += " " + argument.name + "=" + value_text(argument) +
+            (argument.kind == v1::ARGUMENT_UNBOUND ? argument.text : "");
+  return text;
+}
+
+const std::map<std::string, std::string (*)(In)>& answers() {
+  static const std::map<std::string, std::string (*)(In)> all{
+      {"argument", [](In s) { return test::json_of(parse_argument(s)); }},
+      {"goal", [](In s) { return describe(parse_request(words_of(s))); }},
+      {"goal-of", [](In s) { return describe(std::apply(parse_goal, headed(s))); }},
+      {"advice", [](In s) { return advice_after_failure(parse_request(words_of(s))); }},
+      {"device", [](In s) { return text_of(parse_device(words_of(s))); }},
+      {"devices", [](In s) { return devices_of(Json::parse(s)); }},
+      {"map", [](In s) { return saphira::describe(parse_map_request(words_of(s), a_map())); }},
+      {"check-map", [](In s) { return check_map_words(words_of(s)), std::string("well"); }},
+      {"where", [](In s) { return describe(of<v1::Registration>(s), a_map()); }},
+      {"answer", [](In s) { return to_json(of<v1::Answer>(s)); }},
+      {"agents", [](In s) { return describe(samples<v1::Agent>(Json::parse(s))); }},
+      {"question", [](In s) { return question_of(parse_question(words_of(s))); }},
+      {"trigger", [](In s) { return describe(of<v1::Trigger>(s), "1f3a:2", true); }},
+      {"dead-trigger", [](In s) { return describe(of<v1::Trigger>(s), "1f3a:2", false); }},
+      {"intentions", [](In s) { return intentions_of(Json::parse(s)); }},
+      {"instance", [](In s) { return without_instance(s) + "; " + instance_words(s); }},
+      {"behaviors", [](In s) { return behaviors_display(of<v1::BehaviorSet>(s)); }},
+      {"behavior", [](In s) { return behavior_of(Json::parse(s)); }},
+      {"unknown-behavior", [](In s) { return std::apply(unknown_behavior, headed(s)); }},
+      {"schema", [](In s) { return schema_display(of<v1::BehaviorSchema>(s)); }},
+      {"beliefs",
+       [](In s) {
+         const Json json = Json::parse(s);
+         return beliefs_table(sample<v1::BeliefSet>(json.at("set")), json.value("part", ""));
+       }},
+      {"processes", [](In s) { return processes_table(samples<v1::ProcessSet>(Json::parse(s))); }},
+      {"table", [](In s) { return table(Json::parse(s).get<std::vector<Words>>()); }},
+      {"two-lines",
+       [](In s) {
+         const Words words = words_of(s);
+         const auto lines = two_lines(words.at(1), std::stoul(words.at(0)));
+         return lines[0] + "\n" + lines[1];
+       }},
+      {"status",
+       [](In s) {
+         const Json json = Json::parse(s);
+         return status_table(programs(json.at("programs")), json.value("unheard", Words()));
+       }},
+      {"second", [](In s) { return second_deployment(programs(Json::parse(s))); }},
+      {"command", [](In s) { return test::json_of(command_of(move_of(Json::parse(s)))); }},
+      {"progress", [](In s) { return progress(Json::parse(s)); }},
+      {"trouble", [](In s) { return trouble_of(move_of(Json::parse(s))); }}};
+  return all;
+}
+
+struct Asked {
+  static std::string answer(const std::string& verb, const std::string& input) {
+    return answers().at(verb)(input);
+  }
+  /// Of a sample the members that are not 0, false or empty are written.
+  static std::string canonical(const std::string& verb, const std::string& wanted) {
+    if (verb == "argument")
+      return test::json_of(sample<v1::Argument>(Json::parse(wanted)));
+    return verb == "command" ? test::json_of(sample<v1::MotorCommand>(Json::parse(wanted)))
+                             : wanted;
+  }
+};
+
+TEST(Words, AreAsWritten) {
+  EXPECT_GT(test::play<test::Questions<Asked>>("agents/cli/test/words.txt"), 20);
+}
+
+TEST(Words, AMapFileThatWasCutOffIsRefused) {
+  const test::TempDir folder;
+  const auto loaded = [&](const std::string& text) {
+    std::ofstream(folder.path("a.map")) << text;
+    return test::trouble([&] { parse_map_request({"load", folder.path("a.map")}, a_map()); });
+  };
+  EXPECT_EQ(loaded("DOOR (2) 1000, 2000, 90, 900\n"), "");
+  const std::string said = loaded("DOOR (2) 1000, 2000, 90, 90");
+  EXPECT_TRUE(test::has(said, ".map:1:") && test::has(said, "cut off")) << said;
+}
+
+TEST(Words, ALongValueIsRefused) {
+  EXPECT_THROW(parse_argument("a=" + std::string(256, 'x')), std::invalid_argument);
+}
+
+TEST(Words, EqualValuesOfTwoAgentsAreTwoAnswers) {
+  v1::Answer answer{.service = "calendar", .text = "on its way"};
+  EXPECT_TRUE(repeats(answer, answer)) << "it says again that it is at work";
+  EXPECT_FALSE(repeats(answer, v1::Answer()));
+  answer.results.resize(1);
+  EXPECT_FALSE(repeats(answer, answer));
+}
+
+TEST(Words, SentencesOfBeforeAreNotForAListener) {
+  const v1::Utterance said{.answers = {.writer = 7}};
+  EXPECT_TRUE(is_for(said, 9.0, 7, 2.0)) << "its answer";
+  EXPECT_TRUE(is_for(said, 1.9, 8, 2.0));
+  EXPECT_FALSE(is_for(said, 2.1, 8, 2.0));
+}
+
+TEST(Words, ATriggerIsAmongOthersByItsWholeId) {
+  EXPECT_TRUE(is_among("1f3a:2", "1:4 1f3a:2"));
+  EXPECT_FALSE(is_among("1f3a:2", "1:4 1f3a:22"));
+  EXPECT_FALSE(is_among("1f3a:2", ""));
+}
+
+TEST(Words, TheEndingIsThatOfTheContent) {
   EXPECT_NO_THROW(expect_ending("floor.svg", ".svg"));
   EXPECT_EQ(test::trouble_of<std::invalid_argument>([] { expect_ending("floor.txt", ".svg"); }),
             "floor.txt: expected a name that ends with .svg, the kind of file that this writes");

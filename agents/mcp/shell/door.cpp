@@ -227,6 +227,10 @@ void Door::note() {
                  first_line(outcome.text));
 }
 
+void Door::refuse(const Call& call, const std::string& why) {
+  session_.answer(call.number, {why, nullptr, true});
+}
+
 /// True where the key allows the call: with a key to watch, reading and stopping. Otherwise the
 /// call is answered.
 bool Door::is_allowed(const Call& call) {
@@ -235,9 +239,8 @@ bool Door::is_allowed(const Call& call) {
                                  [&](const Tool& one) { return one.name == call.tool; });
   if (right_ >= DoorRight::drive || (tool != tools.end() && (tool->reads || tool->always)))
     return true;
-  session_.answer(call.number, {"not done: the key of " + person_.name +
-                                    " is to watch; this needs one to drive (saphira keys)",
-                                nullptr, true});
+  refuse(call, "not done: the key of " + person_.name +
+                   " is to watch; this needs one to drive (saphira keys)");
   return false;
 }
 
@@ -247,9 +250,8 @@ void Door::begin(const Call& call) {
   if (call.question != 0) {
     const auto asked = std::find_if(
         own_.begin(), own_.end(), [&](const Own& each) { return each.question == call.question; });
-    return asked == own_.end()
-               ? session_.answer(call.number, {"not done: the goal has ended", nullptr, true})
-               : await(call, asked->id);
+    return asked == own_.end() ? refuse(call, "not done: the goal has ended")
+                               : await(call, asked->id);
   }
   if (call.tool == "stop") {
     v1::Request stop = bus::request("stop");
@@ -278,8 +280,7 @@ void Door::begin(const Call& call) {
   } else if (call.tool == "goal") {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !status(*id))
-      return session_.answer(
-          call.number, {"nothing is known of this goal; the tool goals lists them", nullptr, true});
+      return refuse(call, "nothing is known of this goal; the tool goals lists them");
     waiting_[call.number] = {.goal = id, .until = now_ + call.arguments.value("wait_s", kWait)};
   } else if (call.tool == "goals") {
     session_.answer(call.number, {goals().dump(-1, ' ', false, Json::error_handler_t::replace),
@@ -302,7 +303,7 @@ void Door::begin(const Call& call) {
   } else if (call.tool == "knows") {
     session_.answer(call.number, robot_.facts());
   } else {  // removed between the call and now
-    session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
+    refuse(call, "not done: nobody offers this tool now");
   }
 }
 
@@ -328,9 +329,7 @@ void Door::wait_for(const Call& call) {
   if (has_belief) {
     const std::optional<std::string> known = robot_.belief(waiting.name);
     if (!known)
-      return session_.answer(
-          call.number,
-          {"not done: the robot has no such belief, but: " + robot_.beliefs(), nullptr, true});
+      return refuse(call, "not done: the robot has no such belief, but: " + robot_.beliefs());
     waiting.before = *known;
     if (call.arguments.contains("value"))
       waiting.value = call.arguments.value("value", "");
@@ -407,9 +406,9 @@ void Door::await(const Call& call, const v1::GoalId& id) {
 /// False: others have too much underway, and the call is answered.
 bool Door::may_begin(const Call& call) {
   if (!may_begin_)
-    session_.answer(call.number, {"not done: too many clients have goals underway; again when one "
-                                  "of them has ended, and a stop is always taken",
-                                  nullptr, true});
+    refuse(call,
+           "not done: too many clients have goals underway; again when one "
+           "of them has ended, and a stop is always taken");
   return may_begin_;
 }
 
@@ -420,9 +419,8 @@ bool Door::has_room(const Call& call) {
   std::erase_if(own_, [this](const Own& each) { return has_ended(each.id); });
   if (own_.size() < kMostGoals)
     return true;
-  session_.answer(call.number, {"not done: " + std::to_string(own_.size()) +
-                                    " goals of yours have not ended; cancel one, or wait",
-                                nullptr, true});
+  refuse(call, "not done: " + std::to_string(own_.size()) +
+                   " goals of yours have not ended; cancel one, or wait");
   return false;
 }
 
@@ -508,22 +506,17 @@ std::optional<v1::GoalStatus> Door::other(const v1::GoalId& id) const {
 void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
   const auto known = id ? other(*id) : std::nullopt;
   if (!known)
-    return session_.answer(call.number,
-                           {"not done: this is no goal of yours that is underway; without a goal "
-                            "the tool cancel ends all of yours, and what you began with say",
-                            nullptr, true});
+    return refuse(call,
+                  "not done: this is no goal of yours that is underway; without a goal "
+                  "the tool cancel ends all of yours, and what you began with say");
   if (right_ < DoorRight::operate)
-    return session_.answer(call.number,
-                           {"not done: this is " + known->functor + " of " + known->requester +
-                                ", who may cancel it; a stop is anybody's",
-                            nullptr, true});
+    return refuse(call, "not done: this is " + known->functor + " of " + known->requester +
+                            ", who may cancel it; a stop is anybody's");
   if (!call.arguments.value("sure", false))
-    return session_.answer(
-        call.number,
-        {"not done: this is " + known->functor + " of " + known->requester + ", " +
-             bus::describe(*known) +
-             ". Shall it end? Ask the person; after a yes call cancel again with sure: true",
-         nullptr, true});
+    return refuse(
+        call, "not done: this is " + known->functor + " of " + known->requester + ", " +
+                  bus::describe(*known) +
+                  ". Shall it end? Ask the person; after a yes call cancel again with sure: true");
   goals_.cancel(*id, who_ + " was sure, after a question", person_);
   waiting_[call.number] = {.what = Waiting::For::cancel, .goal = id, .until = now_ + kStop};
 }

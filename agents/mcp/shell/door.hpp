@@ -141,6 +141,7 @@ class Door {
   bool needs_approval(const Own& own) const;
   void ask_for_approval();
   void begin(const Call& call);
+  void refuse(const Call& call, const std::string& why);
   bool is_allowed(const Call& call);
   bool is_mine(const v1::GoalStatus& status) const;
   void ask(const Call& call, const v1::ActivitySchema& schema);

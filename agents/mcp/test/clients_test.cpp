@@ -1,133 +1,56 @@
 #include "saphira/mcp/clients.hpp"
 
-#include <gtest/gtest.h>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "lines.hpp"
 
 namespace saphira::mcp {
 namespace {
 
-/// One client, since 100 s, whose goal is underway.
-struct McpClients : testing::Test {
-  McpClients() { clients.begin("a", "desk", 100.0); }
-  void see(double now, int connections, double heard, bool streams = false) {
-    state = {.connections = connections, .heard = heard, .streams = streams, .busy = state.busy};
-    clients.see("a", state, now);
+/// The client of clients.txt.
+class Presence {
+ public:
+  Presence() { clients_.begin("a", "desk", 100.0); }
+  void take(const std::string& line) {
+    std::istringstream in(line);
+    std::string verb;
+    std::string more;
+    std::string last;
+    double now = 0.0;
+    in >> verb;
+    if (verb == "answered")
+      return clients_.answered("a");
+    if (verb == "busy" || verb == "silent") {
+      in >> more;
+      (verb == "busy" ? state_.busy : state_.silent) = more == "yes";
+      return;
+    }
+    in >> now;
+    if (verb == "see") {
+      in >> state_.connections >> state_.heard >> more;
+      state_.streams = more == "streams";
+      return clients_.see("a", state_, now);
+    }
+    in >> more >> last;
+    if (verb == "came")
+      return clients_.came("a", more == "proxy", now);
+    const std::map<std::string, std::function<bool()>> facts{
+        {"loses", [&] { return clients_.loses_goals("a", now); }},
+        {"gone", [&] { return clients_.is_gone("a", now); }},
+        {"pinged", [&] { return clients_.is_pinged("a", now); }},
+        {"hidden", [&] { return clients_.is_hidden("a"); }}};
+    EXPECT_EQ(facts.at(verb)() ? "yes" : "no", last) << line;
   }
-  Clients clients;
-  Clients::State state{.busy = true};
+
+ private:
+  Clients clients_;
+  Clients::State state_{.busy = true};
 };
 
-TEST_F(McpClients, TheGoalsOfAClientEndWithItsLastConnection) {
-  see(200.0, 2, 199.1);
-  see(200.1, 1, 199.1);
-  see(200.2, 0, 0.0);
-  EXPECT_FALSE(clients.loses_goals("a", 201.6)) << "it may connect again after a second";
-  EXPECT_TRUE(clients.loses_goals("a", 201.8)) << "so that the robot stands within 3 s";
-  EXPECT_FALSE(clients.is_gone("a", 201.8)) << "it may come back, and hear of that";
-}
-
-TEST_F(McpClients, AClientThatAsksItsPersonIsSilentMeanwhile) {
-  see(200.0, 0, 0.0);
-  state.silent = true;
-  clients.see("a", state, 300.0);
-  EXPECT_FALSE(clients.loses_goals("a", 300.0));
-  EXPECT_FALSE(clients.is_gone("a", 300.0));
-  see(301.6, 0, 0.0);
-  EXPECT_TRUE(clients.loses_goals("a", 301.6)) << "approved elsewhere, and nobody is there";
-}
-
-// No end of the connection comes over a broken network.
-TEST_F(McpClients, AConnectionWhoseOtherSideAcknowledgesNothingDoesNotCount) {
-  see(200.0, 1, 199.2);
-  see(200.6, 1, 199.2);
-  EXPECT_FALSE(clients.loses_goals("a", 200.6));
-  see(200.7, 1, 199.2);
-  EXPECT_TRUE(clients.loses_goals("a", 200.7));
-}
-
-TEST_F(McpClients, AClientBetweenItsConnectionsLivesByItsMessages) {
-  for (double now = 100.0; now < 110.0; now += 1.4) {
-    clients.came("a", false, now);
-    see(now, 1, now);
-    see(now + 1.3, 0, 0.0);
-    EXPECT_FALSE(clients.loses_goals("a", now + 1.3));
-  }
-}
-
-TEST_F(McpClients, GoalsEndOnceForEachAbsence) {
-  see(102.0, 0, 0.0);
-  EXPECT_TRUE(clients.loses_goals("a", 102.0));
-  EXPECT_FALSE(clients.loses_goals("a", 102.1)) << "their end is not heard yet";
-  state.busy = false;
-  see(103.0, 0, 0.0);
-  state.busy = true;  // a call was held back
-  see(103.1, 0, 0.0);
-  EXPECT_TRUE(clients.loses_goals("a", 103.1));
-  clients.came("a", false, 104.0);
-  see(105.5, 0, 0.0);
-  EXPECT_TRUE(clients.loses_goals("a", 105.5));
-}
-
-TEST_F(McpClients, AClientWithoutAGoalIsForgottenAfterHalfAMinute) {
-  state.busy = false;
-  see(129.9, 0, 0.0);
-  EXPECT_FALSE(clients.loses_goals("a", 129.9));
-  EXPECT_FALSE(clients.is_gone("a", 129.9));
-  EXPECT_TRUE(clients.is_gone("a", 130.0));
-  see(130.0, 1, 129.5);
-  EXPECT_FALSE(clients.is_gone("a", 159.4));
-  EXPECT_TRUE(clients.is_gone("a", 159.5));
-}
-
-// A tunnel keeps its connections when the network behind it is gone.
-TEST_F(McpClients, AClientThatAnswersPingsIsThereAsLongAsItDoes) {
-  see(100.0, 1, 100.0, true);
-  EXPECT_TRUE(clients.is_pinged("a", 100.0));
-  EXPECT_FALSE(clients.is_pinged("a", 100.4));
-  EXPECT_TRUE(clients.is_pinged("a", 100.5));
-  see(150.0, 1, 150.0, true);
-  EXPECT_FALSE(clients.loses_goals("a", 150.0)) << "it never answers, and its connection is there";
-  clients.came("a", false, 150.0);
-  clients.answered("a");
-  see(151.4, 1, 151.4, true);
-  EXPECT_FALSE(clients.loses_goals("a", 151.4));
-  see(151.5, 1, 151.5, true);
-  EXPECT_TRUE(clients.loses_goals("a", 151.5));
-  clients.came("a", false, 152.0);
-  see(153.5, 1, 153.5, false);
-  EXPECT_FALSE(clients.loses_goals("a", 153.5)) << "no ping reaches it";
-}
-
-// Nothing tells a proxy either that the network behind it is gone.
-TEST_F(McpClients, BehindAProxyAClientIsThereByItsMessagesAlone) {
-  clients.came("a", true, 100.0);
-  for (double now = 100.0; now < 110.0; now += 1.4) {
-    clients.came("a", true, now);
-    see(now + 0.1, 2, now + 0.1, true);
-    see(now + 1.3, 1, now + 1.3, true);
-    EXPECT_FALSE(clients.loses_goals("a", now + 1.3));
-  }
-  clients.came("a", true, 110.0);
-  see(111.4, 2, 111.4, true);
-  EXPECT_FALSE(clients.loses_goals("a", 111.4));
-  see(111.5, 1, 111.5, true);
-  EXPECT_TRUE(clients.loses_goals("a", 111.5)) << "the end of an answer is no sign of it";
-  EXPECT_TRUE(clients.is_hidden("a"));
-  clients.came("a", false, 120.0);
-  see(125.0, 1, 125.0);
-  EXPECT_FALSE(clients.loses_goals("a", 125.0)) << "it has come without the proxy";
-}
-
-TEST_F(McpClients, BehindAProxyTheConnectionsOfAClientWithoutAGoalCount) {
-  state.busy = false;
-  clients.came("a", true, 100.0);
-  see(150.0, 1, 150.0, true);
-  EXPECT_FALSE(clients.is_gone("a", 150.0));
-}
-
-TEST_F(McpClients, WithoutAGoalNobodyIsPinged) {
-  state.busy = false;
-  see(100.0, 1, 100.0, true);
-  EXPECT_FALSE(clients.is_pinged("a", 200.0));
+TEST(McpClients, AreThereAsWritten) {
+  EXPECT_EQ(saphira::test::play<Presence>("agents/mcp/test/clients.txt"), 10);
 }
 
 /// As many clients as there are places: a, b ... in the order of their newest messages.

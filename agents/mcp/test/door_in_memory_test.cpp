@@ -5,28 +5,6 @@
 namespace saphira::mcp {
 namespace {
 
-TEST_F(DoorInMemory, AStopIsTheBridges) {
-  auto stops = other.reader(bus::topics::kDriveStop);
-  auto answers = other.writer(bus::topics::kRobotAnswers);
-  for (const v1::AnswerCode code : {v1::ANSWER_DONE, v1::ANSWER_GIVEN_UP}) {
-    const int id = 1 + static_cast<int>(code);
-    call(id, "stop", Json::object());
-    const auto request = stops.take_newest();
-    ASSERT_TRUE(request);
-    EXPECT_EQ(request->functor, "stop");
-    v1::Answer answer{
-        .asker = request->asker, .number = request->number, .code = v1::ANSWER_UNDERWAY};
-    answers.write(answer);
-    turn();
-    answer.code = code;
-    answer.text = "stopped: a program (direct)";
-    answers.write(answer);
-    turn();
-    EXPECT_EQ(result(id)["isError"], code != v1::ANSWER_DONE);
-    EXPECT_EQ(result(id)["structuredContent"]["stopped"], code == v1::ANSWER_DONE);
-  }
-}
-
 TEST_F(DoorInMemory, TheToolsOfAnAgentThatIsKilledEnd) {
   {
     bus::Node killed{test::memory_options("killed"), memory};
@@ -169,37 +147,6 @@ TEST_F(DoorInMemory, EachToolThatReadsHasTheFormThatItDeclares) {
     EXPECT_EQ(tool.output["type"], "object") << tool.name;
 }
 
-TEST_F(DoorInMemory, APersonsNameGoesWithWhatTheyAskFor) {
-  door = std::make_unique<Door>(node, robot, session, "model",
-                                security::DoorKey{"anna", security::DoorRight::drive, 0, ""});
-  begin_sweep();
-  const v1::Request request = heard();
-  EXPECT_EQ(request.person.name, "anna");
-  EXPECT_EQ(request.person.role, "agent");
-  call(2, "say", {{"text", "Flakey, turn left"}});
-  const auto said = saphira::test::only(words.take());
-  EXPECT_EQ(said.data.person.name, "anna");
-  const v1::GoalStatus other_goal = tell_goal(v1::GOAL_UNDERWAY);
-  EXPECT_EQ(answer("cancel", {{"goal", bus::describe(other_goal.id)}, {"sure", true}})["isError"],
-            true)
-      << "it needs the right to operate";
-  EXPECT_TRUE(goals.take().empty());
-}
-
-TEST_F(DoorInMemory, AKeyToWatchReadsAndStops) {
-  door = std::make_unique<Door>(node, robot, session, "model",
-                                security::DoorKey{"anna", security::DoorRight::watch, 0, ""});
-  auto stops = other.reader<v1::Request>(bus::topics::kDriveStop);
-  EXPECT_EQ(answer("sweep", {{"room", "kitchen"}, {"wait_s", 0}})["isError"], true);
-  EXPECT_TRUE(solve.take().empty());
-  EXPECT_EQ(answer("say", {{"text", "Flakey, turn left"}})["isError"], true);
-  EXPECT_TRUE(words.take().empty());
-  EXPECT_EQ(answer("robot_status")["isError"], false);
-  call(4, "stop", Json::object());
-  const auto stop = saphira::test::only(stops.take());
-  EXPECT_EQ(stop.data.person.name, "anna");
-}
-
 TEST_F(DoorInMemory, ALookHasThePictureOfACameraThatIsThere) {
   EXPECT_EQ(answer("look", {})["content"].size(), 1U) << "there is no camera";
 
@@ -244,26 +191,6 @@ TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
   const Json& properties = patrol->input["properties"];
   EXPECT_EQ(properties["place"]["description"], "a place of the map: N2");
   EXPECT_FALSE(properties["whose"].contains("description")) << "a name says no more twice";
-}
-
-TEST_F(DoorInMemory, ARequestThatNobodyAnswersEndsWithItsClientsTime) {
-  call(1, "place_of", {{"person", "karen"}});
-  call(2, "stop", Json::object());
-  turn();
-  turn(9.9);
-  EXPECT_TRUE(result(1).is_null());
-  EXPECT_TRUE(result(2).is_null());
-  turn(0.2);
-  EXPECT_TRUE(result(1).is_null());
-  EXPECT_EQ(result(2)["content"][0]["text"],
-            "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own");
-  EXPECT_EQ(result(2)["structuredContent"]["stopped"], false);
-  EXPECT_EQ(result(2)["isError"], true);
-  turn(1.0);
-  EXPECT_EQ(result(1)["content"][0]["text"],
-            "no answer: saphira-facilitator may not run (robot_status says more)");
-  EXPECT_EQ(result(1)["isError"], true);
-  EXPECT_FALSE(door->is_asked());
 }
 
 TEST_F(DoorInMemory, AGoalThatTheClientMayNotApproveWaitsForSomebodyWhoMay) {

@@ -53,6 +53,19 @@ class Visit : public DoorInMemory, public test::Transcript {
           [this](auto&) {
             door = std::make_unique<Door>(node, robot, DoorInMemory::session, "model");
           }},
+         {"key",
+          [this](auto& in) {
+            const auto right =
+                rest(in) == "watch" ? security::DoorRight::watch : security::DoorRight::drive;
+            door = std::make_unique<Door>(node, robot, DoorInMemory::session, "model",
+                                          security::DoorKey{"anna", right, 0, ""});
+          }},
+         {"bridge",
+          [this](auto& in) {
+            const v1::AnswerCode code = kCodes.at(word(in));
+            bridge_.write(
+                {.asker = stop_.asker, .number = stop_.number, .code = code, .text = rest(in)});
+          }},
          {"facilitator-ends",
           [this](auto&) { solve = node.reader<v1::Request>(bus::topics::kAgentRequest); }},
          {"facilitator-begins",
@@ -60,6 +73,9 @@ class Visit : public DoorInMemory, public test::Transcript {
     facts_.insert(
         {{"request", [this] { return request(); }},
          {"request of", [this] { return request_.source; }},
+         {"person", [this] { return request_.person.name + " as " + request_.person.role; }},
+         {"words of", [this] { return saphira::test::only(words.take()).data.person.name; }},
+         {"stop", [this] { return stop(); }},
          {"deadline", [this] { return std::to_string(std::lround(request_.deadline)); }},
          {"goal", [this] { return goal(); }},
          {"approval", [this] { return approval(); }},
@@ -101,7 +117,7 @@ class Visit : public DoorInMemory, public test::Transcript {
     status_.state = state == "canceled"    ? v1::GOAL_CANCELED
                     : state == "succeeded" ? v1::GOAL_SUCCEEDED
                                            : v1::GOAL_WAITING;
-    EXPECT_EQ(state, name_of(status_.state));
+    EXPECT_EQ(state, word_of(status_.state));
     const std::string more = rest(in);
     status_.code = more == "for approval" ? v1::CODE_APPROVAL : v1::CODE_NONE;
     if (more == "behind it") {
@@ -146,6 +162,13 @@ class Visit : public DoorInMemory, public test::Transcript {
     know({.id = goal.id, .functor = goal.functor});
     return goal.functor;
   }
+  std::string stop() {
+    const auto request = stops_.take_newest();
+    stop_ = request.value_or(v1::Request());
+    return !request ? "none"
+                    : request->functor +
+                          (request->person.name.empty() ? "" : " of " + request->person.name);
+  }
   std::string approval() {
     const auto request = approvals_.take_newest();
     return !request ? "none"
@@ -163,6 +186,9 @@ class Visit : public DoorInMemory, public test::Transcript {
   v1::GoalStatus status_;
   std::deque<v1::Request> requests_;
   std::deque<v1::Goal> goals_;
+  v1::Request stop_;  ///< newest
+  bus::Reader<v1::Request> stops_ = other.reader<v1::Request>(bus::topics::kDriveStop);
+  bus::Writer<v1::Answer> bridge_ = other.writer(bus::topics::kRobotAnswers);
   bus::Reader<v1::Request> approvals_ = other.reader(bus::topics::kProcessRequest);
 };
 

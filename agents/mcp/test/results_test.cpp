@@ -1,58 +1,82 @@
+// What a model reads about the robot: the questions and answers of results.txt.
 #include "saphira/mcp/results.hpp"
 
-#include <gtest/gtest.h>
+#include <functional>
+#include <map>
 
-#include <limits>
+#include "asked.hpp"
+#include "lines.hpp"
+#include "sample.hpp"
+#include "saphira/mcp/surroundings.hpp"
 
 namespace saphira::mcp {
 namespace {
 
-v1::CapabilityParameter declared(const std::string& name, v1::ArgumentKind kind, bool required) {
-  return {.name = name, .kind = kind, .required = required};
-}
+using saphira::test::sample;
+using saphira::test::samples;
 
-v1::Argument found(const std::string& name, v1::ArgumentKind kind) {
-  return {.name = name, .kind = kind};
-}
-
-TEST(McpResults, TheFormOfACapabilityHasWhatAnAnswerMayFill) {
-  v1::Capability capability{.parameters = {declared("person", v1::ARGUMENT_TEXT, true),
-                                           declared("place", v1::ARGUMENT_POINT, false),
-                                           declared("age", v1::ARGUMENT_NUMBER, false)}};
-  const Json form = form_of(capability);
-  EXPECT_EQ(form["type"], "object");
-  EXPECT_FALSE(form["properties"].contains("person"));
-  v1::Answer answer{.results = {found("place", v1::ARGUMENT_POINT),
-                                found("place", v1::ARGUMENT_POINT),
-                                found("age", v1::ARGUMENT_NUMBER)}};
-  answer.results[2].number = std::numeric_limits<double>::infinity();
-  // As it arrives at the client.
-  const Json value = Json::parse(values_of(answer.results, capability.parameters).dump());
-  EXPECT_EQ(value["place"].size(), 2U);
-  EXPECT_TRUE(value["age"].is_null());
-  EXPECT_EQ(misfit(value, form), "");
-  EXPECT_NE(misfit({{"age", "old"}}, form), "");
-  EXPECT_NE(misfit({{"place", {{"x", 1.0}}}}, form), "");
-  capability.acts = true;
-  EXPECT_EQ(
-      misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", value}}, form_of(capability)),
-      "");
-  EXPECT_NE(misfit({{"goal", "1:1"}, {"state", "succeeded"}, {"results", {{"age", "old"}}}},
-                   form_of(capability)),
-            "");
-}
-
-TEST(McpResults, AGoalHasItsForm) {
-  v1::GoalStatus status{.waits_for = {.writer = 1}};
-  for (const v1::GoalState state :
-       {v1::GOAL_WAITING, v1::GOAL_REFUSED, v1::GOAL_UNDERWAY, v1::GOAL_SUSPENDED,
-        v1::GOAL_SUCCEEDED, v1::GOAL_FAILED, v1::GOAL_CANCELED}) {
-    status.state = state;
-    EXPECT_EQ(misfit(json_of(status), goal_form()), "");
+template <class T>
+struct Part {
+  Part(const Json& json, const char* name) {
+    if (json.contains(name))
+      known = sample<T>(json[name]);
   }
-  EXPECT_NE(misfit({{"goal", "1:1"}, {"state", "lazy"}}, goal_form()), "");
-  EXPECT_NE(misfit({{"state", "failed"}}, goal_form()), "");
-  EXPECT_TRUE(form_of("go_to").is_null());
+  const T* get() const { return known ? &*known : nullptr; }
+  std::optional<T> known;
+};
+
+Result answer_of(const std::string& tool, const Json& json) {
+  const Part<v1::RobotState> robot(json, "robot");
+  const Part<v1::SonarBuckets> sonars(json, "sonars");
+  const Part<v1::Registration> registration(json, "registration");
+  const Part<v1::FloorMap> map(json, "map");
+  const Part<v1::Perception> perception(json, "perception");
+  const Part<v1::Vision> vision(json, "vision");
+  const Part<v1::Knowledge> knowledge(json, "knowledge");
+  const Surroundings around{robot.get(), sonars.get(),     registration.get(),
+                            map.get(),   perception.get(), vision.get()};
+  Result result = tool == "map"    ? map_of(around)
+                  : tool == "look" ? view_of(around)
+                                   : facts_of(knowledge.get());
+  if (!result.is_error) {
+    EXPECT_EQ(misfit(result.value, form_of(tool)), "") << json;
+  }
+  return result;
+}
+
+struct Asked {
+  /// `map`, `look` and `knows` are the text of that tool, and with -value behind it its value.
+  /// `form` and `goal-form` say what does not fit.
+  static std::string answer(const std::string& verb, const std::string& input) {
+    const Json json = Json::parse(input);
+    if (verb == "form")
+      return misfit(json.at("value"), form_of(sample<v1::Capability>(json.at("of"))));
+    if (verb == "goal-form")
+      return misfit(json, goal_form());
+    if (verb == "goal")
+      return misfit(json_of(sample<v1::GoalStatus>(json)), goal_form());
+    if (verb == "values")  // as they arrive at the client
+      return values_of(samples<v1::Argument>(json.at("results")),
+                       sample<v1::Capability>(json.at("of")).parameters)
+          .dump();
+    const Result result = answer_of(verb.substr(0, verb.find('-')), json);
+    if (verb.ends_with("-value"))
+      return result.value.dump();
+    return (result.is_error ? "! " : "") + result.text;
+  }
+  static std::string canonical(const std::string&, const std::string& wanted) { return wanted; }
+};
+
+TEST(McpResults, AreAsWritten) {
+  EXPECT_EQ(saphira::test::play<saphira::test::Questions<Asked>>("agents/mcp/test/results.txt"), 7);
+}
+
+TEST(McpResults, OldFactsAreLeftOut) {
+  v1::Knowledge knowledge;
+  knowledge.known.resize(201);
+  const Result many = facts_of(&knowledge);
+  EXPECT_EQ(many.value["known"].size(), 200U);
+  EXPECT_NE(many.text.find("(older ones are left out: 1)"), std::string::npos);
 }
 
 TEST(McpResults, WordsOfAnAgentAreAQuotationOnOneLine) {

@@ -25,9 +25,10 @@ namespace saphira::mcp::test {
 ///   `>>@N` is sent as it stands.
 /// `< ID = RESULT`, `< ID ! CODE ERROR`, `< ID says TEXT`, `< ID fails TEXT` or `< MESSAGE` is the
 ///   next message for the client. Each written member has to be in it, null is absent, "~text" is a
-///   part, "$name" stands for a value (the first time it is any), and `==` is the whole result.
-///   Before it: `@N` its exchange, `last` or `more` of that, `httpN` its status. Without an id it
-///   answers the line before. `< ...` is all that has come. `< call N` is the next call.
+///   part, "$name" stands for a value (the first time it is any), {"=":OBJECT} has no other
+///   members, and `==` is the whole result. Before it: `@N` its exchange, `last` or `more` of that,
+///   `httpN` its status. Without an id it answers the line before. `< ...` is all that has come. `<
+///   call N` is the next call.
 /// `fact: value` holds, and each other line is an event. ` => ` parts two of them in one line, the
 ///   second without its `<`.
 /// A message or a call that is not written is a failure.
@@ -215,7 +216,10 @@ class Transcript {
   }
 
   void compare(const Json& is, const Json& wanted, const std::string& where) {
-    if (wanted.is_object() && is.is_object()) {
+    if (wanted.is_object() && wanted.contains("=")) {
+      EXPECT_EQ(is.size(), wanted["="].size()) << where << is;
+      compare(is, wanted["="], where);
+    } else if (wanted.is_object() && is.is_object()) {
       for (const auto& [key, value] : wanted.items())
         compare(is.contains(key) ? is[key] : Json(), value, where + "/" + key);
     } else if (wanted.is_array() && is.is_array() && wanted.size() == is.size()) {

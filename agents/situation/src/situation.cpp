@@ -312,7 +312,7 @@ std::string to_json(const Situation& situation) {
   for (const v1::GoalStatus& status : situation.statuses)
     json["goals"].push_back({{"functor", status.functor},
                              {"requester", status.requester},
-                             {"state", name_of(status.state)},
+                             {"state", word_of(status.state)},
                              {"reason", status.reason},
                              {"step", status.step},
                              {"progress", status.progress}});

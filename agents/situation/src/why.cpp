@@ -48,28 +48,27 @@ void Reason::add_conditions(Cause& cause) const {
       scene_.own_mind ? std::vector{"bridge"} : std::vector{"bridge", "behaviors", "intentions"};
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
-      cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
+      cause.because.push_back({"program", std::string(name) + " " + how.words});
   for (const std::string& name : unheard(scene_))
     if (name == "interpretation" || name == "registration")
-      cause.because.push_back({"program", name + " " + condition(scene_, name).words, {}});
+      cause.because.push_back({"program", name + " " + condition(scene_, name).words});
   if (scene_.past)
     return;
   if (lost()) {
     const v1::Registration& place = *scene_.registration;
-    cause.because.push_back({"registration",
-                             format("the robot does not know where it is on the map, %.0f %% sure",
-                                    100.0 * place.confidence) +
-                                 (place.reason.empty() ? "" : " (" + place.reason + ")") +
-                                 ": saphira map place X Y TH",
-                             {}});
+    cause.because.push_back(
+        {"registration", format("the robot does not know where it is on the map, %.0f %% sure",
+                                100.0 * place.confidence) +
+                             (place.reason.empty() ? "" : " (" + place.reason + ")") +
+                             ": saphira map place X Y TH"});
   }
   if (const std::string words = doubt(); !words.empty())
-    cause.because.push_back({"registration", words, {}});
+    cause.because.push_back({"registration", words});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
     if (program.status.name == "bridge" && program.status.state == v1::SERVICE_DEGRADED &&
         !(scene_.grant && scene_.grant->estopped))
-      cause.because.push_back({"program", "bridge is degraded: " + program.status.reason, {}});
+      cause.because.push_back({"program", "bridge is degraded: " + program.status.reason});
 }
 
 /// The rest that matters for the motion: a place that is lost, motors that are off, a bad line, a
@@ -107,38 +106,38 @@ Explanation Reason::stopped() const {
                still.empty() ? "The robot stands: " : "The robot is told to stop" + still + ": ");
   struct Part {
     std::string text;
-    std::string brief;
+    std::string brief = {};
   };
   std::vector<Part> reasons;
   if (const std::string latch = held(); !latch.empty())
-    reasons.push_back({latch, {}});
+    reasons.push_back({latch});
   else if (grant.stamp.epoch == 0)
-    reasons.push_back({grant.reason, {}});
+    reasons.push_back({grant.reason});
   if (auto age = age_cause()) {
     // A silent program is a reason by itself.
     if (!scene_.behaviors->limit_reason.empty() && condition(scene_, "intentions").heard())
-      reasons.push_back({age->text, {}});
+      reasons.push_back({age->text});
     cause.because.push_back(std::move(*age));
   }
   if (!idle.empty()) {
     reasons.push_back({idle, idle_reason(true)});
-    cause.because.front().because.push_back({"goal", idle, {}});
+    cause.because.front().because.push_back({"goal", idle});
   }
   if (const std::string goal = goal_so_far(false); !goal.empty()) {
     reasons.push_back({goal, goal_so_far(true)});
-    cause.because.front().because.push_back({"goal", goal, {}});
+    cause.because.front().because.push_back({"goal", goal});
   }
   if (reasons.empty() && !grant.refused.empty())
-    reasons.push_back({"nobody drives it: " + refused(grant.refused.front()), {}});
+    reasons.push_back({"nobody drives it: " + refused(grant.refused.front())});
   if (reasons.empty())
-    reasons.push_back({"nobody drives it: " + grant.reason, {}});
+    reasons.push_back({"nobody drives it: " + grant.reason});
   if (!grant.stop_source.empty() && !grant.estopped &&
       std::none_of(reasons.begin(), reasons.end(), [&](const Part& part) {
         return part.text.find(grant.stop_source) != std::string::npos;
       })) {
     const std::string last = "the last to stop it was " + grant.stop_source;
-    reasons.push_back({last, {}});
-    cause.because.front().because.push_back({"grant", last, {}});
+    reasons.push_back({last});
+    cause.because.front().because.push_back({"grant", last});
   }
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     const std::string separator = i == 0 ? "" : "; ";
@@ -191,7 +190,7 @@ Explanation Reason::silent() {
     sentence.add(1, "; bridge " + bridge.words,
                  "; bridge " + bridge.words.substr(0, bridge.words.find(" (")));
   if (nothing_known())
-    return finish(sentence, {"wheels", "not known", {}});
+    return finish(sentence, {"wheels", "not known"});
   if (const std::string goal = last_known(false); !goal.empty())
     sentence.add(1, "; " + goal, "; " + last_known(true));
   const Explanation before = known_so_far();
@@ -201,7 +200,7 @@ Explanation Reason::silent() {
 
 Explanation Reason::by_behaviors_unknown() const {
   Sentence sentence;
-  Cause cause{"wheels", "not known", {}};
+  Cause cause{"wheels", "not known"};
   const Condition how = condition(scene_, "behaviors");
   if (scene_.grant) {
     sentence.add(0, told());
@@ -278,7 +277,7 @@ Explanation Reason::by_behaviors_known() {
   Cause cause = wheels(what);
   if (const std::string way = detour(); !way.empty()) {
     sentence.add(1, "; " + way);
-    cause.because.push_back({"zone", way, {}});
+    cause.because.push_back({"zone", way});
   }
   add_troubles(sentence);
   return finish(sentence, std::move(cause));
@@ -293,7 +292,7 @@ Explanation Reason::known_so_far() {
     if (!scene_.past)
       if (const std::string wrong = trouble(scene_); !wrong.empty())
         sentence.add(0, ": " + wrong, bridge.words.empty() ? "" : ": bridge " + bridge.words);
-    return finish(sentence, {"wheels", "nothing is known", {}});
+    return finish(sentence, {"wheels", "nothing is known"});
   }
   if (scene_.grant && scene_.grant->role == v1::ROLE_NONE)
     return stopped();

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "saphira/situation/words.hpp"
 #include "why_reason.hpp"
 
 namespace saphira::situation {
@@ -47,7 +48,7 @@ Explanation Reason::why_not(Wish wish) {
 
   const v1::BehaviorSet& all = *scene_.behaviors;
   const double speed = told_speed();
-  Cause cause{"wheels", told(), {}};
+  Cause cause{"wheels", told()};
   if (wish == Wish::faster && scene_.grant->guard != v1::GUARD_NONE &&
       all.speed > speed + kNoSpeed) {
     const Cause guard = *guard_cause();

@@ -278,17 +278,17 @@ std::string Reason::held() const {
 
 Cause Reason::grant_cause() const {
   const v1::Grant& grant = *scene_.grant;
-  Cause cause{"grant", std::string(situation::name_of(grant.role)), {}};
+  Cause cause{"grant", std::string(situation::name_of(grant.role))};
   if (grant.role == v1::ROLE_NONE)
     cause.text = "nobody drives";
   else if (grant.estopped)
-    return {"grant", held(), {}};
+    return {"grant", held()};
   else
     cause.text = grant.source + " drives as " + situation::name_of(grant.role);
   if (!grant.reason.empty())
     cause.text += ": " + grant.reason;
   for (const v1::Refusal& refusal : grant.refused)
-    cause.because.push_back({"grant", refused(refusal), {}});
+    cause.because.push_back({"grant", refused(refusal)});
   return cause;
 }
 
@@ -307,7 +307,7 @@ std::string Reason::guard_words(bool brief) const {
 std::optional<Cause> Reason::guard_cause() const {
   if (!scene_.grant || scene_.grant->guard == v1::GUARD_NONE)
     return std::nullopt;
-  return Cause{"guard", guard_words(false), {}};
+  return Cause{"guard", guard_words(false)};
 }
 
 std::optional<Cause> Reason::hindrance() const {
@@ -317,15 +317,13 @@ std::optional<Cause> Reason::hindrance() const {
   const v1::RobotState& robot = *scene_.robot;
   if (robot.status == v1::MOTORS_NO_POWER && std::abs(robot.velocity) < kFarFromTold &&
       std::abs(robot.rotation_velocity) < kTurning)
-    return Cause{"motors", "its motors are off (saphira device motors on)", {}};
+    return Cause{"motors", "its motors are off (saphira device motors on)"};
   const std::string since = scene_.stalled_since == 0 ? "" : " for" + ago(scene_.stalled_since);
   if (robot.left_stalled && robot.right_stalled)
-    return Cause{"motors", "both wheels are stalled" + since, {}};
+    return Cause{"motors", "both wheels are stalled" + since};
   if (robot.left_stalled || robot.right_stalled)
-    return Cause{
-        "motors",
-        std::string("its ") + (robot.left_stalled ? "left" : "right") + " wheel is stalled" + since,
-        {}};
+    return Cause{"motors", std::string("its ") + (robot.left_stalled ? "left" : "right") +
+                               " wheel is stalled" + since};
   return std::nullopt;
 }
 
@@ -355,20 +353,17 @@ std::optional<Cause> Reason::age_cause() const {
     return std::nullopt;
   const v1::BehaviorSet& all = *scene_.behaviors;
   if (!all.limit_reason.empty())
-    return Cause{
-        "limit",
-        all.limit_reason +
-            (all.speed_limit > 0.0 ? ", so it drives no faster than " + speed_text(all.speed_limit)
+    return Cause{"limit", all.limit_reason +
+                              (all.speed_limit > 0.0
+                                   ? ", so it drives no faster than " + speed_text(all.speed_limit)
                                    : "") +
-            (all.limit_reason.starts_with(kSlowWords) ? slow_way() : ""),
-        {}};
+                              (all.limit_reason.starts_with(kSlowWords) ? slow_way() : "")};
   const double command_age = scene_.grant ? scene_.grant->command_age : 0.0;
   if (std::max(all.input_age, command_age) < kOldInput)
     return std::nullopt;
-  return Cause{"age",
-               kSlowWords + format(": what was intended was %.1f s old, ", all.input_age) +
-                   format("and the command answers what was %.1f s ago", command_age) + slow_way(),
-               {}};
+  return Cause{"age", kSlowWords + format(": what was intended was %.1f s old, ", all.input_age) +
+                          format("and the command answers what was %.1f s ago", command_age) +
+                          slow_way()};
 }
 
 /// The robot may be elsewhere, and does not count as lost yet; else empty.
@@ -389,21 +384,20 @@ std::string Reason::doubt() const {
 
 Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
   Cause cause{"rule",
-              "rule " + rule.name + format(" holds to %.2f: ", rule.strength) + control_text(rule),
-              {}};
+              "rule " + rule.name + format(" holds to %.2f: ", rule.strength) + control_text(rule)};
   if (const std::string text = antecedent(behavior, rule); !text.empty())
-    cause.because.push_back({"rule", text, {}});
+    cause.because.push_back({"rule", text});
   return cause;
 }
 
 Cause Reason::goal_cause(const v1::GoalId& id) const {
   if (goal_text(id).empty())
-    return {"goal", "a goal of which nothing is known", {}};
-  return {"goal", "goal " + goal_text(id) + " of " + requester(id), {}};
+    return {"goal", "a goal of which nothing is known"};
+  return {"goal", "goal " + goal_text(id) + " of " + requester(id)};
 }
 
 std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
-  Cause cause{"intention", "for " + with_arguments(of), {}};
+  Cause cause{"intention", "for " + with_arguments(of)};
   // Its label is the next state, which does not describe the present.
   if (!of.step.empty())
     cause.text += ": " + of.step;
@@ -416,7 +410,7 @@ std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
       cause.because.push_back(std::move(*above));
   } else {
     cause.because.push_back(scene_.own_mind
-                                ? Cause{"program", "of the program " + scene_.grant->source, {}}
+                                ? Cause{"program", "of the program " + scene_.grant->source}
                                 : goal_cause(of.goal));
   }
   add_advice(of, cause);
@@ -435,7 +429,7 @@ void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
     if (belief.said_by.find(" said ") != std::string::npos &&
         concerns(belief, of.schema, arguments) && told_beliefs_.insert(belief.name).second)
       cause.because.push_back(
-          {"belief", belief.said_by + " (" + belief.name + ": " + belief.value + ")", {}});
+          {"belief", belief.said_by + " (" + belief.name + ": " + belief.value + ")"});
 }
 
 std::optional<Cause> Reason::chain(const v1::BehaviorState& behavior) {
@@ -449,13 +443,12 @@ Cause Reason::behavior_cause(const Say& say, Channel channel) {
               name_of(behavior) + format(", priority %d, ", behavior.priority) +
                   (say.weight < kNoSay ? "does not count: "
                                        : format("%.0f %% of the say: ", 100.0 * say.share)) +
-                  wish_of(behavior, channel),
-              {}};
+                  wish_of(behavior, channel)};
   if (say.weight < kNoSay && activity_of(behavior, channel) >= kNoSay) {
     for (const v1::BehaviorState& above : scene_.behaviors->behaviors)
       if (above.running && above.priority < behavior.priority &&
           activity_of(above, channel) >= 1.0 - kNoSay) {
-        cause.because.push_back({"behavior", name_of(above) + " is above it and fully active", {}});
+        cause.because.push_back({"behavior", name_of(above) + " is above it and fully active"});
         break;
       }
   }
@@ -471,22 +464,18 @@ Cause Reason::channel_cause(Channel channel) {
   const v1::BehaviorSet& all = *scene_.behaviors;
   Cause cause;
   if (channel == Channel::speed)
-    cause = {"speed",
-             all.moving ? "the behaviors' blend of speeds: " + speed_text(all.speed)
-                        : "no behavior wants a speed: it stands",
-             {}};
+    cause = {"speed", all.moving ? "the behaviors' blend of speeds: " + speed_text(all.speed)
+                                 : "no behavior wants a speed: it stands"};
   else
-    cause = {"turn",
-             all.turning ? "the behaviors' blend of turns: " + turn_text(all.turn)
-                         : "no behavior wants a turn: straight on",
-             {}};
+    cause = {"turn", all.turning ? "the behaviors' blend of turns: " + turn_text(all.turn)
+                                 : "no behavior wants a turn: straight on"};
   for (const Say& say : says(channel))
     cause.because.push_back(behavior_cause(say, channel));
   return cause;
 }
 
 Cause Reason::wheels(const std::string& text) {
-  Cause cause{"wheels", text, {}};
+  Cause cause{"wheels", text};
   if (scene_.grant)
     cause.because.push_back(grant_cause());
   if (auto hindered = hindrance())
@@ -500,7 +489,7 @@ Cause Reason::wheels(const std::string& text) {
     cause.because.push_back(channel_cause(Channel::turn));
     if (!scene_.behaviors->trouble.empty())
       cause.because.push_back(
-          {"trouble", "behaviors that cannot be had: " + scene_.behaviors->trouble, {}});
+          {"trouble", "behaviors that cannot be had: " + scene_.behaviors->trouble});
   }
   return cause;
 }
@@ -548,7 +537,7 @@ std::string Reason::last_known(bool brief) const {
       status->stamp.epoch != scene_.robot->stamp.epoch)
     return {};
   const double age = seconds_of(scene_.now - std::min(scene_.now, status->stamp.cycle));
-  return "last known of " + goal_of(status->id, brief) + ": " + v1::name_of(status->state) + ", " +
+  return "last known of " + goal_of(status->id, brief) + ": " + v1::word_of(status->state) + ", " +
          seconds_text(age) + " ago";
 }
 
@@ -571,7 +560,7 @@ std::string Reason::goals_reason(bool brief) const {
     return requester(newest->id) + " stopped it, and no goal is underway";
   const std::string& reason = newest->reason;
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") +
-         goal_of(newest->id, brief) + ": " + v1::name_of(newest->state) +
+         goal_of(newest->id, brief) + ": " + v1::word_of(newest->state) +
          (reason.empty() ? "" : ", " + reason);
 }
 

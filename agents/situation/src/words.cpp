@@ -8,13 +8,9 @@
 
 namespace saphira::situation {
 
-namespace {
-
 const char* name_of(v1::Frame frame) {
   return word_of(frame, {"robot", "odom", "map"});
 }
-
-}  // namespace
 
 const char* name_of(v1::ServiceState state) {
   return word_of(state, {"starting", "waiting", "running", "degraded", "stopping"});

@@ -14,6 +14,8 @@ struct Case {
   Situation situation;
   std::vector<std::string> must;   ///< parts of the answer
   std::vector<std::string> never;  ///< no parts of it
+  std::vector<std::string> once;   ///< of those, what is not repeated
+  std::string says;                ///< all of it [empty: not said]
 };
 
 /// The cases of a file, in its form (test/situations.txt). std::invalid_argument, with file and

@@ -84,18 +84,30 @@ Place Placing::of(const v1::RobotState& state) const {
 Tiles::Tiles(double period) : period_ns_(static_cast<std::int64_t>(period * 1e9)) {}
 
 std::optional<Cells> Tiles::take(const v1::GridTile& tile, bool disposed, std::int64_t time_ns) {
-  const auto differs = [&tile](const auto& entry) {
+  note(tile, disposed);
+  if (time_ns - sent_ns_ < period_ns_)
+    return std::nullopt;
+  std::optional<Cells> all = whole();
+  if (all)
+    sent_ns_ = time_ns;
+  return all;
+}
+
+void Tiles::note(const v1::GridTile& tile, bool disposed) {
+  if (disposed) {
+    tiles_.erase({tile.row, tile.column});
+    return;
+  }
+  std::erase_if(tiles_, [&tile](const auto& entry) {
     const v1::GridTile& other = entry.second;
     return other.odom != tile.odom || other.side != tile.side ||
            other.resolution != tile.resolution;
-  };
-  if (disposed) {
-    tiles_.erase({tile.row, tile.column});
-  } else {
-    std::erase_if(tiles_, differs);
-    tiles_[{tile.row, tile.column}] = tile;
-  }
-  if (tiles_.empty() || time_ns - sent_ns_ < period_ns_)
+  });
+  tiles_[{tile.row, tile.column}] = tile;
+}
+
+std::optional<Cells> Tiles::whole() const {
+  if (tiles_.empty())
     return std::nullopt;
   const v1::GridTile& first = tiles_.begin()->second;
   const auto [west, east] = std::minmax_element(
@@ -109,21 +121,21 @@ std::optional<Cells> Tiles::take(const v1::GridTile& tile, bool disposed, std::i
       side * static_cast<std::size_t>(tiles_.rbegin()->first.first - bottom + 1);
   if (rows > kMostCells || columns > kMostCells || rows * columns > kMostCells)
     return std::nullopt;
-  sent_ns_ = time_ns;
   const double edge = static_cast<double>(side) * first.resolution;
-  Cells whole{static_cast<double>(left) * edge,
-              static_cast<double>(bottom) * edge,
-              first.resolution,
-              columns,
-              rows,
-              std::string(rows * columns, '\xFF')};
+  Cells all{first.odom,
+            static_cast<double>(left) * edge,
+            static_cast<double>(bottom) * edge,
+            first.resolution,
+            columns,
+            rows,
+            std::string(rows * columns, '\xFF')};
   for (const auto& [place, each] : tiles_)
     for (std::size_t row = 0; row < side && (row + 1) * side <= each.cells.size(); ++row)
       std::memcpy(
-          &whole.cells[(static_cast<std::size_t>(place.first - bottom) * side + row) * columns +
-                       static_cast<std::size_t>(place.second - left) * side],
+          &all.cells[(static_cast<std::size_t>(place.first - bottom) * side + row) * columns +
+                     static_cast<std::size_t>(place.second - left) * side],
           &each.cells[row * side], side);
-  return whole;
+  return all;
 }
 
 }  // namespace saphira::viewer

@@ -82,8 +82,11 @@ std::string who_is_there(const Processes& processes) {
                             name_of(options.profile);
   if (const std::string bar = node.bar(); all.empty() && !bar.empty())
     return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
+  const bool listens =
+      options.profile != bus::Profile::host &&
+      std::chrono::duration<double>(processes.quiet()) < listening_time(node, false);
   if (all.empty())
-    return "no program is on the bus (" + where +
+    return (listens ? "no program is heard yet (" : "no program is on the bus (") + where +
            "): is it up (saphira up demo), and are these the same on both sides?" +
            remedy(options.profile);
   if (const std::string missing = situation::listed(unheard(now)); !missing.empty())

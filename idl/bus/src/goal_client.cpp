@@ -154,7 +154,7 @@ bool GoalClient::delivered(int timeout_ms) {
 }
 
 std::string describe(v1::GoalState state) {
-  return name_of(state);
+  return word_of(state);
 }
 
 std::optional<v1::GoalId> parse_goal_id(const std::string& text) {

@@ -453,7 +453,7 @@ void Core::tell(const News& news, Notes& notes) {
       continue;
     logged_[status.id] = status.state;
     notes.info("goal " + describe(status.id) + ", " + quoted(status.functor) + " of " +
-               quoted(status.requester) + ": " + name_of(status.state) +
+               quoted(status.requester) + ": " + word_of(status.state) +
                (status.reason.empty() ? "" : ": " + status.reason));
   }
   for (const GoalId& id : news.withdrawn) {

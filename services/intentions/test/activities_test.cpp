@@ -65,7 +65,7 @@ class Script {
     if (verb == "belief")
       return spoken(stage_->belief(name));
     const GoalStatus& status = stage_->status(std::stoull(name));
-    return verb == "goal"       ? name_of(status.state)
+    return verb == "goal"       ? word_of(status.state)
            : verb == "code"     ? code_words(status.code)
            : verb == "reason"   ? status.reason
            : verb == "step"     ? status.step

@@ -72,7 +72,7 @@ class Desk {
     std::istringstream all(ids.substr(0, ids.find(':')));
     for (std::string id; std::getline(all, id, ',');) {
       const GoalStatus& status = bench_->status(std::stoull(id));
-      std::string is = name_of(status.state);
+      std::string is = word_of(status.state);
       if (status.code != v1::CODE_NONE)
         is += " " + kCodes.at(status.code);
       if (status.waits_for.number != 0)

@@ -9,7 +9,8 @@ inline bool operator<(const GoalId& a, const GoalId& b) {
   return a.writer != b.writer ? a.writer < b.writer : a.number < b.number;
 }
 
-inline const char* name_of(GoalState state) {
+/// Not name_of: by that name the contract gives GOAL_WAITING.
+inline const char* word_of(GoalState state) {
   switch (state) {
     case GOAL_WAITING:
       return "waiting";

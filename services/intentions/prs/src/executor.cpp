@@ -397,7 +397,7 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
   entry.node = 0;
   entry.ended = now_;
   ended_order_.push_back(entry.goal.id);
-  become(entry, state, code, reason.empty() ? name_of(state) : std::move(reason));
+  become(entry, state, code, reason.empty() ? word_of(state) : std::move(reason));
   entry.status.step.clear();
   if (state == v1::GOAL_SUCCEEDED)
     entry.status.progress = 1.0;
@@ -527,7 +527,7 @@ void Executor::check_deadlines(const Robot& robot) {
     const std::string& doing = status.state == v1::GOAL_UNDERWAY ? status.step : status.reason;
     end(entry, v1::GOAL_FAILED, v1::CODE_DEADLINE,
         "not done within its deadline of " + plain(entry.goal.deadline) + " s; it was " +
-            name_of(status.state) + (doing.empty() ? "" : ": " + doing));
+            word_of(status.state) + (doing.empty() ? "" : ": " + doing));
   }
 }
 

@@ -18,6 +18,9 @@ struct DeviceCommand {
 /// The requests that a device takes, as people type them; one line each.
 extern const char* const kDeviceWords;
 
+/// The devices, in that order.
+std::vector<std::string> device_names();
+
 /// A device command as a person types it: the device and its action (kDeviceWords).
 /// std::invalid_argument with the expected form for any other.
 DeviceCommand parse_device(const std::vector<std::string>& words);

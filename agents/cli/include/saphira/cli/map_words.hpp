@@ -9,6 +9,9 @@
 
 namespace saphira::cli {
 
+/// The first words of what follows `saphira map`.
+std::vector<std::string> map_verbs();
+
 /// Throws std::invalid_argument for words that are wrong without looking at the map.
 void check_map_words(const std::vector<std::string>& words);
 

@@ -14,7 +14,7 @@ struct Cause {
   std::string kind;  ///< wheels, motors, grant, guard, speed, turn, behavior, rule, intention,
                      ///< belief, goal, registration, program, trouble, zone, limit, age
   std::string text;
-  std::vector<Cause> because;
+  std::vector<Cause> because = {};
 };
 
 struct Explanation {

@@ -16,6 +16,7 @@ const char* name_of(v1::ServiceState state);
 const char* name_of(v1::LogLevel level);
 const char* name_of(v1::Role role);
 const char* name_of(v1::GuardAction action);
+const char* name_of(v1::Frame frame);
 
 /// Stops that hold until a person releases them, with the command for that: an emergency stop and
 /// its source, or autonomy's wait for a hand-back. Empty without either.

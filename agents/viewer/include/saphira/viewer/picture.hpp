@@ -59,7 +59,8 @@ class Placing {
 
 /// An occupancy grid in odom.
 struct Cells {
-  double x = 0.0;  ///< [m] of its corner
+  std::uint64_t odom = 0;  ///< of which dead-reckoning frame
+  double x = 0.0;          ///< [m] of its corner
   double y = 0.0;
   double resolution = 0.0;  ///< [m]
   std::size_t columns = 0;
@@ -74,6 +75,10 @@ class Tiles {
   explicit Tiles(double period);
   /// A tile, or its withdrawal.
   std::optional<Cells> take(const v1::GridTile& tile, bool disposed, std::int64_t time_ns);
+  /// The same in two steps, whenever it is wanted. Nothing: there is no tile, or they are too far
+  /// apart for one grid.
+  void note(const v1::GridTile& tile, bool disposed);
+  std::optional<Cells> whole() const;
 
  private:
   std::int64_t period_ns_;

@@ -29,6 +29,17 @@ void poll_for(bus::Node& node, std::chrono::milliseconds time, const bus::Stop& 
   }
 }
 
+/// Waits for the node's samples, for that time at most, until `ready()`, which polls. True: it is.
+template <class Ready>
+bool wait_for(bus::Node& node, std::chrono::duration<double> time, const bus::Stop& stop,
+              Ready ready) {
+  bool is = ready();
+  for (const auto end = Clock::now() + time; !is && !stop.requested() && Clock::now() < end;
+       is = ready())
+    node.wait(std::chrono::milliseconds(50), &stop);
+  return is;
+}
+
 /// Takes the reader's samples: of each instance that is there the newest, by `key` of the sample.
 template <class T, class Samples, class Key>
 void keep_newest(bus::Reader<T>& reader, Samples& samples, Key key) {
