@@ -49,9 +49,11 @@ struct Item {
 };
 
 // KEEP_LAST: of each key the newest `depth`. An item of that key was just added.
-void keep_last(std::deque<Item>& items, const InstanceKey& key, int depth) {
+void keep_last(std::deque<Item>& items, const InstanceKey& key, bool keyed, int depth) {
   if (static_cast<int>(items.size()) <= depth)
     return;
+  if (!keyed)
+    return items.pop_front();
   auto oldest = items.end();
   int older = 0;
   for (auto item = items.begin(); item + 1 != items.end(); ++item) {
@@ -125,7 +127,7 @@ class MemoryReader : public RawReader {
 
   void deliver(const Item& item) {
     queue.push_back(item);
-    keep_last(queue, item.key, common.policies.reader_depth);
+    keep_last(queue, item.key, common.type->keyed, common.policies.reader_depth);
     common.wake->signal();
   }
 
@@ -198,7 +200,7 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
     std::erase_if(history, [&](const Item& old) { return old.key == item.key; });
   } else if (common.policies.transient_local) {
     history.push_back(item);
-    keep_last(history, item.key, common.policies.writer_depth);
+    keep_last(history, item.key, common.type->keyed, common.policies.writer_depth);
   }
   for (auto* reader : matches)
     reader->deliver(item);
@@ -228,13 +230,12 @@ MemoryReader::~MemoryReader() {
 }
 
 void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)>& each) {
-  std::deque<Item> items;
-  std::vector<WriterId> back;
-  {
-    const std::scoped_lock lock(common.bus->mutex);
-    items.swap(queue);
-    back.swap(returned);
-  }
+  std::unique_lock lock(common.bus->mutex);
+  if (queue.empty() && returned.empty())
+    return;
+  std::deque<Item> items = std::exchange(queue, {});
+  const std::vector<WriterId> back = std::exchange(returned, {});
+  lock.unlock();
   const auto now = std::chrono::steady_clock::now();
   const auto info_of = [now](const Item& item) {
     return SampleInfo{item.writer, item.disposed, item.sender,

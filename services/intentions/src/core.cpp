@@ -115,14 +115,18 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 }
 
 /// The nearest edges of the map, for the guard beside the robot.
-std::vector<Edge> Core::edges_near(const intentions::Inputs& now) const {
+std::vector<Edge> Core::edges_near(const intentions::Inputs& now) {
   std::vector<Edge> edges;
   if (lines_ == nullptr || !now.robot.odom_in_map ||
       now.around.registration.state != v1::REGISTRATION_TRACKING)
     return edges;
   const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();
+  if (near_.empty() || near_of_ != robot_in_map) {
+    near_of_ = robot_in_map;
+    near_ = lines_->edges_near(robot_in_map, kMostEdges);
+  }
   const ToFrame to_odom(*now.robot.odom_in_map);
-  for (const Edge& edge : lines_->edges_near(robot_in_map, kMostEdges))
+  for (const Edge& edge : near_)
     edges.push_back({to_odom(edge.from), to_odom(edge.to)});
   return edges;
 }
@@ -242,6 +246,7 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
     }
     map_ = std::move(news.map);
     lines_ = std::make_shared<const maps::LineMap>(*map_);
+    near_.clear();
     newer_maps_.pop_front();
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/wide.hpp"
 #include "saphira/geometry/cone.hpp"
 
 namespace saphira::interpretation {
@@ -16,6 +17,42 @@ constexpr int kFine = 256;  // of a probability
 
 double logit(double probability) {
   return std::log(probability / (1.0 - probability));
+}
+
+/// A beam, and what it says of the cells of a row of a tile.
+struct Beam {
+  double heading;
+  double cosine;
+  double sine;
+  double edge;       // tangent of half the opening angle
+  double range;      // [m] that counts
+  double far;        // [m] beyond it nothing is detected
+  double detection;  // at no distance
+};
+struct Row {
+  std::array<double, Grid::kTile> distance;  // [m]
+  std::array<double, Grid::kTile> found;     // probability of an echo of the cell; -1: outside
+  std::array<std::int32_t, Grid::kTile> bin;
+};
+
+/// The first cell is at dx, dy from the sonar, in cells of `size`.
+SAPHIRA_WIDE void look(const Beam& beam, double column, double size, double x, double dy, int bins,
+                       int count, Row& row) {
+  const auto [heading, c, s, edge, range, far, detection] = beam;
+  const double by_angle = bins / (2.0 * kPi);
+  for (int i = 0; i < count; ++i) {
+    const double dx = (column + i + 0.5) * size - x;
+    const double along = c * dx + s * dy;
+    const double across = -s * dx + c * dy;
+    const double z = std::sqrt(dx * dx + dy * dy);
+    const bool inside = (along > 0.0) & (std::abs(across) <= edge * along) & (z <= range);
+    const double tangent = inside ? across / along : 0.0;
+    const double off = 1.0 - tangent * tangent / (edge * edge);
+    const double bearing = heading + tangent * (1.0 - tangent * tangent / 3.0);
+    row.distance[i] = z;
+    row.found[i] = inside ? detection * (1.0 - z / far) * off * off : -1.0;
+    row.bin[i] = std::min(bins - 1, static_cast<int>(norm_angle(bearing) * by_angle));
+  }
 }
 
 }  // namespace
@@ -32,6 +69,8 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
   }
   for (int total = -kMostTotal; total <= kMostTotal; ++total)
     probabilities_.push_back(1.0 / (1.0 + std::exp(-prior_ - kStep * total)));
+  for (const double probability : probabilities_)
+    bytes_.push_back(static_cast<std::uint8_t>(std::lround(200.0 * probability)));
   for (int steps = 0; steps < kMost; ++steps)
     detections_.push_back(1.0 - std::exp(-kStep * (steps + 0.5)));
   for (int i = 0; i <= kFine; ++i)
@@ -123,7 +162,7 @@ std::vector<std::uint8_t> Grid::cells(const TileKey& key) const {
   std::vector<std::uint8_t> cells(kCells, kNeverSeen);
   for (std::size_t cell = 0; cell < kCells; ++cell)
     if (it->second.seen[cell])
-      cells[cell] = static_cast<std::uint8_t>(std::lround(200.0 * probability(it->second, cell)));
+      cells[cell] = bytes_[static_cast<std::size_t>(it->second.total[cell] + kMostTotal)];
   return cells;
 }
 
@@ -141,32 +180,30 @@ void Grid::add(int sonar, const Pose& sonar_in_grid, std::optional<double> range
   weigh(sonar_in_grid, range);
 }
 
-// f(tile, cell, distance [m], tangent of the bearing off the axis)
 template <class F>
 void Grid::for_cone(const Pose& sonar, double range, F&& f) {
-  double low_x = sonar.x, high_x = sonar.x, low_y = sonar.y, high_y = sonar.y;
-  for (const double off :
-       {-settings_.beam, -settings_.beam / 2.0, 0.0, settings_.beam / 2.0, settings_.beam}) {
-    const double x = sonar.x + range * std::cos(sonar.th + off);
-    const double y = sonar.y + range * std::sin(sonar.th + off);
-    low_x = std::min(low_x, x);
-    high_x = std::max(high_x, x);
-    low_y = std::min(low_y, y);
-    high_y = std::max(high_y, y);
-  }
   const double size = settings_.resolution;
+  const double edge = std::tan(settings_.beam);
+  const ConeRows cone(sonar, edge, range);
+  const Beam beam{sonar.th, cone.cosine(),   cone.sine(),        edge,
+                  range,    settings_.range, settings_.detection};
   const auto cell_of = [size](double v) { return static_cast<long>(std::floor(v / size)); };
-  const long first_column = cell_of(low_x);
-  const long last_column = cell_of(high_x);
-  const long first_row = cell_of(low_y);
-  const long last_row = cell_of(high_y);
   const auto tile_at = [](long cell) {
     return cell >= 0 ? cell / kTile : -((-cell + kTile - 1) / kTile);
   };
-  const double c = std::cos(sonar.th);
-  const double s = std::sin(sonar.th);
-  const double edge = std::tan(settings_.beam);
-  const ConeRows rows(sonar, edge, range);
+  const auto distance = [&](long row) { return (static_cast<double>(row) + 0.5) * size - sonar.y; };
+  const long first_row = cell_of(sonar.y + cone.rows().first);
+  const long last_row = cell_of(sonar.y + cone.rows().second);
+  const long first_column = cell_of(sonar.x + cone.columns().first);
+  const long last_column = cell_of(sonar.x + cone.columns().second);
+  spans_.clear();
+  for (long row = first_row; row <= last_row; ++row) {
+    // One more cell at each end, against rounding.
+    const auto [low, high] = cone.span(distance(row));
+    spans_.emplace_back(std::max(first_column, cell_of(sonar.x + low - size)),
+                        std::min(last_column, cell_of(sonar.x + high + size)));
+  }
+  Row seen;
   for (long tile_row = tile_at(first_row); tile_row <= tile_at(last_row); ++tile_row)
     for (long tile_column = tile_at(first_column); tile_column <= tile_at(last_column);
          ++tile_column) {
@@ -175,27 +212,20 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
       Tile* tile = nullptr;
       for (long row = std::max(row0, first_row); row <= std::min(row0 + kTile - 1, last_row);
            ++row) {
-        const double dy = (static_cast<double>(row) + 0.5) * size - sonar.y;
-        const auto [low, high] = rows.span(dy);
-        if (high < low - size)
+        const auto& span = spans_[static_cast<std::size_t>(row - first_row)];
+        const long begin = std::max(column0, span.first);
+        const long count = std::min(column0 + kTile - 1, span.second) - begin + 1;
+        if (count <= 0)
           continue;
-        // One more cell at each end, against rounding.
-        const long begin = std::max({column0, first_column, cell_of(sonar.x + low - size)});
-        const long end =
-            std::min({column0 + kTile - 1, last_column, cell_of(sonar.x + high + size)});
-        for (long column = begin; column <= end; ++column) {
-          const double dx = (static_cast<double>(column) + 0.5) * size - sonar.x;
-          const double along = c * dx + s * dy;
-          const double across = -s * dx + c * dy;
-          if (along <= 0.0 || std::abs(across) > edge * along)
-            continue;
-          const double distance = std::sqrt(dx * dx + dy * dy);
-          if (distance > range)
+        look(beam, static_cast<double>(begin), size, sonar.x, distance(row), kBins,
+             static_cast<int>(count), seen);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+          if (seen.found[i] < 0.0)
             continue;
           if (!tile)
             tile = &tiles_[{tile_column, tile_row}];
-          f(*tile, static_cast<std::size_t>((row - row0) * kTile + column - column0), distance,
-            across / along);
+          f(*tile, static_cast<std::size_t>((row - row0) * kTile + begin - column0) + i,
+            seen.distance[i], seen.found[i], seen.bin[i]);
         }
       }
     }
@@ -215,7 +245,6 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
 }
 
 void Grid::weigh(const Pose& sonar, std::optional<double> range) {
-  const double edge = std::tan(settings_.beam);
   const double far = settings_.range;
   // Beyond three deviations behind the echo there is no evidence.
   const double deviation =
@@ -223,16 +252,11 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double half_cell = settings_.resolution / 2.0;
   const double spread = std::hypot(deviation, half_cell);
   const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
-  const double bins = kBins / (2.0 * kPi);
   arc_.clear();
   double sum = 0.0;
-  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double tangent) {
-    const double off = 1.0 - tangent * tangent / (edge * edge);
-    const double found = settings_.detection * (1.0 - z / far) * off * off;
+  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double found, int bin) {
     if (found <= 0.0)
       return;
-    const double bearing = sonar.th + tangent * (1.0 - tangent * tangent / 3.0);
-    const int bin = std::min(kBins - 1, static_cast<int>(norm_angle(bearing) * bins));
     const double behind = range ? (*range - z) / spread : 4.0;
     if (behind > 3.0) {
       evidence(tile, cell, bin, -free_steps(found));

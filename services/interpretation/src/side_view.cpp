@@ -91,7 +91,7 @@ void SideView::clear() {
 std::optional<double> SideView::misses(const Return& firing, const Line& line, double newest,
                                        double turned) const {
   if (!firing.echo || firing.range > settings_.max_range ||
-      firing.axis.dot(line.normal) < std::cos(settings_.incidence))
+      firing.axis.dot(line.normal) < incidence_)
     return std::nullopt;
   const double off = std::abs(line.distance(firing.sonar) - firing.range);
   const double way = newest - firing.travelled;
@@ -221,7 +221,7 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
   for (const Return& firing : returns_) {
     const double d = line.distance(firing.sonar);
     const double cosine = firing.axis.dot(line.normal);
-    if (d <= 0.0 || d > settings_.max_range || cosine < std::cos(settings_.incidence))
+    if (d <= 0.0 || d > settings_.max_range || cosine < incidence_)
       continue;
     Event event{line.u(firing.sonar), &firing, Says::other};
     const bool sure = firing.steady && cosine >= std::cos(settings_.sure);

@@ -55,7 +55,11 @@ class Registration::Self {
         model_(field_, settings_.range),
         now_(settings_),
         search_(map_, lines_, model_, settings_.search, settings_.match, settings_.reckoning,
-                settings_.drift_error, now_.search) {}
+                settings_.drift_error, now_.search) {
+    for (std::size_t i = 0; i < map_.features.size(); ++i)
+      if (maps::traits(map_.features[i].type).region)
+        regions_.emplace_back(i, map_.features[i]);
+  }
   Self(const Self&) = delete;
   Self& operator=(const Self&) = delete;
 
@@ -110,6 +114,7 @@ class Registration::Self {
   LineMap lines_;
   Field field_;
   RangeModel model_;
+  std::vector<std::pair<std::size_t, maps::Rectangle>> regions_;  ///< by the artifact's index
 
   RegistrationState now_;
   Search search_;  // works on now_.search
@@ -599,11 +604,9 @@ void Registration::Self::find_environment() {
   if (!now_.filter)
     return;
   int best = -1;
-  for (std::size_t i = 0; i < map_.features.size(); ++i) {
-    const maps::Feature& feature = map_.features[i];
-    const maps::ArtifactTraits& of_type = maps::traits(feature.type);
-    const int r = of_type.environment;
-    if (!of_type.region || r < best || !maps::contains(feature, now_.filter->pose().position()))
+  for (const auto& [i, box] : regions_) {
+    const int r = maps::traits(map_.features[i].type).environment;
+    if (r < best || !box.contains(now_.filter->pose().position()))
       continue;
     // Where two of a kind cross, the robot stays in its present one.
     if (r > best || (before && *before == i)) {

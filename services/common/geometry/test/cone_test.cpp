@@ -30,9 +30,14 @@ TEST(ConeRows, LeavesOutNothingOfTheCone) {
     const double dy = i % 16 == 3 ? 0.0 : random.uniform(-range, range);
     if (!inside(tip, edge, range, dx, dy))
       continue;
-    const auto [low, high] = ConeRows(tip, edge, range).span(dy);
+    const ConeRows cone(tip, edge, range);
+    const auto [low, high] = cone.span(dy);
     EXPECT_GE(dx, low - 1e-6);
     EXPECT_LE(dx, high + 1e-6);
+    EXPECT_GE(dx, cone.columns().first - 1e-6);
+    EXPECT_LE(dx, cone.columns().second + 1e-6);
+    EXPECT_GE(dy, cone.rows().first - 1e-6);
+    EXPECT_LE(dy, cone.rows().second + 1e-6);
   }
 }
 
@@ -43,6 +48,10 @@ TEST(ConeRows, IsNarrow) {
   EXPECT_NEAR(high, std::sqrt(4.0 - 0.01), 1e-9);
   const auto [from, to] = ConeRows(ahead, std::tan(radians(12.5)), 2.0).span(1.0);
   EXPECT_GT(from, to);
+  const ConeRows left({0.0, 0.0, kPi / 2.0}, std::tan(radians(12.5)), 2.0);
+  EXPECT_NEAR(left.columns().first, -2.0 * std::sin(radians(12.5)), 1e-9);
+  EXPECT_NEAR(left.columns().second, 2.0 * std::sin(radians(12.5)), 1e-9);
+  EXPECT_EQ(left.rows(), std::pair(0.0, 2.0));
 }
 
 }  // namespace

@@ -1,12 +1,28 @@
 #include "saphira/lps/obstacle_memory.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "saphira/base/wide.hpp"
 #include "saphira/geometry/cone.hpp"
 
 namespace saphira::lps {
+
+/// The cells of a row that a cone may cover, seen from its sonar.
+struct ConeRow {
+  double* beliefs;
+  std::size_t index;  ///< of the first one
+  long count;
+  double cell;    ///< [m]
+  double first;   ///< [cells] column of the first one in odom
+  double x;       ///< [m] of the sonar in odom
+  double dy;      ///< [m] from the sonar to the row
+  double cosine;  ///< of the sonar's heading
+  double sine;
+};
+
 namespace {
 
 /// [cells] The grid follows when the robot is this far from its middle.
@@ -23,16 +39,27 @@ std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
 }
 
-SAPHIRA_WIDE void scale(std::vector<double>& values, double factor) {
-  for (double& value : values)
-    value *= factor;
+SAPHIRA_WIDE void scale(double* values, long count, double factor) {
+  for (long i = 0; i < count; ++i)
+    values[i] *= factor;
 }
 
-SAPHIRA_WIDE long count_from(double least, const double* values, long count) {
-  long found = 0;
-  for (long i = 0; i < count; ++i)
-    found += values[i] >= least ? 1 : 0;
-  return found;
+/// Lowers the beliefs within the cone and the range, less at the cone's rim.
+SAPHIRA_WIDE void lower(const ConeRow& row, double edge, double range, double soft, double doubt,
+                        double least) {
+  const auto [beliefs, index, count, cell, first, x, dy, c, s] = row;
+  const double square = range * range;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double dx = (first + i + 0.5) * cell - x;
+    const double along = c * dx + s * dy;
+    const double across = std::abs(-s * dx + c * dy);
+    const double rim = edge * along;
+    const double sure = std::min((1.0 - across / rim) / soft, 1.0);
+    const double lowered = std::max(beliefs[i] - doubt * sure, least);
+    const bool inside =
+        (along > 0.0) & (across <= rim) & (along * along + across * across <= square);
+    beliefs[i] = inside ? lowered : beliefs[i];
+  }
 }
 
 }  // namespace
@@ -47,13 +74,17 @@ MemorySettings for_range(double range, MemorySettings settings) {
 
 ObstacleMemory::ObstacleMemory(MemorySettings settings)
     : settings_(settings),
+      edge_(std::tan(settings.beam)),
+      soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
       beliefs_(area(settings.cells), 0.0),
-      highest_(static_cast<std::size_t>(settings.cells), 0.0) {}
+      held_(static_cast<std::size_t>(settings.cells)),
+      marks_(area(settings.cells) / 64 + 1, 0) {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
   std::fill(beliefs_.begin(), beliefs_.end(), 0.0);
-  std::fill(highest_.begin(), highest_.end(), 0.0);
+  std::fill(held_.begin(), held_.end(), Part{});
+  std::fill(marks_.begin(), marks_.end(), 0);
   points_.clear();
 }
 
@@ -67,117 +98,145 @@ void ObstacleMemory::move_to(const Pose& robot_in_odom) {
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
   if (placed_ && std::abs(column0 - column0_) <= kFollow && std::abs(row0 - row0_) <= kFollow)
     return;
-  if (placed_) {
-    std::vector<double> moved(beliefs_.size(), 0.0);
-    const long n = settings_.cells;
-    for (long row = 0; row < n; ++row)
-      for (long column = 0; column < n; ++column) {
-        const long old_row = row + row0 - row0_;
-        const long old_column = column + column0 - column0_;
-        if (old_row >= 0 && old_row < n && old_column >= 0 && old_column < n)
-          moved[static_cast<std::size_t>(row * n + column)] =
-              beliefs_[static_cast<std::size_t>(old_row * n + old_column)];
-      }
-    beliefs_ = std::move(moved);
-    std::fill(highest_.begin(), highest_.end(), settings_.most);
-  }
+  if (placed_)
+    shift(column0 - column0_, row0 - row0_);
   placed_ = true;
   column0_ = column0;
   row0_ = row0;
 }
 
-void ObstacleMemory::fade() {
-  scale(beliefs_, settings_.fading);
-  scale(highest_, settings_.fading);
-}
-
-void ObstacleMemory::raise(std::size_t cell, double belief) {
-  beliefs_[cell] = belief;
-  double& highest = highest_[cell / static_cast<std::size_t>(settings_.cells)];
-  highest = std::max(highest, belief);
-}
-
-template <class F>
-void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
-  const double cell = settings_.cell;
+void ObstacleMemory::shift(long columns, long rows) {
+  const std::vector<double> beliefs = std::exchange(beliefs_, std::vector<double>(beliefs_.size()));
+  const std::vector<Part> held = std::exchange(held_, std::vector<Part>(held_.size()));
+  std::fill(marks_.begin(), marks_.end(), 0);
   const long n = settings_.cells;
-  // The box around the cone: its tip, the ends of the arc, the middle of the arc. The arc's extreme
-  // lies within a cell of these for a cone as narrow as a sonar's.
-  double low_x = sonar.x, high_x = sonar.x, low_y = sonar.y, high_y = sonar.y;
-  for (const double off : {-settings_.beam, 0.0, settings_.beam}) {
-    const double x = sonar.x + range * std::cos(sonar.th + off);
-    const double y = sonar.y + range * std::sin(sonar.th + off);
-    low_x = std::min(low_x, x);
-    high_x = std::max(high_x, x);
-    low_y = std::min(low_y, y);
-    high_y = std::max(high_y, y);
-  }
-  const auto clamped = [n](double v) {
-    return std::clamp(static_cast<long>(std::floor(v)), 0L, n);
-  };
-  const long column_begin = clamped(low_x / cell - 1.0 - static_cast<double>(column0_));
-  const long column_end = clamped(high_x / cell + 2.0 - static_cast<double>(column0_));
-  const long row_begin = clamped(low_y / cell - 1.0 - static_cast<double>(row0_));
-  const long row_end = clamped(high_y / cell + 2.0 - static_cast<double>(row0_));
-  const double c = std::cos(sonar.th);
-  const double s = std::sin(sonar.th);
-  const double edge = std::tan(settings_.beam);
-  const ConeRows rows(sonar, edge, range);
-  for (long row = row_begin; row < row_end; ++row) {
-    const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
-    const auto [low, high] = rows.span(dy);
-    const double offset = sonar.x / cell - static_cast<double>(column0_);
-    const long begin = std::max(column_begin, clamped(low / cell + offset - 1.5));
-    const long end = std::min(column_end, clamped(high / cell + offset + 1.5));
+  for (long row = std::max(0L, rows); row < std::min(n, n + rows); ++row) {
+    const Part& part = held[static_cast<std::size_t>(row)];
+    const long begin = std::max(part.begin, columns);
+    const long end = std::min(part.end, n + columns);
+    if (begin >= end)
+      continue;
+    hold(static_cast<std::size_t>(row - rows), begin - columns, end - columns);
     for (long column = begin; column < end; ++column) {
-      const double dx = (static_cast<double>(column + column0_) + 0.5) * cell - sonar.x;
-      const double along = c * dx + s * dy;
-      const double across = -s * dx + c * dy;
-      if (along <= 0.0 || std::abs(across) > edge * along)
-        continue;
-      const double distance = std::sqrt(along * along + across * across);
-      if (distance <= range)
-        f(static_cast<std::size_t>(row * n + column), distance, std::abs(across) / (edge * along));
+      const double belief = beliefs[static_cast<std::size_t>(row * n + column)];
+      const auto cell = static_cast<std::size_t>((row - rows) * n + column - columns);
+      beliefs_[cell] = belief;
+      if (belief >= settings_.obstacle)
+        mark(cell);
     }
   }
 }
 
-ObstacleMemory::Passing::Passing(const MemorySettings& settings, double doubt)
-    : soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
-      doubt_(doubt),
-      least_(settings.least) {}
+void ObstacleMemory::fade() {
+  for (std::size_t row = 0; row < held_.size(); ++row)
+    scale(&beliefs_[row * held_.size() + static_cast<std::size_t>(held_[row].begin)],
+          held_[row].end - held_[row].begin, settings_.fading);
+}
 
-void ObstacleMemory::Passing::operator()(double& belief, double off) const {
-  const double sure = std::min((1.0 - off) / soft_, 1.0);
-  belief = std::max(belief - doubt_ * sure, least_);
+void ObstacleMemory::hold(std::size_t row, long begin, long end) {
+  Part& held = held_[row];
+  held = held.begin == held.end ? Part{begin, end}
+                                : Part{std::min(held.begin, begin), std::max(held.end, end)};
+}
+
+void ObstacleMemory::put(std::size_t cell, double belief) {
+  beliefs_[cell] = belief;
+  const auto column = static_cast<long>(cell % held_.size());
+  hold(cell / held_.size(), column, column + 1);
+  if (belief >= settings_.obstacle)
+    mark(cell);
+}
+
+template <class F>
+void ObstacleMemory::for_rows(const Pose& sonar, double range, bool only_held, F&& f) {
+  const double cell = settings_.cell;
+  const long n = settings_.cells;
+  const auto clamped = [n](double v) {
+    return std::clamp(static_cast<long>(std::floor(v)), 0L, n);
+  };
+  const ConeRows rows(sonar, edge_, range);
+  const auto [lowest, highest] = rows.rows();
+  const double x = sonar.x / cell - static_cast<double>(column0_);
+  const double y = sonar.y / cell - static_cast<double>(row0_);
+  const long row_end = clamped(highest / cell + y + 1.5);
+  for (long row = clamped(lowest / cell + y - 1.5); row < row_end; ++row) {
+    const Part& held = held_[static_cast<std::size_t>(row)];
+    if (only_held && held.begin == held.end)
+      continue;
+    const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
+    const auto [low, high] = rows.span(dy);
+    const long begin = clamped(low / cell + x - 1.5);
+    const long end = clamped(high / cell + x + 1.5);
+    if (begin >= end)
+      continue;
+    const auto first = static_cast<std::size_t>(row * n + begin);
+    f(ConeRow{&beliefs_[first], first, end - begin, cell, static_cast<double>(begin + column0_),
+              sonar.x, dy, rows.cosine(), rows.sine()});
+  }
+}
+
+void ObstacleMemory::pass(ConeRow row, double range, double doubt) {
+  const auto n = static_cast<std::size_t>(settings_.cells);
+  const auto begin = static_cast<long>(row.index % n);
+  if (settings_.least < 0.0) {
+    hold(row.index / n, begin, begin + row.count);
+  } else {
+    // No belief falls below 0.
+    const Part& held = held_[row.index / n];
+    const long skipped = std::max(held.begin - begin, 0L);
+    row.beliefs += skipped;
+    row.first += static_cast<double>(skipped);
+    row.count = std::min(held.end - begin, row.count) - skipped;
+  }
+  lower(row, edge_, range, soft_, doubt, settings_.least);
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
-  const Passing passing(settings_, doubt);
-  for_cone(sonar_in_odom, range, [&](std::size_t cell, double /*distance*/, double off) {
-    passing(beliefs_[cell], off);
-  });
+  if (range > 0.0)
+    for_rows(sonar_in_odom, range, settings_.least >= 0.0,
+             [&](const ConeRow& row) { pass(row, range, doubt); });
+}
+
+void ObstacleMemory::find_arc(const ConeRow& row, double range) {
+  // The cells from `left` to `right` are nearer than the arc.
+  const double inner = std::max(range - settings_.thickness - row.cell, 0.0);
+  const double half = std::sqrt(std::max(inner * inner - row.dy * row.dy, 0.0));
+  const auto column = [&row](double x) {
+    return std::clamp(static_cast<long>((row.x + x) / row.cell - row.first), 0L, row.count);
+  };
+  const long left = column(-half) + 1;
+  const long right = column(half) - 1;
+  for (long i = 0; i < row.count; ++i) {
+    if (i == left && left < right)
+      i = right;
+    const double dx = (row.first + static_cast<double>(i) + 0.5) * row.cell - row.x;
+    const double along = row.cosine * dx + row.sine * row.dy;
+    const double across = -row.sine * dx + row.cosine * row.dy;
+    if (along <= 0.0 || std::abs(across) > edge_ * along)
+      continue;
+    const double distance = std::sqrt(along * along + across * across);
+    if (distance > range - 2.0 * settings_.thickness && distance <= range + settings_.thickness &&
+        std::abs(distance - range) <= settings_.thickness)
+      arc_.push_back(
+          {row.index + static_cast<std::size_t>(i),
+           std::exp(row.beliefs[i]) * (1.0 - 0.5 * (std::abs(across) / (edge_ * along)))});
+  }
 }
 
 void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
   // The likeliest arc cell so far takes the echo in full, the others in proportion.
-  const double free = range - 2.0 * settings_.thickness;
-  const Passing passing(settings_, settings_.passed);
-  double likeliest = 0.0;
+  const double free = std::max(range - 2.0 * settings_.thickness, 0.0);
   arc_.clear();
-  for_cone(sonar_in_odom, range + settings_.thickness,
-           [&](std::size_t cell, double distance, double off) {
-             double& belief = beliefs_[cell];
-             if (distance <= free) {
-               passing(belief, off);
-             } else if (std::abs(distance - range) <= settings_.thickness) {
-               arc_.push_back({cell, std::exp(belief) * (1.0 - 0.5 * off)});
-               likeliest = std::max(likeliest, arc_.back().likely);
-             }
-           });
+  for_rows(sonar_in_odom, range + settings_.thickness, false, [&](const ConeRow& row) {
+    pass(row, free, settings_.passed);
+    find_arc(row, range);
+  });
+  double likeliest = 0.0;
   for (const Arc& arc : arc_)
-    raise(arc.cell,
-          std::min(beliefs_[arc.cell] + settings_.seen * arc.likely / likeliest, settings_.most));
+    likeliest = std::max(likeliest, arc.likely);
+  for (const Arc& arc : arc_)
+    put(arc.cell,
+        std::min(beliefs_[arc.cell] + settings_.seen * arc.likely / likeliest, settings_.most));
 }
 
 void ObstacleMemory::free_before(const Pose& sonar_in_odom, double range) {
@@ -196,32 +255,25 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
                         (static_cast<double>(row + row0_) + 0.5) * cell);
       if ((middle - at_in_odom).norm() <= kTouched * cell)
-        raise(static_cast<std::size_t>(row * n + column), settings_.most);
+        put(static_cast<std::size_t>(row * n + column), settings_.most);
     }
 }
 
 void ObstacleMemory::collect(const Pose& robot_in_odom) {
   points_.clear();
   const ToFrame to_robot(robot_in_odom);
-  const double obstacle = settings_.obstacle;
-  const long n = settings_.cells;
-  // Counting a whole row is faster than searching it.
-  for (long row = 0; row < n; ++row) {
-    double& highest = highest_[static_cast<std::size_t>(row)];
-    if (highest < obstacle)
-      continue;
-    const double* const beliefs = beliefs_.data() + row * n;
-    long obstacles = count_from(obstacle, beliefs, n);
-    if (obstacles == 0)
-      highest = std::nextafter(obstacle, 0.0);
-    for (long column = 0; obstacles > 0; ++column) {
-      if (beliefs[column] < obstacle)
+  const auto n = static_cast<std::size_t>(settings_.cells);
+  for (std::size_t word = 0; word < marks_.size(); ++word)
+    for (std::uint64_t left = marks_[word]; left != 0; left &= left - 1) {
+      const std::size_t cell = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
+      if (beliefs_[cell] < settings_.obstacle) {
+        marks_[word] ^= left & ~(left - 1);
         continue;
-      --obstacles;
-      points_.push_back(to_robot({(static_cast<double>(column + column0_) + 0.5) * settings_.cell,
-                                  (static_cast<double>(row + row0_) + 0.5) * settings_.cell}));
+      }
+      const auto column = static_cast<double>(static_cast<long>(cell % n) + column0_);
+      const auto row = static_cast<double>(static_cast<long>(cell / n) + row0_);
+      points_.push_back(to_robot({(column + 0.5) * settings_.cell, (row + 0.5) * settings_.cell}));
     }
-  }
 }
 
 }  // namespace saphira::lps

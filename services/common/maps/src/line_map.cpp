@@ -117,9 +117,11 @@ std::vector<Edge> LineMap::edges_near(const Vec2& position, std::size_t most) co
         std::clamp((position - surface.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
     near.emplace_back((surface.from + along * way - position).norm(), i);
   }
-  most = std::min(near.size(), most);
-  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(most), near.end());
-  near.resize(most);
+  if (near.size() > most) {
+    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(most), near.end());
+    near.resize(most);
+  }
+  std::sort(near.begin(), near.end());
   std::vector<Edge> edges;
   for (const auto& [away, i] : near)
     edges.push_back({surfaces_[i].from, surfaces_[i].to});

@@ -410,6 +410,12 @@ bool Rectangle::contains(const Vec2& position_in_map) const {
   return std::abs(inside.x()) <= half_.x() && std::abs(inside.y()) <= half_.y();
 }
 
+double Rectangle::distance(const Vec2& position_in_map) const {
+  const Vec2 inside = to_feature_(position_in_map);
+  return std::hypot(std::max(0.0, std::abs(inside.x()) - half_.x()),
+                    std::max(0.0, std::abs(inside.y()) - half_.y()));
+}
+
 bool contains(const Feature& feature, const Vec2& position_in_map) {
   return Rectangle(feature).contains(position_in_map);
 }

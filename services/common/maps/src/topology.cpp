@@ -144,9 +144,7 @@ double length_inside(const Feature& feature, const Vec2& from, const Vec2& to, d
 }
 
 double distance_to(const Feature& feature, const Vec2& position) {
-  const Vec2 inside = to_frame(feature.pose_in_map, position);
-  return std::hypot(std::max(0.0, std::abs(inside.x()) - feature.length / 2),
-                    std::max(0.0, std::abs(inside.y()) - feature.width / 2));
+  return Rectangle(feature).distance(position);
 }
 
 Topology::Topology(const Map& map) {
@@ -177,6 +175,8 @@ Topology::Topology(const Map& map) {
       if (!known)
         regions_.push_back({RegionKind::junction, *junction, {}});
     }
+  for (const Region& region : regions_)
+    boxes_.emplace_back(region.area);
   for (std::size_t a = 0; a < regions_.size(); ++a)
     for (std::size_t b = a + 1; b < regions_.size(); ++b)
       meet(a, b);
@@ -261,7 +261,7 @@ void Topology::open(const Feature& gate, LinkKind kind) {
 std::vector<std::size_t> Topology::at(const Vec2& position_in_map) const {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < regions_.size(); ++i)
-    if (contains(regions_[i].area, position_in_map))
+    if (boxes_[i].contains(position_in_map))
       found.push_back(i);
   return found;
 }
@@ -288,7 +288,7 @@ std::optional<std::size_t> Topology::region_at(const Vec2& position_in_map,
   double nearest = 0.0;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     const Feature& area = regions_[i].area;
-    const double far = distance_to(area, position_in_map);
+    const double far = boxes_[i].distance(position_in_map);
     const bool beside = tolerance > 0.0 && area.type == PointType::lane && far < kBesideLane &&
                         !walled(position_in_map, on_axis(area, position_in_map));
     if (far > tolerance && !beside)

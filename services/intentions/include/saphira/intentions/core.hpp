@@ -164,7 +164,7 @@ class Core {
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
-  std::vector<Edge> edges_near(const intentions::Inputs& now) const;
+  std::vector<Edge> edges_near(const intentions::Inputs& now);
   SpeedLimit limit_of(const intentions::Inputs& now, const intentions::Outputs& intended) const;
   void tell(const News& news, Notes& notes);
   std::string who_is_gone(const Inputs& inputs);
@@ -193,6 +193,8 @@ class Core {
   std::shared_ptr<const maps::Map> map_;
   std::shared_ptr<const maps::Topology> topology_;
   std::shared_ptr<const maps::LineMap> lines_;  ///< of the map
+  Vec2 near_of_{0.0, 0.0};                      ///< a place in the map...
+  std::vector<Edge> near_;                      ///< ...and the edges near it
   std::uint64_t places_revision_ = 0;           ///< of the map when its topology changed last
   std::deque<MapNews> newer_maps_;              ///< lockstep: newer than the present cycle
   std::map<GoalId, Writer> requesters_;

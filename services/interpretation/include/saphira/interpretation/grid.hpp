@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -93,6 +94,7 @@ class Grid {
     bool before = false;
     Pose pose;
   };
+  /// Calls f(tile, index, distance [m], detection, bin) for each cell within a cone.
   template <class F>
   void for_cone(const Pose& sonar, double range, F&& f);
   void weigh(const Pose& sonar, std::optional<double> range);
@@ -107,6 +109,7 @@ class Grid {
   static constexpr int kMostTotal = 128 * kBins;
   std::array<std::int16_t, 256> weighed_{};  // a bin's log odds, by its evidence
   std::vector<double> probabilities_;        // by total log odds from -kMostTotal on
+  std::vector<std::uint8_t> bytes_;          // the same times 200
   std::vector<double> detections_;           // that give one more step than their index
   std::vector<int> least_steps_;             // by probability in parts of kFine
   double prior_ = 0.0;
@@ -115,6 +118,7 @@ class Grid {
   std::vector<TileKey> cleared_;  // reported with the next cycle
   std::vector<Fired> fired_;      // by sonar
   std::vector<Arc> arc_;
+  std::vector<std::pair<long, long>> spans_;  // of the columns of a cone, by row
   std::uint64_t updates_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -93,7 +94,8 @@ struct Wall {
 /// metres, and the walls in them.
 class SideView {
  public:
-  explicit SideView(SideSettings settings) : settings_(settings) {}
+  explicit SideView(SideSettings settings)
+      : settings_(settings), incidence_(std::cos(settings.incidence)) {}
 
   /// A firing of one of the side's sonars. False where it has no new information.
   bool add(const Return& firing);
@@ -128,6 +130,7 @@ class SideView {
                  End& end) const;
 
   SideSettings settings_;
+  double incidence_;  // cosine
   std::deque<Return> returns_;
   std::vector<Candidate> lines_;
   std::vector<Wall> walls_;

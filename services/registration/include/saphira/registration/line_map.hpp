@@ -31,7 +31,10 @@ class Field {
     Vec2 towards{1.0, 0.0};  ///< unit vector
   };
   Nearest nearest(const Vec2& position_in_map) const;
-  double distance(const Vec2& position_in_map) const { return nearest(position_in_map).distance; }
+  double distance(const Vec2& position_in_map) const {
+    const auto way = way_to_nearest(position_in_map);
+    return way ? way->norm() : Nearest{}.distance;
+  }
   /// True where the map defines the place: the inside of a corridor, junction, lane or office. In a
   /// map of walls alone, everything within them.
   bool known(const Vec2& position_in_map) const;
@@ -41,6 +44,7 @@ class Field {
   static constexpr double kMargin = 1.0;  // [m] beyond the outermost surface
   static constexpr std::uint16_t kNone = 0xFFFF;
   std::optional<std::size_t> index(const Vec2& position) const;
+  std::optional<Vec2> way_to_nearest(const Vec2& position) const;
 
   Vec2 corner_{0.0, 0.0};
   int columns_ = 0;

@@ -25,18 +25,21 @@ struct RangeModelSettings {
 
 class RangeModel {
  public:
-  RangeModel(const Field& field, RangeModelSettings settings = {})
-      : field_(&field), settings_(settings) {}
+  explicit RangeModel(const Field& field, RangeModelSettings settings = {});
 
   /// The log likelihood of a reading, for comparison between poses.
   double log_likelihood(const Pose& sensor_in_map, double range, bool echo) const;
 
  private:
-  double arc_distance(const Pose& sensor_in_map, double range) const;
-  bool blocked(const Pose& sensor_in_map, double range, double margin) const;
+  double arc_distance(const Pose& sensor_in_map, const Vec2& ahead, double range) const;
+  bool blocked(const Vec2& from, const Vec2& ahead, double free, double range) const;
 
   const Field* field_;
   RangeModelSettings settings_;
+  double facing_;  ///< cosine
+  double log_silent_;
+  double log_slanted_silent_;
+  double log_far_;
 };
 
 }  // namespace saphira::registration

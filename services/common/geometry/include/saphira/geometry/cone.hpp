@@ -8,14 +8,22 @@
 
 namespace saphira {
 
-/// The part of a row of cells that a sonar's cone can cover. Grids visit only these cells, a third
-/// of the box around the cone. The span is not exact: only the cells left out are certainly
-/// outside.
+/// The part of a grid's rows that a sonar's cone can cover. Grids visit only these cells. The spans
+/// are not exact: only the cells left out are certainly outside.
 class ConeRows {
  public:
   /// From the tip along its heading; `edge` is the tangent of half the opening angle.
   ConeRows(const Pose& tip, double edge, double range)
       : c_(std::cos(tip.th)), s_(std::sin(tip.th)), edge_(edge), range_(range) {}
+
+  /// Cosine and sine of the heading.
+  double cosine() const { return c_; }
+  double sine() const { return s_; }
+
+  /// The lowest and the highest place that it reaches along y from the tip [m]...
+  std::pair<double, double> rows() const { return reach(s_, c_); }
+  /// ...and along x.
+  std::pair<double, double> columns() const { return reach(c_, s_); }
 
   /// The span along x from the tip [m], in the row at dy beside it; the second is smaller where the
   /// cone does not reach the row.
@@ -39,6 +47,16 @@ class ConeRows {
 
  private:
   static constexpr double kFlat = 1e-9;  // an edge along the row bounds nothing
+
+  /// On an axis, with the heading's parts along it and across it.
+  std::pair<double, double> reach(double along, double across) const {
+    const double side = range_ / std::sqrt(1.0 + edge_ * edge_);
+    const double left = side * (along + edge_ * across);
+    const double right = side * (along - edge_ * across);
+    const bool holds_axis = std::abs(across) <= edge_ * std::abs(along);
+    return {holds_axis && along < 0.0 ? -range_ : std::min({0.0, left, right}),
+            holds_axis && along > 0.0 ? range_ : std::max({0.0, left, right})};
+  }
 
   double c_;
   double s_;

@@ -30,6 +30,8 @@ struct MemorySettings {
 /// so short holds few cells or none. Silence says nothing of what is out of range.
 MemorySettings for_range(double range, MemorySettings settings = {});
 
+struct ConeRow;
+
 /// The obstacles that the sonars have seen around the robot, until later readings contradict them.
 ///
 /// The manual's buffers forget by count: an obstacle that leaves the front sonars' sight while the
@@ -68,33 +70,38 @@ class ObstacleMemory {
     std::size_t cell;
     double likely;
   };
-  /// Lowers beliefs along a beam.
-  class Passing {
-   public:
-    Passing(const MemorySettings& settings, double doubt);
-    void operator()(double& belief, double off) const;
 
-   private:
-    double soft_;
-    double doubt_;
-    double least_;
+  /// Columns of a row.
+  struct Part {
+    long begin = 0;
+    long end = 0;
   };
 
-  /// Calls f(cell, distance, off) for each cell within the cone, up to `range`; off is 0 on the
-  /// axis and 1 on the rim of the cone.
+  /// Calls f(row) for the part of each row that a cone may cover, up to `range`. `only_held`: not
+  /// for rows without beliefs.
   template <class F>
-  void for_cone(const Pose& sonar_in_odom, double range, F&& f);
+  void for_rows(const Pose& sonar_in_odom, double range, bool only_held, F&& f);
+  /// Lowers the beliefs of a row's cells along a beam, up to `range`.
+  void pass(ConeRow row, double range, double doubt);
   void pass(const Pose& sonar_in_odom, double range, double doubt);
+  /// Puts the row's cells at an echo's range into arc_.
+  void find_arc(const ConeRow& row, double range);
+  void shift(long columns, long rows);
   void fade();
-  void raise(std::size_t cell, double belief);
+  void hold(std::size_t row, long begin, long end);
+  void put(std::size_t cell, double belief);
+  void mark(std::size_t cell) { marks_[cell / 64] |= std::uint64_t{1} << (cell % 64); }
 
   MemorySettings settings_;
+  double edge_;  ///< tangent of the cone's half angle
+  double soft_;  ///< share of the cone, from its rim, in which an object may have no echo
   bool placed_ = false;
   Pose robot_in_odom_;  ///< of the last move_to
   long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
-  std::vector<double> beliefs_;  ///< by rows
-  std::vector<double> highest_;  ///< by row: where this is below an obstacle's, none is in the row
+  std::vector<double> beliefs_;       ///< by rows
+  std::vector<Part> held_;            ///< by row: all other beliefs are 0
+  std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
   std::vector<Arc> arc_;
   std::vector<Vec2> points_;
 };

@@ -80,6 +80,8 @@ class Rectangle {
  public:
   explicit Rectangle(const Feature& feature);
   bool contains(const Vec2& position_in_map) const;
+  /// [m] to its nearest point; 0 inside.
+  double distance(const Vec2& position_in_map) const;
 
  private:
   ToFrame to_feature_;

@@ -78,6 +78,7 @@ class Topology {
   void join(Link link);
 
   std::vector<Region> regions_;
+  std::vector<Rectangle> boxes_;  ///< of the regions
   std::vector<Link> links_;
   std::vector<Feature> positions_;
   std::vector<Feature> walls_;
