@@ -390,7 +390,7 @@ TEST(Robot, TenMetresAndOneRevolution) {
   EXPECT_NEAR(along / kRobots, 0.0, 0.005);
   EXPECT_NEAR(std::sqrt(along_squares / kRobots), 0.01 * std::sqrt(10.0), 0.003);  // 32 mm
   EXPECT_NEAR(aside / kRobots, 0.5 * 0.003 * 10.0 * 10.0, 0.010);                  // 15 cm
-  EXPECT_NEAR(left, kRobots / 2, 63) << "four standard errors";
+  EXPECT_NEAR(left, 0.5 * kRobots, 63) << "four standard errors";
   EXPECT_NEAR(heading / kRobots, 0.03, 0.002);
   EXPECT_NEAR(turned / kRobots, 0.0, 0.006);
   RecordProperty("along_mm", static_cast<int>(1000.0 * std::sqrt(along_squares / kRobots)));
