@@ -115,7 +115,8 @@ std::string sources() {
   std::string all;
   for (const char* const folder : {"agents", "bridge", "idl", "services", "sim"})
     for (const auto& entry : fs::recursive_directory_iterator(source() / folder)) {
-      if (entry.path().extension() != ".cpp")
+      // The texts of tests have whole messages.
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".txt")
         continue;
       std::string text = read_file(entry.path().string());
       for (std::size_t at = text.find("\"\n"); at != std::string::npos;
