@@ -138,6 +138,7 @@ class MemoryReader : public RawReader {
   std::vector<WriterId> returned;
 
  private:
+  std::deque<Item> taken_;            // while they are handed over; empty, with its memory
   std::map<InstanceKey, Item> last_;  // taken, and not withdrawn since
 };
 
@@ -233,7 +234,8 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
   std::unique_lock lock(common.bus->mutex);
   if (queue.empty() && returned.empty())
     return;
-  std::deque<Item> items = std::exchange(queue, {});
+  taken_.clear();  // where the last call threw
+  taken_.swap(queue);
   const std::vector<WriterId> back = std::exchange(returned, {});
   lock.unlock();
   const auto now = std::chrono::steady_clock::now();
@@ -244,8 +246,8 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
   if (common.policies.declares())
     for (const auto& [key, item] : last_)
       if (std::find(back.begin(), back.end(), item.writer) != back.end())
-        items.push_front(item);
-  for (const auto& item : items) {
+        taken_.push_front(item);
+  for (const auto& item : taken_) {
     if (!item.disposed) {
       if (common.type->keyed)
         last_.insert_or_assign(item.key, item);
@@ -256,6 +258,7 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
       each(data.get(), info_of(item));
     }
   }
+  taken_.clear();
 }
 
 std::vector<WriterId> MemoryReader::take_lost() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "saphira/base/wide.hpp"
 #include "saphira/geometry/cone.hpp"
@@ -28,17 +29,19 @@ struct Beam {
   double range;      // [m] that counts
   double far;        // [m] beyond it nothing is detected
   double detection;  // at no distance
+  double echo;       // [m] infinite: none
+  double spread;     // [m] error of the echo
 };
 struct Row {
-  std::array<double, Grid::kTile> distance;  // [m]
-  std::array<double, Grid::kTile> found;     // probability of an echo of the cell; -1: outside
+  std::array<double, Grid::kTile> behind;  // errors from the cell to the echo
+  std::array<double, Grid::kTile> found;   // probability of an echo of the cell; -1: outside
   std::array<std::int32_t, Grid::kTile> bin;
 };
 
 /// The first cell is at dx, dy from the sonar, in cells of `size`.
 SAPHIRA_WIDE void look(const Beam& beam, double column, double size, double x, double dy, int bins,
                        int count, Row& row) {
-  const auto [heading, c, s, edge, range, far, detection] = beam;
+  const auto [heading, c, s, edge, range, far, detection, echo, spread] = beam;
   const double by_angle = bins / (2.0 * kPi);
   for (int i = 0; i < count; ++i) {
     const double dx = (column + i + 0.5) * size - x;
@@ -49,7 +52,7 @@ SAPHIRA_WIDE void look(const Beam& beam, double column, double size, double x, d
     const double tangent = inside ? across / along : 0.0;
     const double off = 1.0 - tangent * tangent / (edge * edge);
     const double bearing = heading + tangent * (1.0 - tangent * tangent / 3.0);
-    row.distance[i] = z;
+    row.behind[i] = (echo - z) / spread;
     row.found[i] = inside ? detection * (1.0 - z / far) * off * off : -1.0;
     row.bin[i] = std::min(bins - 1, static_cast<int>(norm_angle(bearing) * by_angle));
   }
@@ -181,12 +184,12 @@ void Grid::add(int sonar, const Pose& sonar_in_grid, std::optional<double> range
 }
 
 template <class F>
-void Grid::for_cone(const Pose& sonar, double range, F&& f) {
+void Grid::for_cone(const Pose& sonar, double range, double echo, double spread, F&& f) {
   const double size = settings_.resolution;
   const double edge = std::tan(settings_.beam);
   const ConeRows cone(sonar, edge, range);
-  const Beam beam{sonar.th, cone.cosine(),   cone.sine(),        edge,
-                  range,    settings_.range, settings_.detection};
+  const Beam beam{sonar.th,        cone.cosine(),       cone.sine(), edge,  range,
+                  settings_.range, settings_.detection, echo,        spread};
   const auto cell_of = [size](double v) { return static_cast<long>(std::floor(v / size)); };
   const auto tile_at = [](long cell) {
     return cell >= 0 ? cell / kTile : -((-cell + kTile - 1) / kTile);
@@ -225,7 +228,7 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
           if (!tile)
             tile = &tiles_[{tile_column, tile_row}];
           f(*tile, static_cast<std::size_t>((row - row0) * kTile + begin - column0) + i,
-            seen.distance[i], seen.found[i], seen.bin[i]);
+            seen.behind[i], seen.found[i], seen.bin[i]);
         }
       }
     }
@@ -254,10 +257,10 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
   arc_.clear();
   double sum = 0.0;
-  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double found, int bin) {
+  const double echo = range.value_or(std::numeric_limits<double>::infinity());
+  const auto take = [&](Tile& tile, std::size_t cell, double behind, double found, int bin) {
     if (found <= 0.0)
       return;
-    const double behind = range ? (*range - z) / spread : 4.0;
     if (behind > 3.0) {
       evidence(tile, cell, bin, -free_steps(found));
       return;
@@ -268,7 +271,8 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
     arc.odds = probability(tile, cell);
     sum += arc.odds * arc.density;
     arc_.push_back(arc);
-  });
+  };
+  for_cone(sonar, reach, echo, spread, take);
   // The echo came from somewhere on the arc: the beliefs in the rest of it explain it as well.
   for (const Arc& arc : arc_) {
     const double rest =

@@ -9,20 +9,6 @@
 #include "saphira/geometry/cone.hpp"
 
 namespace saphira::lps {
-
-/// The cells of a row that a cone may cover, seen from its sonar.
-struct ConeRow {
-  double* beliefs;
-  std::size_t index;  ///< of the first one
-  long count;
-  double cell;    ///< [m]
-  double first;   ///< [cells] column of the first one in odom
-  double x;       ///< [m] of the sonar in odom
-  double dy;      ///< [m] from the sonar to the row
-  double cosine;  ///< of the sonar's heading
-  double sine;
-};
-
 namespace {
 
 /// [cells] The grid follows when the robot is this far from its middle.
@@ -33,6 +19,8 @@ constexpr double kTouched = 2.0;
 constexpr double kCells = 20.0;
 constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
+constexpr std::size_t kBits = 64;   // of a word of marks
+constexpr long kLanes = 4;          // cells that are lowered at once
 constexpr double kMoved = 0.001;    // [m] in a cycle: less is rest, and a turn on the spot is
 
 std::size_t area(int cells) {
@@ -45,20 +33,27 @@ SAPHIRA_WIDE void scale(double* values, long count, double factor) {
 }
 
 /// Lowers the beliefs within the cone and the range, less at the cone's rim.
-SAPHIRA_WIDE void lower(const ConeRow& row, double edge, double range, double soft, double doubt,
-                        double least) {
-  const auto [beliefs, index, count, cell, first, x, dy, c, s] = row;
+SAPHIRA_WIDE void lower(double* all, const ConeCells& cone, double cell, double edge, double range,
+                        double soft, double doubt, double least) {
+  const double x = cone.x;
+  const double c = cone.cosine;
+  const double s = cone.sine;
   const double square = range * range;
-  for (int i = 0; i < static_cast<int>(count); ++i) {
-    const double dx = (first + i + 0.5) * cell - x;
-    const double along = c * dx + s * dy;
-    const double across = std::abs(-s * dx + c * dy);
-    const double rim = edge * along;
-    const double sure = std::min((1.0 - across / rim) / soft, 1.0);
-    const double lowered = std::max(beliefs[i] - doubt * sure, least);
-    const bool inside =
-        (along > 0.0) & (across <= rim) & (along * along + across * across <= square);
-    beliefs[i] = inside ? lowered : beliefs[i];
+  for (const ConeCells::Row& row : cone.rows) {
+    double* const beliefs = all + row.index;
+    const double first = row.first;
+    const double dy = row.dy;
+    for (int i = 0; i < static_cast<int>(row.count); ++i) {
+      const double dx = (first + i + 0.5) * cell - x;
+      const double along = c * dx + s * dy;
+      const double across = std::abs(-s * dx + c * dy);
+      const double rim = edge * along;
+      const double sure = std::min((1.0 - across / rim) / soft, 1.0);
+      const double lowered = std::max(beliefs[i] - doubt * sure, least);
+      const bool inside =
+          (along > 0.0) & (across <= rim) & (along * along + across * across <= square);
+      beliefs[i] = inside ? lowered : beliefs[i];
+    }
   }
 }
 
@@ -78,7 +73,8 @@ ObstacleMemory::ObstacleMemory(MemorySettings settings)
       soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
       beliefs_(area(settings.cells), 0.0),
       held_(static_cast<std::size_t>(settings.cells)),
-      marks_(area(settings.cells) / 64 + 1, 0) {}
+      words_((static_cast<std::size_t>(settings.cells) + kBits - 1) / kBits),
+      marks_(words_ * static_cast<std::size_t>(settings.cells), 0) {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
@@ -119,10 +115,9 @@ void ObstacleMemory::shift(long columns, long rows) {
     hold(static_cast<std::size_t>(row - rows), begin - columns, end - columns);
     for (long column = begin; column < end; ++column) {
       const double belief = beliefs[static_cast<std::size_t>(row * n + column)];
-      const auto cell = static_cast<std::size_t>((row - rows) * n + column - columns);
-      beliefs_[cell] = belief;
+      beliefs_[static_cast<std::size_t>((row - rows) * n + column - columns)] = belief;
       if (belief >= settings_.obstacle)
-        mark(cell);
+        mark(static_cast<std::size_t>(row - rows), static_cast<std::size_t>(column - columns));
     }
   }
 }
@@ -141,14 +136,18 @@ void ObstacleMemory::hold(std::size_t row, long begin, long end) {
 
 void ObstacleMemory::put(std::size_t cell, double belief) {
   beliefs_[cell] = belief;
-  const auto column = static_cast<long>(cell % held_.size());
-  hold(cell / held_.size(), column, column + 1);
+  const std::size_t row = cell / held_.size();
+  const std::size_t column = cell % held_.size();
+  hold(row, static_cast<long>(column), static_cast<long>(column) + 1);
   if (belief >= settings_.obstacle)
-    mark(cell);
+    mark(row, column);
 }
 
-template <class F>
-void ObstacleMemory::for_rows(const Pose& sonar, double range, bool only_held, F&& f) {
+void ObstacleMemory::mark(std::size_t row, std::size_t column) {
+  marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
+}
+
+void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held) {
   const double cell = settings_.cell;
   const long n = settings_.cells;
   const auto clamped = [n](double v) {
@@ -159,6 +158,10 @@ void ObstacleMemory::for_rows(const Pose& sonar, double range, bool only_held, F
   const double x = sonar.x / cell - static_cast<double>(column0_);
   const double y = sonar.y / cell - static_cast<double>(row0_);
   const long row_end = clamped(highest / cell + y + 1.5);
+  cone_.x = sonar.x;
+  cone_.cosine = rows.cosine();
+  cone_.sine = rows.sine();
+  cone_.rows.clear();
   for (long row = clamped(lowest / cell + y - 1.5); row < row_end; ++row) {
     const Part& held = held_[static_cast<std::size_t>(row)];
     if (only_held && held.begin == held.end)
@@ -167,70 +170,82 @@ void ObstacleMemory::for_rows(const Pose& sonar, double range, bool only_held, F
     const auto [low, high] = rows.span(dy);
     const long begin = clamped(low / cell + x - 1.5);
     const long end = clamped(high / cell + x + 1.5);
-    if (begin >= end)
-      continue;
-    const auto first = static_cast<std::size_t>(row * n + begin);
-    f(ConeRow{&beliefs_[first], first, end - begin, cell, static_cast<double>(begin + column0_),
-              sonar.x, dy, rows.cosine(), rows.sine()});
+    if (begin < end)
+      cone_.rows.push_back({static_cast<std::size_t>(row * n + begin), end - begin,
+                            static_cast<double>(begin + column0_), dy});
   }
 }
 
-void ObstacleMemory::pass(ConeRow row, double range, double doubt) {
-  const auto n = static_cast<std::size_t>(settings_.cells);
-  const auto begin = static_cast<long>(row.index % n);
-  if (settings_.least < 0.0) {
-    hold(row.index / n, begin, begin + row.count);
-  } else {
-    // No belief falls below 0.
-    const Part& held = held_[row.index / n];
-    const long skipped = std::max(held.begin - begin, 0L);
-    row.beliefs += skipped;
-    row.first += static_cast<double>(skipped);
-    row.count = std::min(held.end - begin, row.count) - skipped;
+void ObstacleMemory::pass(double range, double doubt) {
+  const long n = settings_.cells;
+  for (ConeCells::Row& row : cone_.rows) {
+    const std::size_t number = row.index / held_.size();
+    const auto column = static_cast<long>(row.index % held_.size());
+    long begin = column;
+    long end = column + row.count;
+    if (settings_.least >= 0.0) {
+      // No belief falls below 0.
+      begin = std::max(begin, held_[number].begin);
+      end = std::max(begin, std::min(end, held_[number].end));
+    }
+    begin -= begin % kLanes;
+    end = std::min((end + kLanes - 1) / kLanes * kLanes, n);
+    if (settings_.least < 0.0)
+      hold(number, begin, end);
+    row = {number * held_.size() + static_cast<std::size_t>(begin), end - begin,
+           row.first + static_cast<double>(begin - column), row.dy};
   }
-  lower(row, edge_, range, soft_, doubt, settings_.least);
+  lower(beliefs_.data(), cone_, settings_.cell, edge_, range, soft_, doubt, settings_.least);
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
-  if (range > 0.0)
-    for_rows(sonar_in_odom, range, settings_.least >= 0.0,
-             [&](const ConeRow& row) { pass(row, range, doubt); });
+  if (range <= 0.0)
+    return;
+  look_along(sonar_in_odom, range, settings_.least >= 0.0);
+  pass(range, doubt);
 }
 
-void ObstacleMemory::find_arc(const ConeRow& row, double range) {
-  // The cells from `left` to `right` are nearer than the arc.
-  const double inner = std::max(range - settings_.thickness - row.cell, 0.0);
-  const double half = std::sqrt(std::max(inner * inner - row.dy * row.dy, 0.0));
-  const auto column = [&row](double x) {
-    return std::clamp(static_cast<long>((row.x + x) / row.cell - row.first), 0L, row.count);
-  };
-  const long left = column(-half) + 1;
-  const long right = column(half) - 1;
-  for (long i = 0; i < row.count; ++i) {
-    if (i == left && left < right)
-      i = right;
-    const double dx = (row.first + static_cast<double>(i) + 0.5) * row.cell - row.x;
-    const double along = row.cosine * dx + row.sine * row.dy;
-    const double across = -row.sine * dx + row.cosine * row.dy;
-    if (along <= 0.0 || std::abs(across) > edge_ * along)
+void ObstacleMemory::find_arc(double range) {
+  const double cell = settings_.cell;
+  const double inner = std::max(range - settings_.thickness - cell, 0.0);
+  arc_.clear();
+  for (const ConeCells::Row& row : cone_.rows) {
+    // From the middle of the first cell.
+    const double dx0 = (row.first + 0.5) * cell - cone_.x;
+    const double farthest = std::max(-dx0, dx0 + static_cast<double>(row.count) * cell) + cell;
+    if (farthest * farthest + row.dy * row.dy < inner * inner)
       continue;
-    const double distance = std::sqrt(along * along + across * across);
-    if (distance > range - 2.0 * settings_.thickness && distance <= range + settings_.thickness &&
-        std::abs(distance - range) <= settings_.thickness)
+    // The cells from `left` to `right` are nearer than the arc.
+    const double half = std::sqrt(std::max(inner * inner - row.dy * row.dy, 0.0));
+    const auto column = [&](double dx) {
+      return std::clamp(static_cast<long>((dx - dx0) / cell + 0.5), 0L, row.count);
+    };
+    const long left = column(-half) + 1;
+    const long right = column(half) - 1;
+    for (long i = 0; i < row.count; ++i) {
+      if (i == left && left < right)
+        i = right;
+      const double dx = (row.first + static_cast<double>(i) + 0.5) * cell - cone_.x;
+      const double along = cone_.cosine * dx + cone_.sine * row.dy;
+      const double across = -cone_.sine * dx + cone_.cosine * row.dy;
+      if (along <= 0.0 || std::abs(across) > edge_ * along)
+        continue;
+      const double distance = std::sqrt(along * along + across * across);
+      if (distance <= range - 2.0 * settings_.thickness || distance > range + settings_.thickness ||
+          std::abs(distance - range) > settings_.thickness)
+        continue;
+      const std::size_t index = row.index + static_cast<std::size_t>(i);
       arc_.push_back(
-          {row.index + static_cast<std::size_t>(i),
-           std::exp(row.beliefs[i]) * (1.0 - 0.5 * (std::abs(across) / (edge_ * along)))});
+          {index, std::exp(beliefs_[index]) * (1.0 - 0.5 * (std::abs(across) / (edge_ * along)))});
+    }
   }
 }
 
 void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
+  look_along(sonar_in_odom, range + settings_.thickness, false);
+  find_arc(range);
+  pass(std::max(range - 2.0 * settings_.thickness, 0.0), settings_.passed);
   // The likeliest arc cell so far takes the echo in full, the others in proportion.
-  const double free = std::max(range - 2.0 * settings_.thickness, 0.0);
-  arc_.clear();
-  for_rows(sonar_in_odom, range + settings_.thickness, false, [&](const ConeRow& row) {
-    pass(row, free, settings_.passed);
-    find_arc(row, range);
-  });
   double likeliest = 0.0;
   for (const Arc& arc : arc_)
     likeliest = std::max(likeliest, arc.likely);
@@ -262,18 +277,21 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
 void ObstacleMemory::collect(const Pose& robot_in_odom) {
   points_.clear();
   const ToFrame to_robot(robot_in_odom);
-  const auto n = static_cast<std::size_t>(settings_.cells);
-  for (std::size_t word = 0; word < marks_.size(); ++word)
+  const double size = settings_.cell;
+  for (std::size_t word = 0; word < marks_.size(); ++word) {
+    const std::size_t row = word / words_;
+    const std::size_t column0 = word % words_ * kBits;
     for (std::uint64_t left = marks_[word]; left != 0; left &= left - 1) {
-      const std::size_t cell = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
-      if (beliefs_[cell] < settings_.obstacle) {
+      const std::size_t column = column0 + static_cast<std::size_t>(std::countr_zero(left));
+      if (beliefs_[row * held_.size() + column] < settings_.obstacle) {
         marks_[word] ^= left & ~(left - 1);
         continue;
       }
-      const auto column = static_cast<double>(static_cast<long>(cell % n) + column0_);
-      const auto row = static_cast<double>(static_cast<long>(cell / n) + row0_);
-      points_.push_back(to_robot({(column + 0.5) * settings_.cell, (row + 0.5) * settings_.cell}));
+      points_.push_back(
+          to_robot({(static_cast<double>(static_cast<long>(column) + column0_) + 0.5) * size,
+                    (static_cast<double>(static_cast<long>(row) + row0_) + 0.5) * size}));
     }
+  }
 }
 
 }  // namespace saphira::lps

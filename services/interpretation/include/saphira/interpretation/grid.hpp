@@ -94,9 +94,10 @@ class Grid {
     bool before = false;
     Pose pose;
   };
-  /// Calls f(tile, index, distance [m], detection, bin) for each cell within a cone.
+  /// Calls f(tile, index, errors from the cell to the echo, detection, bin) for each cell within a
+  /// cone. `spread`: [m] error of the echo.
   template <class F>
-  void for_cone(const Pose& sonar, double range, F&& f);
+  void for_cone(const Pose& sonar, double range, double echo, double spread, F&& f);
   void weigh(const Pose& sonar, std::optional<double> range);
   int weighed(int said) const;
   /// Steps of evidence against a cell from where a beam, with this probability, would have had an

@@ -30,7 +30,19 @@ struct MemorySettings {
 /// so short holds few cells or none. Silence says nothing of what is out of range.
 MemorySettings for_range(double range, MemorySettings settings = {});
 
-struct ConeRow;
+/// The cells that a sonar's cone may cover.
+struct ConeCells {
+  struct Row {
+    std::size_t index = 0;  ///< of the first cell in the grid
+    long count = 0;
+    double first = 0.0;  ///< [cells] its column in odom
+    double dy = 0.0;     ///< [m] from the sonar to the row
+  };
+  double x = 0.0;       ///< [m] of the sonar in odom
+  double cosine = 1.0;  ///< of its heading
+  double sine = 0.0;
+  std::vector<Row> rows;
+};
 
 /// The obstacles that the sonars have seen around the robot, until later readings contradict them.
 ///
@@ -77,20 +89,19 @@ class ObstacleMemory {
     long end = 0;
   };
 
-  /// Calls f(row) for the part of each row that a cone may cover, up to `range`. `only_held`: not
-  /// for rows without beliefs.
-  template <class F>
-  void for_rows(const Pose& sonar_in_odom, double range, bool only_held, F&& f);
-  /// Lowers the beliefs of a row's cells along a beam, up to `range`.
-  void pass(ConeRow row, double range, double doubt);
+  /// Puts the cells into cone_ that a cone may cover, up to `range`. `only_held`: not in rows
+  /// without beliefs.
+  void look_along(const Pose& sonar_in_odom, double range, bool only_held);
+  /// Lowers the beliefs of cone_ up to `range`.
+  void pass(double range, double doubt);
   void pass(const Pose& sonar_in_odom, double range, double doubt);
-  /// Puts the row's cells at an echo's range into arc_.
-  void find_arc(const ConeRow& row, double range);
+  /// Puts the cells of cone_ at an echo's range into arc_.
+  void find_arc(double range);
   void shift(long columns, long rows);
   void fade();
   void hold(std::size_t row, long begin, long end);
   void put(std::size_t cell, double belief);
-  void mark(std::size_t cell) { marks_[cell / 64] |= std::uint64_t{1} << (cell % 64); }
+  void mark(std::size_t row, std::size_t column);
 
   MemorySettings settings_;
   double edge_;  ///< tangent of the cone's half angle
@@ -101,7 +112,9 @@ class ObstacleMemory {
   long row0_ = 0;
   std::vector<double> beliefs_;       ///< by rows
   std::vector<Part> held_;            ///< by row: all other beliefs are 0
+  std::size_t words_;                 ///< of marks, in a row
   std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
+  ConeCells cone_;
   std::vector<Arc> arc_;
   std::vector<Vec2> points_;
 };
