@@ -99,6 +99,9 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
     if (plans_.persons.back().script.empty())
       in.fail("expected walk, lead, wait or point before this repeat");
     plans_.persons.back().repeats = true;
+  } else if (word == "stubborn") {
+    needs(Last::kPerson, "person");
+    plans_.persons.back().stubborn = true;
   } else if (word == "door") {
     DoorPlan door;
     door.look = read_look(in, kDoorHeight);

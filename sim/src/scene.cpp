@@ -9,11 +9,25 @@ namespace saphira::sim {
 
 namespace {
 
-// A walking person keeps at least this distance from a robot.
+// A walking person keeps at least this distance from a robot, and more from one that comes nearer:
+// the way that it may make in that time.
 constexpr double kManners = 0.10;  // [m]
+constexpr double kStops = 0.8;     // [s]
 
-// The waiting time after which a person chooses another target [s].
-constexpr double kPatience = 4.0;
+// The waiting time after which a stubborn person chooses another target, and another person goes
+// back by so much.
+constexpr double kPatience = 4.0;  // [s]
+constexpr double kCourtesy = 2.0;  // [s]
+constexpr double kGoesBack = 1.5;  // [m]
+
+// A person who passes a robot sees it from this far, and keeps these distances from its hull and
+// from other things. Without room for that he stops earlier.
+constexpr double kSees = 2.5;      // [m]
+constexpr double kBeside = 0.20;   // [m]
+constexpr double kRoom = 0.10;     // [m]
+constexpr double kPolite = 1.20;   // [m]
+constexpr double kStride = 0.10;   // [m] between the places that he looks at
+constexpr double kOnLine = 0.001;  // [m]
 
 // A leading person waits for the robot beyond this distance, from middle to middle.
 constexpr double kLeash = 2.5;  // [m]
@@ -88,6 +102,7 @@ Scene::Scene(const World& world)
     persons_near_.put(static_cast<std::uint32_t>(persons_.size()), plan.at);
     widest_person_ = std::max(widest_person_, plan.radius + kStep);
     persons_.push_back({&plan, plan.at});
+    persons_.back().from = plan.at;
     const auto walk = std::find_if(plan.script.begin(), plan.script.end(),
                                    [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
     if (walk != plan.script.end())
@@ -210,8 +225,9 @@ bool Scene::set_person(std::string_view name, const Vec2& at) {
           return (hull.centre - at).norm() < radius + hull.radius;
         }))
       return false;
-    person.at = at;
-    person.waited = 0.0;
+    person.at = person.from = at;
+    person.waited = person.back = 0.0;
+    person.aside = false;
     persons_near_.put(i, at);
     return true;
   }
@@ -243,22 +259,39 @@ void Scene::walk(Person& person) {
   } else if (leg.leads && !has_robot_within(kLeash, person.at)) {
     person.way = 0.0;
   } else {
-    const Vec2 way = leg.to - person.at;
-    const double step = leg.speed * kTick;
-    const double left = way.norm();
-    const Vec2 to = left <= step ? leg.to : Vec2(person.at + way * (step / left));
-    if (!lets_pass(person, to)) {
+    if (person.waited < 0.0) {
       person.way = 0.0;
       person.waited += kTick;
-      if (person.waited > kPatience)
+      return;
+    }
+    const bool back = person.back > 0.0;
+    const Vec2 target = back ? person.from : leg.to;
+    const auto aim = next_place(person);
+    const double step = leg.speed * kTick;
+    const Vec2 way = aim.value_or(target) - person.at;
+    const double left = way.norm();
+    const Vec2 to = left <= step ? aim.value_or(target) : Vec2(person.at + way * (step / left));
+    if (!aim || !lets_pass(person, to)) {
+      person.way = 0.0;
+      person.waited += kTick;
+      if (person.plan->stubborn && person.waited > kPatience) {
         next_leg(person);
+      } else if (!person.plan->stubborn && (!aim || person.waited > kCourtesy)) {
+        person.waited = back ? -kPatience : 0.0;
+        person.back = back ? 0.0 : kGoesBack;
+      }
       return;
     }
     person.waited = 0.0;
-    look_towards(person, leg.to);
+    look_towards(person, *aim);
     person.way += std::min(left, step);
     person.at = to;
-    done = left <= step;
+    if (back) {
+      person.back = to == target ? 0.0 : std::max(0.0, person.back - step);
+      person.waited = person.back > 0.0 ? 0.0 : -kPatience;
+    } else {
+      done = to == target;
+    }
   }
   if (done)
     next_leg(person);
@@ -266,6 +299,8 @@ void Scene::walk(Person& person) {
 
 void Scene::next_leg(Person& person) {
   person.waited = 0.0;
+  person.from = person.at;
+  person.aside = false;
   ++person.leg;
   if (person.leg == person.plan->script.size() && person.plan->repeats)
     person.leg = 0;
@@ -280,15 +315,116 @@ bool Scene::has_robot_within(double reach, const Vec2& point) const {
                      [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
+/// [m] Beside a person's body at that place; the leaves of doors, which he opens, do not count.
+double Scene::room(const Person& person, const Vec2& at) const {
+  double best = sim::distance(world_->segments, at);
+  for (std::size_t i = doors_.size(); i < segments_.size(); ++i)
+    best = std::min(best, distance_to(segments_[i], at));
+  const auto look = [&](const Disc& disc) {
+    best = std::min(best, (disc.centre - at).norm() - disc.radius);
+  };
+  std::for_each(posts_.begin(), posts_.end(), look);
+  std::for_each(hulls_.begin(), hulls_.end(), look);
+  for (const Person& other : persons_)
+    if (&other != &person)
+      look({other.at, other.plan->radius});
+  return best - person.plan->radius;
+}
+
+/// True where he has room all along that straight way.
+bool Scene::is_free(const Person& person, const Vec2& to) const {
+  const Vec2 way = to - person.at;
+  const int strides = static_cast<int>(std::ceil(way.norm() / kStride));
+  for (int i = 1; i <= strides; ++i)
+    if (room(person, person.at + way * i / strides) < kRoom)
+      return false;
+  return true;
+}
+
+/// A place beside the nearest robot in his way to `aim`, on the side that bends the way less;
+/// `aim` where there is no robot. None: there is no room, and he is near.
+std::optional<Vec2> Scene::way_past(const Person& person, const Vec2& aim,
+                                    const Vec2& target) const {
+  const Vec2 way = aim - person.at;
+  const double left = way.norm();
+  std::optional<Vec2> nearest;
+  double gap = 0.0;
+  double room = 0.0;
+  bool taken = false;  // the robot stands where he wants to go
+  for (const std::uint32_t i : hulls_near_.near(person.at, kSees)) {
+    const Vec2 there = hulls_[i].centre - person.at;
+    const double touch = person.plan->radius + hulls_[i].radius;
+    const double along = left > 0.0 ? way.dot(there) / left : 0.0;
+    if (along <= 0.0 || there.norm() > kSees ||
+        (there - way * (std::min(along, left) / left)).norm() >= touch + kBeside ||
+        (nearest && nearest->norm() <= there.norm()))
+      continue;
+    nearest = there;
+    taken = (hulls_[i].centre - target).norm() < touch + kBeside;
+    room = touch + kBeside;
+    gap = there.norm() - touch;
+  }
+  if (!nearest)
+    return aim;
+  const double far = nearest->norm();
+  const double bend = std::asin(std::min(1.0, room / far));
+  const double stretch = std::max(std::sqrt(std::max(far * far - room * room, 0.0)), room);
+  const double straight = std::atan2(way.y(), way.x());
+  const double bearing = std::atan2(nearest->y(), nearest->x());
+  const bool left_first = norm2_angle(bearing - straight) < 0.0;
+  for (const double side : {left_first ? 1.0 : -1.0, left_first ? -1.0 : 1.0}) {
+    const double course = bearing + side * bend;
+    const Vec2 beside = person.at + stretch * Vec2(std::cos(course), std::sin(course));
+    if (!taken && is_free(person, beside))
+      return beside;
+  }
+  if (gap < kPolite)
+    return std::nullopt;
+  return aim;
+}
+
+/// The point that he walks towards: the target of his leg, or its beginning where he goes back;
+/// beside a robot, and behind it to the straight line of his leg again. None: he waits.
+std::optional<Vec2> Scene::next_place(Person& person) const {
+  const PersonPlan::Leg& leg = person.plan->script[person.leg];
+  const Vec2 target = person.back > 0.0 ? person.from : leg.to;
+  if (person.plan->stubborn)
+    return target;
+  Vec2 aim = target;
+  if (person.aside) {
+    const Vec2 start = person.back > 0.0 ? leg.to : person.from;
+    const Vec2 ahead = (target - start).normalized();
+    const double done = ahead.dot(person.at - start);
+    const auto on_line = [&](double further) {
+      return done + further < (target - start).norm() ? Vec2(start + ahead * (done + further))
+                                                      : target;
+    };
+    person.aside = (on_line(0.0) - person.at).norm() > kOnLine;
+    if (person.aside)
+      aim = is_free(person, on_line(1.0)) ? on_line(1.0) : on_line(0.2);
+  }
+  const auto place = way_past(person, aim, target);
+  if (place && *place != aim)
+    person.aside = true;
+  return place;
+}
+
 // True where his way is free, apart from obstacles that were behind him.
 bool Scene::lets_pass(const Person& person, const Vec2& to) {
   const double radius = person.plan->radius;
-  for (const std::uint32_t i : hulls_near_.near(to, radius + widest_hull_ + kManners)) {
+  for (const std::uint32_t i : hulls_near_.near(to, radius + widest_hull_ + kSees)) {
     const Disc& hull = hulls_[i];
     const double after = (hull.centre - to).norm();
-    if (after < radius + hull.radius + kManners && after < (hull.centre - person.at).norm())
+    if (after >= (hull.centre - person.at).norm())
+      continue;
+    const Vec2 coming = robots_[i]->pose_in_world().direction() * robots_[i]->velocity();
+    const double speed = std::max(0.0, coming.dot(to - hull.centre) / after);
+    const double manners = kManners + (person.plan->stubborn ? 0.0 : kStops * speed);
+    if (after < radius + hull.radius + manners)
       return false;
   }
+  if (person.aside && room(person, to) < std::min(0.0, room(person, person.at)))
+    return false;
   bool free = true;
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const double after = distance_to(segments_[i], to);

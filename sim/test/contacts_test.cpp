@@ -85,7 +85,7 @@ TEST_F(Contacts, WhatIsBehindAWallIsNotHeard) {
 }
 
 TEST_F(Contacts, WhoStepsBeforeARobotIsHeardTooLate) {
-  make("person ann 5000 7000  wait 7  walk 5000 5000 1600", with_front_sonar());
+  make("person ann 5000 7000  wait 7  walk 5000 5000 1600 stubborn", with_front_sonar());
   drive(0.3, 15.0);
   ASSERT_EQ(watch_->contacts().size(), 1U);
   EXPECT_EQ(watch_->contacts()[0].blame, Blame::kUnseen);

@@ -136,6 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BrokenLine{"person", 7, "a name"}, BrokenLine{"person ann x 0", 12, "x of the person"},
         BrokenLine{"walk 0 0 800", 1, "person before this walk"},
+        BrokenLine{"stubborn", 1, "person before this stubborn"},
         BrokenLine{"point 90 5", 1, "person before this point"},
         BrokenLine{"person ann 1000 1000 point left 5", 28, "direction in degrees"},
         BrokenLine{"person ann 0 0 walk 1 1 0", 25, "speed"},
@@ -194,7 +195,7 @@ TEST(Movable, PeopleWalkByTheirScripts) {
 }
 
 TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
-  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000"));
+  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000 stubborn"));
   Robot& robot = scene.add_robot({}, {4.0, 5.0, kPi}, 1);
   run(scene, 3.5);
   EXPECT_NEAR(scene.persons()[0].at.x(), 4.0 - 0.22 - 0.25 - 0.1, 0.011);
@@ -209,12 +210,62 @@ TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
 }
 
 TEST(Movable, SomebodyWhoWaitedLongGoesElsewhere) {
-  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000 walk 3000 8000 1000"));
+  WorldScene scene(world("person ann 1000 5000 walk 8000 5000 1000 walk 3000 8000 1000 stubborn"));
   scene.add_robot({}, {4.0, 5.0, kPi}, 1);
   run(scene, 6.0);
   EXPECT_NEAR(scene.persons()[0].at.y(), 5.0, 1e-9) << "waits";
   run(scene, 4.0);
   EXPECT_NEAR(scene.persons()[0].at.y(), 8.0, 1e-9) << "gave this way up";
+}
+
+TEST(Movable, PeoplePassARobotInTheirWay) {
+  // In a hall 2 m wide; the robot stands still, or comes.
+  for (const double speed : {0.0, 0.3}) {
+    WorldScene scene(
+        world("0 4000 10000 4000 0 6000 10000 6000 person ann 1000 5000 walk 9000 5000 1000"));
+    Robot& robot = scene.add_robot({}, {speed > 0.0 ? 8.0 : 5.0, 4.7, kPi}, 1);
+    robot.set_velocity(speed);
+    const Person& ann = scene.persons()[0];
+    double gap = 1.0;
+    double wall = 1.0;
+    for (int i = 0; i < 2000; ++i) {
+      scene.tick();
+      gap = std::min(gap, (ann.at - robot.pose_in_world().position()).norm() - 0.22 - 0.25);
+      wall = std::min(wall, 1.0 - std::abs(ann.at.y() - 5.0) - 0.25);
+    }
+    EXPECT_EQ(ann.at, Vec2(9.0, 5.0)) << speed;
+    EXPECT_GE(gap, 0.08) << speed;
+    EXPECT_GE(wall, 0.10) << speed;
+  }
+}
+
+TEST(Movable, WithoutRoomPeopleGoBackAndLetTheRobotPass) {
+  // In a hall 1.2 m wide. The robot comes at 0.1 m/s.
+  WorldScene scene(
+      world("0 4400 10000 4400 0 5600 10000 5600 person ann 3000 5000 walk 9000 5000 1000"));
+  Robot& robot = scene.add_robot({}, {6.0, 5.0, kPi}, 1);
+  robot.set_velocity(0.1);
+  const Person& ann = scene.persons()[0];
+  run(scene, 22.0);
+  EXPECT_NEAR(robot.pose_in_world().x, 3.8, 0.05);
+  EXPECT_EQ(robot.contacts(), 0);
+  EXPECT_GE(ann.at.x(), 3.0 - 1e-9) << "not behind the place where she began";
+  EXPECT_EQ(ann.at.y(), 5.0);
+}
+
+TEST(Movable, PeopleStepIntoNoWallAndNobodyElse) {
+  // Beside the robot are a wall, and another person.
+  WorldScene scene(
+      world("0 4600 10000 4600 person ann 1000 5000 walk 9000 5000 1000 person bob 5000 5800"));
+  const Robot& robot = scene.add_robot({}, {5.0, 5.0, 0.0}, 1);
+  const Person& ann = scene.persons()[0];
+  for (int i = 0; i < 2000; ++i) {
+    scene.tick();
+    ASSERT_GE(ann.at.y() - 4.6, 0.25) << i;
+    ASSERT_GE((ann.at - scene.persons()[1].at).norm(), 0.5) << i;
+    ASSERT_GE((ann.at - robot.pose_in_world().position()).norm(), 0.25 + 0.22) << i;
+  }
+  EXPECT_LT(ann.at.x(), 4.0) << "there is no room";
 }
 
 TEST(Movable, DoorsKeepTheirSchedule) {

@@ -12,6 +12,7 @@ namespace {
 constexpr double kCreep = 0.02;        // [m/s] counts as standing
 constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say its own
 constexpr double kSameWay = radians(3.0);
+constexpr double kNearer = 0.01;  // [m] less is no approach
 // [m] A robot whose sonars reach less far keeps distances that are smaller in proportion.
 constexpr double kReach = 1.0;
 // An approaching obstacle takes at most this share of the range until the robot brakes.
@@ -80,12 +81,14 @@ struct Allowed {
 };
 
 /// The hull keeps an obstacle's reach. Where its path passes the obstacle at `least`, it approaches
-/// up to `touch_velocity`. The approach to an obstacle that is passed at an angle is slower than
-/// the robot's own motion.
-void pass(const Clearance& clearance, const Body& body, double ahead, double aside,
+/// up to `touch_velocity`. The middle of the hull is `nearest` from the nearest echo [m]: past a
+/// long side it comes no nearer to it. The approach to an obstacle that is passed at an angle is
+/// slower than the robot's own motion.
+void pass(const Clearance& clearance, const Body& body, double ahead, double aside, double nearest,
           const Vec2& point, Allowed& allowed) {
   const double deceleration = body.deceleration;
-  const double room = body.radius + clearance.reach;
+  const double error = aside < nearest - kNearer ? clearance.error : 0.0;
+  const double room = body.radius + clearance.reach + error;
   if (ahead <= 0.0 || aside >= room)
     return;
   // The point where the hull reaches that distance, and the angle of its approach there.
@@ -105,6 +108,9 @@ void pass(const Clearance& clearance, const Body& body, double ahead, double asi
 /// Adds the limits of one kind of echo. Nobody steps out of a wall: `steps` is for people alone.
 void allow(const Clearance& clearance, double steps, const Body& body,
            const std::vector<Vec2>& points, bool forward, double turning, Allowed& allowed) {
+  double closest = std::numeric_limits<double>::infinity();
+  for (const Vec2& point : points)
+    closest = std::min(closest, point.norm());
   const auto look = [&](const std::vector<Vec2>& seen) {
     const auto take_nearest = [&](double margin, double& least, Vec2& at) {
       const Nearest found = nearest(seen, body.radius, margin, forward);
@@ -117,8 +123,8 @@ void allow(const Clearance& clearance, double steps, const Body& body,
       take_nearest(steps, allowed.until_beside, allowed.beside_at);
     take_nearest(clearance.side_margin, allowed.free, allowed.free_at);
     for (std::size_t i = 0; i < seen.size(); ++i)
-      pass(clearance, body, forward ? seen[i].x() : -seen[i].x(), std::abs(seen[i].y()), points[i],
-           allowed);
+      pass(clearance, body, forward ? seen[i].x() : -seen[i].x(), std::abs(seen[i].y()), closest,
+           points[i], allowed);
   };
   look(points);
   // The robot turns meanwhile: also check the heading that it will have.
@@ -224,7 +230,7 @@ class Cut {
   const Body& body() const { return body_; }
   Clearance scaled(const Clearance& clearance) const {
     return {clearance.side_margin * scale_, clearance.reach * scale_, clearance.touch_velocity,
-            clearance.least * scale_};
+            clearance.least * scale_, clearance.error * scale_};
   }
   Guarded result() const {
     return {forward() ? speed_ : -speed_, turning_, action_, reason_, obstacle_, sweep_};

@@ -131,6 +131,24 @@ TEST(Guard, KeepsAPersonsReach) {
   EXPECT_NEAR(past * abreast.x() / abreast.norm(), GuardSettings{}.person.touch_velocity, 1e-9);
 }
 
+// A wide person reaches 24 cm beyond the echo of the shin. The place of an echo is off by up to 3
+// cm.
+TEST(Guard, DoesNotConvergeOnAPersonWithinTheErrorOfTheEcho) {
+  Body body = kPioneer;
+  body.knows_edges = true;
+  const GuardSettings settings;
+  const Vec2 shin(0.10, 0.485);  // the path passes it at 26.5 cm
+  const double past = guard(settings, body, {shin}, 0.3, 0.0).velocity;
+  EXPECT_NEAR(past * shin.x() / shin.norm(), settings.person.touch_velocity, 1e-9);
+  EXPECT_EQ(guard(settings, body, {{0.15, 0.51}}, 0.3, 0.0).action, GuardAction::none)
+      << "at 29 cm";
+  // Along a cupboard the hull comes no nearer than it is.
+  std::vector<Vec2> side;
+  for (double x = -0.5; x < 0.8; x += 0.05)
+    side.emplace_back(x, 0.49);
+  EXPECT_DOUBLE_EQ(guard(settings, body, side, 0.15, 0.0).velocity, 0.15);
+}
+
 TEST(Guard, LeavesAPersonUntouched) {
   Random random(7);
   Body body = kPioneer;

@@ -44,6 +44,7 @@ struct PersonPlan {
   double radius = 0.25;  ///< [m]
   std::vector<Leg> script;
   bool repeats = false;
+  bool stubborn = false;  ///< stops before robots, and steps aside for none
 };
 
 /// A door that turns about its hinge.

@@ -30,6 +30,9 @@ struct Person {
   double way = 0.0;      ///< [m] walked since he last stood; 0: stands
   std::size_t leg = 0;   ///< of the script
   double waited = 0.0;   ///< [s] in this leg
+  Vec2 from{0.0, 0.0};   ///< where this leg began
+  bool aside = false;    ///< beside the straight line of this leg, past a robot
+  double back = 0.0;     ///< [m] that he still goes back, to let a robot pass
   /// [rad] Direction of an outstretched arm, in the world.
   std::optional<double> points{};
 };
@@ -80,8 +83,9 @@ struct Ping {
 };
 
 /// A world and its moving things: people, doors, boxes, robots. People walk by their scripts. They
-/// wait for a robot, a door or a box in their way, push a closed door open, and after four seconds
-/// go on to the next place of the script. Doors stop where a person stands in their way; robots
+/// push closed doors open. Where a robot stands or comes in their way they pass beside it; without
+/// room, and before a box, they wait and go back a little. Stubborn people wait for four seconds
+/// and go on to the next place of the script. Doors stop where a person stands in their way; robots
 /// push boxes. One tick() moves everything by one tick of time, always in the same order, so that a
 /// scene is the same to the last bit in every run.
 class Scene {
@@ -154,6 +158,10 @@ class Scene {
   void walk(Person& person);
   void next_leg(Person& person);
   bool has_robot_within(double reach, const Vec2& point) const;
+  std::optional<Vec2> next_place(Person& person) const;
+  std::optional<Vec2> way_past(const Person& person, const Vec2& aim, const Vec2& target) const;
+  double room(const Person& person, const Vec2& at) const;
+  bool is_free(const Person& person, const Vec2& to) const;
   bool lets_pass(const Person& person, const Vec2& to);
   void turn(std::size_t door);
   bool is_free(std::size_t box, const Pose& pose_in_world, RobotNumber pusher) const;

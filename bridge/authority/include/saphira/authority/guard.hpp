@@ -35,6 +35,8 @@ struct Clearance {
   double reach = 0.0;
   double touch_velocity = 0.0;  ///< [m/s]
   double least = 0.0;           ///< [m] from the obstacle's echo to the sides of the hull's path
+  /// [m] Of an echo's place: added to `reach` where the hull would come nearer than it is to any.
+  double error = 0.0;
 };
 
 /// The guard's limits for one role. They come from the shape of a person: a sonar hears a shin, and
@@ -48,9 +50,9 @@ struct GuardSettings {
   /// heard dependably up to 1.5 m.
   double dependable_range = 1.5;
   double margin = 0.25;  ///< [m] distance at which the hull stops before an obstacle ahead
-  Clearance person{0.10, 0.25, 0.005, 0.22};    ///< from an echo that is of no edge of the map
-  Clearance anything{0.10, 0.15, 0.035, 0.10};  ///< from any echo, without a map
-  Clearance edge{0.08, 0.15, 0.035, 0.0};       ///< from an edge of the map
+  Clearance person{0.10, 0.25, 0.005, 0.22, 0.03};  ///< from an echo that is of no edge of the map
+  Clearance anything{0.10, 0.15, 0.035, 0.10};      ///< from any echo, without a map
+  Clearance edge{0.08, 0.15, 0.035, 0.0};           ///< from an edge of the map
   /// [m/s] An obstacle ahead may approach at this speed, so the robot slows early...
   double closing_velocity = 0.4;
   double careful_velocity = 0.05;  ///< [m/s] ...down to this speed
