@@ -94,25 +94,27 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      requests_(node_, bus::topics::kRobotAnswers),
+      stops_(node_, bus::topics::kRobotAnswers),
+      devices_(node_, bus::topics::kRobotAnswers),
       other_programs_(node_),
       link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  requests_.serve(bus::topics::kDriveStop,
-                  {{"stop",
-                    "ends whatever moves the robot, in every role; done once the robot is at rest",
-                    {optional(text_parameter("by", "the person or agent behind the program"))}}});
-  requests_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
+  stops_.serve(bus::topics::kDriveStop,
+               {{"stop",
+                 "ends whatever moves the robot, in every role; done once the robot is at rest",
+                 {optional(text_parameter("by", "the person or agent behind the program"))}}});
+  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
   // In the order of reflector::Device.
   const bus::RequestTopic* const topics[] = {
       &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
       &bus::topics::kAnalog,      &bus::topics::kTimer,   &bus::topics::kSonar,
       &bus::topics::kSound,       &bus::topics::kServer,  &bus::topics::kSerial,
       &bus::topics::kVisionSystem};
+  static_assert(std::size(topics) == kEnumerators<reflector::Device>.size());
   for (const reflector::Device device : kEnumerators<reflector::Device>)
-    requests_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
+    devices_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
   if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
   if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
@@ -245,15 +247,20 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  for (const Request& request : requests_.take(core_.stamp()))
-    requests_.answer(request, core_.request(request, BootClock::seconds()));
+  take_requests(stops_);
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   take_audit(now);
+  take_requests(devices_);  // nothing waits for them
   core_.step(now);
   deliver(now);
+}
+
+void Shell::take_requests(Desk& desk) {
+  for (const Request& request : desk.take(core_.stamp()))
+    desk.answer(request, core_.request(request, BootClock::seconds()));
 }
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
@@ -305,7 +312,7 @@ void Shell::perform(const Answered&, double) {
 }
 
 void Shell::perform(const LaterAnswer& later, double) {
-  requests_.answer(later.asker, later.number, later.answer);
+  (later.of_device ? devices_ : stops_).answer(later.asker, later.number, later.answer);
 }
 
 void Shell::perform(const DevicesChanged& changed, double) {
@@ -403,7 +410,7 @@ void Shell::perform(const StatusReport& report, double now) {
   status.lockstep = lockstep_;
   status.steps = report.steps;
   status.late_cycles = report.late;
-  status.refused_samples = report.refused + requests_.refused();
+  status.refused_samples = report.refused + stops_.refused() + devices_.refused();
   if (report.reaction) {
     status.step_ms_mean = report.reaction->mean * 1000.0;
     status.step_ms_max = report.reaction->max * 1000.0;

@@ -81,6 +81,7 @@ class Shell {
   void tend_link();
   void receive();
   void take_all(double now);
+  void take_requests(Desk& desk);
   void take_drives(authority::Role role, bus::Reader<v1::MotorCommand>& reader, double now);
 
   /// Executes the core's outputs until there are none.
@@ -125,7 +126,8 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
   bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
   bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
-  Desk requests_;  ///< stops, resets of the emergency stop, and those to the devices
+  Desk stops_;    ///< and resets of the emergency stop
+  Desk devices_;  ///< a desk of their own: no request to a device takes the place of a stop
   bus::Writer<v1::Devices> devices_writer_ = node_.writer(bus::topics::kDevices);
   bus::Writer<v1::SerialData> serial_writer_ = node_.writer(bus::topics::kSerialData);
   bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);

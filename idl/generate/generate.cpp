@@ -430,7 +430,7 @@ class Topic(Generic[T]):
   static constexpr const char* page_top = R"(<!-- Generated from idl/; changes are lost. -->
 # The contract
 
-Each topic with its type and its QoS, then each type. Lengths are in m, angles in rad, times in s; a frame is part of a
+Each topic with its type and its QoS, then each type. Lengths are in m, angles in rad, times in s where a member says no other unit; a frame is part of a
 member's name.
 
 | topic | type | QoS |

@@ -19,6 +19,7 @@ constexpr double kStops = 0.8;     // [s]
 constexpr double kPatience = 4.0;  // [s]
 constexpr double kCourtesy = 2.0;  // [s]
 constexpr double kGoesBack = 1.5;  // [m]
+constexpr int kMostYields = 3;     // then the next leg
 
 // A person who passes a robot sees it from this far, and keeps these distances from its hull and
 // from other things. Without room for that he stops earlier.
@@ -277,6 +278,8 @@ void Scene::walk(Person& person) {
       if (person.plan->stubborn && person.waited > kPatience) {
         next_leg(person);
       } else if (!person.plan->stubborn && (!aim || person.waited > kCourtesy)) {
+        if (!back && ++person.yielded > kMostYields)
+          return next_leg(person);
         person.waited = back ? -kPatience : 0.0;
         person.back = back ? 0.0 : kGoesBack;
       }
@@ -301,6 +304,7 @@ void Scene::next_leg(Person& person) {
   person.waited = 0.0;
   person.from = person.at;
   person.aside = false;
+  person.yielded = 0;
   ++person.leg;
   if (person.leg == person.plan->script.size() && person.plan->repeats)
     person.leg = 0;

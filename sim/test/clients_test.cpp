@@ -278,7 +278,7 @@ class Client : public saphira::test::LinePlayer {
 };
 
 TEST(Server, AnswersItsClientsAsWritten) {
-  EXPECT_GT(saphira::test::play<Client>("sim/test/clients.txt"), 25);
+  EXPECT_EQ(saphira::test::play<Client>("sim/test/clients.txt"), 27);
 }
 
 }  // namespace

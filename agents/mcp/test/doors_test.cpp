@@ -193,7 +193,7 @@ class Visit : public DoorInMemory, public test::Transcript {
 };
 
 TEST(McpDoors, AreAsWritten) {
-  EXPECT_GT(saphira::test::play<Visit>("agents/mcp/test/doors.txt"), 30);
+  EXPECT_EQ(saphira::test::play<Visit>("agents/mcp/test/doors.txt"), 36);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a model reads about the robot: the questions and answers of results.txt.
+// Results of tools about the robot: the questions and answers of results.txt.
 #include "saphira/mcp/results.hpp"
 
 #include <functional>

@@ -118,7 +118,7 @@ class Talk : test::Client, public test::Transcript {
 };
 
 TEST(McpSessions, AreAsWritten) {
-  EXPECT_GT(saphira::test::play<Talk>("agents/mcp/test/sessions.txt"), 45);
+  EXPECT_EQ(saphira::test::play<Talk>("agents/mcp/test/sessions.txt"), 46);
 }
 
 }  // namespace

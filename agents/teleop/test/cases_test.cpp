@@ -1,4 +1,4 @@
-// The cases of cases.txt: the test is the operators' pages, and the keyboard.
+// The cases of pages.txt and keys.txt: the test is the operators' pages, and the keyboard.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -154,8 +154,8 @@ class Keyboard : public saphira::test::LinePlayer {
 };
 
 TEST(Teleop, IsAsWritten) {
-  EXPECT_GT(saphira::test::play<Pages>("agents/teleop/test/pages.txt"), 13);
-  EXPECT_GT(saphira::test::play<Keyboard>("agents/teleop/test/keys.txt"), 13);
+  EXPECT_EQ(saphira::test::play<Pages>("agents/teleop/test/pages.txt"), 15);
+  EXPECT_EQ(saphira::test::play<Keyboard>("agents/teleop/test/keys.txt"), 15);
 }
 
 }  // namespace

@@ -396,7 +396,7 @@ class Bridge : public saphira::test::LinePlayer {
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_GT(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 60);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 71);
 }
 
 }  // namespace

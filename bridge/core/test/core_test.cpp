@@ -1,4 +1,4 @@
-// What cases.txt does not hold: lines that are measured, bodies that are not heard, edges, reports.
+// Beside cases.txt: lines that are measured, bodies that are not heard, edges, reports.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -186,7 +186,7 @@ class Asker : public saphira::test::LinePlayer {
 };
 
 TEST(Requests, AreAnsweredAsWritten) {
-  EXPECT_GT(saphira::test::play<Asker>("bridge/reflector/test/requests.txt"), 18);
+  EXPECT_EQ(saphira::test::play<Asker>("bridge/reflector/test/requests.txt"), 20);
 }
 
 }  // namespace

@@ -233,6 +233,7 @@ void add_walking(Crossing& crossing, const CrossingOptions& options, double need
     const double pause = random.uniform(0.5, 4.0);
     person.script = {{b, speed, 0.0}, {b, 0.0, pause}, {a, speed, 0.0}, {a, 0.0, pause}};
     person.repeats = true;
+    person.stubborn = true;  // the guard is measured, not people's courtesy
     crossing.world.movable.persons.push_back(std::move(person));
     return;
   }

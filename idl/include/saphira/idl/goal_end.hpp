@@ -17,7 +17,8 @@ inline std::string describe(const GoalId& id) {
 
 /// True where a goal in this state has come to its end.
 constexpr bool ended(GoalState state) {
-  return state != GOAL_WAITING && state != GOAL_UNDERWAY && state != GOAL_SUSPENDED;
+  return state == GOAL_REFUSED || state == GOAL_SUCCEEDED || state == GOAL_FAILED ||
+         state == GOAL_CANCELED;
 }
 
 }  // namespace saphira::v1

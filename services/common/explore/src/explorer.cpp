@@ -436,6 +436,7 @@ bool Explorer::follow_bend(double done, double turned, const Inputs& inputs) {
   if (in_corridor_ || !lead_->door || done < settings_.in_door || !walled() ||
       std::abs(turned) < kBend || heard(0.0).value_or(lps::kNothing) < 2 * settings_.front)
     return false;
+  tried_.push_back(*lead_);
   lead_->heading = inputs.pose_in_map.th;
   lead_->point = probe_from_ = inputs.pose_in_map.position();
   progress_ = kNone;

@@ -33,6 +33,7 @@ struct Person {
   Vec2 from{0.0, 0.0};   ///< where this leg began
   bool aside = false;    ///< beside the straight line of this leg, past a robot
   double back = 0.0;     ///< [m] that he still goes back, to let a robot pass
+  int yielded = 0;       ///< times in this leg
   /// [rad] Direction of an outstretched arm, in the world.
   std::optional<double> points{};
 };
