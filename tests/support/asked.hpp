@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <deque>
-#include <exception>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "saphira/base/text.hpp"
 #include "trouble.hpp"
 
 namespace saphira::test {
@@ -16,8 +17,8 @@ namespace saphira::test {
 /// The player of a file of questions and answers: `VERB INPUT => ANSWER`, or on lines, where an
 /// indented line goes on with the input, and `| LINE` is the next line of the answer. An answer
 /// `!` is an error, `! PART` one with that in its message, `~PART` has that part, and (nothing) is
-/// empty. Asked::answer(verb, input) is the answer; an exception is an error.
-/// Asked::canonical(verb, wanted) is the written answer as that would be.
+/// empty. Asked::answer(verb, input) is the answer; a std::invalid_argument or FileError is an
+/// error. Asked::canonical(verb, wanted) is the written answer as that would be.
 template <class Asked>
 class Questions {
  public:
@@ -53,7 +54,9 @@ class Questions {
   std::string said() const {
     try {
       return Asked::answer(verb_, input_);
-    } catch (const std::exception& error) {
+    } catch (const std::invalid_argument& error) {
+      return std::string("! ") + error.what();
+    } catch (const FileError& error) {
       return std::string("! ") + error.what();
     }
   }

@@ -64,9 +64,9 @@ int play(const std::string& file, char comment = '#') {
   return cases;
 }
 
-/// A player whose lines are events ("verb rest") and facts ("name: value", to be equal to what the
-/// fact says). "3 times: a & b" plays its parts so often, to their
-/// first failure.
+/// A player of two kinds of lines: an event, "verb rest", and a fact, "name: value", whose present
+/// value must be equal to the written one. "3 times: a & b" repeats its parts, up to the first
+/// failure.
 class LinePlayer {
  public:
   void take(const std::string& line) {

@@ -35,8 +35,8 @@ struct Chosen {
       return what(*options, node, stop);
     });
   }
-  /// The command reaches every robot (--robot '*'), if `now` holds for its options. name: of what
-  /// does, for people; empty: it has to do with no robot.
+  /// A command that reaches every robot (--robot '*') where `now` holds for its options. `name`:
+  /// the command in the error about '*'; empty: the command needs no robot.
   struct Reach {
     std::string name;
     std::function<bool()> now = [] { return true; };

@@ -80,7 +80,7 @@ Move move_of(const Json& json) {
   return {kinds.at(name), name, name == "turn" ? radians(value) : value, json.value("speed", 0.0)};
 }
 
-/// What is told about a way: that it is done, and its rest.
+/// The report about a way: done or not, and the rest of it.
 std::string progress(const Json& json) {
   const Move move = move_of(json);
   const auto grant = part<v1::Grant>(json, "grant").value_or(v1::Grant());

@@ -26,7 +26,7 @@ Request request_of(std::istringstream& in) {
   return request;
 }
 
-/// As the bridge makes it; std::invalid_argument says what is wrong.
+/// Makes a request as the bridge does. Throws std::invalid_argument with the mistake.
 Wish wish_for(Request request) {
   for (const Device device : kEnumerators<Device>) {
     const auto refused = refusal(functors(device), request);

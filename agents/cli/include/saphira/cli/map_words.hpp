@@ -9,7 +9,7 @@
 
 namespace saphira::cli {
 
-/// The first words of what follows `saphira map`.
+/// The verbs of `saphira map`.
 std::vector<std::string> map_verbs();
 
 /// Throws std::invalid_argument for words that are wrong without looking at the map.
