@@ -15,7 +15,9 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kRadius = 0.2;    ///< [m] the target moves on before the robot reaches it
+constexpr double kRadius = 0.2;  ///< [m] the target moves on before the robot reaches it
+/// [m] With KeepOff's own 0.36 less is explored: 0.92 of 70 generated floors, where it is 0.95.
+constexpr double kBerth = 0.28;
 constexpr double kAligned = 0.05;  ///< [rad] tolerance of a heading that the explorer asks for
 constexpr double kWayStep = 0.4;   ///< [m] between stored places of the way
 constexpr double kOverlap = 0.2;   ///< [m] of a lane beyond its ends, with the next one
@@ -148,7 +150,7 @@ class ExploreUnknown : public Activity {
   void drive(Self& self, const Vec2& to, double speed) {
     self.drop_behavior("TurnTo");
     self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
-    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
+    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {number("berth", kBerth)});
     if (aim(self, to))
       self.intend_behavior(
           "GoToPos", "GoToPos", kTask,

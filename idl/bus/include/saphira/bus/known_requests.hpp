@@ -21,8 +21,10 @@ class KnownRequests {
       answers_.pop_front();
     return nullptr;
   }
+  /// Only a request under way gets an answer: the last one stays.
   void keep(const v1::Answer& answer) {
-    if (v1::Answer* const known = place(answer.asker, answer.number))
+    v1::Answer* const known = place(answer.asker, answer.number);
+    if (known != nullptr && known->code == v1::ANSWER_UNDERWAY)
       *known = answer;
   }
 
