@@ -21,6 +21,7 @@ constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
 constexpr std::size_t kBits = 64;   // of a word of marks
 constexpr long kLanes = 4;          // cells that are lowered at once
+constexpr double kOutside = -1e9;   // [m] of the columns beyond the grid: behind any sonar
 constexpr double kMoved = 0.001;    // [m] in a cycle: less is rest, and a turn on the spot is
 
 std::size_t area(int cells) {
@@ -39,8 +40,7 @@ SAPHIRA_WIDE void lower(double* all, long n, const std::vector<ConeRow>& cone,
     const double row_x = row.x;
     const double row_y = row.y;
     // Some cells more, for whole steps: they are outside the cone.
-    const long steps = (row.end - row.begin + kLanes - 1) / kLanes;
-    const long count = std::min(steps * kLanes, n - row.begin);
+    const long count = (row.end - row.begin + kLanes - 1) / kLanes * kLanes;
     for (long i = 0; i < count; ++i) {
       const double along = x[i] + row_x;
       const double across = std::abs(y[i] + row_y);
@@ -68,11 +68,12 @@ ObstacleMemory::ObstacleMemory(MemorySettings settings)
     : settings_(settings),
       edge_(std::tan(settings.beam)),
       soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
-      beliefs_(area(settings.cells), 0.0),
+      beliefs_(area(settings.cells) + kLanes, 0.0),
       held_(static_cast<std::size_t>(settings.cells)),
       words_((static_cast<std::size_t>(settings.cells) + kBits - 1) / kBits),
       marks_(words_ * static_cast<std::size_t>(settings.cells), 0),
-      columns_{std::vector<double>(held_.size()), std::vector<double>(held_.size())} {}
+      columns_{std::vector<double>(held_.size() + kLanes, kOutside),
+               std::vector<double>(held_.size() + kLanes)} {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
@@ -124,6 +125,7 @@ SAPHIRA_WIDE void ObstacleMemory::fade() {
   const double fading = settings_.fading;
   double* row = beliefs_.data();
   for (const Part& held : held_) {
+#pragma GCC unroll 8
     for (long i = held.begin; i < held.end; ++i)
       row[i] *= fading;
     row += held_.size();
