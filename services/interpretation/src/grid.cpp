@@ -76,6 +76,7 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
     bytes_.push_back(static_cast<std::uint8_t>(std::lround(200.0 * probability)));
   for (int steps = 0; steps < kMost; ++steps)
     detections_.push_back(1.0 - std::exp(-kStep * (steps + 0.5)));
+  detections_.push_back(std::numeric_limits<double>::infinity());
   for (int i = 0; i <= kFine; ++i)
     least_steps_.push_back(static_cast<int>(
         std::upper_bound(detections_.begin(), detections_.end(), static_cast<double>(i) / kFine) -
@@ -84,7 +85,7 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
 
 int Grid::free_steps(double detection) const {
   int steps = least_steps_[static_cast<std::size_t>(static_cast<int>(detection * kFine))];
-  while (steps < kMost && detection >= detections_[static_cast<std::size_t>(steps)])
+  while (detection >= detections_[static_cast<std::size_t>(steps)])
     ++steps;
   return steps;
 }
