@@ -34,9 +34,9 @@ SAPHIRA_WIDE void lower(double* all, long n, const std::vector<ConeRow>& cone,
                         double doubt, double least) {
   const double square = range * range;
   for (const ConeRow& row : cone) {
-    double* __restrict const beliefs = all + row.number * n + row.begin;
-    const double* __restrict const x = columns.x.data() + row.begin;
-    const double* __restrict const y = columns.y.data() + row.begin;
+    double* const beliefs = all + row.number * n + row.begin;
+    const double* const x = columns.x.data() + row.begin;
+    const double* const y = columns.y.data() + row.begin;
     const double row_x = row.x;
     const double row_y = row.y;
     // Some cells more, for whole steps: they are outside the cone.
@@ -105,50 +105,37 @@ void ObstacleMemory::shift(long columns, long rows) {
   const std::vector<Part> held = std::exchange(held_, std::vector<Part>(held_.size()));
   std::fill(marks_.begin(), marks_.end(), 0);
   const long n = settings_.cells;
+  const long first = std::max(0L, columns);
+  const long last = std::min(n, n + columns);
+  if (first >= last)
+    return;
   for (long row = std::max(0L, rows); row < std::min(n, n + rows); ++row) {
+    const auto from = beliefs.begin() + row * n;
+    std::copy(from + first, from + last, beliefs_.begin() + (row - rows) * n + first - columns);
     const Part& part = held[static_cast<std::size_t>(row)];
-    const long begin = std::max(part.begin, columns);
-    const long end = std::min(part.end, n + columns);
-    if (begin >= end)
-      continue;
-    hold(static_cast<std::size_t>(row - rows), begin - columns, end - columns);
-    for (long column = begin; column < end; ++column) {
-      const double belief = beliefs[static_cast<std::size_t>(row * n + column)];
-      beliefs_[static_cast<std::size_t>((row - rows) * n + column - columns)] = belief;
-      if (belief >= settings_.obstacle)
-        mark(static_cast<std::size_t>(row - rows), static_cast<std::size_t>(column - columns));
-    }
+    for (long column = std::max(part.begin, first); column < std::min(part.end, last); ++column)
+      if (from[column] > 0.0)
+        put(static_cast<std::size_t>((row - rows) * n + column - columns), from[column]);
   }
 }
 
 SAPHIRA_WIDE void ObstacleMemory::fade() {
   const double fading = settings_.fading;
-  double* row = beliefs_.data();
-  for (const Part& held : held_) {
 #pragma GCC unroll 8
-    for (long i = held.begin; i < held.end; ++i)
-      row[i] *= fading;
-    row += held_.size();
-  }
-}
-
-void ObstacleMemory::hold(std::size_t row, long begin, long end) {
-  Part& held = held_[row];
-  held = held.begin == held.end ? Part{begin, end}
-                                : Part{std::min(held.begin, begin), std::max(held.end, end)};
+  for (double& belief : beliefs_)
+    belief *= fading;
 }
 
 void ObstacleMemory::put(std::size_t cell, double belief) {
   beliefs_[cell] = belief;
   const std::size_t row = cell / held_.size();
   const std::size_t column = cell % held_.size();
-  hold(row, static_cast<long>(column), static_cast<long>(column) + 1);
+  const auto at = static_cast<long>(column);
+  Part& held = held_[row];
+  held = held.begin == held.end ? Part{at, at + 1}
+                                : Part{std::min(held.begin, at), std::max(held.end, at + 1)};
   if (belief >= settings_.obstacle)
-    mark(row, column);
-}
-
-void ObstacleMemory::mark(std::size_t row, std::size_t column) {
-  marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
+    marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
 }
 
 SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, double sine,
@@ -156,8 +143,8 @@ SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, 
   const double cell = settings_.cell;
   const double first = static_cast<double>(begin + column0_) + 0.5;
   const double from = frame.x;
-  double* __restrict const x = columns_.x.data() + begin;
-  double* __restrict const y = columns_.y.data() + begin;
+  double* const x = columns_.x.data() + begin;
+  double* const y = columns_.y.data() + begin;
   for (int i = 0; i < static_cast<int>(end - begin); ++i) {
     const double dx = (first + i) * cell - from;
     x[i] = cosine * dx;
@@ -203,16 +190,12 @@ void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held)
 }
 
 void ObstacleMemory::pass(double range, double doubt) {
-  for (ConeRow& row : cone_) {
-    const auto number = static_cast<std::size_t>(row.number);
-    if (settings_.least < 0.0) {
-      hold(number, row.begin, row.end);
-    } else {
-      // No belief falls below 0.
-      row.begin = std::max(row.begin, held_[number].begin);
-      row.end = std::min(row.end, held_[number].end);
+  if (settings_.least >= 0.0)  // no belief falls below 0
+    for (ConeRow& row : cone_) {
+      const Part& held = held_[static_cast<std::size_t>(row.number)];
+      row.begin = std::max(row.begin, held.begin);
+      row.end = std::min(row.end, held.end);
     }
-  }
   lower(beliefs_.data(), settings_.cells, cone_, columns_, edge_, range, soft_, doubt,
         settings_.least);
 }

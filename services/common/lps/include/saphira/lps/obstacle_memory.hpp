@@ -94,7 +94,7 @@ class ObstacleMemory {
   /// Computes the parts of some columns.
   void see_columns(const Pose& frame, double cosine, double sine, long begin, long end);
   /// Puts the cells into cone_ that a cone may cover, up to `range`. `only_held`: not in rows
-  /// without beliefs.
+  /// without beliefs above 0.
   void look_along(const Pose& sonar_in_odom, double range, bool only_held);
   /// Lowers the beliefs of cone_ up to `range`.
   void pass(double range, double doubt);
@@ -103,9 +103,7 @@ class ObstacleMemory {
   void find_arc(double range);
   void shift(long columns, long rows);
   void fade();
-  void hold(std::size_t row, long begin, long end);
   void put(std::size_t cell, double belief);
-  void mark(std::size_t row, std::size_t column);
 
   MemorySettings settings_;
   double edge_;  ///< tangent of the cone's half angle
@@ -115,7 +113,7 @@ class ObstacleMemory {
   long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
   std::vector<double> beliefs_;       ///< by rows
-  std::vector<Part> held_;            ///< by row: all other beliefs are 0
+  std::vector<Part> held_;            ///< by row: no other belief is above 0
   std::size_t words_;                 ///< of marks, in a row
   std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
   ColumnParts columns_;               ///< seen from the sonar or the robot
