@@ -39,7 +39,7 @@ SAPHIRA_WIDE void lower(double* all, long n, const std::vector<ConeRow>& cone,
     const double* const y = columns.y.data() + row.begin;
     const double row_x = row.x;
     const double row_y = row.y;
-    // Some cells more, for whole steps: they are outside the cone.
+    // Some cells more, for whole steps: they are outside the cone, or their belief is the least.
     const long count = (row.end - row.begin + kLanes - 1) / kLanes * kLanes;
     for (long i = 0; i < count; ++i) {
       const double along = x[i] + row_x;
@@ -156,7 +156,7 @@ void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held)
   constexpr double kSlack = 0.1;  // [cells] against rounding
   const double cell = settings_.cell;
   const long n = settings_.cells;
-  // The first cell with its middle beyond a place; a span ends before the last one's.
+  // A row's cells have their middles in its span, from the first one to before the end.
   const auto first_from = [n](double v) {
     return std::clamp(static_cast<long>(v + 0.5 - kSlack), 0L, n);
   };
@@ -233,7 +233,7 @@ void ObstacleMemory::find_arc(double range) {
       if (along <= 0.0 || across > rim)
         continue;
       const double distance = std::sqrt(along * along + across * across);
-      if (distance <= range - 2.0 * settings_.thickness ||
+      if (distance <= range - 2.0 * settings_.thickness || distance > range + settings_.thickness ||
           std::abs(distance - range) > settings_.thickness)
         continue;
       const std::size_t index = static_cast<std::size_t>(row.number) * held_.size() + at;
