@@ -32,7 +32,7 @@ void Coverage::update(std::uint64_t cycle, const Pose& robot_in_odom,
                        std::min(reading.range.value_or(range_), range_), cycle});
 }
 
-bool Coverage::covers(const Lobe& lobe, const Vec2& spot_in_odom) {
+inline bool Coverage::covers(const Lobe& lobe, const Vec2& spot_in_odom) {
   const Vec2 spot = lobe.to_sonar(spot_in_odom);
   return spot.x() > 0.0 && std::abs(spot.y()) <= spot.x() * kTangent + kNear &&
          spot.squaredNorm() <= lobe.range * lobe.range;

@@ -58,7 +58,7 @@ void Service::step(const runtime::Turn& turn) {
     command.edges = intentions->edges;
   }
   commands_.write(command);
-  const v1::BehaviorSet sample = to_bus(outputs.output);
+  v1::BehaviorSet sample = to_bus(outputs.output);
   behaviors_.write(sample);
   recall_.write(sample);
   if (!outputs.degraded.empty())

@@ -346,7 +346,7 @@ void Service::publish(const Core::Outputs& said) {
     return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
   });
   intentions_.write(sample);
-  recall_.write(std::move(sample));
+  recall_.write(sample);
   for (const Said& one : outputs.said) {
     messages_.write({.source = ports_.name() + ": " + one.schema, .text = one.text});
   }

@@ -76,6 +76,7 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
     bytes_.push_back(static_cast<std::uint8_t>(std::lround(200.0 * probability)));
   for (int steps = 0; steps < kMost; ++steps)
     detections_.push_back(1.0 - std::exp(-kStep * (steps + 0.5)));
+  detections_.push_back(std::numeric_limits<double>::infinity());
   for (int i = 0; i <= kFine; ++i)
     least_steps_.push_back(static_cast<int>(
         std::upper_bound(detections_.begin(), detections_.end(), static_cast<double>(i) / kFine) -
@@ -83,8 +84,8 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
 }
 
 int Grid::free_steps(double detection) const {
-  int steps = least_steps_[static_cast<std::size_t>(detection * kFine)];
-  while (steps < kMost && detection >= detections_[static_cast<std::size_t>(steps)])
+  int steps = least_steps_[static_cast<std::size_t>(static_cast<int>(detection * kFine))];
+  while (detection >= detections_[static_cast<std::size_t>(steps)])
     ++steps;
   return steps;
 }
@@ -201,10 +202,10 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
   const long last_column = cell_of(sonar.x + cone.columns().second);
   spans_.clear();
   for (long row = first_row; row <= last_row; ++row) {
-    // One more cell at each end, against rounding.
+    // The cells with their middles in the cone, and a tenth of a cell against rounding.
     const auto [low, high] = cone.span(distance(row));
-    spans_.emplace_back(std::max(first_column, cell_of(sonar.x + low - size)),
-                        std::min(last_column, cell_of(sonar.x + high + size)));
+    spans_.emplace_back(std::max(first_column, cell_of(sonar.x + low + 0.4 * size)),
+                        std::min(last_column, cell_of(sonar.x + high - 0.4 * size)));
   }
   Row seen;
   for (long tile_row = tile_at(first_row); tile_row <= tile_at(last_row); ++tile_row)

@@ -137,7 +137,7 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
         known_[at(column, row)] = 1;
 }
 
-std::optional<std::size_t> Field::index(const Vec2& position) const {
+inline std::optional<std::size_t> Field::index(const Vec2& position) const {
   const double column = (position.x() - corner_.x()) / kCell;
   const double row = (position.y() - corner_.y()) / kCell;
   if (!(column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_))

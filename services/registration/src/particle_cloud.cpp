@@ -24,6 +24,7 @@ void ParticleCloud::begin(const Pose& pose, const Eigen::Matrix3d& covariance, d
     const Vec2 off = along * axes.eigenvectors().col(0) + across * axes.eigenvectors().col(1);
     p.pose = {pose.x + off.x(), pose.y + off.y(),
               norm2_angle(pose.th + random_.normal(0.0, turned))};
+    p.ahead = p.pose.direction();
     p.drift = random_.normal(drift, drift_sigma);
   }
 }
@@ -44,6 +45,7 @@ void ParticleCloud::move(const Pose& moved) {
     p.pose.x += c * (moved.x + way) - s * moved.y;
     p.pose.y += s * (moved.x + way) + c * moved.y;
     p.pose.th = norm2_angle(p.pose.th + moved.th - turn);
+    p.ahead = p.pose.direction();
     p.drift += random_.normal(0.0, settings_.drift_walk * root);
   }
 }
@@ -101,23 +103,30 @@ void ParticleCloud::select() {
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     while (sum * count < static_cast<double>(i) + first && at + 1 < particles_.size())
       sum += weight[++at];
-    next.push_back({particles_[at].pose, particles_[at].drift, 0.0});
+    next.push_back({particles_[at].pose, particles_[at].ahead, particles_[at].drift, 0.0});
   }
   particles_ = std::move(next);
+}
+
+Pose ParticleCloud::middle(const std::vector<double>& weight) const {
+  Pose result;
+  Vec2 heading{0.0, 0.0};
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Particle& p = particles_[i];
+    result.x += weight[i] * p.pose.x;
+    result.y += weight[i] * p.pose.y;
+    heading += weight[i] * p.ahead;
+  }
+  result.th = std::atan2(heading.y(), heading.x());
+  return result;
 }
 
 ParticleCloud::Estimate ParticleCloud::estimate() const {
   Estimate result;
   const std::vector<double> weight = weights();
-  Vec2 heading{0.0, 0.0};
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Particle& p = particles_[i];
-    result.pose.x += weight[i] * p.pose.x;
-    result.pose.y += weight[i] * p.pose.y;
-    heading += weight[i] * p.pose.direction();
-    result.drift += weight[i] * p.drift;
-  }
-  result.pose.th = std::atan2(heading.y(), heading.x());
+  result.pose = middle(weight);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    result.drift += weight[i] * particles_[i].drift;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Particle& p = particles_[i];
     const Eigen::Vector3d off(p.pose.x - result.pose.x, p.pose.y - result.pose.y,

@@ -425,7 +425,7 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
   now_.cloud_score *= fading;
   const std::vector<PlacedReading> fresh = fresh_ones(readings);
   if (!fresh.empty()) {
-    const Pose middle = now_.cloud.estimate().pose;
+    const Pose middle = now_.cloud.middle();
     for (const PlacedReading& reading : fresh) {
       const Pose in_robot = relative(now_.pose_in_odom, reading.sensor_in_odom);
       const auto worth = [&](const Pose& sensor_in_map) {

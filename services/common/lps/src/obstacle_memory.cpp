@@ -21,32 +21,29 @@ constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
 constexpr std::size_t kBits = 64;   // of a word of marks
 constexpr long kLanes = 4;          // cells that are lowered at once
+constexpr double kOutside = -1e9;   // [m] of the columns beyond the grid: behind any sonar
 constexpr double kMoved = 0.001;    // [m] in a cycle: less is rest, and a turn on the spot is
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
 }
 
-SAPHIRA_WIDE void scale(double* values, long count, double factor) {
-  for (long i = 0; i < count; ++i)
-    values[i] *= factor;
-}
-
-/// Lowers the beliefs within the cone and the range, less at the cone's rim.
-SAPHIRA_WIDE void lower(double* all, const ConeCells& cone, double cell, double edge, double range,
-                        double soft, double doubt, double least) {
-  const double x = cone.x;
-  const double c = cone.cosine;
-  const double s = cone.sine;
+/// Lowers the beliefs within the cone and the range, less at the cone's rim. In `n` columns.
+SAPHIRA_WIDE void lower(double* all, long n, const std::vector<ConeRow>& cone,
+                        const ColumnParts& columns, double edge, double range, double soft,
+                        double doubt, double least) {
   const double square = range * range;
-  for (const ConeCells::Row& row : cone.rows) {
-    double* const beliefs = all + row.index;
-    const double first = row.first;
-    const double dy = row.dy;
-    for (int i = 0; i < static_cast<int>(row.count); ++i) {
-      const double dx = (first + i + 0.5) * cell - x;
-      const double along = c * dx + s * dy;
-      const double across = std::abs(-s * dx + c * dy);
+  for (const ConeRow& row : cone) {
+    double* const beliefs = all + row.number * n + row.begin;
+    const double* const x = columns.x.data() + row.begin;
+    const double* const y = columns.y.data() + row.begin;
+    const double row_x = row.x;
+    const double row_y = row.y;
+    // Some cells more, for whole steps: they are outside the cone, or their belief is the least.
+    const long count = (row.end - row.begin + kLanes - 1) / kLanes * kLanes;
+    for (long i = 0; i < count; ++i) {
+      const double along = x[i] + row_x;
+      const double across = std::abs(y[i] + row_y);
       const double rim = edge * along;
       const double sure = std::min((1.0 - across / rim) / soft, 1.0);
       const double lowered = std::max(beliefs[i] - doubt * sure, least);
@@ -71,10 +68,12 @@ ObstacleMemory::ObstacleMemory(MemorySettings settings)
     : settings_(settings),
       edge_(std::tan(settings.beam)),
       soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
-      beliefs_(area(settings.cells), 0.0),
+      beliefs_(area(settings.cells) + kLanes, 0.0),
       held_(static_cast<std::size_t>(settings.cells)),
       words_((static_cast<std::size_t>(settings.cells) + kBits - 1) / kBits),
-      marks_(words_ * static_cast<std::size_t>(settings.cells), 0) {}
+      marks_(words_ * static_cast<std::size_t>(settings.cells), 0),
+      columns_{std::vector<double>(held_.size() + kLanes, kOutside),
+               std::vector<double>(held_.size() + kLanes)} {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
@@ -106,96 +105,99 @@ void ObstacleMemory::shift(long columns, long rows) {
   const std::vector<Part> held = std::exchange(held_, std::vector<Part>(held_.size()));
   std::fill(marks_.begin(), marks_.end(), 0);
   const long n = settings_.cells;
+  const long first = std::max(0L, columns);
+  const long last = std::min(n, n + columns);
+  if (first >= last)
+    return;
   for (long row = std::max(0L, rows); row < std::min(n, n + rows); ++row) {
+    const auto from = beliefs.begin() + row * n;
+    std::copy(from + first, from + last, beliefs_.begin() + (row - rows) * n + first - columns);
     const Part& part = held[static_cast<std::size_t>(row)];
-    const long begin = std::max(part.begin, columns);
-    const long end = std::min(part.end, n + columns);
-    if (begin >= end)
-      continue;
-    hold(static_cast<std::size_t>(row - rows), begin - columns, end - columns);
-    for (long column = begin; column < end; ++column) {
-      const double belief = beliefs[static_cast<std::size_t>(row * n + column)];
-      beliefs_[static_cast<std::size_t>((row - rows) * n + column - columns)] = belief;
-      if (belief >= settings_.obstacle)
-        mark(static_cast<std::size_t>(row - rows), static_cast<std::size_t>(column - columns));
-    }
+    for (long column = std::max(part.begin, first); column < std::min(part.end, last); ++column)
+      if (from[column] > 0.0)
+        put(static_cast<std::size_t>((row - rows) * n + column - columns), from[column]);
   }
 }
 
-void ObstacleMemory::fade() {
-  for (std::size_t row = 0; row < held_.size(); ++row)
-    scale(&beliefs_[row * held_.size() + static_cast<std::size_t>(held_[row].begin)],
-          held_[row].end - held_[row].begin, settings_.fading);
-}
-
-void ObstacleMemory::hold(std::size_t row, long begin, long end) {
-  Part& held = held_[row];
-  held = held.begin == held.end ? Part{begin, end}
-                                : Part{std::min(held.begin, begin), std::max(held.end, end)};
+SAPHIRA_WIDE void ObstacleMemory::fade() {
+  const double fading = settings_.fading;
+#pragma GCC unroll 8
+  for (double& belief : beliefs_)
+    belief *= fading;
 }
 
 void ObstacleMemory::put(std::size_t cell, double belief) {
   beliefs_[cell] = belief;
   const std::size_t row = cell / held_.size();
   const std::size_t column = cell % held_.size();
-  hold(row, static_cast<long>(column), static_cast<long>(column) + 1);
+  const auto at = static_cast<long>(column);
+  Part& held = held_[row];
+  held = held.begin == held.end ? Part{at, at + 1}
+                                : Part{std::min(held.begin, at), std::max(held.end, at + 1)};
   if (belief >= settings_.obstacle)
-    mark(row, column);
+    marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
 }
 
-void ObstacleMemory::mark(std::size_t row, std::size_t column) {
-  marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
+SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, double sine,
+                                              long begin, long end) {
+  const double cell = settings_.cell;
+  const double first = static_cast<double>(begin + column0_) + 0.5;
+  const double from = frame.x;
+  double* const x = columns_.x.data() + begin;
+  double* const y = columns_.y.data() + begin;
+  for (int i = 0; i < static_cast<int>(end - begin); ++i) {
+    const double dx = (first + i) * cell - from;
+    x[i] = cosine * dx;
+    y[i] = -sine * dx;
+  }
 }
 
 void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held) {
+  constexpr double kSlack = 0.1;  // [cells] against rounding
   const double cell = settings_.cell;
   const long n = settings_.cells;
-  const auto clamped = [n](double v) {
-    return std::clamp(static_cast<long>(std::floor(v)), 0L, n);
+  // A row's cells have their middles in its span, from the first one to before the end.
+  const auto first_from = [n](double v) {
+    return std::clamp(static_cast<long>(v + 0.5 - kSlack), 0L, n);
+  };
+  const auto end_at = [n](double v) {
+    return std::clamp(static_cast<long>(v + 0.5 + kSlack), 0L, n);
   };
   const ConeRows rows(sonar, edge_, range);
   const auto [lowest, highest] = rows.rows();
   const double x = sonar.x / cell - static_cast<double>(column0_);
   const double y = sonar.y / cell - static_cast<double>(row0_);
-  const long row_end = clamped(highest / cell + y + 1.5);
-  cone_.x = sonar.x;
-  cone_.cosine = rows.cosine();
-  cone_.sine = rows.sine();
-  cone_.rows.clear();
-  for (long row = clamped(lowest / cell + y - 1.5); row < row_end; ++row) {
+  const long row_end = end_at(highest / cell + y);
+  long first = n;
+  long last = 0;
+  cone_.clear();
+  for (long row = first_from(lowest / cell + y); row < row_end; ++row) {
     const Part& held = held_[static_cast<std::size_t>(row)];
     if (only_held && held.begin == held.end)
       continue;
     const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
     const auto [low, high] = rows.span(dy);
-    const long begin = clamped(low / cell + x - 1.5);
-    const long end = clamped(high / cell + x + 1.5);
-    if (begin < end)
-      cone_.rows.push_back({static_cast<std::size_t>(row * n + begin), end - begin,
-                            static_cast<double>(begin + column0_), dy});
+    const long begin = first_from(low / cell + x);
+    const long end = end_at(high / cell + x);
+    if (begin >= end)
+      continue;
+    first = std::min(first, begin);
+    last = std::max(last, end);
+    const double dx = (static_cast<double>(begin + column0_) + 0.5) * cell - sonar.x;
+    cone_.push_back({row, begin, end, dx, dy, rows.sine() * dy, rows.cosine() * dy});
   }
+  see_columns(sonar, rows.cosine(), rows.sine(), first, std::min(last + kLanes, n));
 }
 
 void ObstacleMemory::pass(double range, double doubt) {
-  const long n = settings_.cells;
-  for (ConeCells::Row& row : cone_.rows) {
-    const std::size_t number = row.index / held_.size();
-    const auto column = static_cast<long>(row.index % held_.size());
-    long begin = column;
-    long end = column + row.count;
-    if (settings_.least >= 0.0) {
-      // No belief falls below 0.
-      begin = std::max(begin, held_[number].begin);
-      end = std::max(begin, std::min(end, held_[number].end));
+  if (settings_.least >= 0.0)  // no belief falls below 0
+    for (ConeRow& row : cone_) {
+      const Part& held = held_[static_cast<std::size_t>(row.number)];
+      row.begin = std::max(row.begin, held.begin);
+      row.end = std::min(row.end, held.end);
     }
-    begin -= begin % kLanes;
-    end = std::min((end + kLanes - 1) / kLanes * kLanes, n);
-    if (settings_.least < 0.0)
-      hold(number, begin, end);
-    row = {number * held_.size() + static_cast<std::size_t>(begin), end - begin,
-           row.first + static_cast<double>(begin - column), row.dy};
-  }
-  lower(beliefs_.data(), cone_, settings_.cell, edge_, range, soft_, doubt, settings_.least);
+  lower(beliefs_.data(), settings_.cells, cone_, columns_, edge_, range, soft_, doubt,
+        settings_.least);
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
@@ -209,34 +211,33 @@ void ObstacleMemory::find_arc(double range) {
   const double cell = settings_.cell;
   const double inner = std::max(range - settings_.thickness - cell, 0.0);
   arc_.clear();
-  for (const ConeCells::Row& row : cone_.rows) {
-    // From the middle of the first cell.
-    const double dx0 = (row.first + 0.5) * cell - cone_.x;
-    const double farthest = std::max(-dx0, dx0 + static_cast<double>(row.count) * cell) + cell;
+  for (const ConeRow& row : cone_) {
+    const long count = row.end - row.begin;
+    const double farthest = std::max(-row.dx, row.dx + static_cast<double>(count) * cell) + cell;
     if (farthest * farthest + row.dy * row.dy < inner * inner)
       continue;
     // The cells from `left` to `right` are nearer than the arc.
     const double half = std::sqrt(std::max(inner * inner - row.dy * row.dy, 0.0));
     const auto column = [&](double dx) {
-      return std::clamp(static_cast<long>((dx - dx0) / cell + 0.5), 0L, row.count);
+      return row.begin + std::clamp(static_cast<long>((dx - row.dx) / cell + 0.5), 0L, count);
     };
     const long left = column(-half) + 1;
     const long right = column(half) - 1;
-    for (long i = 0; i < row.count; ++i) {
+    for (long i = row.begin; i < row.end; ++i) {
       if (i == left && left < right)
         i = right;
-      const double dx = (row.first + static_cast<double>(i) + 0.5) * cell - cone_.x;
-      const double along = cone_.cosine * dx + cone_.sine * row.dy;
-      const double across = -cone_.sine * dx + cone_.cosine * row.dy;
-      if (along <= 0.0 || std::abs(across) > edge_ * along)
+      const auto at = static_cast<std::size_t>(i);
+      const double along = columns_.x[at] + row.x;
+      const double across = std::abs(columns_.y[at] + row.y);
+      const double rim = edge_ * along;
+      if (along <= 0.0 || across > rim)
         continue;
       const double distance = std::sqrt(along * along + across * across);
       if (distance <= range - 2.0 * settings_.thickness || distance > range + settings_.thickness ||
           std::abs(distance - range) > settings_.thickness)
         continue;
-      const std::size_t index = row.index + static_cast<std::size_t>(i);
-      arc_.push_back(
-          {index, std::exp(beliefs_[index]) * (1.0 - 0.5 * (std::abs(across) / (edge_ * along)))});
+      const std::size_t index = static_cast<std::size_t>(row.number) * held_.size() + at;
+      arc_.push_back({index, std::exp(beliefs_[index]) * (1.0 - 0.5 * (across / rim))});
     }
   }
 }
@@ -276,20 +277,29 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
 
 void ObstacleMemory::collect(const Pose& robot_in_odom) {
   points_.clear();
-  const ToFrame to_robot(robot_in_odom);
-  const double size = settings_.cell;
-  for (std::size_t word = 0; word < marks_.size(); ++word) {
-    const std::size_t row = word / words_;
-    const std::size_t column0 = word % words_ * kBits;
-    for (std::uint64_t left = marks_[word]; left != 0; left &= left - 1) {
-      const std::size_t column = column0 + static_cast<std::size_t>(std::countr_zero(left));
-      if (beliefs_[row * held_.size() + column] < settings_.obstacle) {
-        marks_[word] ^= left & ~(left - 1);
-        continue;
-      }
-      points_.push_back(
-          to_robot({(static_cast<double>(static_cast<long>(column) + column0_) + 0.5) * size,
-                    (static_cast<double>(static_cast<long>(row) + row0_) + 0.5) * size}));
+  const double c = std::cos(robot_in_odom.th);
+  const double s = std::sin(robot_in_odom.th);
+  see_columns(robot_in_odom, c, s, 0, settings_.cells);
+  std::size_t word = 0;
+  for (std::uint64_t& marks : marks_) {
+    const std::size_t number = word++;
+    if (marks == 0)
+      continue;
+    const std::size_t row = number / words_;
+    const std::size_t column0 = number % words_ * kBits;
+    const double dy = (static_cast<double>(static_cast<long>(row) + row0_) + 0.5) * settings_.cell -
+                      robot_in_odom.y;
+    const double row_x = s * dy;
+    const double row_y = c * dy;
+    const double* const beliefs = &beliefs_[row * held_.size() + column0];
+    const double* const x = &columns_.x[column0];
+    const double* const y = &columns_.y[column0];
+    for (std::uint64_t left = marks; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      if (beliefs[i] < settings_.obstacle)
+        marks ^= left & ~(left - 1);
+      else
+        points_.emplace_back(x[i] + row_x, y[i] + row_y);
     }
   }
 }

@@ -17,12 +17,15 @@ void Beliefs::look(const World& world) {
   if (functions_ == nullptr)
     return;
   looked_ = world.now;
+  auto at = conditions_.begin();  // which has the same order
   for (const auto& [name, condition] : functions_->conditions()) {
     Value value = condition.value(world);
-    const auto found = conditions_.find(name);
-    if (found != conditions_.end() && found->second.value == value)
+    while (at != conditions_.end() && at->first < name)
+      ++at;
+    if (at != conditions_.end() && at->first == name && at->second.value == value)
       continue;
-    conditions_[name] = {condition.name, std::move(value), "perception", world.now};
+    Belief belief{condition.name, std::move(value), "perception", world.now};
+    at = conditions_.insert_or_assign(at, name, std::move(belief));
     ++revision_;
   }
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <deque>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,9 +60,13 @@ class TypedInput final : public Input<T>, public InputSlot {
     reader_.visit([&](const T& sample, const SampleInfo& info) {
       if (info.disposed || !accept(sample.stamp))
         return;
-      samples_.push_back(sample);
-      if (samples_.size() > kKept)
-        samples_.pop_front();
+      if (samples_.size() < kKept) {
+        samples_.push_back(sample);
+        return;
+      }
+      // The oldest one's strings and vectors hold the new ones.
+      samples_.splice(samples_.end(), samples_, samples_.begin());
+      samples_.back() = sample;
     });
   }
   void forget(std::uint64_t epoch) override {
@@ -91,7 +95,7 @@ class TypedInput final : public Input<T>, public InputSlot {
 
   Reader<T> reader_;
   const char* name_;
-  std::deque<T> samples_;
+  std::list<T> samples_;
   const T* value_ = nullptr;
 };
 

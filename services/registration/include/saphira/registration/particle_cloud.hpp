@@ -41,8 +41,11 @@ class ParticleCloud {
   /// sensor's pose in the map.
   template <typename Worth>
   void weigh(const Pose& sensor_in_robot, Worth&& worth) {
+    const Pose& in = sensor_in_robot;
     for (Particle& p : particles_)
-      p.log_weight += worth(compose(p.pose, sensor_in_robot));
+      p.log_weight += worth(Pose{p.pose.x + p.ahead.x() * in.x - p.ahead.y() * in.y,
+                                 p.pose.y + p.ahead.y() * in.x + p.ahead.x() * in.y,
+                                 norm2_angle(p.pose.th + in.th)});
   }
   /// Applies a filter's correction between these two poses to all particles.
   void learn(const Pose& before, const Eigen::Matrix3d& covariance_before, const Pose& after,
@@ -57,14 +60,18 @@ class ParticleCloud {
     double drift_variance = 0.0;
   };
   Estimate estimate() const;
+  /// The pose of the estimate.
+  Pose middle() const { return middle(weights()); }
 
  private:
   struct Particle {
     Pose pose;
+    Vec2 ahead{1.0, 0.0};  // along the heading
     double drift = 0.0;
     double log_weight = 0.0;
   };
   std::vector<double> weights() const;
+  Pose middle(const std::vector<double>& weight) const;
 
   CloudSettings settings_;
   Random random_{1};

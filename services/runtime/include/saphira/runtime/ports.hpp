@@ -55,11 +55,12 @@ class Output {
  public:
   Output(bus::Writer<T> writer, Stamper stamper) : writer_(std::move(writer)), stamper_(stamper) {}
 
-  /// False where the bus did not take it.
-  bool write(T sample) {
+  /// Stamps the sample and writes it; false where the bus did not take it.
+  bool write(T& sample) {
     stamper_.stamp(sample);
     return writer_.write(sample);
   }
+  bool write(T&& sample) { return write(sample); }
   /// Withdraws the instance that has the sample's key.
   bool dispose(T sample) {
     stamper_.stamp(sample);

@@ -30,18 +30,20 @@ struct MemorySettings {
 /// so short holds few cells or none. Silence says nothing of what is out of range.
 MemorySettings for_range(double range, MemorySettings settings = {});
 
-/// The cells that a sonar's cone may cover.
-struct ConeCells {
-  struct Row {
-    std::size_t index = 0;  ///< of the first cell in the grid
-    long count = 0;
-    double first = 0.0;  ///< [cells] its column in odom
-    double dy = 0.0;     ///< [m] from the sonar to the row
-  };
-  double x = 0.0;       ///< [m] of the sonar in odom
-  double cosine = 1.0;  ///< of its heading
-  double sine = 0.0;
-  std::vector<Row> rows;
+/// The places of a grid's cells, as seen from a frame, are sums: of a part for the column...
+struct ColumnParts {
+  std::vector<double> x;  ///< [m]
+  std::vector<double> y;
+};
+/// ...and of one for the row: here the cells of a row that a sonar's cone may cover.
+struct ConeRow {
+  long number = 0;
+  long begin = 0;  ///< columns
+  long end = 0;
+  double dx = 0.0;  ///< [m] from the sonar to the first cell, in odom
+  double dy = 0.0;
+  double x = 0.0;  ///< [m] the row's part
+  double y = 0.0;
 };
 
 /// The obstacles that the sonars have seen around the robot, until later readings contradict them.
@@ -89,8 +91,10 @@ class ObstacleMemory {
     long end = 0;
   };
 
+  /// Computes the parts of some columns.
+  void see_columns(const Pose& frame, double cosine, double sine, long begin, long end);
   /// Puts the cells into cone_ that a cone may cover, up to `range`. `only_held`: not in rows
-  /// without beliefs.
+  /// without beliefs above 0.
   void look_along(const Pose& sonar_in_odom, double range, bool only_held);
   /// Lowers the beliefs of cone_ up to `range`.
   void pass(double range, double doubt);
@@ -99,9 +103,7 @@ class ObstacleMemory {
   void find_arc(double range);
   void shift(long columns, long rows);
   void fade();
-  void hold(std::size_t row, long begin, long end);
   void put(std::size_t cell, double belief);
-  void mark(std::size_t row, std::size_t column);
 
   MemorySettings settings_;
   double edge_;  ///< tangent of the cone's half angle
@@ -111,10 +113,11 @@ class ObstacleMemory {
   long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
   std::vector<double> beliefs_;       ///< by rows
-  std::vector<Part> held_;            ///< by row: all other beliefs are 0
+  std::vector<Part> held_;            ///< by row: no other belief is above 0
   std::size_t words_;                 ///< of marks, in a row
   std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
-  ConeCells cone_;
+  ColumnParts columns_;               ///< seen from the sonar or the robot
+  std::vector<ConeRow> cone_;
   std::vector<Arc> arc_;
   std::vector<Vec2> points_;
 };
