@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -9,17 +10,28 @@ namespace saphira::sim {
 
 namespace {
 
-// A walking person keeps at least this distance from a robot, and more from one that comes nearer:
-// the way that it may make in that time.
-constexpr double kManners = 0.10;  // [m]
+// A walking person keeps at least this distance from a robot, a stubborn one less, and more from
+// one that comes nearer: the way that it may make in that time.
+constexpr double kManners = 0.18;  // [m]
+constexpr double kRude = 0.10;     // [m]
 constexpr double kStops = 0.8;     // [s]
 
-// The waiting time after which a stubborn person chooses another target, and another person goes
-// back by so much.
+// The waiting time after which a stubborn person chooses another target, and another person gives
+// way to a robot.
 constexpr double kPatience = 4.0;  // [s]
 constexpr double kCourtesy = 2.0;  // [s]
-constexpr double kGoesBack = 1.5;  // [m]
 constexpr int kMostYields = 3;     // then the next leg
+
+// A person who gives way steps to the nearest place, within this distance, where a robot has room
+// beside him, and waits there until it has passed, for so long at most. Without such a place he
+// goes back.
+constexpr double kStepsAside = 2.0;  // [m]
+constexpr double kBerth = 0.45;      // [m] between him and its hull
+constexpr double kItsRoom = 0.25;    // [m] on its other side
+constexpr double kDetour = 2.0;      // its cost for each meter that he goes
+constexpr double kGivesWay = 15.0;   // [s]
+constexpr double kGoesBack = 1.5;    // [m]
+constexpr int kCourses = 16;
 
 // A person who passes a robot sees it from this far, and keeps these distances from its hull and
 // from other things. Without room for that he stops earlier.
@@ -227,7 +239,8 @@ bool Scene::set_person(std::string_view name, const Vec2& at) {
         }))
       return false;
     person.at = person.from = at;
-    person.waited = person.back = 0.0;
+    person.waited = 0.0;
+    person.refuge.reset();
     person.aside = false;
     persons_near_.put(i, at);
     return true;
@@ -263,37 +276,40 @@ void Scene::walk(Person& person) {
     if (person.waited < 0.0) {
       person.way = 0.0;
       person.waited += kTick;
+      if (person.waited > kPatience - kGivesWay && person.waited < -kPatience &&
+          !has_robot_ahead(person))
+        person.waited = 0.0;
       return;
     }
-    const bool back = person.back > 0.0;
-    const Vec2 target = back ? person.from : leg.to;
-    const auto aim = next_place(person);
+    const auto aim = person.refuge ? std::optional(person.refuge->at) : next_place(person);
     const double step = leg.speed * kTick;
-    const Vec2 way = aim.value_or(target) - person.at;
+    const Vec2 way = aim.value_or(leg.to) - person.at;
     const double left = way.norm();
-    const Vec2 to = left <= step ? aim.value_or(target) : Vec2(person.at + way * (step / left));
+    const Vec2 to = left <= step ? Vec2(person.at + way) : Vec2(person.at + way * (step / left));
     if (!aim || !lets_pass(person, to)) {
       person.way = 0.0;
       person.waited += kTick;
-      if (person.plan->stubborn && person.waited > kPatience) {
-        next_leg(person);
-      } else if (!person.plan->stubborn && (!aim || person.waited > kCourtesy)) {
-        if (!back && ++person.yielded > kMostYields)
+      if (person.plan->stubborn) {
+        if (person.waited > kPatience)
+          next_leg(person);
+      } else if (!aim || person.waited > kCourtesy) {
+        if (++person.yielded > kMostYields)
           return next_leg(person);
-        person.waited = back ? -kPatience : 0.0;
-        person.back = back ? 0.0 : kGoesBack;
+        person.refuge = refuge(person);
+        person.waited = 0.0;
       }
       return;
     }
     person.waited = 0.0;
     look_towards(person, *aim);
     person.way += std::min(left, step);
-    person.at = to;
-    if (back) {
-      person.back = to == target ? 0.0 : std::max(0.0, person.back - step);
-      person.waited = person.back > 0.0 ? 0.0 : -kPatience;
-    } else {
-      done = to == target;
+    person.at = left <= step ? *aim : to;
+    if (!person.refuge) {
+      done = person.at == leg.to;
+    } else if (left <= step) {
+      person.waited = -person.refuge->stay;
+      person.refuge.reset();
+      person.aside = true;
     }
   }
   if (done)
@@ -303,6 +319,7 @@ void Scene::walk(Person& person) {
 void Scene::next_leg(Person& person) {
   person.waited = 0.0;
   person.from = person.at;
+  person.refuge.reset();
   person.aside = false;
   person.yielded = 0;
   ++person.leg;
@@ -319,8 +336,25 @@ bool Scene::has_robot_within(double reach, const Vec2& point) const {
                      [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
+bool Scene::has_robot_ahead(const Person& person) const {
+  const Vec2 way = person.plan->script[person.leg].to - person.at;
+  const auto& near = hulls_near_.near(person.at, kSees);
+  return std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+    const Vec2 there = hulls_[i].centre - person.at;
+    return there.norm() < kSees && way.dot(there) > 0.0;
+  });
+}
+
 /// [m] Beside a person's body at that place; the leaves of doors, which he opens, do not count.
 double Scene::room(const Person& person, const Vec2& at) const {
+  double best = room_but_robots(person, at);
+  for (const Disc& hull : hulls_)
+    best = std::min(best, (hull.centre - at).norm() - hull.radius);
+  return best - person.plan->radius;
+}
+
+/// [m] From that place to what a person walks around, apart from robots.
+double Scene::room_but_robots(const Person& person, const Vec2& at) const {
   double best = sim::distance(world_->segments, at);
   for (std::size_t i = doors_.size(); i < segments_.size(); ++i)
     best = std::min(best, distance_to(segments_[i], at));
@@ -328,11 +362,10 @@ double Scene::room(const Person& person, const Vec2& at) const {
     best = std::min(best, (disc.centre - at).norm() - disc.radius);
   };
   std::for_each(posts_.begin(), posts_.end(), look);
-  std::for_each(hulls_.begin(), hulls_.end(), look);
   for (const Person& other : persons_)
     if (&other != &person)
       look({other.at, other.plan->radius});
-  return best - person.plan->radius;
+  return best;
 }
 
 /// True where he has room all along that straight way.
@@ -387,27 +420,73 @@ std::optional<Vec2> Scene::way_past(const Person& person, const Vec2& aim,
   return aim;
 }
 
-/// The point that he walks towards: the target of his leg, or its beginning where he goes back;
-/// beside a robot, and behind it to the straight line of his leg again. None: he waits.
+/// The place where he lets the nearest robot pass, which comes along his way, against him: the one
+/// with the shortest ways for him and, to the side, for the robot. Each second time, and without
+/// such a place: the farthest one from it.
+Person::Refuge Scene::refuge(const Person& person) const {
+  const Disc* robot = nullptr;
+  for (const std::uint32_t i : hulls_near_.near(person.at, kSees))
+    if (!robot || (hulls_[i].centre - person.at).norm() < (robot->centre - person.at).norm())
+      robot = &hulls_[i];
+  Person::Refuge best{person.at, kPatience};
+  if (!robot)
+    return best;
+  const Vec2 to_robot = robot->centre - person.at;
+  const Vec2 ahead = (person.plan->script[person.leg].to - person.at).normalized();
+  const Vec2 aside(-ahead.y(), ahead.x());
+  const double apart = person.plan->radius + kBerth + robot->radius;
+  std::vector<Vec2> places{person.at};
+  for (double far = kStride; far < kStepsAside; far += kStride)
+    for (int i = 0; i < kCourses; ++i) {
+      const double course = 2.0 * kPi * i / kCourses;
+      const Vec2 at = person.at + far * Vec2(std::cos(course), std::sin(course));
+      if ((robot->centre - at).norm() >= to_robot.norm() && is_free(person, at))
+        places.push_back(at);
+    }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec2& at : places)
+    for (const double side : {apart, -apart}) {
+      const Vec2 its = at + side * aside;
+      const double cost =
+          (at - person.at).norm() + kDetour * std::abs(aside.dot(its - robot->centre));
+      if (person.yielded % 2 == 1 && cost < least &&
+          room_but_robots(person, its) >= robot->radius + kItsRoom &&
+          std::none_of(world_->segments.begin(), world_->segments.end(), [&](const Segment& wall) {
+            return intersect(wall, {at, its});
+          })) {
+        best = {at, kGivesWay};
+        least = cost;
+      }
+    }
+  if (least < std::numeric_limits<double>::infinity())
+    return best;
+  for (const Vec2& at : places)
+    if ((at - person.at).norm() <= kGoesBack &&
+        (at - robot->centre).norm() > (best.at - robot->centre).norm())
+      best.at = at;
+  return best;
+}
+
+/// The point that he walks towards: the target of his leg; beside a robot, and behind it to the
+/// straight line of his leg again. None: he waits.
 std::optional<Vec2> Scene::next_place(Person& person) const {
   const PersonPlan::Leg& leg = person.plan->script[person.leg];
-  const Vec2 target = person.back > 0.0 ? person.from : leg.to;
   if (person.plan->stubborn)
-    return target;
-  Vec2 aim = target;
+    return leg.to;
+  Vec2 aim = leg.to;
   if (person.aside) {
-    const Vec2 start = person.back > 0.0 ? leg.to : person.from;
-    const Vec2 ahead = (target - start).normalized();
-    const double done = ahead.dot(person.at - start);
+    const Vec2 ahead = (leg.to - person.from).normalized();
+    const double done = ahead.dot(person.at - person.from);
     const auto on_line = [&](double further) {
-      return done + further < (target - start).norm() ? Vec2(start + ahead * (done + further))
-                                                      : target;
+      return done + further < (leg.to - person.from).norm()
+                 ? Vec2(person.from + ahead * (done + further))
+                 : leg.to;
     };
     person.aside = (on_line(0.0) - person.at).norm() > kOnLine;
     if (person.aside)
       aim = is_free(person, on_line(1.0)) ? on_line(1.0) : on_line(0.2);
   }
-  const auto place = way_past(person, aim, target);
+  const auto place = way_past(person, aim, leg.to);
   if (place && *place != aim)
     person.aside = true;
   return place;
@@ -423,7 +502,7 @@ bool Scene::lets_pass(const Person& person, const Vec2& to) {
       continue;
     const Vec2 coming = robots_[i]->pose_in_world().direction() * robots_[i]->velocity();
     const double speed = std::max(0.0, coming.dot(to - hull.centre) / after);
-    const double manners = kManners + (person.plan->stubborn ? 0.0 : kStops * speed);
+    const double manners = person.plan->stubborn ? kRude : kManners + kStops * speed;
     if (after < radius + hull.radius + manners)
       return false;
   }

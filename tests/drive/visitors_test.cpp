@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "drive/whole.hpp"
+#include "saphira/sim/contacts.hpp"
 
 namespace saphira::test {
 namespace {
@@ -17,9 +18,10 @@ class Visitors : public testing::TestWithParam<const char*> {
     options.drive.guard = true;
     return options;
   }
-  static intentions::GoalStatus to_d(Whole& whole) {
-    return whole.achieve("go-to-place", {saphira::text("place", "D")}, 3000);
+  static intentions::GoalStatus to(const std::string& place, Whole& whole) {
+    return whole.achieve("go-to-place", {saphira::text("place", place)}, 3000);
   }
+  static intentions::GoalStatus to_d(Whole& whole) { return to("D", whole); }
 };
 
 constexpr const char* kTrue = "something, perhaps a person, stands before door 9 (D)";
@@ -54,6 +56,22 @@ TEST_P(Visitors, AmongPeopleWhoWalkAnErrandEndsWithTheTrueReason) {
         (status.state == v1::GOAL_FAILED && status.reason.find(reason) != std::string::npos))
         << status.reason;
   }
+}
+
+// They step out of the robot's way or go back, wherever they are when it sets out.
+TEST_P(Visitors, AmongPeopleWhoWalkMostErrandsSucceed) {
+  int succeeded = 0;
+  for (const char* const place : {"A", "B", "C", "D"})
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      Whole whole(options("visitors", seed));
+      sim::ContactWatch watch(whole.drive().scene(), whole.drive().robot().number(),
+                              whole.drive().parameters());
+      whole.drive().scene().set_watch([&watch] { watch.tick(); });
+      whole.advance_until([] { return false; }, 37 * (static_cast<int>(seed) - 1));
+      succeeded += to(place, whole).state == v1::GOAL_SUCCEEDED ? 1 : 0;
+      EXPECT_GT(watch.closest_person(), 0.0) << place << seed;
+    }
+  EXPECT_GE(succeeded, 11);
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, Visitors, testing::Values("pioneer", "p3dx"),

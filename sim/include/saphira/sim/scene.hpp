@@ -32,8 +32,12 @@ struct Person {
   double waited = 0.0;   ///< [s] in this leg
   Vec2 from{0.0, 0.0};   ///< where this leg began
   bool aside = false;    ///< beside the straight line of this leg, past a robot
-  double back = 0.0;     ///< [m] that he still goes back, to let a robot pass
-  int yielded = 0;       ///< times in this leg
+  struct Refuge {
+    Vec2 at{0.0, 0.0};
+    double stay = 0.0;  ///< [s] there
+  };
+  std::optional<Refuge> refuge{};  ///< goes there, to let a robot pass
+  int yielded = 0;                 ///< times in this leg
   /// [rad] Direction of an outstretched arm, in the world.
   std::optional<double> points{};
 };
@@ -85,10 +89,10 @@ struct Ping {
 
 /// A world and its moving things: people, doors, boxes, robots. People walk by their scripts. They
 /// push closed doors open. Where a robot stands or comes in their way they pass beside it; without
-/// room, and before a box, they wait and go back a little. Stubborn people wait for four seconds
-/// and go on to the next place of the script. Doors stop where a person stands in their way; robots
-/// push boxes. One tick() moves everything by one tick of time, always in the same order, so that a
-/// scene is the same to the last bit in every run.
+/// room they step out of its way or go back, and before a box they wait. Stubborn people wait for
+/// four seconds and go on to the next place of the script. Doors stop where a person stands in
+/// their way; robots push boxes. One tick() moves everything by one tick of time, always in the
+/// same order, so that a scene is the same to the last bit in every run.
 class Scene {
  public:
   /// The world outlives the scene.
@@ -159,9 +163,12 @@ class Scene {
   void walk(Person& person);
   void next_leg(Person& person);
   bool has_robot_within(double reach, const Vec2& point) const;
+  bool has_robot_ahead(const Person& person) const;
   std::optional<Vec2> next_place(Person& person) const;
   std::optional<Vec2> way_past(const Person& person, const Vec2& aim, const Vec2& target) const;
+  Person::Refuge refuge(const Person& person) const;
   double room(const Person& person, const Vec2& at) const;
+  double room_but_robots(const Person& person, const Vec2& at) const;
   bool is_free(const Person& person, const Vec2& to) const;
   bool lets_pass(const Person& person, const Vec2& to);
   void turn(std::size_t door);
