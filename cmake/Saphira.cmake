@@ -62,8 +62,8 @@ target_compile_options(saphira_warnings INTERFACE -Wall -Wextra -Wshadow -Wconve
   $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SAPHIRA_NOT_PEDANTIC>>>:-Wpedantic>
   $<$<BOOL:${SAPHIRA_WERROR}>:-Werror>)
 
-# saphira_computes(<name>...): libraries that work in each cycle of the robot, or at length. Nobody replaces a function
-# of theirs when it is loaded: calls within a source may be inlined, as Clang does.
+# saphira_computes(<name>...): libraries that work in each cycle of the robot, or at length. No program
+# replaces their functions at load time: calls within a source may be inlined, as Clang does.
 function(saphira_computes)
   if(NOT SAPHIRA_SANITIZE)
     foreach(name ${ARGN})

@@ -28,9 +28,10 @@ constexpr int kMostYields = 3;     // then the next leg
 constexpr double kStepsAside = 2.0;  // [m]
 constexpr double kBerth = 0.45;      // [m] between him and its hull
 constexpr double kItsRoom = 0.25;    // [m] on its other side
-constexpr double kDetour = 2.0;      // its cost for each meter that he goes
-constexpr double kGivesWay = 15.0;   // [s]
-constexpr double kGoesBack = 1.5;    // [m]
+constexpr double kDetour =
+    2.0;  // the cost of a metre that the robot goes aside, against one of his
+constexpr double kGivesWay = 15.0;  // [s]
+constexpr double kGoesBack = 1.5;   // [m]
 constexpr int kCourses = 16;
 
 // A person who passes a robot sees it from this far, and keeps these distances from its hull and
@@ -293,9 +294,15 @@ void Scene::walk(Person& person) {
         if (person.waited > kPatience)
           next_leg(person);
       } else if (!aim || person.waited > kCourtesy) {
-        if (++person.yielded > kMostYields)
-          return next_leg(person);
+        if (++person.yielded > kMostYields) {
+          next_leg(person);
+          person.from = leg.to;  // he goes on from the line between the two
+          person.aside = true;
+          return;
+        }
         person.refuge = refuge(person);
+        person.back.push_back(person.at);
+        person.aside = true;
         person.waited = 0.0;
       }
       return;
@@ -309,7 +316,6 @@ void Scene::walk(Person& person) {
     } else if (left <= step) {
       person.waited = -person.refuge->stay;
       person.refuge.reset();
-      person.aside = true;
     }
   }
   if (done)
@@ -318,9 +324,12 @@ void Scene::walk(Person& person) {
 
 void Scene::next_leg(Person& person) {
   person.waited = 0.0;
-  person.from = person.at;
+  if (person.plan->script[person.leg].speed > 0.0) {
+    person.from = person.at;
+    person.aside = false;
+    person.back.clear();
+  }
   person.refuge.reset();
-  person.aside = false;
   person.yielded = 0;
   ++person.leg;
   if (person.leg == person.plan->script.size() && person.plan->repeats)
@@ -420,19 +429,23 @@ std::optional<Vec2> Scene::way_past(const Person& person, const Vec2& aim,
   return aim;
 }
 
-/// The place where he lets the nearest robot pass, which comes along his way, against him: the one
-/// with the shortest ways for him and, to the side, for the robot. Each second time, and without
-/// such a place: the farthest one from it.
+/// The place where he lets the nearest robot ahead pass: the one with the shortest ways for him
+/// and, to the side, for the robot. Each second time, and without such a place: the farthest one
+/// from it. Without such a robot: where he is.
 Person::Refuge Scene::refuge(const Person& person) const {
+  const Vec2 ahead = (person.plan->script[person.leg].to - person.at).normalized();
   const Disc* robot = nullptr;
-  for (const std::uint32_t i : hulls_near_.near(person.at, kSees))
-    if (!robot || (hulls_[i].centre - person.at).norm() < (robot->centre - person.at).norm())
+  double near = kSees;
+  for (const std::uint32_t i : hulls_near_.near(person.at, kSees)) {
+    const Vec2 there = hulls_[i].centre - person.at;
+    if (there.norm() < near && ahead.dot(there) > 0.0) {
       robot = &hulls_[i];
+      near = there.norm();
+    }
+  }
   Person::Refuge best{person.at, kPatience};
   if (!robot)
     return best;
-  const Vec2 to_robot = robot->centre - person.at;
-  const Vec2 ahead = (person.plan->script[person.leg].to - person.at).normalized();
   const Vec2 aside(-ahead.y(), ahead.x());
   const double apart = person.plan->radius + kBerth + robot->radius;
   std::vector<Vec2> places{person.at};
@@ -440,7 +453,7 @@ Person::Refuge Scene::refuge(const Person& person) const {
     for (int i = 0; i < kCourses; ++i) {
       const double course = 2.0 * kPi * i / kCourses;
       const Vec2 at = person.at + far * Vec2(std::cos(course), std::sin(course));
-      if ((robot->centre - at).norm() >= to_robot.norm() && is_free(person, at))
+      if ((robot->centre - at).norm() >= near && is_free(person, at))
         places.push_back(at);
     }
   double least = std::numeric_limits<double>::infinity();
@@ -483,8 +496,14 @@ std::optional<Vec2> Scene::next_place(Person& person) const {
                  : leg.to;
     };
     person.aside = (on_line(0.0) - person.at).norm() > kOnLine;
+    if (!person.back.empty() && (person.back.back() - person.at).norm() <= kOnLine)
+      person.back.pop_back();
+    if (!person.aside || is_free(person, on_line(1.0)))
+      person.back.clear();
     if (person.aside)
-      aim = is_free(person, on_line(1.0)) ? on_line(1.0) : on_line(0.2);
+      aim = is_free(person, on_line(1.0)) ? on_line(1.0)
+            : person.back.empty()         ? on_line(0.2)
+                                          : person.back.back();
   }
   const auto place = way_past(person, aim, leg.to);
   if (place && *place != aim)
@@ -507,6 +526,10 @@ bool Scene::lets_pass(const Person& person, const Vec2& to) {
       return false;
   }
   if (person.aside && room(person, to) < std::min(0.0, room(person, person.at)))
+    return false;
+  if (std::any_of(world_->segments.begin(), world_->segments.end(), [&](const Segment& wall) {
+        return intersect(wall, {person.at, to});
+      }))
     return false;
   bool free = true;
   for (std::size_t i = 0; i < segments_.size(); ++i) {

@@ -270,6 +270,30 @@ TEST(Movable, PeopleStepIntoADoorwayAndLetTheRobotPass) {
   EXPECT_EQ(ann.at, Vec2(9.0, 5.0));
 }
 
+TEST(Movable, PeopleWhoGiveUpALegWalkThroughNoWall) {
+  // The robot stops in the mouth of the doorway in which she waits.
+  WorldScene scene(
+      world("0 4200 4500 4200 5500 4200 10000 4200 0 5800 10000 5800 person ann 1000 5000"
+            " walk 9000 5000 1000 walk 1000 4600 1000 repeat"));
+  Robot& robot = scene.add_robot({}, {8.0, 5.0, kPi}, 1);
+  const Person& ann = scene.persons()[0];
+  double nearest = 1.0;
+  const auto run_for = [&](double seconds, double velocity) {
+    robot.set_velocity(velocity);
+    for (int i = 0; i < static_cast<int>(seconds / kTick); ++i) {
+      scene.tick();
+      nearest = std::min(nearest, distance(scene.world().segments, ann.at));
+    }
+  };
+  run_for(10.0, 0.3);
+  EXPECT_LT(ann.at.y(), 4.45);
+  run_for(60.0, 0.0);
+  run_for(14.0, 0.3);
+  EXPECT_GT(nearest, 0.2);
+  EXPECT_GT(ann.at.y(), 4.55) << "she went on";
+  EXPECT_EQ(robot.contacts(), 0);
+}
+
 TEST(Movable, PeopleStepIntoNoWallAndNobodyElse) {
   // Beside the robot are a wall, and another person.
   WorldScene scene(

@@ -58,7 +58,7 @@ TEST_P(Visitors, AmongPeopleWhoWalkAnErrandEndsWithTheTrueReason) {
   }
 }
 
-// They step out of the robot's way or go back, wherever they are when it sets out.
+// People step out of the robot's way or go back, wherever they are when it sets out.
 TEST_P(Visitors, AmongPeopleWhoWalkMostErrandsSucceed) {
   int succeeded = 0;
   for (const char* const place : {"A", "B", "C", "D"})

@@ -148,6 +148,8 @@ TEST(Drive, OutOfAPocket) {
                   {3, 10, 0}, {6, 0}, {.clearance = 0.03, .detour = 2.8, .swings = 30, .late = 3});
 }
 
+// KeepOff's berth makes it wind more than past the cupboards alone: 16 swings, where it is 14 with
+// 28 cm.
 TEST(Drive, ThroughTheOffice) {
   expect_arrivals(sim::load_world(test::source("config/worlds/office.wld")), {1.5, 7, 0}, {16, 1},
                   {.swings = 17});

@@ -148,7 +148,7 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   }
   EXPECT_GE(passed, 6);
   EXPECT_GE(found, 0.9 * passed);
-  EXPECT_LE(reported - real, 6);  // one false door a floor
+  EXPECT_LE(reported - real, 6) << reported;  // one false door a floor, on average
   // On the map, most of them identify the robot's place.
   EXPECT_GE(5 * all_matched, 4 * on_map) << all_matched;
 }

@@ -17,7 +17,7 @@ void Beliefs::look(const World& world) {
   if (functions_ == nullptr)
     return;
   looked_ = world.now;
-  auto at = conditions_.begin();  // which has the same order
+  auto at = conditions_.begin();  // it has the same order of names
   for (const auto& [name, condition] : functions_->conditions()) {
     Value value = condition.value(world);
     while (at != conditions_.end() && at->first < name)

@@ -37,7 +37,8 @@ struct Person {
     double stay = 0.0;  ///< [s] there
   };
   std::optional<Refuge> refuge{};  ///< goes there, to let a robot pass
-  int yielded = 0;                 ///< times in this leg
+  std::vector<Vec2> back = {};  ///< from the line of his leg to where he is, by way of his refuges
+  int yielded = 0;              ///< times in this leg
   /// [rad] Direction of an outstretched arm, in the world.
   std::optional<double> points{};
 };

@@ -8,8 +8,8 @@
 
 namespace saphira::bus {
 
-/// The newest requests to a program, with the newest answer to each: a repeated one is carried out
-/// once.
+/// The newest requests to a program, each with its end or the newest answer: a repeated one is
+/// carried out once.
 class KnownRequests {
  public:
   /// The newest answer to a request. nullptr: it is new, and from now on under way.
@@ -21,7 +21,7 @@ class KnownRequests {
       answers_.pop_front();
     return nullptr;
   }
-  /// Only a request under way gets an answer: the last one stays.
+  /// Keeps the answer to a request under way. An end stays: a later answer is not kept.
   void keep(const v1::Answer& answer) {
     v1::Answer* const known = place(answer.asker, answer.number);
     if (known != nullptr && known->code == v1::ANSWER_UNDERWAY)
