@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+
+#include "saphira/base/random.hpp"
 
 namespace saphira::lps {
 namespace {
@@ -179,6 +182,41 @@ TEST_F(ObstacleMemoryTest, WhatWasTouchedIsAnObstacleUntilBeamsFindItsPlaceEmpty
   for (int i = 0; i < 12; ++i)
     memory.echo(kOrigin, 2.0);
   EXPECT_GT(nearest({0.35, 0.0}), 0.06) << "the beam passes here";
+}
+
+/// The points of a drive with random turns and echoes, to the bit: in odom it jumps now and then.
+std::uint64_t hash_of_a_drive(const MemorySettings& settings) {
+  ObstacleMemory memory(settings);
+  Random random(7);
+  Pose robot;
+  std::uint64_t hash = 0;
+  for (int cycle = 0; cycle < 3000; ++cycle) {
+    robot = compose(robot, {random.uniform(0.0, 0.06), 0.0, random.uniform(-0.2, 0.2)});
+    if (cycle % 700 == 699)
+      robot = compose(robot, {cycle % 2100 == 2099 ? 90.0 : -1.3, 0.4, 0.0});
+    memory.move_to(robot);
+    for (int beam = 0; beam < 4; ++beam) {
+      const Pose sonar = compose(robot, {0.1, 0.0, random.uniform(-kPi, kPi)});
+      if (const double range = random.uniform(0.1, 4.0); range < 2.5)
+        memory.echo(sonar, range);
+      else
+        memory.silence(sonar);
+    }
+    memory.collect(robot);
+    for (const Vec2& point : memory.points())
+      for (const double one : {point.x(), point.y()})
+        hash = (hash ^ std::bit_cast<std::uint64_t>(one)) * 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+TEST(ObstacleMemory, ItsPointsAreTheSameToTheBit) {
+  EXPECT_EQ(hash_of_a_drive({}), 1334408415855143555U);
+  MemorySettings cautious;
+  cautious.least = 0.0;
+  cautious.fading = 0.985;
+  cautious.keeps_at_rest = true;
+  EXPECT_EQ(hash_of_a_drive(for_range(1.0, cautious)), 16328973453298622847U);
 }
 
 }  // namespace

@@ -78,18 +78,29 @@ void Desk::answer(const Request& request, const std::optional<Answer>& outcome) 
     node_.info(describe(request) + ", asked for by " + request.source);
   }
   if (outcome)
-    answer(request.asker, request.number, *outcome);
+    send(request.asker, request.number, *outcome, request.functor);
 }
 
 void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
+  send(asker, number, answer, {});
+}
+
+void Desk::send(std::uint64_t asker, std::uint64_t number, const Answer& answer,
+                const std::string& functor) {
   v1::Answer sample = to_bus(answer);
   sample.stamp = now_;
   sample.asker = asker;
   sample.number = number;
   sample.service = node_.options().name;
   writer_.write(sample);
+  const auto serves = [&functor](const auto& counter) {
+    return std::any_of(counter->functors.begin(), counter->functors.end(),
+                       [&functor](const Functor& one) { return one.name == functor; });
+  };
+  const bool served = std::any_of(counters_.begin(), counters_.end(), serves);
   for (const auto& counter : counters_)
-    counter->known.keep(sample);
+    if (!served || serves(counter))
+      counter->known.keep(sample);
 }
 
 }  // namespace saphira

@@ -47,6 +47,9 @@ class Desk {
     bus::KnownRequests known{};      ///< of this topic: nobody spoils a request on another one
   };
   void take(Counter& counter, std::vector<Request>& out);
+  /// Writes an answer, for repeated requests as well: on the topics with that functor, or on all.
+  void send(std::uint64_t asker, std::uint64_t number, const Answer& answer,
+            const std::string& functor);
 
   bus::Node& node_;
   bus::Writer<v1::Answer> writer_;
