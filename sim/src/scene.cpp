@@ -28,10 +28,9 @@ constexpr int kMostYields = 3;     // then the next leg
 constexpr double kStepsAside = 2.0;  // [m]
 constexpr double kBerth = 0.45;      // [m] between him and its hull
 constexpr double kItsRoom = 0.25;    // [m] on its other side
-constexpr double kDetour =
-    2.0;  // the cost of a metre that the robot goes aside, against one of his
-constexpr double kGivesWay = 15.0;  // [s]
-constexpr double kGoesBack = 1.5;   // [m]
+constexpr double kDetour = 2.0;      // the robot's metre aside costs as much as two of his
+constexpr double kGivesWay = 15.0;   // [s]
+constexpr double kGoesBack = 1.5;    // [m]
 constexpr int kCourses = 16;
 
 // A person who passes a robot sees it from this far, and keeps these distances from its hull and
@@ -242,6 +241,7 @@ bool Scene::set_person(std::string_view name, const Vec2& at) {
     person.at = person.from = at;
     person.waited = 0.0;
     person.refuge.reset();
+    person.back.clear();
     person.aside = false;
     persons_near_.put(i, at);
     return true;
@@ -284,9 +284,10 @@ void Scene::walk(Person& person) {
     }
     const auto aim = person.refuge ? std::optional(person.refuge->at) : next_place(person);
     const double step = leg.speed * kTick;
-    const Vec2 way = aim.value_or(leg.to) - person.at;
+    const Vec2 target = aim.value_or(leg.to);
+    const Vec2 way = target - person.at;
     const double left = way.norm();
-    const Vec2 to = left <= step ? Vec2(person.at + way) : Vec2(person.at + way * (step / left));
+    const Vec2 to = left <= step ? target : Vec2(person.at + way * (step / left));
     if (!aim || !lets_pass(person, to)) {
       person.way = 0.0;
       person.waited += kTick;
@@ -310,9 +311,9 @@ void Scene::walk(Person& person) {
     person.waited = 0.0;
     look_towards(person, *aim);
     person.way += std::min(left, step);
-    person.at = left <= step ? *aim : to;
+    person.at = to;
     if (!person.refuge) {
-      done = person.at == leg.to;
+      done = to == leg.to;
     } else if (left <= step) {
       person.waited = -person.refuge->stay;
       person.refuge.reset();
@@ -362,7 +363,7 @@ double Scene::room(const Person& person, const Vec2& at) const {
   return best - person.plan->radius;
 }
 
-/// [m] From that place to what a person walks around, apart from robots.
+/// [m] From that place to the nearest wall, box, post or other person.
 double Scene::room_but_robots(const Person& person, const Vec2& at) const {
   double best = sim::distance(world_->segments, at);
   for (std::size_t i = doors_.size(); i < segments_.size(); ++i)
