@@ -254,6 +254,9 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   drawing.title =
       name_of(view.registration->state) + (in == nullptr ? std::string() : ", in " + describe(*in));
   drawing.raster = raster_of(tiles, *view.registration);
+  if (!drawing.raster && !tiles.empty())
+    std::cerr << "saphira: the occupancy grid is left out of the picture: it is too large, or of "
+                 "another dead-reckoning frame than the pose\n";
   if (!way.points_in_map.empty())
     drawing.trajectories.push_back(std::move(way));
   const v1::Covariance2& c = view.registration->covariance;

@@ -13,11 +13,12 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kStride = 0.2;  // [m] between places of a trail
-constexpr double kLook = 0.8;    // [m] to the place of the trail that the robot heads for
-constexpr double kAtEnd = 0.3;   // [m]
-constexpr double kPlaced = 0.3;  // [s] since the person was seen: a place, not a guess
-constexpr double kKeeps = 0.8;   // of the distance to the person: there AttendAtPos stands
+constexpr double kStride = 0.2;   // [m] between places of a trail
+constexpr double kLook = 0.8;     // [m] to the place of the trail that the robot heads for
+constexpr double kAtEnd = 0.3;    // [m]
+constexpr double kPasses = 0.05;  // [m] AttendAtPos is slow before its radius
+constexpr double kPlaced = 0.3;   // [s] since the person was seen: a place, not a guess
+constexpr double kKeeps = 0.8;    // of the distance to the person: there AttendAtPos stands
 
 class Follow : public Activity {
  public:
@@ -56,7 +57,7 @@ class Follow : public Activity {
     self.intend_behavior(
         "track", "AttendAtPos", kTask,
         {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
-         number("radius", there ? near : kAtEnd),
+         number("radius", there ? near : kPasses),
          number("speed", std::min(speed_, kSlow + std::max(0.0, left - kKeeps * near)))});
     self.level(there ? 1.0 : 0.0);
     self.say(in_sight ? "following a person" : "going where it saw a person last");

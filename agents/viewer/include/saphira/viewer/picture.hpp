@@ -79,6 +79,7 @@ class Tiles {
   /// apart for one grid.
   void note(const v1::GridTile& tile, bool disposed);
   std::optional<Cells> whole() const;
+  bool empty() const { return tiles_.empty(); }
 
  private:
   std::int64_t period_ns_;
