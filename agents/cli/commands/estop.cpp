@@ -1,4 +1,6 @@
 // The emergency stop, and its reset.
+#include <stdexcept>
+
 #include "bridges.hpp"
 #include "commands.hpp"
 #include "saphira/bus/request_client.hpp"
@@ -15,6 +17,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
 constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
 constexpr double kResetLimit = 5.0;
+
+constexpr const char* kOtherStop = "; saphira goal stop, which is anybody's, stops the robot too";
 
 /// A stop button of the terminal.
 class Button {
@@ -137,8 +141,12 @@ void add_estop(CLI::App& app, Chosen& chosen) {
   command->callback([reset, &chosen] {
     const bool released = reset->parsed();
     chosen.run = [released](const bus::NodeOptions& options, const bus::Stop& stop) {
-      Button button(options);
-      return released ? button.reset(stop) : button.press(stop);
+      try {
+        Button button(options);
+        return released ? button.reset(stop) : button.press(stop);
+      } catch (const std::invalid_argument& error) {  // the role of this program
+        throw std::invalid_argument(std::string(error.what()) + (released ? "" : kOtherStop));
+      }
     };
   });
 }

@@ -86,6 +86,14 @@ int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
+/// Listeners, pages and recordings that were on the bus before have heard the sentence.
+void wait_for_listeners(bus::Node& node, const bus::Writer<v1::Utterance>& writer,
+                        Clock::time_point began, const bus::Stop& stop) {
+  while (!stop.requested() && Clock::now() - began < listening_time(node))
+    node.wait(milliseconds(50), &stop);
+  writer.wait_acknowledged(500);
+}
+
 int say(const SayOptions& say_options, const bus::NodeOptions& options, const bus::Stop& stop) {
   if (say_options.words.empty())
     return listen(options, stop);
@@ -111,8 +119,10 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
       code = sample.data.refused ? bus::kExitFailed : bus::kExitOk;
       print("%s\n", line_of(sample.data, options.robot).c_str());
       std::fflush(stdout);
-      if (sample.data.end || say_options.quick)
+      if (sample.data.end || say_options.quick) {
+        wait_for_listeners(node, writer, began, stop);
         return code;
+      }
     }
     if (answered)
       continue;

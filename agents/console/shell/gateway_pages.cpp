@@ -399,6 +399,10 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
     answer(connection, cancel.reference, false, "expected the id of a goal");
     return;
   }
+  if (!goals_.status(*id)) {
+    answer(connection, cancel.reference, false, "there is no goal " + cancel.id + " on the list");
+    return;
+  }
   goals_.cancel(*id, "by " + operator_of(page.name), person_of(page.visitor));
   canceling_.push_back({connection, cancel.reference, *id, now() + kCanceled});
 }

@@ -565,16 +565,16 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     }
     case Waiting::For::cancel: {
       const bool ended = waiting.goal ? has_ended(*waiting.goal) : !is_busy();
-      if (!late && (!ended || robot_.moves()))
+      if (!late && (!ended || !robot_.rests()))
         return false;
       const std::string robot =
-          robot_.moves() ? "the robot still moves: somebody else may drive it, or it is stopping"
-                         : "the robot stands";
+          !robot_.rests() ? "the robot still moves: somebody else may drive it, or it is stopping"
+                          : "the robot stands";
       const std::string done = !waiting.had_any ? "nothing of yours is underway; "
                                : ended          ? "withdrawn; "
                                                 : "withdrawn, and not heard to have ended; ";
       session_.answer(number,
-                      {done + robot, {{"ended", ended}, {"moves", robot_.moves()}}, !ended});
+                      {done + robot, {{"ended", ended}, {"moves", !robot_.rests()}}, !ended});
       return true;
     }
     case Waiting::For::answer:

@@ -36,6 +36,8 @@ class Robot {
   const v1::Capability* capability(const std::string& tool) const;
   const watch::Mind& mind() const { return mind_; }
   bool moves() const;
+  /// It has stood for a while: a command of before may still be on its way to the wheels.
+  bool rests() const;
   /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
   std::optional<std::string> belief(const std::string& name) const;
   /// The names of all beliefs, with commas.
@@ -64,6 +66,7 @@ class Robot {
   watch::Newest<v1::Knowledge> knowledge_{node_, bus::topics::kKnows};
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
+  double moved_ = 0.0;    ///< [s]
   double changed_ = 0.0;  ///< [s] the newest change of the tools
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;

@@ -42,7 +42,7 @@ class Drive(Context):
             raise Canceled(reason, v1.GoalCode.CODE_STOPPED)
 
     def go(self, speed: float = 0.0, turn: float = 0.0, *, seconds: float) -> Pending[None]:
-        """Drives for so long. Refused: others drive, or nobody may."""
+        """Drives for so long, from when it is let. Refused: others drive, or nobody may."""
         return Pending(self._waiter, self._go(speed, turn, seconds))
 
     @property
@@ -58,13 +58,18 @@ class Drive(Context):
         return self._driver.trouble()
 
     async def _go(self, speed: float, turn: float, seconds: float) -> None:
-        began = time.monotonic()
-        while time.monotonic() < began + seconds:
+        heeded = time.monotonic()  # the newest moment in which its commands were
+        end: "float | None" = None  # from the first such moment on
+        while end is None or time.monotonic() < end:
             self.send(speed, turn)
-            if not self.drives and time.monotonic() > began + _PATIENCE and self.trouble:
+            now = time.monotonic()
+            if self.drives:
+                heeded = now
+                end = now + seconds if end is None else end
+            elif now > heeded + _PATIENCE and (trouble := self.trouble):
                 self._expect_no_stop()  # it may have come just now
-                raise Refused(self.trouble, v1.GoalCode.CODE_PREEMPTED)
-            due = time.monotonic() + _PERIOD
+                raise Refused(trouble, v1.GoalCode.CODE_PREEMPTED, "")
+            due = now + _PERIOD
             while (left := due - time.monotonic()) > 0:
                 await self._waiter.news(left)
 

@@ -105,6 +105,12 @@ def test_a_stop_ends_a_drive(robot: saphira.Robot) -> None:
     assert "other" in error.value.reason
 
 
+def test_a_short_drive_that_nobody_heeds_is_refused(robot: saphira.Robot) -> None:
+    with saphira.connect(robot="nobody") as absent, absent.drive() as wheels:
+        with pytest.raises(saphira.Refused, match="no bridge is heard"):
+            wheels.go(turn=0.3, seconds=0.1).wait()
+
+
 def test_says_why_and_why_not(robot: saphira.Robot) -> None:
     explanation = robot.why().wait()
     assert explanation.cycle > 0

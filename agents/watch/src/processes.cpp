@@ -88,7 +88,7 @@ std::string who_is_there(const Processes& processes) {
   if (all.empty())
     return (listens ? "no program is heard yet (" : "no program is on the bus (") + where +
            "): is it up (saphira up demo), and are these the same on both sides?" +
-           remedy(options.profile);
+           (node.identity() ? " Without security: --security none." : "") + remedy(options.profile);
   if (const std::string missing = situation::listed(unheard(now)); !missing.empty())
     return "not heard (" + where + "): " + missing + "; saphira status shows what is" +
            remedy(options.profile);

@@ -353,7 +353,9 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
         if (type_.keyed)
           remember(dds_info, info);
         each(scratch_.get(), info);
-      } else if (dds_info.instance_state == fdds::NOT_ALIVE_DISPOSED_INSTANCE_STATE) {
+      } else if (dds_info.instance_state != fdds::ALIVE_INSTANCE_STATE) {
+        // "No writers" is the state of an instance whose writer had ended before another one
+        // withdrew it. Fast DDS gives no sample for the end of a writer itself.
         // Withdrawn before any sample of it was taken: there is nothing to tell.
         const auto found = last_.find(dds_info.instance_handle);
         if (found == last_.end())

@@ -117,6 +117,25 @@ TEST_P(Bus, DisposeTellsWhatWasWithdrawn) {
   EXPECT_EQ(again[0].data.functor, "again");
 }
 
+TEST_P(Bus, AnotherWriterWithdrawsWhatAnEndedOneHasWritten) {
+  auto a = node("a");
+  auto b = node("b");
+  auto reader = b->reader(topics::kGoals);
+  {
+    auto writer = a->writer(topics::kGoals);
+    writer.write(goal(1, "one"));
+    take_at_least(*b, reader, 1);
+  }
+  ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 0; }));
+  auto c = node("c");
+  auto another = c->writer(topics::kGoals);
+  ASSERT_TRUE(eventually(*c, [&] { return another.matched() == 1; }));
+  ASSERT_TRUE(another.dispose(goal(1)));
+  const auto gone = saphira::test::only(take_at_least(*b, reader, 1));
+  EXPECT_TRUE(gone.info.disposed);
+  EXPECT_EQ(gone.data.functor, "one");
+}
+
 TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
   auto a = node("a");
   auto writer = a->writer(topics::kGoals);
