@@ -334,10 +334,12 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   std::size_t corridors = 0;
   std::size_t doors = 0;
   bool done = false;
+  bool begun = false;  // it begins with an empty map
   while (!done && !stop.requested()) {
     view.node.wait(milliseconds(200), &stop);
     goals.poll();
     view.poll();
+    begun = begun || view.map.features.empty();
     std::size_t now_corridors = 0;
     std::size_t now_doors = 0;
     for (const maps::Feature& feature : view.map.features) {
@@ -368,6 +370,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     goals.cancel(goal);
     goals.delivered(1000);
   }
+  if (!begun)
+    return failed("the map was not begun, and nothing is written: the robot has the map of before");
   // Also after an interruption: the partial map counts.
   if (!whole) {
     const bus::Stop end;
