@@ -36,8 +36,7 @@ std::uint64_t Asker::ask(Request request, std::uint64_t number) {
 Desk& Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors) {
   declare(topic.name, Port::Use::kEvents);
   declare(topic.answers.name, Port::Use::kChanges);
-  desks_.push_back(std::make_unique<Desk>(node_, topic.answers));
-  desks_.back()->serve(topic, std::move(functors));
+  desks_.push_back(std::make_unique<Desk>(node_, topic, std::move(functors)));
   return *desks_.back();
 }
 
