@@ -40,7 +40,7 @@ class RequestClient {
 
   /// Asks without waiting: the number of the request. Its answers come in poll(). It ends `first`
   /// [s] after the next poll(); without a deadline in the request, `next` [s] after each
-  /// ANSWER_UNDERWAY. std::runtime_error where the bus did not take it.
+  /// ANSWER_UNDERWAY.
   std::uint64_t send(v1::Request request, Hear hear = {}, double first = 10.0, double next = 10.0);
   /// Withdraws a request of send() that has not ended; its end still comes.
   void withdraw(std::uint64_t number);

@@ -136,6 +136,12 @@ class Ports {
     declare(topic.name, Port::Use::kChanges);
     return {node_, cycle_, topic};
   }
+  /// Asks on such a topic, and hears the answers.
+  bus::RequestClient client(const bus::RequestTopic& topic) {
+    declare(topic.name, Port::Use::kChanges);
+    declare(topic.answers.name, Port::Use::kEvents);
+    return {node_, topic, name()};
+  }
 
   /// Further conditions of a step, for which lockstep waits (bus::Cycle::gate).
   void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }
