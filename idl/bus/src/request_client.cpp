@@ -146,13 +146,15 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 }
 
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
-                              const std::function<void()>& meanwhile) {
+                              const std::function<void()>& meanwhile, Hear hear) {
   std::optional<v1::Answer> end;
-  const auto hear = [&end](const v1::Answer& answer) {
+  const auto listen = [&](const v1::Answer& answer) {
     if (ended(answer.code))
       end = answer;
+    else if (hear)
+      hear(answer);
   };
-  Pending& one = begin(std::move(request), hear, patience, patience);
+  Pending& one = begin(std::move(request), listen, patience, patience);
   const std::shared_ptr<void> forgets(
       nullptr, [this, number = one.request.number](void*) { pending_.erase(number); });
   while (true) {

@@ -39,7 +39,7 @@ class RequestServers : public testing::Test {
   RequestServer timer_ = server("bridge");
 };
 
-TEST_F(RequestServers, EachRequestIsBegunOnceAndItsNewestAnswerToldAgain) {
+TEST_F(RequestServers, EachRequestIsBegunOnceAndHasOneEnd) {
   ask(servo_, 1);
   ask(servo_, 1);
   EXPECT_EQ(told(), Texts{}) << "there is no answer yet";
@@ -50,19 +50,13 @@ TEST_F(RequestServers, EachRequestIsBegunOnceAndItsNewestAnswerToldAgain) {
         .asker = 9, .number = 1, .service = "bridge", .code = code, .text = "turns"};
     EXPECT_EQ(std::exchange(told_, {}), (std::vector<v1::Answer>{answer, answer}));
   }
-  EXPECT_EQ(begun_, Numbers{1});
-  ask(servo_, 2);
-  EXPECT_TRUE(servo_.hear({.asker = 8, .number = 1})) << "of another asker";
-}
-
-TEST_F(RequestServers, ARequestHasOneEnd) {
-  ask(servo_, 1);
-  say(servo_, 1, v1::ANSWER_DONE, "turned");
   EXPECT_FALSE(say(servo_, 1, v1::ANSWER_GIVEN_UP, "too heavy"));
-  EXPECT_FALSE(say(servo_, 1, v1::ANSWER_UNDERWAY, "turns"));
+  EXPECT_FALSE(say(servo_, 1, v1::ANSWER_UNDERWAY, "turns again"));
   ask(servo_, 1);
-  EXPECT_EQ(told(), (Texts{"turned", "turned"}));
+  EXPECT_EQ(told(), Texts{"turns"});
   EXPECT_EQ(warnings_, Texts{"request 1 has ended: a further answer is not told: too heavy"});
+  EXPECT_EQ(begun_, Numbers{1});
+  EXPECT_TRUE(servo_.hear({.asker = 8, .number = 1})) << "of another asker";
 }
 
 TEST_F(RequestServers, ALaterAnswerIsOfTheTopicOnWhichItWasAsked) {

@@ -21,7 +21,7 @@ Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {
   declare(bus::topics::kRobotDescription.name, Port::Use::kState);
 }
 
-std::uint64_t Asker::ask(Request request, std::uint64_t number) {
+void Asker::ask(Request request, std::uint64_t number) {
   request.source = node_->options().name;
   request.asker = node_->instance();
   request.number = number;
@@ -30,7 +30,6 @@ std::uint64_t Asker::ask(Request request, std::uint64_t number) {
                      (!node_->options().lockstep || writer_.wait_acknowledged(kAcknowledged));
   if (!taken)
     node_->warn("not everybody has got this request: " + describe(request));
-  return request.number;
 }
 
 Desk& Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors) {
