@@ -94,18 +94,18 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
-      stops_(node_, bus::topics::kRobotAnswers),
-      devices_(node_, bus::topics::kRobotAnswers),
+      stops_(node_, bus::topics::kDriveStop,
+             {{"stop",
+               "ends whatever moves the robot, in every role; done once the robot is at rest",
+               {optional(text_parameter("by", "the person or agent behind the program"))}}},
+             answers_),
+      resets_(node_, bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
+              answers_),
       other_programs_(node_),
       link_(address_of(options_, lockstep_)),
       core_(settings_of(options_, lockstep_)),
       position_file_(options_.state_file, node_.options().files()),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
-  stops_.serve(bus::topics::kDriveStop,
-               {{"stop",
-                 "ends whatever moves the robot, in every role; done once the robot is at rest",
-                 {optional(text_parameter("by", "the person or agent behind the program"))}}});
-  stops_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}});
   // In the order of reflector::Device.
   const bus::RequestTopic* const topics[] = {
       &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
@@ -114,7 +114,8 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       &bus::topics::kVisionSystem};
   static_assert(std::size(topics) == kEnumerators<reflector::Device>.size());
   for (const reflector::Device device : kEnumerators<reflector::Device>)
-    devices_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device));
+    devices_.emplace_back(node_, *topics[static_cast<std::size_t>(device)],
+                          reflector::functors(device), answers_);
   if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
   if (!options_.state_file.empty() && node_.options().files() == Files::kChange)
@@ -248,12 +249,14 @@ void Shell::take_all(double now) {
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
   take_requests(stops_);
+  take_requests(resets_);
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle);
   core_.answer(now);
   deliver(now);
   take_audit(now);
-  take_requests(devices_);  // nothing waits for them
+  for (Desk& device : devices_)  // nothing waits for them
+    take_requests(device);
   core_.step(now);
   deliver(now);
 }
@@ -312,7 +315,8 @@ void Shell::perform(const Answered&, double) {
 }
 
 void Shell::perform(const LaterAnswer& later, double) {
-  (later.of_device ? devices_ : stops_).answer(later.asker, later.number, later.answer);
+  Desk& desk = later.device ? devices_[static_cast<std::size_t>(*later.device)] : stops_;
+  desk.answer(later.asker, later.number, later.answer);
 }
 
 void Shell::perform(const DevicesChanged& changed, double) {
@@ -410,7 +414,9 @@ void Shell::perform(const StatusReport& report, double now) {
   status.lockstep = lockstep_;
   status.steps = report.steps;
   status.late_cycles = report.late;
-  status.refused_samples = report.refused + stops_.refused() + devices_.refused();
+  status.refused_samples = report.refused + stops_.refused() + resets_.refused();
+  for (const Desk& device : devices_)
+    status.refused_samples += device.refused();
   if (report.reaction) {
     status.step_ms_mean = report.reaction->mean * 1000.0;
     status.step_ms_max = report.reaction->max * 1000.0;

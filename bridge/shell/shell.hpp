@@ -126,8 +126,12 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_ = node_.reader(bus::topics::kDriveTeleop);
   bus::Reader<v1::MotorCommand> direct_ = node_.reader(bus::topics::kDriveDirect);
   bus::Reader<v1::MotorCommand> behaviors_ = node_.reader(bus::topics::kDriveBehaviors);
-  Desk stops_;    ///< and resets of the emergency stop
-  Desk devices_;  ///< a desk of their own: no request to a device takes the place of a stop
+  /// Of all desks.
+  const Desk::Answers answers_ =
+      std::make_shared<bus::Writer<v1::Answer>>(node_.writer(bus::topics::kRobotAnswers));
+  Desk stops_;
+  Desk resets_;                ///< of the emergency stop
+  std::vector<Desk> devices_;  ///< in the order of reflector::Device
   bus::Writer<v1::Devices> devices_writer_ = node_.writer(bus::topics::kDevices);
   bus::Writer<v1::SerialData> serial_writer_ = node_.writer(bus::topics::kSerialData);
   bus::Reader<v1::StepPermit> permits_ = node_.reader(bus::topics::kStepPermit);

@@ -63,7 +63,6 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   bus::Node node(options);
   Processes processes(node);
   bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
-  auto answers = node.reader(bus::topics::kSolved);
   const std::string in_front = robot.empty() ? "" : robot + ": ";
   v1::Answer told;
   const auto tell = [&](const v1::Answer& answer) {
@@ -72,17 +71,13 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
     const std::string text = ask_options.json ? to_json(answer, robot) : in_front + line_of(answer);
     std::printf("%s\n", text.c_str());
   };
-  const auto show = [&] {
-    for (const auto& sample : answers.take())
-      if (!sample.info.disposed && sample.data.asker == node.instance() &&
-          sample.data.code == v1::ANSWER_UNDERWAY &&
-          !(sample.data.text.empty() && sample.data.results.empty()))
-        tell(sample.data);
+  const auto show = [&](const v1::Answer& answer) {
+    if (!bus::ended(answer.code) && !(answer.text.empty() && answer.results.empty()))
+      tell(answer);
   };
   v1::Answer end = ask_program(kFacilitator, node, client, request,
                                ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence,
                                stop, processes, show);
-  show();
   // The request ends with its writer.
   if (stop.requested() && end.code == v1::ANSWER_TOO_LATE)
     end.text = "withdrawn, as this command was ended: an agent at work on it is told to stop";

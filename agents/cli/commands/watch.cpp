@@ -58,18 +58,19 @@ std::set<std::string> robots_heard(const bus::NodeOptions& options, const bus::S
 
 v1::Answer ask_program(const std::string& program, bus::Node& node, bus::RequestClient& client,
                        const v1::Request& request, double patience, const bus::Stop& stop,
-                       Processes& processes, const std::function<void()>& meanwhile) {
+                       Processes& processes, bus::RequestClient::Hear hear) {
   struct Absent {
     std::string words;
   };
   try {
-    return client.ask(request, patience, &stop, [&] {
-      processes.poll();
-      if (meanwhile)
-        meanwhile();
-      if (std::string words = absence(node, processes, program); !words.empty())
-        throw Absent{std::move(words)};
-    });
+    return client.ask(
+        request, patience, &stop,
+        [&] {
+          processes.poll();
+          if (std::string words = absence(node, processes, program); !words.empty())
+            throw Absent{std::move(words)};
+        },
+        std::move(hear));
   } catch (const Absent& absent) {
     return v1::Answer{.code = v1::ANSWER_NOBODY, .text = absent.words};
   }

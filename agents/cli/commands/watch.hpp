@@ -61,6 +61,6 @@ inline constexpr const char* kFacilitator = "facilitator";
 /// ends it at once, and is the text of the answer.
 v1::Answer ask_program(const std::string& program, bus::Node& node, bus::RequestClient& client,
                        const v1::Request& request, double patience, const bus::Stop& stop,
-                       Processes& processes, const std::function<void()>& meanwhile = {});
+                       Processes& processes, bus::RequestClient::Hear hear = {});
 
 }  // namespace saphira::cli

@@ -43,7 +43,7 @@ void Core::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
 void Core::tell_devices() {
   reflector::Devices& devices = reflector_.devices();
   for (reflector::DeviceRequest& request : devices.take_answered())
-    put(LaterAnswer{request.asker, request.number, std::move(request.answer), true});
+    put(LaterAnswer{request.asker, request.number, std::move(request.answer), request.device});
   const protocol::Information& in = reflector_.state().information;
   const auto before = std::exchange(
       shown_, {in.front_bumpers, in.rear_bumpers, in.motors_on, in.emergency_stop, in.faults,

@@ -133,7 +133,7 @@ Answer Core::stop(const Request& request, double now) {
     publish_grant();
     return {AnswerCode::done, stopped + "; no robot is connected"};
   }
-  stops_.push_back({id, stopped, session_.stamp.cycle});
+  stops_.push_back({request.asker, request.number, stopped, session_.stamp.cycle});
   if (!settings_.lockstep) {
     decide(now);
     flush(now);
@@ -143,7 +143,7 @@ Answer Core::stop(const Request& request, double now) {
 
 void Core::end_stops(AnswerCode code, const std::string& how) {
   for (const Stopping& each : std::exchange(stops_, {}))
-    put(LaterAnswer{each.id.asker, each.id.number, {code, each.stopped + "; " + how}});
+    put(LaterAnswer{each.asker, each.number, {code, each.stopped + "; " + how}});
 }
 
 /// A packet came, and the driver was selected.

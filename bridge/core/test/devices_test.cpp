@@ -28,6 +28,7 @@ TEST(DevicesOfTheCore, WhatIsAskedForIsUnderWayAndSent) {
   const auto answered = scene.all<LaterAnswer>();
   ASSERT_EQ(answered.size(), 1U);
   EXPECT_EQ(answered[0].number, 4U);
+  EXPECT_EQ(answered[0].device, reflector::Device::servo);
   EXPECT_EQ(answered[0].answer, (Answer{AnswerCode::underway, "servo 1500 us: not shown yet"}));
   const auto told = scene.all<DevicesChanged>();
   ASSERT_EQ(told.size(), 1U);
@@ -36,6 +37,18 @@ TEST(DevicesOfTheCore, WhatIsAskedForIsUnderWayAndSent) {
   EXPECT_EQ(told[0].requests[0].source, "a person");
   scene.cycles(1, Role::behaviors);
   EXPECT_TRUE(scene.was_sent(protocol::Ptu{1500}));
+}
+
+TEST(DevicesOfTheCore, TheEndOfAStopHasItsRequestsNumber) {
+  Driven scene;
+  for (const std::uint64_t number : {7, 0})  // 0: of an asker that does not count
+    scene.core.request({.functor = "stop", .source = "a person", .number = number}, scene.now);
+  scene.cycles(10, Role::behaviors);
+  const auto ends = scene.all<LaterAnswer>();
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_EQ(ends[0].number, 7U);
+  EXPECT_EQ(ends[1].number, 0U);
+  EXPECT_EQ(ends[1].device, std::nullopt);
 }
 
 TEST(DevicesOfTheCore, WithoutARobotThereIsNobodyToDoIt) {

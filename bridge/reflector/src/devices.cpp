@@ -221,7 +221,8 @@ Devices::Item& Devices::put(const Request& request, const Wish& wish,
                   request.source,
                   text(wish),
                   {AnswerCode::underway, text(wish) + ": not shown yet"},
-                  0};
+                  0,
+                  static_cast<Device>(wish.index())};
   item.deadline = request.deadline;
   plan(item, wish, parameters, digital_output_);
   return item;

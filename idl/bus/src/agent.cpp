@@ -23,17 +23,19 @@ const v1::Argument* find(const std::vector<v1::Argument>& arguments, const std::
 
 Agent::Agent(Node& node, std::string name, std::string summary)
     : node_(node),
+      self_{.id = next_request_number() ^ node.instance(),  // several agents may share a node
+            .name = std::move(name),
+            .summary = std::move(summary)},
       announcements_(node.writer(topics::kAgents)),
       triggers_(node.writer(topics::kTriggers)),
       events_(node.writer(topics::kAgentEvents)),
       requests_(node.reader<v1::Request>(topics::kAgentRequest)),
       answers_(node.writer(topics::kAgentAnswers)),
-      solver_(node, topics::kSolve, name, &topics::kAgentAnswers) {
-  self_.id = next_request_number() ^ node.instance();  // several agents may share a node
-  self_.name = std::move(name);
-  self_.summary = std::move(summary);
-  address_ = agent_address(self_.id, self_.name);
-}
+      server_(
+          agent_address(self_.id, self_.name), true,
+          [this](const v1::Answer& answer) { answers_.write(answer); },
+          [this](const std::string& text) { node_.warn(text); }),
+      solver_(node, topics::kSolve, self_.name, &topics::kAgentAnswers) {}
 
 Agent::~Agent() {
   if (!answerers_.empty())
@@ -61,42 +63,21 @@ void Agent::poll() {
     node_.status().state = v1::SERVICE_RUNNING;
   answering_ = true;
   for (const auto& sample : requests_.take())
-    if (!sample.info.disposed && sample.data.service == address_)
-      handle(sample.data);
+    if (!sample.info.disposed && server_.hear(sample.data))
+      answer(sample.data, begin(sample.data));
   answering_ = false;
 }
 
-void Agent::handle(const v1::Request& request) {
-  const bool withdrawn = request.functor == kWithdraw;
-  if (const v1::Answer* const known = known_.find(request.asker, request.number)) {
-    if (withdrawn && stop_ && !ended(known->code))
-      stop_(request);
-    answers_.write(*known);
-    return;
-  }
+v1::Answer Agent::begin(const v1::Request& request) {
   const auto answerer = answerers_.find(request.functor);
-  v1::Answer said;
+  if (answerer == answerers_.end())
+    return {.code = v1::ANSWER_UNKNOWN_FUNCTOR,
+            .text = "agent " + self_.name + " cannot do " + request.functor};
   try {
-    if (withdrawn) {
-      said = refused("withdrawn before it was begun");
-    } else if (answerer == answerers_.end()) {
-      said = refused("agent " + self_.name + " cannot do " + request.functor);
-      said.code = v1::ANSWER_UNKNOWN_FUNCTOR;
-    } else {
-      said = answerer->second(request);
-    }
+    return answerer->second(request);
   } catch (const std::exception& error) {
-    said = refused(error.what());
+    return refused(error.what());
   }
-  answer(request, std::move(said));
-}
-
-void Agent::answer(const v1::Request& request, v1::Answer answer) {
-  answer.asker = request.asker;
-  answer.number = request.number;
-  answer.service = address_;
-  known_.keep(answer);
-  answers_.write(answer);
 }
 
 v1::Answer Agent::ask(const v1::Request& request, double patience, const Stop* stop) {

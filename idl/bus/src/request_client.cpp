@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "saphira/base/format.hpp"
@@ -52,25 +51,21 @@ RequestClient::Pending& RequestClient::begin(v1::Request request, Hear hear, dou
 }
 
 bool RequestClient::write(Pending& one) {
-  if (!writer_.write(one.request))
-    return false;
+  const bool written = writer_.write(one.request);
   if (writer_.matched() > 0) {
-    one.again.reset();
+    if (written)
+      one.again.reset();
     one.lost.code = v1::ANSWER_TOO_LATE;
     one.lost.text =
         format("nothing was heard of the request on %s within %.0f s", topic_.name, one.first);
   }
-  return true;
+  return written;
 }
 
 std::uint64_t RequestClient::send(v1::Request request, Hear hear, double first, double next) {
   Pending& one = begin(std::move(request), std::move(hear), first, next);
-  const std::uint64_t number = one.request.number;
-  if (!write(one)) {
-    pending_.erase(number);
-    throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
-  }
-  return number;
+  write(one);
+  return one.request.number;
 }
 
 void RequestClient::withdraw(std::uint64_t number) {
@@ -151,13 +146,15 @@ std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request)
 }
 
 v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
-                              const std::function<void()>& meanwhile) {
+                              const std::function<void()>& meanwhile, Hear hear) {
   std::optional<v1::Answer> end;
-  const auto hear = [&end](const v1::Answer& answer) {
+  const auto listen = [&](const v1::Answer& answer) {
     if (ended(answer.code))
       end = answer;
+    else if (hear)
+      hear(answer);
   };
-  Pending& one = begin(std::move(request), hear, patience, patience);
+  Pending& one = begin(std::move(request), listen, patience, patience);
   const std::shared_ptr<void> forgets(
       nullptr, [this, number = one.request.number](void*) { pending_.erase(number); });
   while (true) {

@@ -150,6 +150,8 @@ TEST_F(FacilitatorInMemory, AnAgentStopsWhatIsWithdrawn) {
   asker.withdraw(number);
   turn();
   EXPECT_EQ(stopped, begun);
+  EXPECT_FALSE(worker.answer(begun_request, bus::done({}, "clean"))) << "it has ended";
+  turn();
   asker.poll(now);
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0].text, "sweeps");

@@ -18,10 +18,10 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
-constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
-constexpr std::size_t kMostGoals = 1024;     // of GoalStatusSet.goals
-constexpr std::size_t kMostBeliefs = 1024;   // of Beliefs.beliefs
+constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
+constexpr double kReply = 15.0;             // [s] for agents; the facilitator's own limit is 10 s
+constexpr std::size_t kMostGoals = 1024;    // of GoalStatusSet.goals
+constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
 
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> paths{activities_folder()};
@@ -71,8 +71,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
       map_requests_(ports.asker(bus::topics::kRegistrationRequest)),
       servo_(ports.asker(bus::topics::kServo)),
       stops_(ports.asker(bus::topics::kDriveStop)),
-      agents_(ports.asker(bus::topics::kSolve)),
-      answers_(ports.events(bus::topics::kSolved)),
+      agents_(ports.client(bus::topics::kSolve)),
       memory_(options.memory_file, kMostEndings, ports.files()),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
@@ -180,7 +179,8 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   take_goals(inputs.heard);
   take_claims(inputs.heard);
   take_grants(inputs.heard);
-  take_answers(inputs.heard);
+  agents_.poll(0.1 * static_cast<double>(++steps_));
+  inputs.heard.answers = std::exchange(answers_, {});
   inputs.own_stop = {ports_.instance(), next_stop_};
   return inputs;
 }
@@ -256,20 +256,6 @@ void Service::take_claims(Core::Heard& heard) {
   ports_.say(notes.lines());
 }
 
-void Service::take_answers(Core::Heard& heard) {
-  for (const auto& sample : answers_.take()) {
-    const auto question = questions_.find(sample.data.number);
-    if (sample.info.disposed || sample.data.asker != ports_.instance() ||
-        question == questions_.end())
-      continue;
-    const Answer answer = saphira::from_bus(sample.data);
-    if (!ended(answer.code))
-      continue;
-    heard.answers.emplace_back(question->second, answer);
-    questions_.erase(question);
-  }
-}
-
 void Service::take_grants(Core::Heard& heard) {
   for (const auto& sample : grants_.take())
     if (!sample.info.disposed)
@@ -331,10 +317,15 @@ void Service::publish(const Core::Outputs& said) {
   const SpeedLimit& limit = said.limit;
   for (const Request& request : outputs.requests)
     map_requests_.ask(request);
-  for (const Request& question : outputs.questions)
-    questions_[agents_.ask(question)] = question.number;
-  while (questions_.size() > kMostQuestions)  // never answered
-    questions_.erase(questions_.begin());
+  for (const Request& question : outputs.questions) {
+    v1::Request asked = to_bus(question);
+    asked.stamp = ports_.stamp();
+    const auto hear = [this, number = question.number](const v1::Answer& answer) {
+      if (bus::ended(answer.code))
+        answers_.emplace_back(number, saphira::from_bus(answer));
+    };
+    agents_.send(std::move(asked), hear, kReply, kReply);
+  }
   v1::Intentions sample{.behavior_control = outputs.behavior_control,
                         .speed_limit = std::max(0.0, limit.speed),
                         .limit_reason = limit.reason,

@@ -53,7 +53,6 @@ class Service final : public runtime::Service {
   void take_goals(Core::Heard& heard);
   void take_claims(Core::Heard& heard);
   void take_grants(Core::Heard& heard);
-  void take_answers(Core::Heard& heard);
   Core::Inputs inputs_of(const runtime::Turn& turn);
   std::optional<Core::Vision> vision();
   /// To the disk, before it is published: nothing reported or done is done again.
@@ -90,10 +89,10 @@ class Service final : public runtime::Service {
   runtime::Asker stops_;
   std::uint64_t next_stop_ = bus::next_request_number();
   bool robot_turns_head_ = false;
-  runtime::Asker agents_;
-  bus::Reader<v1::Answer> answers_;
-  std::map<std::uint64_t, std::uint64_t> questions_;  ///< the core's number, by the bus's
-  std::map<GoalId, v1::GoalStatus> told_;             ///< the content of goals/status
+  bus::RequestClient agents_;
+  std::vector<std::pair<std::uint64_t, Answer>> answers_;  ///< since the last step
+  std::uint64_t steps_ = 0;
+  std::map<GoalId, v1::GoalStatus> told_;  ///< the content of goals/status
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;

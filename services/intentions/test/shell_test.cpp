@@ -267,10 +267,15 @@ TEST_F(ShellTest, AnActivityAsksAgents) {
       << "(defintention :where :params ((who :text))"
          " :goals '((ASK q place_of ((person . who) (place . nil)) :timeout 60)"
          " (SUCCEED \"in ~a\" (answer q 'place))))";
+  start();
+  const v1::Goal where = test::goal("where", {bus::text("who", "karen")});
+  const v1::GoalId early = goals.ask(where);
+  for (int i = 0; i < 160; ++i)
+    cycle();
+  EXPECT_EQ(state(early), v1::GOAL_FAILED) << "nobody takes questions";
   auto asked = requester.reader<v1::Request>(bus::topics::kSolve);
   auto answers = requester.writer(bus::topics::kSolved);
-  start();
-  const v1::GoalId id = goals.ask(test::goal("where", {bus::text("who", "karen")}));
+  const v1::GoalId id = goals.ask(where);
   for (int i = 0; i < 20; ++i) {
     cycle();
     for (const auto& sample : asked.take()) {

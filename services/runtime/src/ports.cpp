@@ -21,7 +21,7 @@ Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {
   declare(bus::topics::kRobotDescription.name, Port::Use::kState);
 }
 
-std::uint64_t Asker::ask(Request request, std::uint64_t number) {
+void Asker::ask(Request request, std::uint64_t number) {
   request.source = node_->options().name;
   request.asker = node_->instance();
   request.number = number;
@@ -30,14 +30,12 @@ std::uint64_t Asker::ask(Request request, std::uint64_t number) {
                      (!node_->options().lockstep || writer_.wait_acknowledged(kAcknowledged));
   if (!taken)
     node_->warn("not everybody has got this request: " + describe(request));
-  return request.number;
 }
 
 Desk& Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors) {
   declare(topic.name, Port::Use::kEvents);
   declare(topic.answers.name, Port::Use::kChanges);
-  desks_.push_back(std::make_unique<Desk>(node_, topic.answers));
-  desks_.back()->serve(topic, std::move(functors));
+  desks_.push_back(std::make_unique<Desk>(node_, topic, std::move(functors)));
   return *desks_.back();
 }
 

@@ -45,9 +45,8 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
     : node_(node),
       table_(table),
       others_(std::move(others)),
-      desk_(node, bus::topics::kProcessAnswers),
+      desk_(node, bus::topics::kProcessRequest, functors()),
       states_(node.writer(bus::topics::kProcesses)) {
-  desk_.serve(bus::topics::kProcessRequest, functors());
   publish();
 }
 

@@ -10,57 +10,47 @@
 
 namespace saphira {
 
-Desk::Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers)
-    : node_(node), writer_(node.writer(answers)) {
+Desk::Desk(bus::Node& node, const bus::RequestTopic& topic, std::vector<Functor> functors,
+           Answers answers)
+    : node_(node),
+      functors_(std::move(functors)),
+      reader_(node.reader<v1::Request>(topic)),
+      server_(
+          node.options().name, false,
+          [to = answers ? answers
+                        : std::make_shared<bus::Writer<v1::Answer>>(node.writer(topic.answers))](
+              const v1::Answer& one) { to->write(one); },
+          [&node](const std::string& text) { node.warn(text); }) {
   // The bridge, which keeps the audit, decides itself what it enters of its own requests.
-  if (std::string_view(answers.name) != bus::topics::kRobotAnswers.name)
+  if (std::string_view(topic.answers.name) != bus::topics::kRobotAnswers.name)
     audit_.emplace(node);
-}
-
-void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors) {
-  counters_.push_back(
-      std::make_unique<Counter>(Counter{node_.reader<v1::Request>(topic), std::move(functors)}));
 }
 
 std::vector<Request> Desk::take(const v1::Stamp& now) {
   now_ = now;
-  std::vector<Request> out;
-  for (const auto& counter : counters_)
-    take(*counter, out);
-  return out;
-}
-
-void Desk::take(Counter& counter, std::vector<Request>& out) {
   // Mostly nobody has a request. The last requests of a program that has just left are still read.
-  const bool asks = counter.reader.matched() > 0;
-  const bool asked = std::exchange(counter.asked, asks);
-  if (!asks && !asked && counter.waiting.empty())
-    return;
-  for (auto& sample : counter.reader.take())
-    if (!sample.info.disposed &&
-        (sample.data.service.empty() || sample.data.service == node_.options().name))
-      counter.waiting.push_back(from_bus(sample));
-  const auto later = std::stable_partition(
-      counter.waiting.begin(), counter.waiting.end(),
-      [&](const Request& one) { return !node_.options().lockstep || is_due(one, now_); });
-  std::vector<Request> due(counter.waiting.begin(), later);
-  counter.waiting.erase(counter.waiting.begin(), later);
-  if (node_.options().lockstep)  // requests of several services, in the same order in every run
+  const bool asks = reader_.matched() > 0;
+  if (std::exchange(asked_, asks) || asks)
+    for (const auto& sample : reader_.take())
+      if (!sample.info.disposed && server_.hear(sample.data))
+        waiting_.push_back(from_bus(sample));
+  const bool lockstep = node_.options().lockstep;
+  const auto later =
+      std::stable_partition(waiting_.begin(), waiting_.end(),
+                            [&](const Request& one) { return !lockstep || is_due(one, now_); });
+  std::vector<Request> due(waiting_.begin(), later);
+  waiting_.erase(waiting_.begin(), later);
+  if (lockstep)  // requests of several services, in the same order in every run
     std::stable_sort(due.begin(), due.end(), [](const Request& a, const Request& b) {
       return std::tie(a.stamp.cycle, a.source) < std::tie(b.stamp.cycle, b.source);
     });
-  for (Request& request : due) {
-    const v1::Answer* const known =
-        request.number == 0 ? nullptr : counter.known.find(request.asker, request.number);
-    if (known != nullptr && !known->service.empty())
-      writer_.write(*known);  // it may not have arrived
-    if (known != nullptr)
-      continue;
-    if (const auto refused = refusal(counter.functors, request))
+  std::erase_if(due, [this](Request& request) {
+    const auto refused = refusal(functors_, request);
+    if (refused)
       answer(request, refused);
-    else
-      out.push_back(std::move(request));
-  }
+    return refused.has_value();
+  });
+  return due;
 }
 
 void Desk::answer(const Request& request, const std::optional<Answer>& outcome) {
@@ -78,29 +68,13 @@ void Desk::answer(const Request& request, const std::optional<Answer>& outcome) 
     node_.info(describe(request) + ", asked for by " + request.source);
   }
   if (outcome)
-    send(request.asker, request.number, *outcome, request.functor);
+    answer(request.asker, request.number, *outcome);
 }
 
-void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
-  send(asker, number, answer, {});
-}
-
-void Desk::send(std::uint64_t asker, std::uint64_t number, const Answer& answer,
-                const std::string& functor) {
+bool Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
   v1::Answer sample = to_bus(answer);
   sample.stamp = now_;
-  sample.asker = asker;
-  sample.number = number;
-  sample.service = node_.options().name;
-  writer_.write(sample);
-  const auto serves = [&functor](const auto& counter) {
-    return std::any_of(counter->functors.begin(), counter->functors.end(),
-                       [&functor](const Functor& one) { return one.name == functor; });
-  };
-  const bool served = std::any_of(counters_.begin(), counters_.end(), serves);
-  for (const auto& counter : counters_)
-    if (!served || serves(counter))
-      counter->known.keep(sample);
+  return server_.answer(asker, number, std::move(sample));
 }
 
 }  // namespace saphira

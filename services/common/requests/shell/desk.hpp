@@ -6,20 +6,20 @@
 #include <vector>
 
 #include "saphira/bus/audit.hpp"
-#include "saphira/bus/known_requests.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/bus/request_server.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira {
 
-/// Takes requests from the bus and answers them. Checks each against the table of functors, hands
-/// out a repeated request once, and logs requests. For the node's own thread.
+/// Takes requests from the bus on one topic, and answers them. Checks each against the table of
+/// functors, and logs requests. For the node's own thread.
 class Desk {
  public:
-  /// A desk has one topic of answers.
-  Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers);
-
-  void serve(const bus::RequestTopic& topic, std::vector<Functor> functors);
+  using Answers = std::shared_ptr<bus::Writer<v1::Answer>>;
+  /// answers: of a program with several desks.
+  Desk(bus::Node& node, const bus::RequestTopic& topic, std::vector<Functor> functors,
+       Answers answers = {});
 
   /// The new requests that fit their functors, for answer(). `now`: the newest step of this
   /// program.
@@ -32,28 +32,19 @@ class Desk {
     for (std::size_t i = 0; i < requests.size(); ++i)
       answer(requests[i], outcomes[i]);
   }
-  /// A later answer.
-  void answer(std::uint64_t asker, std::uint64_t number, const Answer& answer);
+  /// A later answer. False, and nothing is told: the request has ended.
+  bool answer(std::uint64_t asker, std::uint64_t number, const Answer& answer);
 
   /// Failed requests since the start.
   std::uint64_t refused() const { return refused_; }
 
  private:
-  struct Counter {
-    bus::Reader<v1::Request> reader;
-    std::vector<Functor> functors;
-    std::vector<Request> waiting{};  ///< lockstep: whose cycle has not come
-    bool asked = false;              ///< there was an asker at the last look
-    bus::KnownRequests known{};      ///< of this topic: nobody spoils a request on another one
-  };
-  void take(Counter& counter, std::vector<Request>& out);
-  /// Writes an answer, for repeated requests as well: on the topics with that functor, or on all.
-  void send(std::uint64_t asker, std::uint64_t number, const Answer& answer,
-            const std::string& functor);
-
   bus::Node& node_;
-  bus::Writer<v1::Answer> writer_;
-  std::vector<std::unique_ptr<Counter>> counters_;
+  std::vector<Functor> functors_;
+  bus::Reader<v1::Request> reader_;
+  bus::RequestServer server_;
+  bool asked_ = false;            ///< there was an asker at the last look
+  std::vector<Request> waiting_;  ///< lockstep: whose cycle has not come
   v1::Stamp now_;
   std::uint64_t refused_ = 0;
   std::optional<bus::Audit> audit_;

@@ -244,7 +244,8 @@ class Core {
   double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
   double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
   struct Stopping {
-    v1::StopId id;
+    std::uint64_t asker = 0;
+    std::uint64_t number = 0;
     std::string stopped;      ///< the stopped drivers, in words
     std::uint64_t cycle = 0;  ///< of the stop
   };

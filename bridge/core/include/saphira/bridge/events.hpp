@@ -104,7 +104,7 @@ struct LaterAnswer {
   std::uint64_t asker = 0;
   std::uint64_t number = 0;
   Answer answer;
-  bool of_device = false;  ///< otherwise of a stop
+  std::optional<reflector::Device> device{};  ///< none: of a stop
 };
 /// The requests to the devices, their reports or the shown state have changed.
 struct DevicesChanged {

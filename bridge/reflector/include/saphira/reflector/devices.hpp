@@ -24,6 +24,7 @@ struct DeviceRequest {
   std::string asked;  ///< in words
   Answer answer;      ///< the newest
   unsigned sent = 0;  ///< how often
+  Device device = Device::servo;
 };
 
 /// Sends requests to the devices until the robot's packets show their effect (manual 5.1.3). A

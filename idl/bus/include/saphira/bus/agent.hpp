@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "saphira/bus/known_requests.hpp"
 #include "saphira/bus/request_client.hpp"
+#include "saphira/bus/request_server.hpp"
 
 namespace saphira::bus {
 
@@ -38,11 +38,15 @@ class Agent {
   /// Answers the requests that have come. Call after each Node::wait. Not from an Answerer. The
   /// first call ends SERVICE_STARTING of the node's status.
   void poll();
-  /// Ends a request that was underway.
-  void answer(const v1::Request& request, v1::Answer answer);
+  /// Ends a request that was underway. False, and nothing is told: it has ended.
+  bool answer(const v1::Request& request, v1::Answer answer) {
+    return server_.answer(request.asker, request.number, std::move(answer));
+  }
   /// Called, perhaps repeatedly, when the asker of a request that is underway withdraws it or is
   /// gone: the work stops soon, and answer() says so. Without it the work goes on to its end.
-  void when_withdrawn(std::function<void(const v1::Request&)> stop) { stop_ = std::move(stop); }
+  void when_withdrawn(std::function<void(const v1::Request&)> stop) {
+    server_.when_withdrawn(std::move(stop));
+  }
 
   /// Asks whichever agent can, and waits: see RequestClient::ask. Others are answered meanwhile.
   /// request.service: the one agent that is meant; an argument `answers`: how many are wanted.
@@ -56,20 +60,18 @@ class Agent {
   void tell(const std::string& functor, std::vector<v1::Argument> arguments);
 
  private:
-  void handle(const v1::Request& request);
+  v1::Answer begin(const v1::Request& request);
 
   Node& node_;
   v1::Agent self_;
-  std::string address_;  ///< Request.service that means this agent
   Writer<v1::Agent> announcements_;
   Writer<v1::Trigger> triggers_;
   Writer<v1::AgentEvent> events_;
   Reader<v1::Request> requests_;
   Writer<v1::Answer> answers_;
+  RequestServer server_;
   RequestClient solver_;
   std::map<std::string, Answerer> answerers_;
-  std::function<void(const v1::Request&)> stop_;
-  KnownRequests known_;
   bool answering_ = false;
 };
 

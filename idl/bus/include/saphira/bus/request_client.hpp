@@ -34,13 +34,13 @@ class RequestClient {
 
   /// Asks, and waits for the end of the request, for `patience` [s] at most; without a deadline in
   /// the request, for as long after each ANSWER_UNDERWAY. `meanwhile` is called whenever a sample
-  /// has come to the node.
+  /// has come to the node; `hear` with each answer before the end.
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
-                 const std::function<void()>& meanwhile = {});
+                 const std::function<void()>& meanwhile = {}, Hear hear = {});
 
   /// Asks without waiting: the number of the request. Its answers come in poll(). It ends `first`
   /// [s] after the next poll(); without a deadline in the request, `next` [s] after each
-  /// ANSWER_UNDERWAY. std::runtime_error where the bus did not take it.
+  /// ANSWER_UNDERWAY.
   std::uint64_t send(v1::Request request, Hear hear = {}, double first = 10.0, double next = 10.0);
   /// Withdraws a request of send() that has not ended; its end still comes.
   void withdraw(std::uint64_t number);

@@ -78,10 +78,10 @@ class Asker {
   Asker(bus::Node& node, const bus::Cycle& cycle, const bus::RequestTopic& topic)
       : node_(&node), cycle_(&cycle), writer_(node.writer<v1::Request>(topic)) {}
 
-  /// Sends a request; returns its number in the answers, `number`. In lockstep it returns when
-  /// every program that takes such requests has it: any program that knows the service's later
-  /// samples knows the request, too.
-  std::uint64_t ask(Request request, std::uint64_t number = bus::next_request_number());
+  /// Sends a request; `number`: of it in the answers. In lockstep it returns when every program
+  /// that takes such requests has it: any program that knows the service's later samples knows the
+  /// request, too.
+  void ask(Request request, std::uint64_t number = bus::next_request_number());
   /// True where some program takes such requests.
   bool is_taken() const { return writer_.matched() > 0; }
 
@@ -135,6 +135,12 @@ class Ports {
   Asker asker(const bus::RequestTopic& topic) {
     declare(topic.name, Port::Use::kChanges);
     return {node_, cycle_, topic};
+  }
+  /// Asks on such a topic, and hears the answers.
+  bus::RequestClient client(const bus::RequestTopic& topic) {
+    declare(topic.name, Port::Use::kChanges);
+    declare(topic.answers.name, Port::Use::kEvents);
+    return {node_, topic, name()};
   }
 
   /// Further conditions of a step, for which lockstep waits (bus::Cycle::gate).
