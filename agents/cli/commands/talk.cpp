@@ -57,8 +57,11 @@ std::string no_answer(const bus::Node& node, const Processes& processes,
                       const std::string& advice) {
   const std::string absent = absence(node, processes, kDialogue);
   if (!absent.empty() && (writer.matched() == 0 || silence > kOther))
-    return "nothing was answered: " + absent;
-  return silence < kSilence ? "" : "nothing was answered. " + advice;
+    return "nothing was answered: " + absent + "; saphira goal stop stops the robot without it";
+  if (silence < kSilence)
+    return {};
+  return "nothing was answered. " +
+         (watch::is_recording(processes) ? who_is_there(processes) : advice);
 }
 
 /// Prints all utterances to and by the robot, as they come.
@@ -87,7 +90,7 @@ int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
 }
 
 /// Listeners, pages and recordings that were on the bus before have heard the sentence.
-void wait_for_listeners(bus::Node& node, const bus::Writer<v1::Utterance>& writer,
+void wait_for_listeners(bus::Node& node, bus::Writer<v1::Utterance>& writer,
                         Clock::time_point began, const bus::Stop& stop) {
   while (!stop.requested() && Clock::now() - began < listening_time(node))
     node.wait(milliseconds(50), &stop);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLongestStart = 3.0;  // [s] for the activities and the first facts
 constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;        // [m/s], [rad/s]
-constexpr double kRest = 0.5;          // [s]
+constexpr double kSettled = 0.5;       // [s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kMostPlaces = 60;  // that a tool names
 constexpr const char* kPlace = "place";  // a parameter
@@ -417,7 +417,7 @@ bool Robot::moves() const {
 }
 
 bool Robot::rests() const {
-  return now_ - moved_ >= kRest;
+  return now_ - moved_ >= kSettled;
 }
 
 }  // namespace saphira::mcp

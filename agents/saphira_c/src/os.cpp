@@ -114,7 +114,7 @@ void Os::run() {
   }
   idle_ = true;
   if (signalled != 0 && !ending_) {
-    say("interrupted: the robot is stopped", false);
+    say(robot_ ? "interrupted: the robot is stopped" : "interrupted", false);
     std::exit(128 + signalled);
   }
 }

@@ -72,6 +72,10 @@ const char* remedy(bus::Profile profile) {
 
 }  // namespace
 
+bool is_recording(const Processes& processes) {
+  return is_heard(processes.situation().programs, "replay");
+}
+
 std::string who_is_there(const Processes& processes) {
   const bus::Node& node = processes.node();
   const bus::NodeOptions& options = node.options();
@@ -89,6 +93,8 @@ std::string who_is_there(const Processes& processes) {
     return (listens ? "no program is heard yet (" : "no program is on the bus (") + where +
            "): is it up (saphira up demo), and are these the same on both sides?" +
            (node.identity() ? " Without security: --security none." : "") + remedy(options.profile);
+  if (is_recording(processes))
+    return "this is a recording, which saphira replay plays: it takes no orders (" + where + ")";
   if (const std::string missing = situation::listed(unheard(now)); !missing.empty())
     return "not heard (" + where + "): " + missing + "; saphira status shows what is" +
            remedy(options.profile);

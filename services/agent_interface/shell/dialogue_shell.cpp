@@ -307,6 +307,10 @@ void DialogueShell::step(double seconds, double now) {
     node_.status().reason = "";
   }
   take_places();
+  if (const auto grant = grants_.take_newest())
+    situation_.estop = !grant->estopped              ? ""
+                       : grant->estop_source.empty() ? "a program without a name"
+                                                     : grant->estop_source;
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())

@@ -60,6 +60,7 @@ class DialogueShell {
   bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
   bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
   bus::Reader<v1::Vision> visions_ = node_.reader(bus::topics::kVision);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   bus::Reader<v1::RobotDescription> robots_ = node_.reader(bus::topics::kRobotDescription);
   bus::Writer<v1::Utterance> said_ = node_.writer(bus::topics::kSaid);
   bus::Writer<v1::BeliefClaim> claims_ = node_.writer(bus::topics::kBeliefClaims);

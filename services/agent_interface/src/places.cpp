@@ -304,6 +304,9 @@ std::string Dialogue::kept_out(const std::string& place, const Situation& situat
 
 std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situation,
                                 Outputs& out) const {
+  if (!situation.estop.empty() && goal.functor != "stop" && goal.functor != "pause")
+    return "the emergency stop is pressed, by " + situation.estop +
+           ": saphira estop reset releases it";
   constexpr std::array kPlacesAndPeople{"place", "from", "to", "person", "name"};
   if (std::none_of(situation.map.features.begin(), situation.map.features.end(), is_place))
     return {};  // no map has come

@@ -118,6 +118,7 @@ class Conversation : public DialogueTest {
          situation.carried = {{text, "EJ-231"}};
        }},
       {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
+      {"emergency stop", [this](const auto& text) { situation.estop = text; }},
       {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
       {"at", [this](const auto& text) { situation.pose_in_map = pose_of(text); }},
       {"is lost", [this](const auto&) { situation.pose_in_map.reset(); }},

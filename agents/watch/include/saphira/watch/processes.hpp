@@ -115,6 +115,9 @@ class Processes {
 /// The profile's word: host, lan, wan.
 const char* name_of(bus::Profile profile);
 
+/// The programs of this robot are those of a recording, which saphira replay plays.
+bool is_recording(const Processes& processes);
+
 /// The missing or troubled programs, in words, for requests without an answer.
 std::string who_is_there(const Processes& processes);
 

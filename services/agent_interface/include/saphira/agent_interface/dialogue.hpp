@@ -79,6 +79,7 @@ struct Situation {
   double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
   bool turns_cameras = false;  ///< the robot has a head
   bool is_slow = false;        ///< it was told to go slowly
+  std::string estop{};         ///< the program that pressed the emergency stop; empty: none
 };
 
 /// The request that puts an artifact with its name on the map.
