@@ -159,7 +159,7 @@ void Registration::Self::doubt() {
   if (!now_.filter)
     return;
   now_.filter->widen(0.3, radians(10.0));
-  now_.confirmed = false;
+  now_.confirmed = now_.carried = false;
   const Pose& pose = now_.filter->pose();
   const bool at_start = now_.start && (now_.start->position() - pose.position()).norm() < kNear &&
                         std::abs(norm2_angle(now_.start->th - pose.th)) < kNearTurn;
@@ -586,8 +586,11 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     else if (now_.state == v1::REGISTRATION_LOST && holds_again())
       now_.state = v1::REGISTRATION_TRACKING;
     if (now_.state == v1::REGISTRATION_TRACKING)
-      now_.doubted = now_.carried = false;
-    now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
+      now_.doubted = false;
+    // Walls are alike elsewhere: the pose of a robot that was carried needs an opening, too.
+    now_.confirmed = now_.confirmed ||
+                     (now_.search.own_score >= settings_.sure &&
+                      (!now_.carried || now_.search.own_openings > 0 || lines_.openings().empty()));
     if (now_.state == v1::REGISTRATION_TRACKING && now_.confirmed)
       now_.other_map = false;
     look_for_news(inputs, readings);

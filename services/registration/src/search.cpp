@@ -111,6 +111,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       const double score = worth(*percept, result, own->pose());
       now_.own_score += score;
       if (opening && score > 0.0) {
+        ++now_.own_openings;
         support_own(score, 1.0);
         now_.openings = std::max(0.0, now_.openings - score);
       } else if (opening && score < 0.0) {

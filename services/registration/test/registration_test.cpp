@@ -171,20 +171,19 @@ class Straight {
       : registration_(registration), start_(start) {}
 
   void to(double x, std::vector<lps::Percept> seen = {}) {
-    constexpr double kStep = 0.01;  // [m]
     do {
-      std::vector<lps::SonarReading> readings;
-      for (int sonar = 0; sonar < kSonars; ++sonar) {
-        readings.emplace_back();
-        readings.back().sonar = sonar;
-        readings.back().echo = sonar == kSonars / 4 || sonar == 3 * kSonars / 4;
-        readings.back().range = 1.0;
-      }
-      ++cycle_;
-      registration_.step(
-          {cycle_, 1, {kStep * static_cast<double>(cycle_), 0.0, 0.0}, seen, readings});
+      way_ += 0.01;
+      std::vector<lps::SonarReading> readings = around(1.0);
+      for (lps::SonarReading& reading : readings)
+        reading.echo = reading.sonar == kSonars / 4 || reading.sonar == 3 * kSonars / 4;
+      step(seen, readings);
       seen.clear();
-    } while (start_.x + kStep * static_cast<double>(cycle_) < x);
+    } while (start_.x + way_ < x);
+  }
+  /// It stands, and hears something at this range all around.
+  void stand(double range, int cycles) {
+    for (int i = 0; i < cycles; ++i)
+      step({}, around(range));
   }
   /// A door on the left is seen.
   void see_door(std::uint32_t id, double x) {
@@ -192,8 +191,19 @@ class Straight {
   }
 
  private:
+  static std::vector<lps::SonarReading> around(double range) {
+    std::vector<lps::SonarReading> readings(kSonars, {0, range, true});
+    for (int sonar = 0; sonar < kSonars; ++sonar)
+      readings[static_cast<std::size_t>(sonar)].sonar = sonar;
+    return readings;
+  }
+  void step(const std::vector<lps::Percept>& seen, const std::vector<lps::SonarReading>& readings) {
+    registration_.step({++cycle_, 1, {way_, 0.0, 0.0}, seen, readings});
+  }
+
   Registration& registration_;
   Pose start_;
+  double way_ = 0.0;  ///< [m]
   std::uint64_t cycle_ = 0;
 };
 
@@ -239,6 +249,40 @@ TEST(Registration, ARunOfClosedDoorsMakesItUnsure) {
   EXPECT_LT(registration.output().confidence, 0.9) << "no goal succeeds";
   robot.see_door(1, 20.0);
   EXPECT_GE(registration.output().confidence, 0.9);
+}
+
+/// Walls bring the state back after some metres, but only a door of the map makes it sure again.
+TEST(Registration, WhoWasCarriedIsSureAgainByAnOpening) {
+  const Pose start{4.0, 0.0, 0.0};
+  const maps::Map with_door = maps::parse_map(
+      "CORRIDOR (1) 15000, 0, 0, 30000, 2000\nDOOR (2) 12000, 1000, -90, 900\n", "test");
+  Registration registration(settings(), with_door, start);
+  Straight robot(registration, start);
+  robot.to(6.0);
+  EXPECT_EQ(registration.output().confidence, 1.0);
+  robot.stand(1.0, 6);
+  robot.stand(2.0, 2);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
+  robot.stand(2.0, 1);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_LOST);
+  robot.to(10.0);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
+  EXPECT_EQ(registration.output().confidence, 0.5) << "no goal succeeds";
+  robot.see_door(1, 12.0);
+  EXPECT_EQ(registration.output().confidence, 1.0);
+}
+
+TEST(Registration, OnAMapWithoutOpeningsWallsMakeItSureAgain) {
+  const Pose start{4.0, 0.0, 0.0};
+  Registration registration(
+      settings(), maps::parse_map("CORRIDOR (1) 15000, 0, 0, 30000, 2000\n", "test"), start);
+  Straight robot(registration, start);
+  robot.stand(1.0, 6);
+  robot.stand(2.0, 3);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_LOST);
+  robot.to(10.0);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
+  EXPECT_EQ(registration.output().confidence, 1.0);
 }
 
 TEST(Registration, OnAMapOfSomewhereElseThePlacesOfTheOldOneAreForgotten) {

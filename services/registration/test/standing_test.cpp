@@ -29,8 +29,42 @@ int carried(Standing& standing, const std::vector<PlacedReading>& readings, int 
 
 TEST(Standing, WhereAllAroundIsOtherThanBeforeItWasCarriedAndThatIsSaidOnce) {
   Standing standing;
+  EXPECT_EQ(carried(standing, around(1.0), 6), 0);
+  EXPECT_EQ(carried(standing, around(2.5), 2), 0);
+  EXPECT_EQ(carried(standing, around(2.5), 1), 1) << "by the third readings";
+  EXPECT_EQ(carried(standing, around(2.5), 50), 0);
+}
+
+TEST(Standing, ACorridorThatIsNarrowerByAHandIsAnotherPlace) {
+  for (const double shift : {-0.05, 0.05}) {
+    Standing standing;
+    EXPECT_EQ(carried(standing, around(1.0), 20), 0);
+    EXPECT_EQ(carried(standing, around(1.0 + shift), 20), 1) << shift;
+  }
+  Standing standing;
   EXPECT_EQ(carried(standing, around(1.0), 20), 0);
-  EXPECT_EQ(carried(standing, around(2.5), 50), 1);
+  EXPECT_EQ(carried(standing, around(1.03), 20), 0) << "noise";
+}
+
+TEST(Standing, FortyPercentOfTheSonarsAreAllAround) {
+  Standing standing;
+  EXPECT_EQ(carried(standing, around(2.0), 20), 0);
+  EXPECT_EQ(carried(standing, around(2.0, 3, 0.6), 20), 0) << "3 of 8";
+  EXPECT_EQ(carried(standing, around(2.0, 0), 20), 0);
+  EXPECT_EQ(carried(standing, around(2.0, 4, 0.6), 20), 1) << "4 of 8";
+}
+
+TEST(Standing, APersonWhoWalksAroundItChangesOneSideAfterTheOther) {
+  for (const int each : {4, 6, 12}) {  // [cycles] before one pair of sonars
+    Standing standing;
+    EXPECT_EQ(carried(standing, around(2.0), 20), 0);
+    for (int i = 0; i < 400; ++i) {
+      std::vector<PlacedReading> readings = around(2.0);
+      for (const int beside : {0, 1})
+        readings[static_cast<std::size_t>((i / each + beside) % kSonars)].range = 0.7;
+      EXPECT_FALSE(standing.step({}, readings)) << each << ", " << i;
+    }
+  }
 }
 
 TEST(Standing, OnePersonBesideItIsNoOtherPlace) {

@@ -65,6 +65,7 @@ struct SearchState {
   double travelled = 0.0;
   std::optional<Pose> own;
   double own_score = 0.0;  ///< of the present place
+  int own_openings = 0;    ///< seen openings that the present place has
   // Evidence against the present place, never below 0 (Page's test, 1954), so that the good
   // readings of a place before do not count.
   double against = 0.0;   ///< walls that are not heard

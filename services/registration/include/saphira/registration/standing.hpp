@@ -9,21 +9,22 @@
 namespace saphira::registration {
 
 struct StandingSettings {
-  double moved = 0.05;  ///< [m] of dead reckoning that counts as motion, also a slow one...
+  double moved = 0.02;  ///< [m] of dead reckoning that counts as motion, also a slow one...
   double turned = radians(2.0);    ///< [rad] ...likewise
-  double same = 0.25;              ///< [m] two echoes of one object
+  double same = 0.04;              ///< [m] two echoes of one object
   double silence = 5.0;            ///< [m] range that stands for silence
   int learnt = 6;                  ///< readings of a sonar that define its normal ranges at a place
-  int changed = 4;                 ///< number in a row with different ranges
-  int accepted = 60;               ///< number in a row after which the new range is normal
+  int changed = 3;                 ///< number in a row with different ranges
+  int accepted = 5;                ///< number in a row after which the new range is normal
   double share = 0.4;              ///< of the sonars with changed ranges: the robot was carried
   int least = 3;                   ///< sonars with changed ranges...
   double around = radians(100.0);  ///< [rad] ...and the angle that these look into
 };
 
 /// Detects that a robot with standing wheels was carried: the ranges of its sonars have changed all
-/// around. A person near by changes them on one side, be it most of them: five of a Pioneer's seven
-/// sonars look ahead. A value.
+/// around, and at once. A person near by changes them on one side, be it most of them: five of a
+/// Pioneer's seven sonars look ahead. A person who walks around it changes them one after the
+/// other, and each change is soon normal. A value.
 class Standing {
  public:
   explicit Standing(StandingSettings settings = {}) : settings_(settings) {}
