@@ -291,6 +291,28 @@ TEST_F(Navigation, ADoorIsClosedWhereTheSonarsHaveSomethingAllAcross) {
   EXPECT_EQ(call("door-state", {door}), Value("open"));
 }
 
+// A closed door and somebody in the doorway are told apart where the echoes allow it, or a camera.
+TEST_F(Navigation, SomebodyInADoorwayIsNotItsLeaf) {
+  const Value door = path("north").list()[1];
+  be_at({3.0, 0.0, kPi / 2});
+  lps::LpsSettings settings;
+  settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
+  lps::LocalPerceptualSpace lps(settings);
+  around.lps = &lps;
+  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
+    lps.update(robot.pose_in_odom, {{0, 3.0, true}, {1, 0.9, true}, {2, 3.0, true}}, cycle);
+  EXPECT_EQ(call("door-state", {door}), Value("barred"));
+  std::vector<lps::SeenThing> things(1);
+  things[0].pose_in_odom = {3.2, 1.1, 0.0};
+  around.things = &things;
+  EXPECT_EQ(call("door-state", {door}), Value("person"));
+  things[0].pose_in_odom = {3.2, 2.0, 0.0};  // behind it, in the room
+  EXPECT_EQ(call("door-state", {door}), Value("barred"));
+  things[0].pose_in_odom = {3.2, 1.1, 0.0};
+  around.cycle = 31;  // gone since
+  EXPECT_EQ(call("door-state", {door}), Value("barred"));
+}
+
 TEST_F(Navigation, ExploringGoesToTheNearestEndFirstAndComesToAnEnd) {
   Value visited;
   double last = 0.0;

@@ -8,6 +8,7 @@
 
 #include "on_map.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/seen_thing.hpp"
 #include "seeing.hpp"
 
 namespace saphira::intentions {
@@ -23,6 +24,9 @@ constexpr double kBody = 0.30;      ///< [m] half of the width that has to be fr
 constexpr double kNear = 1.6;       ///< [m] from which on the sonars detect a closed door
 constexpr double kSeenAgain = 3.0;  ///< [s] older percepts do not count
 constexpr double kDeep = 0.2;       ///< [m] before and behind a doorway, for obstacles in it
+constexpr double kAtDoor = 1.0;     ///< [m] nearer, a person does not look like a door's leaf...
+constexpr double kLeafGap = 0.25;   ///< [m] ...which leaves no wider gap
+constexpr double kInDoor = 0.5;     ///< [m] before and behind a doorway, for a person in it
 
 /// The middle line of a corridor as a directed point, towards a way out of it or a point.
 Pose lane(const maps::Feature& area, const Vec2& towards) {
@@ -80,21 +84,41 @@ double widest_gap(const lps::LocalPerceptualSpace& lps, const Pose& door_in_robo
   return widest;
 }
 
+/// True where the cameras see a person in a doorway.
+bool seen_in(const World& world, const Pose& door_in_robot, double width) {
+  if (world.around.things == nullptr)
+    return false;
+  return std::any_of(
+      world.around.things->begin(), world.around.things->end(), [&](const lps::SeenThing& thing) {
+        const Vec2 inside = to_frame(
+            door_in_robot, to_frame(world.robot.pose_in_odom, thing.pose_in_odom.position()));
+        return thing.kind == lps::SeenThing::Kind::person && thing.range_known &&
+               seconds_unseen(world, thing) < kSeenAgain && std::abs(inside.x()) < kInDoor &&
+               std::abs(inside.y()) < width / 2;
+      });
+}
+
 Value door_state(const World& world, Values arguments) {
   const maps::Link& link = link_of(world, arguments, 0, "door-state");
   const std::optional<Pose> door = in_robot(world, {link.pose_in_map, Frame::map});
   if (!door || world.around.lps == nullptr || link.kind == LinkKind::meeting)
     return "unknown";
+  if (seen_in(world, *door, link.width))
+    return "person";
   const double bearing = std::abs(std::atan2(door->y, door->x));
   const double far = std::hypot(door->x, door->y);
-  if (far > kNear || bearing > radians(35.0)) {
-    const lps::Percept* const seen = seen_door(world, link);
-    const bool fresh = seen != nullptr && static_cast<double>(world.around.lps->cycle()) * kTick -
-                                                  static_cast<double>(seen->seen) * kTick <
-                                              kSeenAgain;
-    return fresh ? "open" : "unknown";
-  }
-  return widest_gap(*world.around.lps, *door, link.width) < 2.0 * kBody - 0.1 ? "closed" : "open";
+  const double gap = widest_gap(*world.around.lps, *door, link.width);
+  if (far > kBody && far <= kAtDoor && gap < kLeafGap)
+    return "closed";
+  if (far <= kNear && gap < 2.0 * kBody - 0.1)
+    return "barred";
+  if (far <= kNear && bearing <= radians(35.0))
+    return "open";
+  const lps::Percept* const seen = seen_door(world, link);
+  const bool fresh = seen != nullptr && static_cast<double>(world.around.lps->cycle()) * kTick -
+                                                static_cast<double>(seen->seen) * kTick <
+                                            kSeenAgain;
+  return fresh ? "open" : "unknown";
 }
 
 /// The direction through a door into a region, for FollowDoor. A door's normal is out into its
@@ -258,8 +282,11 @@ void add_corridors(Functions& functions) {
       });
   functions.add("door-pose", 1, 1,
                 "(door-pose DOOR): as it is seen, or else by the map; directed out", door_pose);
-  functions.add("door-state", 1, 1,
-                "(door-state DOOR): open, closed or unknown, as the sonars have it", door_state);
+  functions.add(
+      "door-state", 1, 1,
+      "(door-state DOOR): open, closed, barred (closed, or somebody stands in it), person (one "
+      "is seen in it) or unknown",
+      door_state);
   functions.add("door-direction", 2, 2,
                 "(door-direction DOOR REGION): in or out, to get into the region", door_direction);
   functions.add("before-door", 2, 3,
