@@ -144,8 +144,10 @@ void add_estop(CLI::App& app, Chosen& chosen) {
       try {
         Button button(options);
         return released ? button.reset(stop) : button.press(stop);
-      } catch (const std::invalid_argument& error) {  // the role of this program
-        throw std::invalid_argument(std::string(error.what()) + (released ? "" : kOtherStop));
+      } catch (const std::invalid_argument& error) {
+        const std::string why = error.what();
+        const bool is_role = why.find(" may not write ") != std::string::npos;
+        throw std::invalid_argument(why + (is_role && !released ? kOtherStop : ""));
       }
     };
   });

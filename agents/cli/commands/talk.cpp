@@ -57,7 +57,9 @@ std::string no_answer(const bus::Node& node, const Processes& processes,
                       const std::string& advice) {
   const std::string absent = absence(node, processes, kDialogue);
   if (!absent.empty() && (writer.matched() == 0 || silence > kOther))
-    return "nothing was answered: " + absent + "; saphira goal stop stops the robot without it";
+    return "nothing was answered: " + absent +
+           (is_heard(processes.all(), "bridge") ? "; saphira goal stop stops the robot without it"
+                                                : "");
   if (silence < kSilence)
     return {};
   return "nothing was answered. " +

@@ -399,7 +399,7 @@ void Gateway::cancel_goal(Connection connection, const Page& page, const CancelG
     answer(connection, cancel.reference, false, "expected the id of a goal");
     return;
   }
-  if (!goals_.status(*id)) {
+  if (!goals_.knows(*id)) {
     answer(connection, cancel.reference, false, "there is no goal " + cancel.id + " on the list");
     return;
   }

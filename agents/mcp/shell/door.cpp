@@ -29,6 +29,7 @@ constexpr double kPicture = 2.0;       // [s] for a camera that was off
 constexpr double kReply = 10.0;        // [s] for the robot's or an agent's reply
 constexpr double kGrace = 15.0;        // [s] after the deadline, for the last word about a task
 constexpr double kStop = 5.0;          // [s] for a robot to stand
+constexpr double kSettles = 0.5;       // [s] for the last command to reach the wheels
 constexpr std::size_t kMostKept = 64;  // actions that are remembered
 constexpr double kOld = 60.0;          // [s] after which the dialogue does not act on words
 
@@ -565,16 +566,18 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     }
     case Waiting::For::cancel: {
       const bool ended = waiting.goal ? has_ended(*waiting.goal) : !is_busy();
-      if (!late && (!ended || !robot_.rests()))
+      if (!ended || robot_.moves() || waiting.settled == 0.0)
+        waiting.settled = now_ + kSettles;
+      if (!late && now_ < waiting.settled)
         return false;
       const std::string robot =
-          !robot_.rests() ? "the robot still moves: somebody else may drive it, or it is stopping"
-                          : "the robot stands";
+          robot_.moves() ? "the robot still moves: somebody else may drive it, or it is stopping"
+                         : "the robot stands";
       const std::string done = !waiting.had_any ? "nothing of yours is underway; "
                                : ended          ? "withdrawn; "
                                                 : "withdrawn, and not heard to have ended; ";
       session_.answer(number,
-                      {done + robot, {{"ended", ended}, {"moves", !robot_.rests()}}, !ended});
+                      {done + robot, {{"ended", ended}, {"moves", robot_.moves()}}, !ended});
       return true;
     }
     case Waiting::For::answer:

@@ -36,8 +36,6 @@ class Robot {
   const v1::Capability* capability(const std::string& tool) const;
   const watch::Mind& mind() const { return mind_; }
   bool moves() const;
-  /// It has stood for a while: a command of before may still be on its way to the wheels.
-  bool rests() const;
   /// The value of a belief as in the activity language, such as t or nil; nothing: there is none.
   std::optional<std::string> belief(const std::string& name) const;
   /// The names of all beliefs, with commas.
@@ -66,7 +64,6 @@ class Robot {
   watch::Newest<v1::Knowledge> knowledge_{node_, bus::topics::kKnows};
   std::optional<double> began_;  ///< [s] the first poll
   double now_ = 0.0;
-  double moved_ = 0.0;    ///< [s]
   double changed_ = 0.0;  ///< [s] the newest change of the tools
   std::map<std::uint64_t, bus::Sample<v1::Agent>> agents_;
   std::vector<Tool> tools_;
@@ -127,8 +124,9 @@ class Door {
     std::string before = {};                          ///< value of the belief
     std::optional<Result> result = std::nullopt;      ///< of the event
     bool is_task = false;
-    bool had_any = true;  ///< to cancel
-    double still = 0.0;   ///< [s] until then a withdrawn task goes on while the robot moves
+    bool had_any = true;   ///< to cancel
+    double still = 0.0;    ///< [s] until then a withdrawn task goes on while the robot moves
+    double settled = 0.0;  ///< [s] until then a command of before may reach the wheels
   };
 
   /// A goal or an action that has not ended.

@@ -17,7 +17,6 @@ namespace {
 constexpr double kLongestStart = 3.0;  // [s] for the activities and the first facts
 constexpr double kLongestWait = 50.0;  // [s] of a call: clients give up after 60
 constexpr double kStill = 0.01;        // [m/s], [rad/s]
-constexpr double kSettled = 0.5;       // [s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kMostPlaces = 60;  // that a tool names
 constexpr const char* kPlace = "place";  // a parameter
@@ -237,8 +236,6 @@ void Robot::poll(double now) {
   began_ = began_.value_or(now);
   now_ = now;
   mind_.poll();
-  if (moves())
-    moved_ = now;
   sonars_.poll();
   perception_.poll();
   vision_.poll();
@@ -414,10 +411,6 @@ bool Robot::moves() const {
   const v1::RobotState* const robot = mind_.robot();
   return robot != nullptr &&
          (std::abs(robot->velocity) > kStill || std::abs(robot->rotation_velocity) > kStill);
-}
-
-bool Robot::rests() const {
-  return now_ - moved_ >= kSettled;
 }
 
 }  // namespace saphira::mcp

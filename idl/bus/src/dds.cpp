@@ -355,10 +355,12 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
         each(scratch_.get(), info);
       } else if (dds_info.instance_state != fdds::ALIVE_INSTANCE_STATE) {
         // "No writers" is the state of an instance whose writer had ended before another one
-        // withdrew it. Fast DDS gives no sample for the end of a writer itself.
+        // withdrew it. Where the same writer gave it up, the instance stays.
         // Withdrawn before any sample of it was taken: there is nothing to tell.
         const auto found = last_.find(dds_info.instance_handle);
-        if (found == last_.end())
+        if (found == last_.end() ||
+            (dds_info.instance_state == fdds::NOT_ALIVE_NO_WRITERS_INSTANCE_STATE &&
+             found->second.info.writer == info.writer))
           continue;
         const Holder last = std::move(found->second.data);
         last_.erase(found);

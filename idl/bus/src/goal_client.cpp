@@ -120,6 +120,10 @@ void GoalClient::forget() {
   }
 }
 
+bool GoalClient::knows(const v1::GoalId& id) const {
+  return own_.contains(key_of(id)) || known_.contains(key_of(id));
+}
+
 std::optional<v1::GoalStatus> GoalClient::status(const v1::GoalId& id) const {
   const auto found = known_.find(key_of(id));
   if (found == known_.end())

@@ -26,6 +26,8 @@ TEST_F(GoalClients, AsksChangesAndCancels) {
   GoalClient client(agent_, "an agent");
   v1::Goal goal{.functor = "stop"};
   const v1::GoalId id = client.ask(goal);
+  EXPECT_TRUE(client.knows(id)) << "before its first status";
+  EXPECT_FALSE(client.knows({.writer = 7, .number = 8}));
   EXPECT_TRUE(client.delivered(1000));
   auto heard = goals_.take();
   ASSERT_EQ(heard.size(), 1U);

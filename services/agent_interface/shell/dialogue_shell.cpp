@@ -307,6 +307,8 @@ void DialogueShell::step(double seconds, double now) {
     node_.status().reason = "";
   }
   take_places();
+  if (!grants_.take_lost().empty())
+    situation_.estop.clear();
   if (const auto grant = grants_.take_newest())
     situation_.estop = !grant->estopped              ? ""
                        : grant->estop_source.empty() ? "a program without a name"

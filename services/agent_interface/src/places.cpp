@@ -304,7 +304,9 @@ std::string Dialogue::kept_out(const std::string& place, const Situation& situat
 
 std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situation,
                                 Outputs& out) const {
-  if (!situation.estop.empty() && goal.functor != "stop" && goal.functor != "pause")
+  constexpr std::array kStanding{"stop", "pause", "look"};
+  if (!situation.estop.empty() &&
+      std::find(kStanding.begin(), kStanding.end(), goal.functor) == kStanding.end())
     return "the emergency stop is pressed, by " + situation.estop +
            ": saphira estop reset releases it";
   constexpr std::array kPlacesAndPeople{"place", "from", "to", "person", "name"};

@@ -102,6 +102,20 @@ TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
   EXPECT_EQ(say("Flakey, this is Bob's office"), "I know now that north is bob's office");
 }
 
+TEST_F(DialogueOnTheBus, NoTaskIsTakenWhileABridgeHoldsTheEmergencyStop) {
+  bus::Node bridge(test::memory_options("bridge"), memory);
+  {
+    auto grants = bridge.writer(bus::topics::kGrant);
+    grants.write({.estopped = true});
+    EXPECT_EQ(say("Flakey, turn left"),
+              "the emergency stop is pressed, by a program without a name: saphira estop reset "
+              "releases it");
+    EXPECT_TRUE(refused);
+    EXPECT_TRUE(goals.take().empty());
+  }
+  EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left") << "the bridge is gone";
+}
+
 TEST_F(DialogueOnTheBus, ARefusalIsMarked) {
   EXPECT_EQ(say("Flakey, go upstairs"), "what?");
   EXPECT_TRUE(refused);

@@ -19,7 +19,9 @@ namespace saphira::intentions {
 namespace {
 
 constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
-constexpr double kReply = 15.0;             // [s] for agents; the facilitator's own limit is 10 s
+constexpr double kReply = 3600.0;           // [s] for agents: an activity has a limit of its own
+constexpr std::uint64_t kNewStart = 50;     // [steps]
+constexpr double kFresh = 1.0;              // [s] age of a claim, by the clocks of two machines
 constexpr std::size_t kMostGoals = 1024;    // of GoalStatusSet.goals
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
 
@@ -249,6 +251,9 @@ void Service::take_claims(Core::Heard& heard) {
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
            sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL});
+      // After a restart the claims of before come again, and answer no question that is asked anew.
+      if (steps_ < kNewStart && sample.info.age > kFresh && !ports_.lockstep())
+        heard.claims.back().event.age = static_cast<Ticks>(sample.info.age / kTick);
     } catch (const FileError& error) {
       notes.warn("a claim of " + saphira::quoted(sample.data.source) + ": " + error.what());
     }

@@ -179,6 +179,8 @@ TEST(Modality, WhatAnActivityHasSaidIsNewsAlsoWhereItSaysItAgain) {
   EXPECT_EQ(*beliefs.stored("*x*")->value.number(), 2.0);
   beliefs.set("*x*", 1.0, "it", 4);
   EXPECT_EQ(*beliefs.stored("*x*")->value.number(), 1.0);
+  beliefs.take({ClaimEvent::Kind::kSaid, {9, 2}, "somebody", "*y*", 2.0, 5}, 7);
+  EXPECT_EQ(beliefs.stored("*y*")->since, 2) << "it came late";
 }
 
 TEST(Modality, NothingGrowsWithoutBound) {

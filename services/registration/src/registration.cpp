@@ -159,7 +159,7 @@ void Registration::Self::doubt() {
   if (!now_.filter)
     return;
   now_.filter->widen(0.3, radians(10.0));
-  now_.confirmed = now_.carried = false;
+  now_.confirmed = false;
   const Pose& pose = now_.filter->pose();
   const bool at_start = now_.start && (now_.start->position() - pose.position()).norm() < kNear &&
                         std::abs(norm2_angle(now_.start->th - pose.th)) < kNearTurn;
@@ -237,6 +237,7 @@ Memory Registration::Self::save() const {
     memory.drift = now_.filter->drift();
     memory.confidence = now_.output.confidence;
   }
+  memory.carried = now_.carried;
   return memory;
 }
 
@@ -247,6 +248,7 @@ void Registration::Self::restore(const Memory& memory, const std::optional<Pose>
   place(memory.pose_in_map, memory.covariance.topLeftCorner<3, 3>(), memory.drift,
         memory.covariance(3, 3), memory.confidence);
   now_.filter->set_covariance(memory.covariance);
+  now_.carried = memory.carried;
   now_.odom = memory.odom;
   now_.pose_in_odom = memory.pose_in_odom;
   report();
@@ -591,6 +593,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     now_.confirmed = now_.confirmed ||
                      (now_.search.own_score >= settings_.sure &&
                       (!now_.carried || now_.search.own_openings > 0 || lines_.openings().empty()));
+    now_.carried = now_.carried && !now_.confirmed;
     if (now_.state == v1::REGISTRATION_TRACKING && now_.confirmed)
       now_.other_map = false;
     look_for_news(inputs, readings);
@@ -660,6 +663,9 @@ void Registration::Self::report() {
     now_.output.reason =
         !now_.confirmed && now_.other_map
             ? "another map was loaded: too little was heard yet to confirm the pose on it"
+        : !now_.confirmed && now_.carried
+            ? "it was carried, as it seems, and has seen no opening of the map since: drive past a "
+              "door, or tell it where it is (saphira map place)"
         : !now_.confirmed ? "as it was told or remembered: too little was heard yet to confirm it"
         : now_.output.confidence < 0.5        ? "the readings hardly fit the map"
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"

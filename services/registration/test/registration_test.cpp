@@ -268,8 +268,13 @@ TEST(Registration, WhoWasCarriedIsSureAgainByAnOpening) {
   robot.to(10.0);
   EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
   EXPECT_EQ(registration.output().confidence, 0.5) << "no goal succeeds";
+  EXPECT_TRUE(registration.output().reason.starts_with("it was carried"));
+  Registration again(settings(), with_door);
+  again.restore(registration.save());
+  EXPECT_TRUE(again.save().carried) << "over a restart";
   robot.see_door(1, 12.0);
   EXPECT_EQ(registration.output().confidence, 1.0);
+  EXPECT_FALSE(registration.save().carried);
 }
 
 TEST(Registration, OnAMapWithoutOpeningsWallsMakeItSureAgain) {

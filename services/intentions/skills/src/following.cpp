@@ -13,12 +13,11 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kStride = 0.2;   // [m] between places of a trail
-constexpr double kLook = 0.8;     // [m] to the place of the trail that the robot heads for
-constexpr double kAtEnd = 0.3;    // [m]
-constexpr double kPasses = 0.05;  // [m] AttendAtPos is slow before its radius
-constexpr double kPlaced = 0.3;   // [s] since the person was seen: a place, not a guess
-constexpr double kKeeps = 0.8;    // of the distance to the person: there AttendAtPos stands
+constexpr double kStride = 0.2;  // [m] between places of a trail
+constexpr double kLook = 0.8;    // [m] to the place of the trail that the robot heads for
+constexpr double kAtEnd = 0.3;   // [m]
+constexpr double kPlaced = 0.3;  // [s] since the person was seen: a place, not a guess
+constexpr double kKeeps = 0.8;   // of the distance to the person: there AttendAtPos stands
 
 class Follow : public Activity {
  public:
@@ -52,12 +51,15 @@ class Follow : public Activity {
     trail.reach(self.robot().pose_in_odom.position());
     const double left = trail.length();
     const double near = in_sight ? distance_ : kAtEnd;
-    const bool there = left <= near;
+    // A person who comes back has a trail that is longer than the way to them.
+    const bool there =
+        left <= near ||
+        (in_sight && (trail.at(left) - self.robot().pose_in_odom.position()).norm() <= near);
     const Vec2 goal = trail.at(there ? left : std::min(left, kLook));
     self.intend_behavior(
         "track", "AttendAtPos", kTask,
         {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
-         number("radius", there ? near : kPasses),
+         number("radius", there ? near : kAtEnd),
          number("speed", std::min(speed_, kSlow + std::max(0.0, left - kKeeps * near)))});
     self.level(there ? 1.0 : 0.0);
     self.say(in_sight ? "following a person" : "going where it saw a person last");

@@ -49,6 +49,8 @@ class GoalClient {
   /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.
   void poll();
+  /// It was asked for here, or has a status.
+  bool knows(const v1::GoalId& id) const;
   /// All that is known of a goal, by anybody; nothing before its first status.
   std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
   /// Every goal that is known, by the time of its newest status; at the same time by functor and

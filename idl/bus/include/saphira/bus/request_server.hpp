@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -14,8 +15,8 @@ namespace saphira::bus {
 
 /// The server's side of the requests on one topic: each is begun once, its newest answer is told
 /// again when it comes again, and it has one end. Without bus and clock: the caller passes on what
-/// has come, and writes what is told. The newest 256 requests are known; those that have ended are
-/// forgotten first.
+/// has come, and writes what is told. The newest 256 requests that are under way are known, and the
+/// newest 256 that have ended.
 class RequestServer {
  public:
   using Tell = std::function<void(const v1::Answer&)>;
@@ -45,10 +46,8 @@ class RequestServer {
         tell_(*known);
       return false;
     }
-    if (known_.size() == kMost) {
-      const auto over = std::find_if(known_.begin(), known_.end(), is_end);
-      known_.erase(over == known_.end() ? known_.begin() : over);
-    }
+    forget(is_end);
+    forget(std::not_fn(is_end));
     known_.push_back({.asker = request.asker, .number = request.number});
     if (withdrawn)
       answer(request.asker, request.number,
@@ -77,8 +76,14 @@ class RequestServer {
   void when_withdrawn(Stop stop) { stop_ = std::move(stop); }
 
  private:
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::ptrdiff_t kMost = 256;
 
+  /// The oldest of a kind, where there are too many of it.
+  template <class Kind>
+  void forget(Kind kind) {
+    if (std::count_if(known_.begin(), known_.end(), kind) >= kMost)
+      known_.erase(std::find_if(known_.begin(), known_.end(), kind));
+  }
   static bool is_end(const v1::Answer& answer) { return answer.code != v1::ANSWER_UNDERWAY; }
   v1::Answer* find(std::uint64_t asker, std::uint64_t number) {
     const auto found = std::find_if(known_.begin(), known_.end(), [&](const v1::Answer& one) {

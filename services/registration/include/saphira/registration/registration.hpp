@@ -118,6 +118,7 @@ struct Memory {
   double drift = 0.0;                                    ///< [rad/m] of dead reckoning
   double confidence = 0.0;
   bool placed = false;
+  bool carried = false;  ///< as it seemed, and nothing has confirmed the pose since
 
   bool operator==(const Memory&) const = default;
 };

@@ -43,7 +43,9 @@ struct RegistrationState {
   /// Dead reckoning has begun anew: the robot may have been carried, and the pose is a guess until
   /// the readings have fitted it.
   bool doubted = false;
-  bool carried = false;       ///< the newest doubt came from the readings at a standstill
+  /// The readings at a standstill have changed as if it was carried; nothing has confirmed the pose
+  /// since.
+  bool carried = false;
   std::optional<Pose> start;  ///< the alternative pose
   /// Another map was loaded, and since then no reading has confirmed the pose, and nobody has set
   /// it.

@@ -32,6 +32,7 @@ struct ClaimEvent {
   std::string source;  ///< the writer, for people
   std::string name;
   Value value;
+  Ticks age = 0;  ///< since it was made
 };
 
 /// The beliefs of the robot (paper 3.4: the LPS and a set of environment variables): the results of
