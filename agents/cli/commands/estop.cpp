@@ -133,7 +133,7 @@ void add_estop(CLI::App& app, Chosen& chosen) {
       "estop", "Emergency stop: the robot stands until `saphira estop reset`, whatever else runs");
   CLI::App* reset =
       command->add_subcommand("reset", "Releases it; the robot stands until a new command");
-  chosen.reach[command] = {"estop", [reset] { return !reset->parsed(); }};
+  chosen.reach[command] = {"estop (not its reset)", [reset] { return !reset->parsed(); }};
   command->require_subcommand(0, 1);
   command->footer(
       "Exit code 0: a bridge has confirmed it; 1: none has. Who drives by then does not drive on\n"

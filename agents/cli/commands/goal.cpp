@@ -24,6 +24,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
+constexpr double kStopAgain = 0.2;         ///< [s] until a stop is asked for again
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
 constexpr double kSilent = 3.0;            ///< [s] until missing intentions are reported
@@ -79,13 +80,19 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Bridges bridges(node);
   bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
   bus::Reader<v1::Answer> answers = node.reader(bus::topics::kRobotAnswers);  // of each bridge
-  stops.send(bus::request("stop"), {}, kConfirmPatience);
   const auto began = Clock::now();
+  std::optional<Clock::time_point> sent;
   const std::string robot = called(node_options.robot);
-  bool confirmed = false;
-  std::set<bus::WriterId> done;  // bridges
+  std::set<bus::WriterId> heard;  // bridges that have answered
+  std::set<bus::WriterId> done;
   double told = 0.0;
   while (!stop.requested()) {
+    // Again for a bridge that is found late: the answer of another one ends the repetition.
+    if (!sent || (heard.size() < std::max<std::size_t>(bridges.count(), 1) &&
+                  seconds_since(*sent) > (heard.empty() ? kConfirmPatience : kStopAgain))) {
+      sent = Clock::now();
+      stops.send(bus::request("stop"), {}, kConfirmPatience);
+    }
     node.wait(milliseconds(20), &stop);
     processes.poll();
     bridges.poll();
@@ -94,7 +101,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
       const v1::Answer& answer = sample.data;
       if (sample.info.disposed || answer.asker != node.instance())
         continue;
-      if (!std::exchange(confirmed, true))
+      if (heard.insert(sample.info.writer).second && heard.size() == 1)
         print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
               seconds_since(began));
       if (!bus::ended(answer.code))
@@ -111,13 +118,12 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
         print("this was a stop%s\n", bridges.several().c_str());
       return bus::kExitOk;
     }
-    if (confirmed && (done.empty() || seconds_since(began) < kConfirmPatience))
+    if (!heard.empty() && (done.empty() || seconds_since(began) < kConfirmPatience))
       continue;
     if (seconds_since(began) > told + kConfirmPatience) {
       told = seconds_since(began);
-      stops.send(bus::request("stop"), {}, kConfirmPatience);  // for a bridge that is found late
       const std::string who =
-          confirmed ? "not every bridge" + bridges.several() : who_is_there(processes);
+          !heard.empty() ? "not every bridge" + bridges.several() : who_is_there(processes);
       complain(
           "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
           "trying; Ctrl-C ends it.\n",

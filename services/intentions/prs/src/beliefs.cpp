@@ -62,7 +62,8 @@ void Beliefs::take(const ClaimEvent& event, Ticks now) {
   }
   if (event.kind == ClaimEvent::Kind::kWithdrawn || claim_count_ >= kMostClaims)
     return;
-  claims_[normal(event.name)].push_back({event.id, {event.name, event.value, event.source, now - event.age}});
+  claims_[normal(event.name)].push_back(
+      {event.id, {event.name, event.value, event.source, now - event.age}});
   ++claim_count_;
   ++revision_;
 }
