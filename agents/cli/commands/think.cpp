@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/cli/displays.hpp"
+#include "saphira/intentions/value.hpp"
 #include "saphira/situation/why.hpp"
 #include "saphira/watch/inquiry.hpp"
 #include "watch.hpp"
@@ -270,6 +271,14 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
   return bus::kExitFailed;
 }
 
+void check_value(const std::string& value) {
+  try {
+    intentions::parse_value(value);
+  } catch (const FileError& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
 int claim(const std::string& name, const std::string& value, bool hold,
           const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
@@ -321,6 +330,7 @@ int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options
     if (words.size() != 3)
       throw std::invalid_argument(
           "expected beliefs set NAME VALUE, such as beliefs set door-open t");
+    check_value(words[2]);
     return claim(words[1], words[2], belief_options.hold, options, stop);
   }
   if (words.size() == 2 && words[0] == "unset")

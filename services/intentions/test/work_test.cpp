@@ -194,6 +194,38 @@ TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
   }
 }
 
+TEST(Work, GoesOnWhenThePlaceOfTheRobotIsHeardAgain) {
+  Site site(kAboutTurn, "about-turn");
+  site.world.robot.odom_in_map = Pose{};
+  for (int i = 0; i < 10; ++i)
+    site.step();
+  site.kill(1);
+  site.world.robot.odom_in_map.reset();
+  const double turned = site.turned;
+  for (int i = 0; i < 20; ++i)
+    site.step();
+  EXPECT_EQ(site.turned, turned);
+  EXPECT_EQ(site.status.reason, "waits until it is known where the robot is");
+  site.world.robot.odom_in_map = Pose{};
+  for (int i = 0; !site.over() && i < 300; ++i)
+    site.step();
+  EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
+  EXPECT_EQ(site.status.note, "");
+  EXPECT_NEAR(site.turned, kPi, 0.11);
+}
+
+TEST(Work, WaitsForThePlaceOfTheRobotForFiveSeconds) {
+  Site site(kAboutTurn, "about-turn");
+  site.world.robot.odom_in_map = Pose{};
+  for (int i = 0; i < 10; ++i)
+    site.step();
+  site.kill(1);
+  site.world.robot.odom_in_map.reset();
+  for (int i = 0; !site.over() && i < 300; ++i)
+    site.step();
+  EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
+}
+
 // The bridge was restarted as well, and keeps its odom frame.
 TEST(Work, AnotherEpochGoesOn) {
   Site site(kAboutTurn, "about-turn");

@@ -11,6 +11,8 @@
 namespace saphira::intentions {
 namespace {
 
+/// The longest wait for the place of the robot, after a restart.
+constexpr Ticks kFindsPlace = 50;
 /// The publishing period of the status of an open goal.
 constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
@@ -146,6 +148,7 @@ Outputs Executor::step(const Inputs& inputs) {
       entry.status.elapsed = seconds(now_ - entry.accepted);
   }
   robot_here_ = inputs.robot.connected && inputs.hold.empty();
+  on_map_ = inputs.robot.odom_in_map.has_value();
   person_ = inputs.person;
   if (robot_here_) {
     meet_odom(inputs.robot.odom);
@@ -621,6 +624,9 @@ bool Executor::approve(const GoalId& id) {
 std::string Executor::why_to_wait(const Entry& entry) const {
   if (entry.unapproved)
     return "waits for a person's approval: saphira goal approve " + describe(entry.goal.id);
+  // After a restart registration is heard some cycles later.
+  if (entry.before && remembered_work_.placed && !on_map_ && awake_ < recalled_ + kFindsPlace)
+    return "waits until it is known where the robot is";
   return drives(entry) ? person_ : std::string();
 }
 
@@ -725,7 +731,7 @@ void Executor::recall(const Inputs& inputs) {
   if (work.epoch == 0)
     return;
   const bool same = work.epoch == inputs.epoch && inputs.cycle >= work.cycle;
-  now_ = awake_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
+  now_ = awake_ = recalled_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
   for (auto& [id, entry] : entries_) {  // heard before the first step
     entry.accepted += now_;
     entry.ended += now_;
@@ -745,6 +751,7 @@ std::optional<Work> Executor::take_work() {
     return std::nullopt;
   Work work{epoch_, cycle_, *odom_, awake_, {}, {}};
   work.heeds = heeds_;
+  work.placed = on_map_ || remembered_work_.placed;
   work.beliefs = beliefs_->set_by_activities();
   // Its setter saves that with its own progress.
   std::erase_if(work.beliefs, [&](const Belief& belief) {

@@ -227,7 +227,9 @@ class Executor {
   std::uint64_t epoch_ = 0;
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
-  std::string person_;  ///< of the newest inputs
+  bool on_map_ = false;  ///< it is known where the robot is on the map
+  Ticks recalled_ = 0;   ///< time of the start, with remembered work
+  std::string person_;   ///< of the newest inputs
   v1::StopId heeds_;
   v1::StopId saved_heeds_;
   v1::StopId seen_stop_;  ///< the bridge's

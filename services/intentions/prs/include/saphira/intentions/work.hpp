@@ -36,7 +36,8 @@ struct Work {
   Ticks now = 0;  ///< the clock continues as well: activities may remember times
   std::vector<GoalWork> goals;
   std::vector<Belief> beliefs;
-  v1::StopId heeds{};  ///< the newest stop that has ended goals
+  v1::StopId heeds{};   ///< the newest stop that has ended goals
+  bool placed = false;  ///< it was known where the robot is on the map
 
   bool operator==(const Work&) const = default;
 };
