@@ -51,7 +51,7 @@ class Follow : public Activity {
     trail.reach(self.robot().pose_in_odom.position());
     const double left = trail.length();
     const double near = in_sight ? distance_ : kAtEnd;
-    // A person who comes back has a trail that is longer than the way to them.
+    // The trail of a person who comes back is longer than the straight way.
     const bool there =
         left <= near ||
         (in_sight && (trail.at(left) - self.robot().pose_in_odom.position()).norm() <= near);

@@ -15,8 +15,8 @@ namespace saphira::bus {
 
 /// The server's side of the requests on one topic: each is begun once, its newest answer is told
 /// again when it comes again, and it has one end. Without bus and clock: the caller passes on what
-/// has come, and writes what is told. The newest 256 requests that are under way are known, and the
-/// newest 256 that have ended.
+/// has come, and writes the answers. It knows the newest 256 requests under way and the newest 256
+/// that have ended.
 class RequestServer {
  public:
   using Tell = std::function<void(const v1::Answer&)>;
