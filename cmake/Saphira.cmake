@@ -114,6 +114,35 @@ function(saphira_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${arg_COMPONENT})
 endfunction()
 
+# saphira_service(<name> [SOURCES shell/a.cpp...] [LINK t...]): a cyclic service. Its library
+# saphira_<name>_shell, of shell/service.cpp and SOURCES, has "<name>/shell/..." as headers and defines
+# saphira::<name>::component(). Its program is saphira-<name>. The table of the system (services/system)
+# has it, and so have the programs that run all services.
+function(saphira_service name)
+  if(NOT SAPHIRA_WITH_DDS)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  saphira_library(saphira_${name}_shell SOURCES shell/service.cpp ${arg_SOURCES} LINK ${arg_LINK} saphira_runtime)
+  target_include_directories(saphira_${name}_shell PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/..)
+  set(main ${CMAKE_CURRENT_BINARY_DIR}/${name}_main.cpp)
+  file(CONFIGURE OUTPUT ${main} CONTENT [[
+#include "saphira/runtime/component.hpp"
+
+namespace saphira::@name@ {
+runtime::Component component();
+}
+
+int main(int argc, char** argv) {
+  return saphira::runtime::run_component(argc, argv, saphira::@name@::component());
+}
+]] @ONLY)
+  saphira_program(saphira-${name} SOURCES ${main} LINK saphira_${name}_shell)
+  if(NOT SAPHIRA_COMPILE_ONLY)
+    set_property(GLOBAL APPEND PROPERTY SAPHIRA_SERVICES ${name})
+  endif()
+endfunction()
+
 # Tests of whole programs, and of long drives, take minutes: `./saphira test --quick` leaves those
 # labelled `slow` out.
 set(SAPHIRA_SLOW_TESTS "/tests/(acceptance|bench|clients|drive|fuzz|integration|network)|/explore$|/saphira_c$")

@@ -1,10 +1,12 @@
 #include "system/system.hpp"
 
-#include "behaviors/shell/service.hpp"
-#include "intentions/shell/service.hpp"
-#include "interpretation/shell/service.hpp"
-#include "registration/shell/service.hpp"
-#include "vision/shell/service.hpp"
+// Each saphira_service() of CMake.
+#define SAPHIRA_COMPONENT(service) \
+  namespace saphira::service {     \
+  runtime::Component component();  \
+  }
+#include "components.inc"
+#undef SAPHIRA_COMPONENT
 
 namespace saphira::system {
 namespace {
@@ -34,8 +36,11 @@ const runtime::Unit kBridge{
 }  // namespace
 
 std::vector<runtime::Component> services() {
-  return {interpretation::component(), registration::component(), vision::component(),
-          behaviors::component(), intentions::component()};
+  return {
+#define SAPHIRA_COMPONENT(service) service::component(),
+#include "components.inc"
+#undef SAPHIRA_COMPONENT
+  };
 }
 
 std::vector<runtime::Unit> units() {

@@ -164,7 +164,7 @@ ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
   result.source = claim.source;
   result.name = claim.name;
   if (kind == ClaimEvent::Kind::kSaid)
-    result.value = parse_value(claim.value, "belief " + quoted(claim.name));
+    result.value = parse_value(claim.value, "belief " + saphira::quoted(claim.name));
   return result;
 }
 

@@ -1,5 +1,0 @@
-#include "intentions/shell/service.hpp"
-
-int main(int argc, char** argv) {
-  return saphira::runtime::run_component(argc, argv, saphira::intentions::component());
-}

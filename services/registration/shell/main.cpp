@@ -1,5 +1,0 @@
-#include "registration/shell/service.hpp"
-
-int main(int argc, char** argv) {
-  return saphira::runtime::run_component(argc, argv, saphira::registration::component());
-}
