@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
       },
       [&](bus::NodeOptions options, const bus::Stop& stop) -> int {
         options.for_terminal = true;
+        options.others = bus::Others::noted;
         if (options.robot == cli::kEveryRobot)
           cli::expect_one_robot(*root, chosen);
         if (chosen.run) {

@@ -5,6 +5,7 @@
 
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/situation/words.hpp"
 
@@ -70,6 +71,15 @@ const char* remedy(bus::Profile profile) {
   return "";
 }
 
+/// "robot alpha and robot beta": those with a bridge in this domain.
+std::string other_robots(bus::Node& node) {
+  std::set<std::string> robots;
+  for (const bus::OtherProgram& program : bus::Census(node).others())
+    if (program.name == "bridge")
+      robots.insert("robot " + program.robot);
+  return situation::listed({robots.begin(), robots.end()});
+}
+
 }  // namespace
 
 bool is_recording(const Processes& processes) {
@@ -77,7 +87,7 @@ bool is_recording(const Processes& processes) {
 }
 
 std::string who_is_there(const Processes& processes) {
-  const bus::Node& node = processes.node();
+  bus::Node& node = processes.node();
   const bus::NodeOptions& options = node.options();
   const situation::Situation now = processes.situation();
   const auto& all = now.programs;
@@ -89,6 +99,9 @@ std::string who_is_there(const Processes& processes) {
   const bool listens =
       options.profile != bus::Profile::host &&
       std::chrono::duration<double>(processes.quiet()) < listening_time(node, false);
+  if (const std::string others = all.empty() ? other_robots(node) : ""; !others.empty())
+    return "no program of robot " + options.robot + " is on the bus, but of " + others +
+           ": --robot NAME chooses one";
   if (all.empty())
     return (listens ? "no program is heard yet (" : "no program is on the bus (") + where +
            "): is it up (saphira up demo), and are these the same on both sides?" +

@@ -94,7 +94,7 @@ class Processes {
   situation::Situation situation() const;
   /// Of all seen processes, including ended ones.
   std::uint64_t late_cycles() const;
-  const bus::Node& node() const { return node_; }
+  bus::Node& node() const { return node_; }
 
  private:
   struct Entry {
@@ -104,7 +104,7 @@ class Processes {
     int samples = 0;
     double age = 0.0;  ///< [s] least age of a sample, by the clocks of both machines
   };
-  const bus::Node& node_;
+  bus::Node& node_;
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
   Clock::time_point began_ = Clock::now();
