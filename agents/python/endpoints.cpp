@@ -93,7 +93,7 @@ py::object there_and_back(py::handle sample) {
 #define SAPHIRA_TYPE(T) \
   if (name == #T)       \
     back = python_of(sample_of<v1::T>(sample, #T));
-#include "saphira/bus/topics.def"
+#include "saphira/idl/topic_types.def"
   return back;
 }
 

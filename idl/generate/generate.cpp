@@ -7,7 +7,8 @@
 // includes them all; members.hpp, which visits the members of each struct with their names, keys
 // and bounds and names the enumerators (CDR, JSON and keys are made with it); and schema.json, the
 // JSON Schema of each type; v1.py, a Python dataclass or enum for each, and topics.py, the topics
-// with their types; contract.md, a page about all of them. Comments go with what they are about.
+// with their types; topic_types.def, a macro's line for each of these types; contract.md, a page
+// about all of them. Comments go with what they are about.
 //
 // The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
 // with their constants, bounded sequences, strings. Anything else is an error that names the place.
@@ -314,7 +315,7 @@ class Generator {
     headers_[file.stem + ".hpp"] = out.str();
   }
 
-  /// The list of the topics, a macro's line each.
+  /// The list of the topics, a macro's line each; and of their types: topic_types.def.
   void add_topics(const std::filesystem::path& path) {
     std::ifstream in(path);
     if (!in)
@@ -331,6 +332,7 @@ class Generator {
           name += name.empty() || std::isupper(letter) == 0 ? "" : "_";
           name += static_cast<char>(std::toupper(letter));
         }
+        topic_types_.insert(type);
         topics_ << name << " = Topic(" << found[3] << ", v1." << type << ")\n";
         const std::string text = found[3].str();
         page_topics_ << "| `" << text.substr(1, text.size() - 2) << "` | " << linked(type) << " | "
@@ -355,6 +357,10 @@ class Generator {
         "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"$defs\": {" +
         schemas_.str() + "\n  }\n}\n";
     all["v1.py"] = python_top + python_.str();
+    std::string& topic_types = all["topic_types.def"];
+    for (const std::string& type : topic_types_)
+      topic_types += "SAPHIRA_TYPE(" + type + ")\n";
+    topic_types += "#undef SAPHIRA_TYPE\n";
     all["topics.py"] = topics_top + topics_.str();
     all["contract.md"] = page_top + page_topics_.str() + page_.str();
     return all;
@@ -691,6 +697,7 @@ member's name.
   std::ostringstream schemas_;
   std::ostringstream python_;
   std::ostringstream topics_;
+  std::set<std::string> topic_types_;
   std::ostringstream page_topics_;
   std::ostringstream page_;
   std::set<std::string> numbers_;  // Python's enums

@@ -85,7 +85,7 @@ std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
   using eprosima::fastdds::dds::TypeSupport;
   return {
 #define SAPHIRA_TYPE(type) TypeSupport(new ContractType<v1::type>(type_of<v1::type>())),
-#include "saphira/bus/topics.def"
+#include "saphira/idl/topic_types.def"
   };
 }
 

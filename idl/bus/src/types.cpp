@@ -70,6 +70,6 @@ TypeInfo make_type(const char* name) {
     static const TypeInfo type = make_type<v1::T>("saphira::v1::" #T); \
     return type;                                                       \
   }
-#include "saphira/bus/topics.def"
+#include "saphira/idl/topic_types.def"
 
 }  // namespace saphira::bus
