@@ -78,8 +78,13 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
   Bridges bridges(node);
-  bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
-  bus::Reader<v1::Answer> answers = node.reader(bus::topics::kRobotAnswers);  // of each bridge
+  // Not by RequestClient: each bridge is to hear it, and the client ends with the first answer.
+  bus::Writer<v1::Request> stops = node.writer<v1::Request>(bus::topics::kDriveStop);
+  bus::Reader<v1::Answer> answers = node.reader(bus::topics::kRobotAnswers);
+  v1::Request request = bus::request("stop");
+  request.asker = node.instance();
+  request.number = bus::next_request_number();
+  request.source = person("saphira goal stop");
   const auto began = Clock::now();
   std::optional<Clock::time_point> sent;
   const std::string robot = called(node_options.robot);
@@ -87,19 +92,19 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   std::set<bus::WriterId> done;
   double told = 0.0;
   while (!stop.requested()) {
-    // Again for a bridge that is found late: the answer of another one ends the repetition.
+    // The same stop again, which a bridge that knows it only answers.
     if (!sent || (heard.size() < std::max<std::size_t>(bridges.count(), 1) &&
-                  seconds_since(*sent) > (heard.empty() ? kConfirmPatience : kStopAgain))) {
+                  seconds_since(*sent) > kStopAgain)) {
       sent = Clock::now();
-      stops.send(bus::request("stop"), {}, kConfirmPatience);
+      stops.write(request);
     }
     node.wait(milliseconds(20), &stop);
     processes.poll();
     bridges.poll();
-    stops.poll(seconds_since(began));
     for (const auto& sample : answers.take()) {
       const v1::Answer& answer = sample.data;
-      if (sample.info.disposed || answer.asker != node.instance())
+      if (sample.info.disposed || answer.asker != request.asker ||
+          answer.number != request.number)
         continue;
       if (heard.insert(sample.info.writer).second && heard.size() == 1)
         print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),

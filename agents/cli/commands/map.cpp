@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <set>
 
@@ -135,6 +136,8 @@ int save(const std::string& path, const bus::NodeOptions& options, const bus::St
   View view(options);
   if (!view.wait_for_map(stop, false))
     return bus::kExitFailed;
+  if (view.map.features.empty() && path != "-")
+    return failed("the map is empty: nothing is written");
   return write_out(path, maps::to_text(view.map));
 }
 
@@ -372,7 +375,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   }
   if (!begun)
     return failed("the map was not begun, and nothing is written: the robot has the map of before");
-  // Also after an interruption: the partial map counts.
+  // Also after an interruption: the partial map counts, but replaces no other.
   if (!whole) {
     const bus::Stop end;
     if (!ask(view, {"add_features", {{"on", false}}}, end))
@@ -382,7 +385,12 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   std::printf("%s, %s, %s%s\n", counted(corridors, "corridor").c_str(),
               counted(doors, "door").c_str(), counted(view.map.features.size(), "artifact").c_str(),
               whole ? "" : "; broken off, something may be left");
-  const int written = write_out(path, maps::to_text(view.map));
+  if (!whole && view.map.features.empty())
+    return failed("nothing is written");
+  const bool beside = !whole && path != "-" && std::filesystem::exists(path);
+  const int written = write_out(path + (beside ? ".part" : ""), maps::to_text(view.map));
+  if (beside)
+    std::printf("%s has the map of before\n", path.c_str());
   if (written != bus::kExitOk)
     complain("saphira: the map is still on the robot: saphira map save FILE writes it\n");
   return whole ? written : static_cast<int>(bus::kExitFailed);

@@ -73,6 +73,13 @@ std::string missed(const Situation& s, const std::string& name) {
   if (name == "behaviors" && s.behaviors_drove > 0)
     return "it last drove " + seconds_text(seconds_of(s.now - std::min(s.now, s.behaviors_drove))) +
            " ago";
+  if (name == "bridge") {
+    for (const Program& other : s.programs)
+      if (other.age <= kLostAge && other.status.state == v1::SERVICE_WAITING &&
+          other.status.reason.starts_with("waits for robot/state"))
+        return other.status.name + " " + other.status.reason;
+    return {};
+  }
   const std::string topic = name == "interpretation" ? "perception"
                             : name == "behaviors"    ? "behaviors/state"
                                                      : name;
@@ -289,7 +296,14 @@ std::string driver(const Situation& situation) {
     return "which program drives is not known" + why;
   if (situation.silence > kListened && bridge.health >= Health::hung)
     return "which program drives is not known any more" + why;
-  return describe(*situation.grant);
+  v1::Grant grant = *situation.grant;
+  // The bridge does not know who would drive.
+  if (grant.role == v1::ROLE_NONE)
+    for (const char* const name : {"behaviors", "intentions"})
+      if (const Condition how = condition(situation, name);
+          how.health == Health::hung || how.health == Health::lost || how.health == Health::absent)
+        grant.reason = std::string(name) + " " + how.words;
+  return describe(grant);
 }
 
 std::string to_json(const Situation& situation) {

@@ -53,11 +53,14 @@ void Core::tell(const Output& output, Outputs& outputs) {
   const bool slow = !output.slow.empty();
   if (slow)
     outputs.degraded = output.slow + ": the robot drives more slowly";
-  if (slow && !slow_)
-    outputs.notes.warn(outputs.degraded);
-  if (!slow && slow_)
-    outputs.notes.info("the network is fast enough again");
-  slow_ = slow;
+  // While it does not drive, nothing shows how fast the network is.
+  if (output.active && slow != slow_) {
+    if (slow)
+      outputs.notes.warn(outputs.degraded);
+    else
+      outputs.notes.info("the network is fast enough again");
+    slow_ = slow;
+  }
   if (output.active != active_)
     outputs.notes.info(output.active ? "drives" : "does not drive: " + output.inactive_reason);
   active_ = output.active;

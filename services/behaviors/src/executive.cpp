@@ -203,7 +203,7 @@ bool Executive::silent(const Inputs& inputs) const {
 std::string Executive::why_unheard(const Inputs& inputs) const {
   if (silent(inputs))
     return "no newer intent has come for " + std::to_string(inputs.cycle - intent_came_) +
-           " cycles: intentions, or the network to it, is gone";
+           " cycles: intentions, or the network to it, is slow or gone";
   if (intent_age_.peak() > kOldest)
     return kSlow + ("intents are, or were a moment ago, " + seconds(intent_age_.peak())) +
            " old, which is too old to drive by";

@@ -365,8 +365,12 @@ Registration& Core::placed() {
   return *registration_;
 }
 
-/// Carries out the request, or throws the message for the asker.
+/// Carries out the request, or throws the message for the asker. Agents give goals and advice; the map
+/// is an operator's, here as at the doors (docs/security.md).
 Arguments Core::obey(const Request& request) {
+  if (request.person && request.person->role == "agent")
+    throw std::runtime_error("the map and the robot's place on it are for operators, not for " +
+                             request.person->text());
   const std::string& what = request.functor;
   const Arguments& with = request.arguments;
   if (now_.building && needs_a_map(what))
