@@ -133,8 +133,8 @@ void fields(Is<SimStatusPacket> auto& p, const auto& visit) {
 
 struct Put : PutField {
   using PutField::operator();
-  void operator()(const std::string& text) const { put_string(out, text); }
-  void operator()(VisionChannel::Mode mode) const { put8(out, static_cast<unsigned>(mode)); }
+  void operator()(const std::string& text) const { put(out, text); }
+  void operator()(VisionChannel::Mode mode) const { put(out, static_cast<std::uint8_t>(mode)); }
   void operator()(const GyroPacket::Reading& reading) const {
     (*this)(reading.rate);
     (*this)(reading.temperature);
@@ -143,7 +143,7 @@ struct Put : PutField {
   template <class T>
   void operator()(const std::vector<T>& items, std::size_t most) const {
     const std::size_t count = std::min(items.size(), most);
-    put8(out, static_cast<unsigned>(count));
+    put(out, static_cast<std::uint8_t>(count));
     for (std::size_t i = 0; i < count; ++i)
       (*this)(items[i]);
   }
