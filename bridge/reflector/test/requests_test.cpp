@@ -141,8 +141,7 @@ class Asker : public saphira::test::LinePlayer {
   void hears(std::istringstream& in) {
     if (read<std::string>(in) == "unknown")
       return devices_.reflect(protocol::OtherPacket{0x9A, {}}, 0x9A);
-    protocol::ConfigPacket configuration;
-    configuration.firmware = "1.9";
+    protocol::ConfigPacket configuration{.firmware = "1.9"};
     devices_.reflect(configuration, static_cast<std::uint8_t>(protocol::PacketType::kConfig));
   }
   /// "means REQUEST => its meaning, or the error; ... at its end is any end".
