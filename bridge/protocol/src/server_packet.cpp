@@ -273,11 +273,8 @@ std::string_view packet_type_name(std::uint8_t type) {
 ConfigPacket config_of(const RobotParameters& parameters, const std::string& name,
                        const std::string& serial) {
   const RobotParameters& p = parameters;
-  ConfigPacket c;
-  c.robot_class = p.robot_class;
-  c.subclass = p.subclass;
-  c.serial = serial;
-  c.four_motors = 0;
+  ConfigPacket c{
+      .robot_class = p.robot_class, .subclass = p.subclass, .serial = serial, .four_motors = 0};
   // The top values are the robot's limits, the others its present settings.
   c.rotation_velocity_top = c.rotation_velocity_max = counts(degrees(p.max_rotation_velocity));
   c.velocity_top = c.velocity_max = counts(p.max_velocity * 1000.0);
