@@ -211,9 +211,7 @@ void Shell::tend_link() {
 }
 
 Surroundings Shell::surroundings() const {
-  Surroundings around;
-  around.link_open = link_is_open();
-  around.link_trouble = link_.trouble();
+  Surroundings around{.link_open = link_is_open(), .link_trouble = link_.trouble()};
   if (!core_.in_session())
     around.address = link_.address().text();
   around.serial = link_.address().kind == transport::Address::Kind::serial;

@@ -17,10 +17,8 @@ namespace {
 
 TEST(PositionFile, IsReadByTheNextOne) {
   const test::TempDir folder;
-  reflector::OdometryMemory memory;
-  memory.odom = 7;
-  memory.raw = {100, 200, 0.5};
-  memory.server_in_odom = {1.0, -2.0, 0.25};
+  reflector::OdometryMemory memory{
+      .odom = 7, .raw = {100, 200, 0.5}, .server_in_odom = {1.0, -2.0, 0.25}};
   {
     PositionFile file(folder.path("state"));
     EXPECT_FALSE(file.found());
@@ -40,9 +38,7 @@ TEST(PositionFile, IsReadByTheNextOne) {
 TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
   const test::TempDir folder;
   const std::string path = folder.path("state");
-  reflector::OdometryMemory memory;
-  memory.odom = 7;
-  memory.raw = {100, 200, 0.5};
+  reflector::OdometryMemory memory{.odom = 7, .raw = {100, 200, 0.5}};
   EXPECT_EQ(PositionFile(path).write(memory), "");
   const std::string whole = read_file(path);
   const std::size_t end = whole.find("  ");  // the padding does not count

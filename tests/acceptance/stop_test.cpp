@@ -56,47 +56,6 @@ TEST(Stop, EndsAProgramThatDrives) {
   EXPECT_EQ(again.wait(), 0) << again.output();
 }
 
-// A program that is stopped by a signal, and hears nothing, does not drive on when it wakes.
-TEST(Stop, HoldsForAProgramThatSleptMeanwhile) {
-  System system;
-  system.start("saphira-sim");
-  system.start("saphira-bridge");
-  bus::Writer<v1::MotorCommand> direct = system.node().writer(bus::topics::kDriveDirect);
-  auto robots = system.node().reader(bus::topics::kRobotState);
-  v1::MotorCommand command{.source = "a program that hears nothing",
-                           .active = true,
-                           .translation = v1::TRANSLATION_VELOCITY,
-                           .velocity = 0.3};
-  const auto drive = [&] {
-    if (const auto robot = robots.take_newest())
-      command.stamp = robot->stamp;
-    command.number = command.number + 1;
-    direct.write(command);
-    system.node().wait(std::chrono::milliseconds(50));
-  };
-  ASSERT_TRUE(wait_until([&] {
-    drive();
-    return !system.still();
-  }));
-  Process stop = command_line(system, {"goal", "stop"});
-  EXPECT_EQ(stop.wait(), 0) << stop.output();
-  const std::uint64_t begin = system.truth().cycle;
-  bool still = true;
-  EXPECT_TRUE(wait_until([&] {
-    drive();
-    still = still && system.still();
-    return system.truth().cycle >= begin + 30;
-  }));
-  EXPECT_TRUE(still);
-  command.active = false;
-  drive();
-  command.active = true;
-  EXPECT_TRUE(wait_until([&] {
-    drive();
-    return !system.still();
-  })) << "it has let go";
-}
-
 TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
   System system;
   system.start_all();
@@ -123,22 +82,6 @@ TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
   EXPECT_TRUE(system.wait_moving()) << system.output();
   system.goals().cancel(again);
   EXPECT_TRUE(system.wait_still());
-}
-
-// The goal's writer_lost is cancel. (saphira goal without --keep.)
-TEST(Stop, TheEndOfAGoalsWriterIsNoticedBeforeTheRobotHasGoneFar) {
-  System system;
-  system.start_all();
-  Process client = command_line(system, {"goal", "drive", "0.3"});
-  ASSERT_TRUE(system.wait_moving()) << client.output() << system.output();
-  const std::uint64_t lost = system.truth().cycle;
-  client.signal(SIGKILL);
-  ASSERT_TRUE(wait_until([&] { return system.stood_still(lost).has_value(); })) << system.output();
-  const auto took = static_cast<long>(*system.stood_still(lost) - lost);
-  std::printf("stood %ld cycles after the client was killed\n", took);
-  RecordProperty("cycles_to_standstill", std::to_string(took));
-  EXPECT_LE(took, 30) << "a second is meant; the participant's own lease would be ten or more";
-  EXPECT_TRUE(stays_still(system, 20)) << system.output();
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "node_options.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::test {
@@ -15,14 +14,6 @@ bool stands(const sim::TraceRow& row) {
 }
 
 }  // namespace
-
-System::System(std::string bridge_port)
-    : bridge_port_(std::move(bridge_port)),
-      node_(node_options("test", robot_)),
-      goals_(node_, "test") {
-  if (bridge_port_.empty())
-    bridge_port_ = "unix:" + simulator_socket();
-}
 
 void System::start(const std::string& name) {
   std::vector<std::string> argv{name};
@@ -36,8 +27,8 @@ void System::start(const std::string& name) {
   else
     add({"--robot", robot_, "--domain", domain()});
   if (name == "saphira-bridge")
-    add({"--robot-port", bridge_port_, "--robots", source("config/robots"), "--state",
-         folder_.path("bridge.state")});
+    add({"--robot-port", "unix:" + simulator_socket(), "--robots", source("config/robots"),
+         "--state", folder_.path("bridge.state")});
   if (name == "saphira-intentions")
     add({"--memory", folder_.path("goals")});
   if (name == "saphira-registration")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "goals.hpp"
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/sim/trace.hpp"
@@ -19,16 +20,12 @@ namespace saphira::test {
 /// node of the test beside them.
 class System {
  public:
-  /// `bridge_port` replaces the simulator's socket as the bridge's address (a proxy between them).
-  explicit System(std::string bridge_port = {});
-
   /// Starts, or restarts, one of saphira-sim, saphira-bridge, saphira-behaviors,
   /// saphira-intentions.
   void start(const std::string& name);
   void start_all();
   Process& operator[](const std::string& name) { return *processes_.at(name); }
 
-  std::string simulator_socket() const { return folder_.path("robot"); }
   const std::string& robot() const { return robot_; }
   const TempDir& folder() const { return folder_; }
   bus::Node& node() { return node_; }
@@ -53,13 +50,13 @@ class System {
   std::string output() const;
 
  private:
+  std::string simulator_socket() const { return folder_.path("robot"); }
   std::vector<sim::TraceRow> trace() const;
 
   TempDir folder_;
   std::string robot_ = unique_robot();
-  std::string bridge_port_;
-  bus::Node node_;
-  bus::GoalClient goals_;
+  bus::Node node_{node_options("test", robot_)};
+  bus::GoalClient goals_{node_, "test"};
   std::map<std::string, std::unique_ptr<Process>> processes_;
 };
 

@@ -16,10 +16,7 @@ namespace {
 constexpr std::uint64_t kLook = 50;  // [cycles] between two looks at the graph
 
 WholeOptions from_nothing(const DriveOptions& drive) {
-  WholeOptions options;
-  options.drive = drive;
-  options.map = "none";
-  return options;
+  return WholeOptions{.drive = drive, .map = "none"};
 }
 
 }  // namespace

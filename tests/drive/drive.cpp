@@ -244,8 +244,7 @@ void Drive::guard(reflector::Setpoints& wanted) {
     sonars.push_back({static_cast<std::uint8_t>(reading.sonar), reading.range, reading.echo});
   const std::vector<Edge> edges = this->edges();
   const std::vector<authority::Reading> readings = authority::readings_of(sonars, parameters_);
-  authority::GuardSettings settings;
-  settings.enabled = has_guard_;
+  authority::GuardSettings settings{.enabled = has_guard_};
   echoes_.update(seen_.cycle, seen_.pose_in_odom, readings, edges);
   body_.knows_edges = !edges.empty();
   body_.sees_ahead = echoes_.sees(seen_.cycle, true);

@@ -29,22 +29,22 @@ inline std::string office_with(const std::string& name, const std::string& more)
 }
 
 struct DriveOptions {
-  std::string world = "office-floor";            ///< a name of config/worlds
-  std::shared_ptr<const sim::World> made_world;  ///< instead of it
-  std::string robot = "pioneer";                 ///< a name of config/robots
+  std::string world = "office-floor";                 ///< a name of config/worlds
+  std::shared_ptr<const sim::World> made_world = {};  ///< instead of it
+  std::string robot = "pioneer";                      ///< a name of config/robots
   std::uint64_t seed = 1;
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
-  std::optional<Pose> start_in_world;  ///< else the world's own
-  sim::SonarModel sonar;
+  std::optional<Pose> start_in_world = {};  ///< else the world's own
+  sim::SonarModel sonar = {};
   bool guard = false;  ///< beside the robot, as in the bridge: it slows drives
   /// With the guard, and without intentions: the driver knows the world's walls, with this error of
   /// its place.
-  std::optional<Pose> knows_walls;
+  std::optional<Pose> knows_walls = {};
   double bend = 0.0;  ///< [rad/m] additional turn of dead reckoning
 
   // The services beside behaviors.
   bool interpretation = false;
-  std::optional<registration::Core::Settings> registration;
+  std::optional<registration::Core::Settings> registration = {};
   bool knows_pose = false;  ///< registration gets the robot's start
   bool intentions = false;
   bool vision = false;  ///< the caller sees instead of it, after each cycle

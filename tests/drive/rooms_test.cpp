@@ -105,8 +105,7 @@ TEST_P(Rooms, AreMappedAndDrivenBy) {
   ASSERT_TRUE(built.done()) << built.reason();
   EXPECT_GE(share, 0.9);
 
-  WholeOptions again;
-  again.drive = options;
+  WholeOptions again{.drive = options};
   again.drive.start_in_world = start_pose;
   again.made_map = std::make_shared<const maps::Map>(map);
   Whole whole(again);

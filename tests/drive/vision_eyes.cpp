@@ -16,9 +16,8 @@ namespace {
 constexpr std::array<std::string_view, 3> kColors{"red", "green", "blue"};
 
 vision::Bands bands_of(const std::array<sim::RangeBand, 3>& seen, const sim::StereoCamera& camera) {
-  vision::Bands bands;
-  bands.eye_forward = camera.pose_in_robot.x;
-  bands.uncertainty = 0.5 * camera.disparity / camera.baseline;
+  vision::Bands bands{.eye_forward = camera.pose_in_robot.x,
+                      .uncertainty = 0.5 * camera.disparity / camera.baseline};
   for (std::size_t band = 0; band < seen.size(); ++band)
     for (std::size_t column = 0; column < seen[band].size(); ++column) {
       const auto& range = seen[band][column];

@@ -43,10 +43,7 @@ bool visible(Drive& drive, const Vec2& at) {
 // Drives round those points, or stands.
 Count watch(Stereo stereo, const std::string& world, const std::optional<Pose>& start,
             const std::vector<Vec2>& points, int cycles) {
-  DriveOptions options;
-  options.world = world;
-  options.start_in_world = start;
-  Drive drive(options);
+  Drive drive({.world = world, .start_in_world = start});
   const auto eyes = vision_eyes(stereo);
   Count count;
   std::size_t next = 0;

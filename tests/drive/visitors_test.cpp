@@ -14,8 +14,7 @@ namespace {
 class Visitors : public testing::TestWithParam<const char*> {
  protected:
   WholeOptions options(const std::string& world, std::uint64_t seed = 1) const {
-    WholeOptions options;
-    options.map = "small-office";
+    WholeOptions options{.map = "small-office"};
     options.drive.world = world;
     options.drive.robot = GetParam();
     options.drive.seed = seed;

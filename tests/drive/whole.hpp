@@ -16,13 +16,13 @@
 namespace saphira::test {
 
 struct WholeOptions {
-  DriveOptions drive;
-  std::string map;  ///< a name of config/maps; empty: the world's; none: no map
-  std::shared_ptr<const maps::Map> made_map;  ///< instead of it
-  bool knows_pose = true;                     ///< registration gets the robot's start
-  bool adds_objects = false;                  ///< objects that are not on the map are added to it
+  DriveOptions drive = {};
+  std::string map = {};  ///< a name of config/maps; empty: the world's; none: no map
+  std::shared_ptr<const maps::Map> made_map = {};  ///< instead of it
+  bool knows_pose = true;                          ///< registration gets the robot's start
+  bool adds_objects = false;  ///< objects that are not on the map are added to it
   /// The things that a camera sees after a cycle. None: no camera.
-  std::function<std::vector<lps::SeenThing>(Drive&)> sees;
+  std::function<std::vector<lps::SeenThing>(Drive&)> sees = {};
 };
 
 /// The whole robot in one loop: simulated robot and all services. Repeatable to the last bit, and

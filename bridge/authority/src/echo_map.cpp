@@ -24,11 +24,7 @@ constexpr double kOnEdge = 0.12;  // [m]
 /// take ten seconds past him. He may step into a space that was free, so free space does not make
 /// an echo less believable.
 lps::MemorySettings cautious_memory() {
-  lps::MemorySettings settings;
-  settings.least = 0.0;
-  settings.fading = 0.985;
-  settings.keeps_at_rest = true;
-  return settings;
+  return lps::MemorySettings{.least = 0.0, .fading = 0.985, .keeps_at_rest = true};
 }
 
 /// True where the edge, in the sonar's frame, may have caused the echo.

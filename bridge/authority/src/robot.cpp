@@ -13,12 +13,11 @@ constexpr double kLinkAndServer = 0.2;  // [s] packet, decision, command, motors
 }  // namespace
 
 Body body_of(const protocol::RobotParameters& parameters) {
-  Body body;
-  body.radius = parameters.radius;
-  body.max_velocity = parameters.max_velocity;
-  body.max_rotation_velocity = parameters.max_rotation_velocity;
-  body.deceleration = parameters.deceleration;
-  body.sonar_range = parameters.sonar_max_range;
+  Body body{.radius = parameters.radius,
+            .max_velocity = parameters.max_velocity,
+            .max_rotation_velocity = parameters.max_rotation_velocity,
+            .deceleration = parameters.deceleration,
+            .sonar_range = parameters.sonar_max_range};
   // The mean wait for a sonar's turn is half a round.
   const double round = parameters.sonar_period * static_cast<double>(parameters.sonars.size()) /
                        std::max(parameters.sonar_arrays, 1);

@@ -164,8 +164,7 @@ TEST(EchoMap, KnowsWhereSonarsLook) {
 }
 
 TEST(Robot, ReadingsOfAPacket) {
-  protocol::RobotParameters parameters;
-  parameters.sonars = {{0, {0.1, 0.1, kPi / 2}}, {3, {0.13, 0.0, 0.0}}};
+  protocol::RobotParameters parameters{.sonars = {{0, {0.1, 0.1, kPi / 2}}, {3, {0.13, 0.0, 0.0}}}};
   const auto readings = readings_of({{3, 1.0, true}, {0, 5.0, false}, {9, 1.0, true}}, parameters);
   ASSERT_EQ(readings.size(), 2U) << "a sonar that no file places is left out";
   EXPECT_EQ(readings[0].sonar, 3);

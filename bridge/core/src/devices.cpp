@@ -10,14 +10,13 @@ std::optional<Answer> Core::device(const Request& request) {
   if (!in_session())
     return Answer{AnswerCode::nobody, "no robot is connected"};
   try {
-    const reflector::Wish wish = reflector::wish_of(request);
-    if (const auto* said = std::get_if<reflector::VisionWish>(&wish)) {
-      if (!settings_.vision)
-        return Answer{AnswerCode::refused,
-                      "the bridge was started without --vision: it knows of no vision system"};
-      put(VisionSet{said->text});
-    }
-    reflector_.request(request, wish);
+    const bool says = request.functor == "say";
+    if (says && !settings_.vision)
+      return Answer{AnswerCode::refused,
+                    "the bridge was started without --vision: it knows of no vision system"};
+    reflector_.request(request);
+    if (says)
+      put(VisionSet{text_of(request.arguments, "text")});
     return std::nullopt;
   } catch (const std::invalid_argument& error) {
     return Answer{AnswerCode::bad_argument, error.what()};

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "limits.hpp"
-#include "saphira/authority/age.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"

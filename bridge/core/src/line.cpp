@@ -17,6 +17,8 @@ constexpr int kBegins = 5;  // whole packets in motion, after which it is heard
 constexpr int kForgiven = 2;      // times
 constexpr double kStands = 20.0;  // [s] at the first time not forgiven; then doubled...
 constexpr double kMostStands = 300.0;
+constexpr double kShown = 2.0;   // [s] of a doubt in the status
+constexpr double kPause = 10.0;  // [s] between two doubts in the log
 
 }  // namespace
 
@@ -73,6 +75,25 @@ std::string Line::why_it_stands(double now) const {
   return "the robot is not heard while it moves (" + std::to_string(unheard_) + " times now" +
          (bad() ? ", " + damaged_words() : "") + "): it stands for another " +
          plain(std::ceil(stands_until_ - now)) + " s";
+}
+
+void Doubts::add(const protocol::Impossible& impossible, double now) {
+  ++count_;
+  at_ = now;
+  news_ = true;
+  newest_ = impossible.what;
+}
+
+std::string Doubts::newest(double now) const {
+  return count_ > 0 && now - at_ <= kShown ? newest_ : "";
+}
+
+std::optional<std::string> Doubts::take_words(double now) {
+  if (!news_ || now - told_ < kPause)
+    return std::nullopt;
+  news_ = false;
+  told_ = now;
+  return newest_;
 }
 
 }  // namespace saphira::bridge

@@ -242,8 +242,7 @@ class Bridge : public saphira::test::LinePlayer {
   protocol::Bytes packet(const std::string& what, std::istringstream& in) const {
     protocol::Bytes bytes = protocol::encode(s_->shown);
     if (what == "config") {
-      protocol::ConfigPacket set;
-      set.deceleration = read<std::uint16_t>(in);
+      protocol::ConfigPacket set{.deceleration = read<std::uint16_t>(in)};
       return protocol::encode(set);
     }
     if (what == "impossible") {  // a speed that the robot does not have

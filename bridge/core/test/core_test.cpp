@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "saphira/bridge/line.hpp"
 #include "scene.hpp"
 
 namespace saphira::bridge::test {
@@ -27,8 +28,7 @@ TEST(Session, AnAnswerToAnEarlierQuestionDoesNotMakeALineFast) {
     Scene scene;
     connect_slowly(scene, 0.1 * delay);
     ASSERT_TRUE(scene.core.in_session());
-    protocol::ConfigPacket set;
-    set.deceleration = 600;
+    protocol::ConfigPacket set{.deceleration = 600};
     std::vector<int> answers;  // cycles in which one comes
     bool measured = false;
     for (int i = 0; i < 100; ++i) {
@@ -75,8 +75,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
   EXPECT_GT(slow, 0.1);
   EXPECT_LT(slow, 0.22);
   // The machine was busy: the next answer comes at once.
-  protocol::ConfigPacket set;
-  set.deceleration = 600;
+  protocol::ConfigPacket set{.deceleration = 600};
   for (int i = 0; i < 35; ++i) {
     scene.cycles(1, Role::behaviors, 0.4);
     if (scene.was_sent(protocol::ConfigRequest{1}))
@@ -205,6 +204,25 @@ TEST(Audit, NobodyFillsItWithReports) {
   EXPECT_EQ(taken({"flakey", "operator"}, 59.0), Reports::kMost + 1);
   EXPECT_EQ(taken({"flakey", "services"}, 59.0), 1000U);
   EXPECT_EQ(taken(liar, 60.0), Reports::kMost + 1);
+}
+
+TEST(Doubts, AreShownForAWhileAndToldNowAndThen) {
+  Doubts doubts;
+  EXPECT_EQ(doubts.newest(0.5), "");
+  EXPECT_FALSE(doubts.take_words(0.5));
+  doubts.add({"sonar number 40", false}, 1.0);
+  EXPECT_EQ(doubts.newest(2.9), "sonar number 40");
+  EXPECT_EQ(doubts.newest(3.1), "");
+  EXPECT_EQ(doubts.take_words(1.0), "sonar number 40");
+  doubts.add({"a turn of 183 rad/s", true}, 1.1);
+  EXPECT_EQ(doubts.newest(1.1), "a turn of 183 rad/s");
+  EXPECT_FALSE(doubts.take_words(1.1)) << "ten a second would be read by nobody";
+  EXPECT_EQ(doubts.take_words(11.2), "a turn of 183 rad/s");
+  EXPECT_FALSE(doubts.take_words(30.0)) << "nothing new";
+  EXPECT_EQ(doubts.count(), 2U);
+  doubts.reset();
+  EXPECT_EQ(doubts.count(), 0U);
+  EXPECT_EQ(doubts.newest(11.2), "");
 }
 
 }  // namespace

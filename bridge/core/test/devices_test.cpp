@@ -80,9 +80,7 @@ TEST(DevicesOfTheCore, TheVisionSystemIsAskedWhereItIsUsed) {
   const Request mode{"say", {text("text", "pioneer_a_mode=2")}};
   Driven without;
   EXPECT_EQ(ask(without, mode).value().code, AnswerCode::refused);
-  CoreSettings settings;
-  settings.vision = true;
-  Scene scene(settings);
+  Scene scene({.vision = true});
   scene.connect();
   EXPECT_EQ(ask(scene, mode), std::nullopt);
   ASSERT_TRUE(scene.has<VisionSet>());
@@ -105,9 +103,7 @@ TEST(DevicesOfTheCore, PacketsThatNobodyReadsAreToldOnce) {
 
 TEST(DevicesOfTheCore, ARobotOfAnotherCycleIsToldOnce) {
   Driven scene;
-  protocol::ConfigPacket set;
-  set.serial = "P3";
-  set.cycle = 50;
+  protocol::ConfigPacket set{.serial = "P3", .cycle = 50};
   for (int i = 0; i < 2; ++i) {
     scene.say(protocol::encode(set));
     scene.pass(0.05);

@@ -34,9 +34,8 @@ class Script {
 };
 
 protocol::RobotParameters parameters_of(unsigned kind) {
-  protocol::RobotParameters robot;
-  robot.protocol = static_cast<protocol::Protocol>(kind % 3);
-  robot.sonar_arrays = 1;
+  protocol::RobotParameters robot{.protocol = static_cast<protocol::Protocol>(kind % 3),
+                                  .sonar_arrays = 1};
   for (std::uint8_t i = 0; i < 8; ++i)
     robot.sonars.push_back({i, {0.15, 0.0, radians(45.0 * i)}});
   return robot;
@@ -175,9 +174,7 @@ void Player::pass(double seconds) {
     rules_.tick();
   else if (core_.may_connect(now_))
     link_open_ = true;
-  Surroundings around;
-  around.link_open = link_open_;
-  around.serial = serial_;
+  Surroundings around{.link_open = link_open_, .serial = serial_};
   if (namesake_)
     around.namesake = "another";
   core_.tick(now_, around);

@@ -92,31 +92,22 @@ Argument read_argument(ByteView body, bool counted) {
   }
 }
 
-void put32(Bytes& out, int value) {
-  for (unsigned shift = 0; shift < 32; shift += 8)
-    out.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(value) >> shift & 0xFFU));
-}
-
 // MobileSim: three 32-bit integers behind a meaningless type byte.
 Bytes with_pose(Number number, const Pose& pose) {
   Bytes body{static_cast<std::uint8_t>(number), kArgInt};
-  put32(body, rounded(pose.x * 1000.0, -2'000'000'000, 2'000'000'000));
-  put32(body, rounded(pose.y * 1000.0, -2'000'000'000, 2'000'000'000));
-  put32(body, std::isfinite(pose.th) ? rounded(degrees(norm2_angle(pose.th)), -180, 180) : 0);
+  put(body, rounded(pose.x * 1000.0, -2'000'000'000, 2'000'000'000));
+  put(body, rounded(pose.y * 1000.0, -2'000'000'000, 2'000'000'000));
+  put(body, std::isfinite(pose.th) ? rounded(degrees(norm2_angle(pose.th)), -180, 180) : 0);
   return frame(body);
 }
 
 std::optional<Pose> read_pose(ByteView body) {
   if (body.size() < 14)
     return std::nullopt;
-  std::array<double, 3> values{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      word |= static_cast<std::uint32_t>(body[2 + 4 * i + k]) << 8U * k;
-    values[i] = static_cast<std::int32_t>(word);
-  }
-  return Pose{values[0] / 1000.0, values[1] / 1000.0, norm2_angle(radians(values[2]))};
+  Fields in(body.subspan(2));
+  const double x = in.number<std::int32_t>() / 1000.0;
+  const double y = in.number<std::int32_t>() / 1000.0;
+  return Pose{x, y, norm2_angle(radians(in.number<std::int32_t>()))};
 }
 
 // A command that is a number and an argument.
@@ -339,10 +330,9 @@ Bytes encode_sync2_reply(const RobotIdentity& identity) {
   Bytes body{2};
   std::size_t left = kMaxBody - 1 - 3;  // the three NULs
   for (const std::string* text : {&identity.name, &identity.robot_class, &identity.subclass}) {
-    const std::size_t size = std::min(text->find('\0'), std::min(text->size(), left));
-    body.insert(body.end(), text->begin(), text->begin() + static_cast<std::ptrdiff_t>(size));
-    body.push_back(0);
-    left -= size;
+    const std::size_t before = body.size();
+    put(body, text->substr(0, left));
+    left -= body.size() - before - 1;
   }
   return frame(body);
 }
@@ -356,13 +346,10 @@ std::optional<int> sync_number(ByteView body) {
 std::optional<RobotIdentity> decode_sync2_reply(ByteView body) {
   if (body.empty() || body[0] != 2)
     return std::nullopt;
+  Fields in(body.subspan(1));
   RobotIdentity identity;
-  auto at = body.begin() + 1;
-  for (std::string* text : {&identity.name, &identity.robot_class, &identity.subclass}) {
-    const auto end = std::find(at, body.end(), 0);
-    *text = printable({at, end});
-    at = end == body.end() ? end : end + 1;
-  }
+  for (std::string* text : {&identity.name, &identity.robot_class, &identity.subclass})
+    *text = in.string();
   return identity;
 }
 

@@ -91,8 +91,8 @@ Bytes encode(const InformationPacket& packet) {
   Bytes body;
   body.reserve(kMinBody + 3 * packet.sonars.size());
   body.push_back(static_cast<std::uint8_t>(0x30U | static_cast<unsigned>(packet.motors)));
-  put16(body, packet.x & kPositionMask);
-  put16(body, packet.y & kPositionMask);
+  put(body, static_cast<std::uint16_t>(packet.x & kPositionMask));
+  put(body, static_cast<std::uint16_t>(packet.y & kPositionMask));
   each_before_sonars(packet, PutField{body});
   Bytes trailing;
   put_trailing(trailing, packet.trailing);
@@ -101,7 +101,7 @@ Bytes encode(const InformationPacket& packet) {
   body.push_back(static_cast<std::uint8_t>(count));
   for (std::size_t i = 0; i < count; ++i) {
     body.push_back(packet.sonars[i].number);
-    put16(body, unsigned{packet.sonars[i].range});
+    put(body, packet.sonars[i].range);
   }
   each_behind_sonars(packet, PutField{body});
   body.insert(body.end(), trailing.begin(), trailing.end());
@@ -125,13 +125,13 @@ std::optional<InformationPacket> decode_information(ByteView body) {
     default:
       return std::nullopt;
   }
-  packet.x = static_cast<std::uint16_t>(in.u16() & kPositionMask);
-  packet.y = static_cast<std::uint16_t>(in.u16() & kPositionMask);
+  packet.x = static_cast<std::uint16_t>(in.number<std::uint16_t>() & kPositionMask);
+  packet.y = static_cast<std::uint16_t>(in.number<std::uint16_t>() & kPositionMask);
   each_before_sonars(packet, GetField{in});
   const std::size_t count = in.u8();
   for (std::size_t i = 0; i < count && !in.ended(); ++i) {
     const std::uint8_t number = in.u8();
-    packet.sonars.push_back({number, in.u16()});
+    packet.sonars.push_back({number, in.number<std::uint16_t>()});
   }
   if (in.ended())
     return std::nullopt;

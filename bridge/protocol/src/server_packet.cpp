@@ -133,8 +133,8 @@ void fields(Is<SimStatusPacket> auto& p, const auto& visit) {
 
 struct Put : PutField {
   using PutField::operator();
-  void operator()(const std::string& text) const { put_string(out, text); }
-  void operator()(VisionChannel::Mode mode) const { put8(out, static_cast<unsigned>(mode)); }
+  void operator()(const std::string& text) const { put(out, text); }
+  void operator()(VisionChannel::Mode mode) const { put(out, static_cast<std::uint8_t>(mode)); }
   void operator()(const GyroPacket::Reading& reading) const {
     (*this)(reading.rate);
     (*this)(reading.temperature);
@@ -143,7 +143,7 @@ struct Put : PutField {
   template <class T>
   void operator()(const std::vector<T>& items, std::size_t most) const {
     const std::size_t count = std::min(items.size(), most);
-    put8(out, static_cast<unsigned>(count));
+    put(out, static_cast<std::uint8_t>(count));
     for (std::size_t i = 0; i < count; ++i)
       (*this)(items[i]);
   }
@@ -273,11 +273,8 @@ std::string_view packet_type_name(std::uint8_t type) {
 ConfigPacket config_of(const RobotParameters& parameters, const std::string& name,
                        const std::string& serial) {
   const RobotParameters& p = parameters;
-  ConfigPacket c;
-  c.robot_class = p.robot_class;
-  c.subclass = p.subclass;
-  c.serial = serial;
-  c.four_motors = 0;
+  ConfigPacket c{
+      .robot_class = p.robot_class, .subclass = p.subclass, .serial = serial, .four_motors = 0};
   // The top values are the robot's limits, the others its present settings.
   c.rotation_velocity_top = c.rotation_velocity_max = counts(degrees(p.max_rotation_velocity));
   c.velocity_top = c.velocity_max = counts(p.max_velocity * 1000.0);

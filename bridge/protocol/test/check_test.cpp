@@ -6,8 +6,7 @@ namespace saphira::protocol {
 namespace {
 
 RobotParameters robot(Protocol protocol) {
-  RobotParameters p;
-  p.protocol = protocol;
+  RobotParameters p{.protocol = protocol};
   p.sonars.resize(7);
   p.encoder_unit = 1e-5;
   return p;
@@ -41,10 +40,7 @@ class CheckTest : public ::testing::Test {
     client(Open{});
   }
   static InformationPacket information() {
-    InformationPacket packet;
-    packet.battery = 120;
-    packet.sonars = {{0, 1000}, {6, 2000}};
-    return packet;
+    return InformationPacket{.battery = 120, .sonars = {{0, 1000}, {6, 2000}}};
   }
   /// The last finding, which must be the only violation.
   std::string only() {

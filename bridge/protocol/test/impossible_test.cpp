@@ -19,10 +19,7 @@ RobotParameters robot(const std::string& name) {
 }
 
 InformationPacket usual() {
-  InformationPacket packet;
-  packet.battery = 125;
-  packet.sonars = {{0, 1000}, {6, 2000}};
-  return packet;
+  return InformationPacket{.battery = 125, .sonars = {{0, 1000}, {6, 2000}}};
 }
 
 struct Case {

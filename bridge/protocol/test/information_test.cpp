@@ -12,25 +12,23 @@ Bytes body_of(const Bytes& packet) {
 }
 
 InformationPacket sample() {
-  InformationPacket p;
-  p.motors = Motors::kMoving;
-  p.x = 0x7FFE;
-  p.y = 0x1234;
-  p.th = -256;
-  p.left_velocity = -40;
-  p.right_velocity = 100;
-  p.battery = 126;
-  p.left_stall = 1;
-  p.right_stall = 0;
-  p.control = 512;
-  p.ptu = 1500;
-  p.say = 3;
-  p.sonars = {{3, 5000}, {0, 28836}};
-  p.timer = 77;
-  p.analog = 200;
-  p.digital_input = 0x0F;
-  p.digital_output = 0xA5;
-  return p;
+  return InformationPacket{.motors = Motors::kMoving,
+                           .x = 0x7FFE,
+                           .y = 0x1234,
+                           .th = -256,
+                           .left_velocity = -40,
+                           .right_velocity = 100,
+                           .battery = 126,
+                           .left_stall = 1,
+                           .right_stall = 0,
+                           .control = 512,
+                           .ptu = 1500,
+                           .say = 3,
+                           .sonars = {{3, 5000}, {0, 28836}},
+                           .timer = 77,
+                           .analog = 200,
+                           .digital_input = 0x0F,
+                           .digital_output = 0xA5};
 }
 
 // Table 5-5 in order; little-endian; one stall field of two bytes.
@@ -191,11 +189,9 @@ TEST(Information, InSiUnits) {
 // 5000 means that no echo was received, whatever the robot's unit of range.
 TEST(Information, FiveThousandMillimetresAreNoEcho) {
   for (const double unit : {0.1734e-3, 0.229e-3, 0.268e-3, 1e-3}) {
-    RobotParameters parameters;
-    parameters.range_unit = unit;
-    InformationPacket p;
-    p.sonars = {{0, static_cast<std::uint16_t>(std::lround(5.0 / unit))},
-                {1, static_cast<std::uint16_t>(std::lround(5.0 / unit) - 2)}};
+    RobotParameters parameters{.range_unit = unit};
+    InformationPacket p{.sonars = {{0, static_cast<std::uint16_t>(std::lround(5.0 / unit))},
+                                   {1, static_cast<std::uint16_t>(std::lround(5.0 / unit) - 2)}}};
     const Information in = interpret(p, parameters);
     EXPECT_FALSE(in.sonars[0].echo) << unit;
     EXPECT_TRUE(in.sonars[1].echo) << unit;

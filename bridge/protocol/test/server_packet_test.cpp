@@ -37,22 +37,20 @@ TEST(ServerPacket, SurviveTheWire) {
   EXPECT_EQ(std::get<IoPacket>(decode_packet(body_of(encode(io)))), io);
   const AuxPacket aux{3, {0, 1, 2}};
   EXPECT_EQ(std::get<AuxPacket>(decode_packet(body_of(encode(aux)))), aux);
-  InformationPacket information;
-  information.sonars = {{3, 1000}};
+  InformationPacket information{.sonars = {{3, 1000}}};
   EXPECT_EQ(std::get<InformationPacket>(decode_packet(body_of(encode(information)))), information);
 }
 
 // The place of each field, from the client's reader.
 TEST(ServerPacket, Config) {
-  RobotParameters p;
-  p.robot_class = "Pioneer";
-  p.subclass = "p3dx-sh";
-  p.protocol = Protocol::kArcos;
-  p.max_velocity = 0.75;
-  p.front_bumpers = 5;
-  p.switch_to_baud = 38400;
-  p.encoder_unit = 0.001 / 128;
-  p.watchdog = 2.0;
+  RobotParameters p{.robot_class = "Pioneer",
+                    .subclass = "p3dx-sh",
+                    .protocol = Protocol::kArcos,
+                    .switch_to_baud = 38400,
+                    .watchdog = 2.0,
+                    .front_bumpers = 5,
+                    .encoder_unit = 0.001 / 128,
+                    .max_velocity = 0.75};
   const ConfigPacket config = config_of(p, "MyRobot", "1234");
   const Bytes body = body_of(encode(config));
   const std::string strings = std::string("Pioneer\0p3dx-sh\0", 16) + std::string("1234\0", 5);

@@ -21,10 +21,8 @@ void Reflector::configure(const protocol::RobotParameters& parameters) {
   parameters_.deceleration = std::max(parameters.deceleration, parameters.stop_deceleration);
   parameters_.rotation_deceleration =
       std::max(parameters.rotation_deceleration, parameters.stop_rotation_deceleration);
-  Odometry::Settings odometry;
-  odometry.distance_unit = parameters.distance_unit;
-  odometry.max_velocity = parameters.max_velocity;
-  odometry_.configure(odometry);
+  odometry_.configure(
+      {.distance_unit = parameters.distance_unit, .max_velocity = parameters.max_velocity});
   motion_.configure({parameters.max_velocity, parameters.max_rotation_velocity,
                      std::min(kGentle, parameters.deceleration)});
 }

@@ -1,8 +1,14 @@
+// The cases of connection.txt, and a line that echoes or loses packets.
 #include "saphira/reflector/connection.hpp"
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
+#include "lines.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::reflector {
 namespace {
@@ -26,35 +32,45 @@ Bytes identity(const std::string& name, const std::string& kind, const std::stri
   return body(protocol::encode_sync2_reply({name, kind, sub}));
 }
 
-TEST(Connection, SynchronizesAndOpens) {
-  Connection c;
-  EXPECT_EQ(numbers(c.begin(1.0)), std::vector<int>{0});
-  EXPECT_EQ(numbers(c.packet(Bytes{0}, 1.0)), std::vector<int>{1});
-  EXPECT_EQ(numbers(c.packet(Bytes{0}, 1.0)), std::vector<int>{}) << "a late echo";
-  EXPECT_EQ(numbers(c.packet(Bytes{1}, 1.0)), std::vector<int>{2});
-  EXPECT_FALSE(c.open());
-  EXPECT_EQ(numbers(c.packet(identity("Robot", "Pioneer", "PION1M"), 1.0)), std::vector<int>{1});
-  EXPECT_TRUE(c.open());
-  EXPECT_EQ(c.identity().subclass, "PION1M");
-}
+/// One case, at 1 s of its clock.
+class Session : public saphira::test::LinePlayer {
+ public:
+  Session() {
+    events_ = {{"at", [this](auto& in) { now_ = read<double>(in); }},
+               {"begin", [this](auto& in) { sent_ = c_.begin(now_, rest(in) == "in a session"); }},
+               {"tick", [this](auto&) { sent_ = c_.tick(now_); }},
+               {"due", [this](auto&) { sent_ = c_.tick(now_ = c_.due()); }},
+               {"packet",
+                [this](auto& in) {
+                  Bytes bytes;
+                  for (int byte = 0; in >> byte;)
+                    bytes.push_back(static_cast<std::uint8_t>(byte));
+                  sent_ = c_.packet(bytes, now_);
+                }},
+               {"name", [this](auto& in) {
+                  const auto name = read<std::string>(in);
+                  const auto kind = read<std::string>(in);
+                  sent_ = c_.packet(identity(name, kind, rest(in)), now_);
+                }}};
+    facts_ = {
+        {"sent",
+         [this] { return joined(numbers(sent_), " ", [](int n) { return std::to_string(n); }); }},
+        {"open", [this] { return yes(c_.open()); }},
+        {"hopeless", [this] { return yes(c_.is_hopeless(now_)); }},
+        {"kind", [this] { return c_.identity().robot_class; }},
+        {"subclass", [this] { return c_.identity().subclass; }},
+        {"waits for", [this] { return c_.waiting_for(); }},
+        {"round trip", [this] { return decimal(c_.round_trip(), 6); }}};
+  }
 
-TEST(Connection, DoesNotReviveARobotBehindALine) {
-  Connection c;
-  EXPECT_EQ(numbers(c.begin(1.0, true)), (std::vector<int>{11, 21, 0}));
-  EXPECT_EQ(numbers(c.tick(c.due())), (std::vector<int>{11, 21, 0}));
-  EXPECT_EQ(numbers(c.packet(Bytes{0}, 2.0)), std::vector<int>{1});
-}
+ private:
+  Connection c_;
+  Packets sent_;
+  double now_ = 1.0;
+};
 
-TEST(Connection, RepeatsWhatIsNotAnswered) {
-  Connection c;
-  c.begin(1.0);
-  EXPECT_TRUE(c.tick(1.1).empty());
-  EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{0});
-  c.packet(Bytes{0}, 2.0);
-  for (int i = 0; i < 19; ++i)
-    EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{1});
-  EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{0}) << "from the beginning";
-  EXPECT_NE(c.waiting_for().find("SYNC0"), std::string::npos);
+TEST(Connection, OpensAsWritten) {
+  EXPECT_EQ(saphira::test::play<Session>("bridge/reflector/test/connection.txt"), 7);
 }
 
 TEST(Connection, ALineThatEchoesIsNoRobot) {
@@ -78,59 +94,6 @@ TEST(Connection, ALineThatEchoesIsNoRobot) {
   c.packet(Bytes{1}, now);
   c.packet(identity("Robot", "Pioneer", "PION1M"), now);
   EXPECT_TRUE(c.open());
-}
-
-TEST(Connection, AnOldServerSaysNoName) {
-  Connection c;
-  c.begin(1.0);
-  c.packet(Bytes{0}, 1.0);
-  c.packet(Bytes{1}, 1.0);
-  EXPECT_EQ(numbers(c.packet(Bytes{2}, 1.0)), (std::vector<int>{11, 21})) << "is it an echo?";
-  EXPECT_FALSE(c.open());
-  EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{2});
-  c.packet(Bytes{2}, 1.3);
-  EXPECT_TRUE(c.open());
-  EXPECT_EQ(c.identity().robot_class, "");
-}
-
-TEST(Connection, MeasuresHowSlowTheLineIs) {
-  Connection c;
-  c.begin(1.0);
-  for (double now = 1.2; now < 1.75; now += 0.2)
-    c.tick(now);
-  c.packet(Bytes{0}, 1.8);
-  c.tick(2.0);
-  c.packet(Bytes{0}, 2.0);  // answers to the repeated packet
-  c.packet(Bytes{1}, 2.6);
-  EXPECT_NEAR(c.round_trip(), 0.8, 1e-9);
-  c.packet(identity("Robot", "Pioneer", "PION1M"), 3.3);
-  EXPECT_NEAR(c.round_trip(), 0.7, 1e-9);
-}
-
-TEST(Connection, LosesHopeWhenNothingLeadsOn) {
-  Connection c;
-  EXPECT_FALSE(c.is_hopeless(100.0)) << "nothing was begun";
-  c.begin(1.0);
-  EXPECT_FALSE(c.is_hopeless(1.0 + Connection::kPatience));
-  EXPECT_TRUE(c.is_hopeless(1.1 + Connection::kPatience));
-  c.packet(Bytes{0}, 5.0);
-  EXPECT_FALSE(c.is_hopeless(9.0)) << "an answer came";
-  c.packet(Bytes{0}, 9.5);
-  EXPECT_TRUE(c.is_hopeless(10.1)) << "an echo twice leads nowhere";
-  c.packet(Bytes{1}, 10.2);
-  c.packet(identity("R", "Pioneer", "p3dx"), 10.3);
-  EXPECT_TRUE(c.open());
-  EXPECT_FALSE(c.is_hopeless(100.0));
-}
-
-TEST(Connection, ClosesAServerThatIsStillOpen) {
-  Connection c;
-  c.begin(1.0);
-  EXPECT_EQ(numbers(c.packet(Bytes{0x32, 0, 0}, 1.05)), (std::vector<int>{11, 21, 2, 0}));
-  EXPECT_TRUE(c.packet(Bytes{0x32, 0, 0}, 1.06).empty()) << "was on its way";
-  EXPECT_EQ(numbers(c.packet(Bytes{0x33, 0, 0}, 1.3)), (std::vector<int>{11, 21, 2, 0}))
-      << "did not hear it";
-  EXPECT_EQ(numbers(c.packet(Bytes{0}, 1.4)), std::vector<int>{1});
 }
 
 // A server that follows the manual, over a line that loses a third of the packets each way.

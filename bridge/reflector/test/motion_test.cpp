@@ -12,9 +12,7 @@ const Limits kPioneer{0.4, radians(100.0), 0.5};
 
 TEST(DirectMotion, TheChannelsAreIndependent) {
   DirectMotion direct(kPioneer);
-  Motion m;
-  m.translation = Translation::velocity;
-  m.velocity = 0.2;
+  Motion m{.translation = Translation::velocity, .velocity = 0.2};
   direct.set(m, {});
   EXPECT_EQ(direct.setpoints(), (Setpoints{0.2, false, 0.0, 0.0}));
   m = {};
@@ -33,10 +31,7 @@ TEST(DirectMotion, TheChannelsAreIndependent) {
 
 TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
   DirectMotion direct(kPioneer);
-  Motion m;
-  m.rotation = Rotation::relative_heading;
-  m.heading = kPi / 2;
-  m.move = 1;
+  Motion m{.move = 1, .rotation = Rotation::relative_heading, .heading = kPi / 2};
   direct.set(m, {0, 0, 3.0});
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.0 + kPi / 2), 1e-12);
   direct.set(m, {0, 0, 3.5});
@@ -50,11 +45,7 @@ TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
 
 TEST(DirectMotion, AMoveThatIsOverStaysSoWhoeverElseDrives) {
   DirectMotion direct(kPioneer);
-  Motion mine;
-  mine.translation = Translation::position;
-  mine.distance = 1.0;
-  mine.move = 5;
-  mine.driver = 1;
+  Motion mine{.translation = Translation::position, .distance = 1.0, .move = 5, .driver = 1};
   direct.set(mine, {});
   for (std::uint64_t driver = 2; driver < 1000; ++driver) {
     direct.stop();
@@ -69,11 +60,7 @@ TEST(DirectMotion, AMoveThatIsOverStaysSoWhoeverElseDrives) {
 
 TEST(DirectMotion, AnInterruptedMoveIsOver) {
   DirectMotion direct(kPioneer);
-  Motion m;
-  m.translation = Translation::position;
-  m.distance = 1.0;
-  m.move = 7;
-  m.driver = 1;
+  Motion m{.translation = Translation::position, .distance = 1.0, .move = 7, .driver = 1};
   direct.set(m, {});
   EXPECT_GT(direct.setpoints().velocity, 0.0);
   direct.stop();
@@ -115,11 +102,8 @@ TEST(DirectMotion, APositionIsReachedWithinTheManualsTolerance) {
   for (const double distance : {1.0, -1.0, 0.3, 0.05, 5.0, -0.02}) {
     for (const double speed : {0.0, 0.1, 0.2, 0.4}) {
       DirectMotion direct(kPioneer);
-      Motion m;
-      m.translation = Translation::position;
-      m.distance = distance;
-      m.velocity = speed;
-      m.move = 1;
+      Motion m{
+          .translation = Translation::position, .velocity = speed, .distance = distance, .move = 1};
       direct.set(m, {});
       EXPECT_EQ(direct.distance_left(), distance);
       double top = 0.0;

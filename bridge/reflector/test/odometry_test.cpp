@@ -13,10 +13,7 @@ namespace {
 constexpr double kUnit = 0.079e-3;  // m a count, the manual's Pioneer (section 10)
 
 Odometry::Settings settings() {
-  Odometry::Settings s;
-  s.distance_unit = kUnit;
-  s.max_velocity = 0.4;
-  return s;
+  return Odometry::Settings{.distance_unit = kUnit, .max_velocity = 0.4};
 }
 
 /// The packet of a server for a pose in its own frame.

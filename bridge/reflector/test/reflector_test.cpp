@@ -11,11 +11,8 @@ namespace {
 using protocol::InformationPacket;
 
 protocol::RobotParameters pioneer() {
-  protocol::RobotParameters p;
-  p.angle_unit = 0.0061359;
-  p.distance_unit = 0.05066e-3;
-  p.velocity_unit = 2.5332e-3;
-  return p;
+  return protocol::RobotParameters{
+      .angle_unit = 0.0061359, .distance_unit = 0.05066e-3, .velocity_unit = 2.5332e-3};
 }
 
 Reflector open_reflector() {
@@ -32,14 +29,13 @@ TEST(Reflector, ZerosFirstThenTheState) {
   EXPECT_EQ(first[0], protocol::Command(protocol::Velocity{0.0}));
   EXPECT_EQ(first[1], protocol::Command(protocol::RotationVelocity{0.0}));
 
-  InformationPacket packet;
-  packet.motors = protocol::Motors::kMoving;
-  packet.x = 1000;
-  packet.left_velocity = 100;
-  packet.right_velocity = 110;
-  packet.battery = 126;
-  packet.left_stall = 1;
-  packet.sonars = {{3, 5000}, {4, 40000}};
+  InformationPacket packet{.motors = protocol::Motors::kMoving,
+                           .x = 1000,
+                           .left_velocity = 100,
+                           .right_velocity = 110,
+                           .battery = 126,
+                           .left_stall = 1,
+                           .sonars = {{3, 5000}, {4, 40000}}};
   const State& s = r.packet(packet, 0.1, 2);
   EXPECT_EQ(s.cycle, 1U);
   EXPECT_EQ(s.odom, 1U);
@@ -54,8 +50,7 @@ TEST(Reflector, ZerosFirstThenTheState) {
 
 TEST(Reflector, CountsPacketsPerSecond) {
   Reflector r = open_reflector();
-  InformationPacket packet;
-  packet.sonars = {{0, 1000}, {1, 1000}, {2, 1000}};
+  InformationPacket packet{.sonars = {{0, 1000}, {1, 1000}, {2, 1000}}};
   for (int cycle = 1; cycle <= 25; ++cycle) {
     r.packet(packet, 0.1 * cycle, 2);
     EXPECT_EQ(r.state().motor_packets_per_s, std::min(10U, static_cast<unsigned>(cycle)));
@@ -71,8 +66,7 @@ TEST(Reflector, ABucketHoldsTheNewestReadingOfItsSonar) {
   Reflector r;
   r.configure(parameters);
   r.open(0.0, {}, 1);
-  InformationPacket packet;
-  packet.sonars = {{4, 2000}, {1, 1000}};
+  InformationPacket packet{.sonars = {{4, 2000}, {1, 1000}}};
   r.packet(packet, 0.1, 2);
   packet.sonars = {{4, 1500}};
   const State& state = r.packet(packet, 0.2, 2);
@@ -101,10 +95,7 @@ TEST(Reflector, HeadingsAreInOdomWhateverTheServersFrame) {
   packet.x = 5;
   r.packet(packet, 0.1, 2);
   EXPECT_EQ(r.state().pose_in_odom.th, 0.0);
-  Motion m;
-  m.rotation = Rotation::heading;
-  m.heading = radians(-60.0);
-  r.set(m);
+  r.set({.rotation = Rotation::heading, .heading = radians(-60.0)});
   r.hold(r.motion().setpoints());
   const auto out = r.due(0.1);
   ASSERT_EQ(out.size(), 1U);
@@ -115,13 +106,9 @@ TEST(Reflector, HeadingsAreInOdomWhateverTheServersFrame) {
 
 TEST(Reflector, ALostOdomFrameStopsTheMotionThatWasMeantInIt) {
   Reflector r = open_reflector();
-  InformationPacket packet;
-  packet.x = 20000;
+  InformationPacket packet{.x = 20000};
   r.packet(packet, 0.1, 2);
-  Motion m;
-  m.rotation = Rotation::heading;
-  m.heading = 1.0;
-  r.set(m);
+  r.set({.rotation = Rotation::heading, .heading = 1.0});
   packet.x = 0;
   r.packet(packet, 0.2, 2);
   EXPECT_EQ(r.state().odom, 2U);

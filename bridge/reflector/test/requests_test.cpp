@@ -6,6 +6,7 @@
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/reflector/devices.hpp"
+#include "trouble.hpp"
 
 namespace saphira::reflector {
 namespace {
@@ -26,17 +27,16 @@ Request request_of(std::istringstream& in) {
   return request;
 }
 
-/// Makes a request as the bridge does. Throws std::invalid_argument with the mistake.
-Wish wish_for(Request request) {
+/// As the bridge checks a request. Throws std::invalid_argument with the mistake.
+Request checked(Request request) {
   for (const Device device : kEnumerators<Device>) {
     const auto refused = refusal(functors(device), request);
     if (refused && refused->code == AnswerCode::unknown_functor)
       continue;
     if (refused)
       throw std::invalid_argument(refused->text);
-    const Wish wish = wish_of(request);
-    EXPECT_EQ(wish.index(), static_cast<std::size_t>(device));
-    return wish;
+    EXPECT_EQ(wish_of(request, {}, 0).device, device);
+    return request;
   }
   throw std::invalid_argument("unknown");
 }
@@ -44,7 +44,7 @@ Wish wish_for(Request request) {
 /// The meaning of the request, or its error.
 std::string meant(const Request& request) {
   try {
-    return text(wish_for(request));
+    return wish_of(checked(request), {}, 0).text;
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -129,7 +129,7 @@ class Asker : public saphira::test::LinePlayer {
     Request request = request_of(in);
     request.number = ++number_;
     request.deadline = deadline_;
-    devices_.request(request, wish_for(request), parameters_);
+    devices_.request(checked(request), parameters_);
   }
   void cycles(int count) {
     for (; count > 0; --count) {
@@ -141,8 +141,7 @@ class Asker : public saphira::test::LinePlayer {
   void hears(std::istringstream& in) {
     if (read<std::string>(in) == "unknown")
       return devices_.reflect(protocol::OtherPacket{0x9A, {}}, 0x9A);
-    protocol::ConfigPacket configuration;
-    configuration.firmware = "1.9";
+    protocol::ConfigPacket configuration{.firmware = "1.9"};
     devices_.reflect(configuration, static_cast<std::uint8_t>(protocol::PacketType::kConfig));
   }
   /// "means REQUEST => its meaning, or the error; ... at its end is any end".
@@ -184,6 +183,24 @@ class Asker : public saphira::test::LinePlayer {
   std::uint64_t number_ = 0;
   std::vector<std::string> sent_;
 };
+
+TEST(Requests, AreBounded) {
+  const auto trouble = [](const Request& request) {
+    return saphira::test::trouble([&] { wish_of(request, {}, 0); });
+  };
+  EXPECT_EQ(trouble({"serial", {{"port", 1.0}, {"data", std::string(362, '0')}}}),
+            "serial: expected at most 180 bytes, found 181");
+  Request many{"sonar", {{"on", true}}};
+  for (int i = 0; i < 13; ++i)
+    many.arguments.emplace_back("sonar", 1.0);
+  EXPECT_EQ(trouble(many), "sonar: expected at most 12 sonars in the polling sequence, found 13");
+}
+
+TEST(Requests, AreDocumented) {
+  const std::string text = read_file(saphira::test::source("docs/requests.md"));
+  for (const Device device : kEnumerators<Device>)
+    EXPECT_NE(text.find(help(functors(device))), std::string::npos) << help(functors(device));
+}
 
 TEST(Requests, AreAnsweredAsWritten) {
   EXPECT_EQ(saphira::test::play<Asker>("bridge/reflector/test/requests.txt"), 20);

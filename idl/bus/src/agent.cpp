@@ -95,8 +95,7 @@ v1::GoalId Agent::set(v1::Trigger trigger) {
 }
 
 void Agent::take_back(const v1::GoalId& trigger) {
-  v1::Trigger withdrawn{.id = trigger};
-  triggers_.dispose(withdrawn);
+  triggers_.dispose({.id = trigger});
 }
 
 void Agent::tell(const std::string& functor, std::vector<v1::Argument> arguments) {

@@ -237,8 +237,7 @@ struct Cycle::Impl {
   std::optional<Step> due_live() {
     if (pending.empty())
       return {};
-    Step step;
-    step.robot = std::move(pending.back());
+    Step step{.robot = std::move(pending.back())};
     pending.clear();
     const std::uint64_t cycle = step.robot.stamp.cycle;
     if (!joining && cycle > last + 1) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <fastdds/dds/core/status/StatusMask.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -31,7 +32,6 @@
 #include "dds_qos.hpp"
 #include "dds_types.hpp"
 #include "internal.hpp"
-#include "kept.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 
@@ -146,6 +146,32 @@ class DdsEnd : public Endpoint {
   const Policies policies_;
   const TypeInfo& type_;
   std::array<OnePart, 2> parts_;  // by Side
+};
+
+/// Copies of the newest samples of each key, which a writer holds for readers that come later.
+class Kept {
+ public:
+  void put(const TypeInfo& type, const void* sample, int depth) {
+    auto& samples = samples_[type.key(sample)];
+    Sample copy(type.create(), type.destroy);
+    type.copy(sample, copy.get());
+    samples.push_back(std::move(copy));
+    if (samples.size() > static_cast<std::size_t>(depth))
+      samples.pop_front();
+  }
+  void erase(const TypeInfo& type, const void* sample) { samples_.erase(type.key(sample)); }
+  /// Of each key the oldest first.
+  template <class Each>
+  void each(Each&& each) const {
+    for (const auto& [key, samples] : samples_)
+      for (const Sample& sample : samples)
+        each(sample.get());
+  }
+
+ private:
+  using Sample = std::unique_ptr<void, void (*)(void*)>;
+
+  std::map<InstanceKey, std::deque<Sample>> samples_;
 };
 
 class DdsWriter : public RawWriter, public DdsEnd<WriterPart> {

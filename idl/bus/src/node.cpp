@@ -4,19 +4,21 @@
 #include <poll.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string_view>
 #include <utility>
 
-#include "heartbeat.hpp"
 #include "internal.hpp"
 #include "log.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/heartbeat.hpp"
 #include "saphira/bus/status_words.hpp"
 
 namespace saphira::bus {
@@ -50,6 +52,30 @@ double resident_mb() {
   if (got <= 0 || std::sscanf(text.data(), "%lu %lu", &total, &resident) != 2)
     return 0.0;
   return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+// Grandchildren inherit the environment but not the descriptor: its number may stand for another
+// file by then.
+int open_pipe() {
+  const char* const text = std::getenv(kHeartbeatVariable);
+  int fd = -1;
+  unsigned long inode = 0;
+  struct stat info {};
+  if (text == nullptr || std::sscanf(text, "%d:%lu", &fd, &inode) != 2 || fstat(fd, &info) != 0 ||
+      !S_ISFIFO(info.st_mode) || info.st_ino != inode)
+    return -1;
+  fcntl(fd, F_SETFD, FD_CLOEXEC);
+  return fd;
+}
+
+/// Sends a heartbeat to the supervisor, if there is one. Never waits.
+void send(const Heartbeat& beat) {
+  static const int fd = open_pipe();
+  if (fd >= 0)
+      // A full pipe has enough heartbeats. Without a reader the supervisor is gone, and this
+      // program will end soon.
+      [[maybe_unused]]
+    const auto written = write(fd, &beat, sizeof beat);
 }
 
 std::uint64_t random_instance() {
@@ -110,7 +136,7 @@ struct Node::Impl {
       flags |= Heartbeat::kWaitsForRobot;
     if (writes_robot)
       flags |= Heartbeat::kWritesRobot;
-    internal::send({status.instance, status.stamp.epoch, status.stamp.cycle, flags});
+    send({status.instance, status.stamp.epoch, status.stamp.cycle, flags});
   }
 
   void note_troubles() {

@@ -17,10 +17,7 @@ INSTANTIATE_TEST_SUITE_P(Over, Bus, testing::Values("memory", "dds"),
                          [](const auto& bus) { return bus.param; });
 
 TEST_P(Bus, WhatIsWrittenIsRead) {
-  auto a = node("a");
-  auto b = node("b");
-  auto writer = a->writer(topics::kRobotState);
-  auto reader = b->reader(topics::kRobotState);
+  auto [a, b, writer, reader] = pair(topics::kRobotState);
   ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
   auto state = robot_state(3, 4);
@@ -89,20 +86,14 @@ TEST_P(Bus, InLockstepAReaderOfALatchedTopicGetsWhatCameInBetween) {
 }
 
 TEST_P(Bus, ManyKeys) {
-  auto a = node("a");
-  auto b = node("b");
-  auto writer = a->writer(topics::kGoals);
-  auto reader = b->reader(topics::kGoals);
+  auto [a, b, writer, reader] = pair(topics::kGoals);
   for (std::uint64_t number = 1; number <= 200; ++number)
     ASSERT_TRUE(writer.write(goal(number)));
   EXPECT_EQ(take_at_least(*b, reader, 200).size(), 200U);
 }
 
 TEST_P(Bus, DisposeTellsWhatWasWithdrawn) {
-  auto a = node("a");
-  auto b = node("b");
-  auto writer = a->writer(topics::kGoals);
-  auto reader = b->reader(topics::kGoals);
+  auto [a, b, writer, reader] = pair(topics::kGoals);
   writer.write(goal(1, "one"));
   writer.write(goal(2, "two"));
   take_at_least(*b, reader, 2);
@@ -159,10 +150,7 @@ double resident() {
 }
 
 TEST_P(Bus, WhatWasWithdrawnCostsNoMemory) {
-  auto a = node("a");
-  auto b = node("b");
-  auto writer = a->writer(topics::kGoals);
-  auto reader = b->reader(topics::kGoals);
+  auto [a, b, writer, reader] = pair(topics::kGoals);
   const auto ask_and_withdraw = [&](std::uint64_t from, std::uint64_t to) {
     for (std::uint64_t number = from; number < to; ++number) {
       ASSERT_TRUE(writer.write(goal(number)));

@@ -11,6 +11,7 @@ namespace saphira::bus {
 namespace {
 
 using saphira::test::memory_options;
+using saphira::test::only;
 
 /// A service of goals, and an agent that asks for them.
 class GoalClients : public testing::Test {
@@ -29,23 +30,20 @@ TEST_F(GoalClients, AsksChangesAndCancels) {
   EXPECT_TRUE(client.knows(id)) << "before its first status";
   EXPECT_FALSE(client.knows({.writer = 7, .number = 8}));
   EXPECT_TRUE(client.delivered(1000));
-  auto heard = goals_.take();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.id, id);
-  EXPECT_EQ(heard[0].data.requester, "an agent");
+  auto heard = only(goals_.take());
+  EXPECT_EQ(heard.data.id, id);
+  EXPECT_EQ(heard.data.requester, "an agent");
   goal.priority = 3;
   goal.requester = "somebody else";
   client.change(id, goal);
-  heard = goals_.take();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.id, id);
-  EXPECT_EQ(heard[0].data.priority, 3);
-  EXPECT_EQ(heard[0].data.requester, "somebody else");
+  heard = only(goals_.take());
+  EXPECT_EQ(heard.data.id, id);
+  EXPECT_EQ(heard.data.priority, 3);
+  EXPECT_EQ(heard.data.requester, "somebody else");
   client.cancel(id);
-  heard = goals_.take();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_TRUE(heard[0].info.disposed);
-  EXPECT_EQ(heard[0].data.id, id);
+  heard = only(goals_.take());
+  EXPECT_TRUE(heard.info.disposed);
+  EXPECT_EQ(heard.data.id, id);
 }
 
 TEST_F(GoalClients, ACancelMayHaveAReasonAndTheGoalIsDisposedLater) {
@@ -55,17 +53,15 @@ TEST_F(GoalClients, ACancelMayHaveAReasonAndTheGoalIsDisposedLater) {
   for (const v1::GoalId& id : {client.ask(goal), foreign}) {
     goals_.take();
     client.cancel(id, "it is late");
-    auto heard = goals_.take();
-    ASSERT_EQ(heard.size(), 1U);
-    EXPECT_FALSE(heard[0].info.disposed);
-    EXPECT_EQ(heard[0].data.id, id);
-    EXPECT_EQ(heard[0].data.functor, id == foreign ? "" : "stop");
-    EXPECT_EQ(heard[0].data.withdrawn, "it is late");
+    auto heard = only(goals_.take());
+    EXPECT_FALSE(heard.info.disposed);
+    EXPECT_EQ(heard.data.id, id);
+    EXPECT_EQ(heard.data.functor, id == foreign ? "" : "stop");
+    EXPECT_EQ(heard.data.withdrawn, "it is late");
     client.poll();
-    heard = goals_.take();
-    ASSERT_EQ(heard.size(), 1U);
-    EXPECT_TRUE(heard[0].info.disposed);
-    EXPECT_EQ(heard[0].data.id, id);
+    heard = only(goals_.take());
+    EXPECT_TRUE(heard.info.disposed);
+    EXPECT_EQ(heard.data.id, id);
   }
 }
 
@@ -150,10 +146,9 @@ TEST_F(GoalClients, ForgetsWhatEndedLongAgo) {
   EXPECT_TRUE(client.status(underway));
   EXPECT_FALSE(client.status(done));
   EXPECT_EQ(client.statuses().size(), 1U);
-  const auto withdrawn = goals_.take();
-  ASSERT_EQ(withdrawn.size(), 1U);
-  EXPECT_TRUE(withdrawn[0].info.disposed);
-  EXPECT_EQ(withdrawn[0].data.id, done);
+  const auto withdrawn = only(goals_.take());
+  EXPECT_TRUE(withdrawn.info.disposed);
+  EXPECT_EQ(withdrawn.data.id, done);
   // A forgotten goal is not withdrawn again.
   client.poll();
   EXPECT_TRUE(goals_.take().empty());
@@ -197,16 +192,13 @@ TEST(GoalClient, TellsAStatusInALine) {
 
 TEST_F(GoalClients, ACancelNamesThePersonWhoWantsIt) {
   GoalClient client(agent_, "an agent");
-  v1::Goal goal;
-  goal.person = {"anna", "agent"};
+  v1::Goal goal{.person = {"anna", "agent"}};
   const v1::GoalId id = client.ask(goal);
-  auto heard = goals_.take();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].data.person.name, "anna");
+  auto heard = only(goals_.take());
+  EXPECT_EQ(heard.data.person.name, "anna");
   client.cancel(id, "it is late", {"karen", "operator"});
-  heard = goals_.take();
-  ASSERT_FALSE(heard.empty());
-  EXPECT_EQ(heard[0].data.person.name, "karen");
+  heard = goals_.take().at(0);
+  EXPECT_EQ(heard.data.person.name, "karen");
 }
 
 // A program for people does not pass on what would drive their terminal.
@@ -223,9 +215,9 @@ TEST_F(GoalClients, ATerminalGetsNoControlCharactersOfOthers) {
                          "31m")};
   goal.person.name = "\x7f";
   client.ask(goal);
-  const auto raw = saphira::test::only(goals_.take());
+  const auto raw = only(goals_.take());
   EXPECT_EQ(raw.data.functor, "go\r\n\tto");
-  const auto shown = saphira::test::only(reader.take());
+  const auto shown = only(reader.take());
   EXPECT_EQ(shown.data.requester, "an?[2Jagent");
   EXPECT_EQ(shown.data.functor, "go?\n\tto");
   EXPECT_EQ(shown.data.arguments.at(0).name, "place?");

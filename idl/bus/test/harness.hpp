@@ -34,6 +34,22 @@ class OnEachBus : public testing::TestWithParam<std::string> {
     return GetParam() == "dds" ? std::make_unique<Node>(options)
                                : std::make_unique<Node>(options, memory_);
   }
+  /// The node "a" with a writer of the topic, and "b" with a reader.
+  template <class T>
+  struct Pair {
+    std::unique_ptr<Node> a;
+    std::unique_ptr<Node> b;
+    Writer<T> writer;
+    Reader<T> reader;
+  };
+  template <class T>
+  Pair<T> pair(const Topic<T>& topic) {
+    auto a = node("a");
+    auto b = node("b");
+    Writer<T> writer = a->writer(topic);
+    Reader<T> reader = b->reader(topic);
+    return {std::move(a), std::move(b), std::move(writer), std::move(reader)};
+  }
   /// Duration of a check for absence. Samples of the memory transport arrive at once.
   milliseconds absence() const { return milliseconds(GetParam() == "dds" ? 200 : 1); }
 

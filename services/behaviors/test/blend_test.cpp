@@ -6,10 +6,8 @@ namespace saphira::behaviors {
 namespace {
 
 Blended behavior(int priority, double activity, std::vector<Rule> rules) {
-  Blended b;
-  b.priority = priority;
-  b.evaluation = {std::move(rules), {.turn = activity, .speed = activity}};
-  return b;
+  return Blended{.priority = priority,
+                 .evaluation = {std::move(rules), {.turn = activity, .speed = activity}}};
 }
 
 TEST(Blend, NobodyHasASay) {

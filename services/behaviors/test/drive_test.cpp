@@ -1,12 +1,129 @@
 #include <gtest/gtest.h>
 
-#include "closed_loop.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <utility>
+#include <vector>
+
 #include "process.hpp"
+#include "saphira/behaviors/executive.hpp"
+#include "saphira/sim/robot.hpp"
+#include "saphira/sim/scene.hpp"
+#include "saphira/sim/sonar.hpp"
+#include "saphira/sim/world.hpp"
 
 // The behaviors at work: the executive drives the simulated Pioneer, with the noise of its sonars
 // and its dead reckoning, through worlds for a reactive robot. Ten seeds each.
 namespace saphira::behaviors {
 namespace {
+
+struct Drive {
+  Vec2 goal_in_odom{0.0, 0.0};  ///< odom begins at the start, looking along the start's heading
+  std::vector<Intended> behaviors;
+  double radius = 0.15;        ///< [m] near enough
+  std::uint64_t limit = 1500;  ///< [cycles]
+  std::uint64_t seed = 1;
+  sim::SonarModel sonar = {};
+  std::size_t late = 0;  ///< [cycles] delay of each command
+};
+
+struct DriveResult {
+  bool arrived = false;
+  std::uint64_t cycles = 0;
+  int contacts = 0;
+  double min_clearance = 1e9;  ///< [m]
+  double path = 0.0;           ///< [m]
+  int swings = 0;              ///< turns of more than 5 degrees, one way and then the other
+  Pose end_in_world;
+};
+
+using Watch =
+    std::function<void(const sim::Robot&, const Inputs&, const Output&, const Executive&)>;
+
+/// AvoidCollision over KeepOff over GoToPos, as the functor go_to intends them.
+std::vector<Intended> go_to(const Vec2& goal_in_odom, double speed = 0.3, double radius = 0.15) {
+  return {{"avoid", "AvoidCollision", 0, true, {}},
+          {"keep off", "KeepOff", 1, true, {}},
+          {"go",
+           "GoToPos",
+           2,
+           true,
+           {{"goal", PlacedPoint{{goal_in_odom.x(), goal_in_odom.y(), 0.0}, Frame::odom}},
+            {"speed", speed},
+            {"radius", radius}}},
+          {"stop", "Stop", 3, true, {}}};
+}
+
+DriveResult drive(const sim::World& world, const protocol::RobotParameters& parameters,
+                  const Pose& start_in_world, const Drive& what, const Watch& watch = {}) {
+  sim::Scene scene(world);
+  sim::Robot& robot = scene.add_robot(parameters, start_in_world, what.seed);
+  sim::Sonars sonars(scene, robot.number(), parameters, what.sonar, what.seed);
+  Executive executive(predefined(), model_of(parameters));
+  DriveResult run;
+  std::vector<lps::SonarReading> readings;
+  Intent intent{0, true, what.behaviors};
+  struct Command {
+    bool active;
+    double speed;
+    double heading;
+  };
+  std::deque<Command> on_the_way;
+  double heading = 0.0;  // the newest heading setpoint
+  double swing = 0.0;    // [rad] turned since it last changed sides
+  Pose last = robot.pose_in_world();
+  while (run.cycles < what.limit) {
+    ++run.cycles;
+    for (int tick = 0; tick < 10; ++tick) {
+      robot.tick();
+      if (const auto echo = sonars.tick(robot.pose_in_world()))
+        readings.push_back({echo->number, echo->range.value_or(5.0), echo->range.has_value()});
+    }
+    run.min_clearance = std::min(run.min_clearance, robot.clearance());
+    const Pose& pose = robot.pose_in_world();
+    run.path += (pose.position() - last.position()).norm();
+    const double turned = norm2_angle(pose.th - last.th);
+    if (swing * turned < 0.0) {
+      if (std::abs(swing) > radians(5.0))
+        ++run.swings;
+      swing = 0.0;
+    }
+    swing += turned;
+    last = pose;
+
+    intent.cycle = run.cycles - 1;
+    Inputs inputs{run.cycles,
+                  {robot.pose_in_odom(), robot.velocity(), robot.rotation_velocity()},
+                  std::exchange(readings, {}),
+                  &intent};
+    inputs.robot.target_heading_in_odom = heading;
+    inputs.delay = 0.1 * static_cast<double>(what.late);
+    const Output output = executive.step(inputs);
+    if (watch)
+      watch(robot, inputs, output, executive);
+    if ((robot.pose_in_odom().position() - what.goal_in_odom).norm() <= what.radius) {
+      run.arrived = true;
+      break;
+    }
+    on_the_way.push_back({output.active, output.speed, output.heading_in_odom});
+    if (on_the_way.size() <= what.late)
+      continue;
+    const Command now = on_the_way.front();
+    on_the_way.pop_front();
+    // Whole millimetres and degrees, as in the robot's commands.
+    robot.set_velocity(now.active ? std::round(now.speed * 1000.0) / 1000.0 : 0.0);
+    if (now.active) {
+      heading = radians(std::round(degrees(now.heading)));
+      robot.set_heading(heading);
+    }
+  }
+  run.contacts = robot.contacts();
+  run.end_in_world = robot.pose_in_world();
+  return run;
+}
 
 constexpr std::uint64_t kSeeds = 10;
 
@@ -73,11 +190,10 @@ void expect_arrivals(const sim::World& world, const Pose& start, const Vec2& goa
   double swings = 0.0;
   int late = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    Drive what;
-    what.goal_in_odom = goal;
-    what.behaviors = go_to(goal, expected.speed);
-    what.seed = seed;
-    what.late = expected.delay;
+    Drive what{.goal_in_odom = goal,
+               .behaviors = go_to(goal, expected.speed),
+               .seed = seed,
+               .late = expected.delay};
     const DriveResult run = drive(world, pioneer(), start, what);
     late += run.arrived ? 0 : 1;
     EXPECT_LE(late, expected.late)
@@ -173,12 +289,11 @@ INSTANTIATE_TEST_SUITE_P(Worlds, Field, ::testing::Range<std::uint64_t>(100, 106
 TEST(Drive, WandersOnAvoidCollisionAlone) {
   const sim::World world = field(100);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Drive what;
-    what.goal_in_odom = {1e6, 0.0};
-    what.behaviors = {{"avoid", "AvoidCollision", 0, true, {}},
-                      {"go", "ConstantVelocity", 2, true, {{"speed", 0.3}}}};
-    what.limit = 2000;
-    what.seed = seed;
+    Drive what{.goal_in_odom = {1e6, 0.0},
+               .behaviors = {{"avoid", "AvoidCollision", 0, true, {}},
+                             {"go", "ConstantVelocity", 2, true, {{"speed", 0.3}}}},
+               .limit = 2000,
+               .seed = seed};
     const DriveResult run = drive(world, pioneer(), {2, 10, 0}, what);
     EXPECT_EQ(run.contacts, 0);
     EXPECT_GE(run.min_clearance, 0.04);
@@ -189,11 +304,10 @@ TEST(Drive, WandersOnAvoidCollisionAlone) {
 /// StopCollision does not turn: it stops before a wall.
 TEST(Drive, StopCollisionStandsBeforeAWall) {
   const sim::World world = hall(box(6000, 10000, 0, 200, 4000));
-  Drive what;
-  what.goal_in_odom = {1e6, 0.0};
-  what.behaviors = {{"halt", "StopCollision", 0, true, {}},
-                    {"go", "ConstantVelocity", 2, true, {{"speed", 0.4}}}};
-  what.limit = 200;
+  Drive what{.goal_in_odom = {1e6, 0.0},
+             .behaviors = {{"halt", "StopCollision", 0, true, {}},
+                           {"go", "ConstantVelocity", 2, true, {{"speed", 0.4}}}},
+             .limit = 200};
   const DriveResult run = drive(world, pioneer(), {3, 10, 0}, what);
   EXPECT_EQ(run.contacts, 0);
   EXPECT_NEAR(run.end_in_world.x, 5.9 - 0.22 - 0.1, 0.1);
@@ -202,18 +316,17 @@ TEST(Drive, StopCollisionStandsBeforeAWall) {
 
 TEST(Drive, TurnToTurnsTheShortWayOnTheSpot) {
   for (const double bearing : {170.0, -170.0, 90.0, -20.0}) {
-    Drive what;
-    what.goal_in_odom = {1e6, 0.0};
-    what.behaviors = {{"turn",
-                       "TurnTo",
-                       2,
-                       true,
-                       {{"goal", PlacedPoint{{5.0 * std::cos(radians(bearing)),
-                                              5.0 * std::sin(radians(bearing)), 0.0},
-                                             Frame::odom}},
-                        {"success_angle", 0.05}}},
-                      {"stop", "Stop", 3, true, {}}};
-    what.limit = 60;
+    Drive what{.goal_in_odom = {1e6, 0.0},
+               .behaviors = {{"turn",
+                              "TurnTo",
+                              2,
+                              true,
+                              {{"goal", PlacedPoint{{5.0 * std::cos(radians(bearing)),
+                                                     5.0 * std::sin(radians(bearing)), 0.0},
+                                                    Frame::odom}},
+                               {"success_angle", 0.05}}},
+                             {"stop", "Stop", 3, true, {}}},
+               .limit = 60};
     double goal = 0.0;
     double turned = 0.0;
     double last = 0.0;
@@ -265,14 +378,13 @@ std::uint64_t drive_until_done(const sim::World& world, const Pose& start, Drive
 
 TEST(Drive, FollowsALaneToItsGoalFromBesideAndAgainstIt) {
   for (const double goal_x : {6.0, -6.0}) {
-    Drive what;
-    what.behaviors = guarded(
-        {"follow",
-         "Follow",
-         2,
-         true,
-         {point_argument("lane", {0.0, 1.0, 0.0}), point_argument("goal", {goal_x, 1.0, 0.0})}});
-    what.limit = 450;
+    Drive what{.behaviors = guarded({"follow",
+                                     "Follow",
+                                     2,
+                                     true,
+                                     {point_argument("lane", {0.0, 1.0, 0.0}),
+                                      point_argument("goal", {goal_x, 1.0, 0.0})}}),
+               .limit = 450};
     DriveResult run;
     const std::uint64_t done =
         drive_until_done(hall(""), {10, 10, radians(40)}, what, "follow", run);
@@ -356,13 +468,12 @@ TEST(Drive, FollowsADoorInAndOut) {
 }
 
 TEST(Drive, AttendsAtAPosition) {
-  Drive what;
-  what.behaviors = guarded({"attend",
-                            "AttendAtPos",
-                            2,
-                            true,
-                            {point_argument("goal", {-3.0, 2.0, 0.0}), {"radius", 1.0}}});
-  what.limit = 300;
+  Drive what{.behaviors = guarded({"attend",
+                                   "AttendAtPos",
+                                   2,
+                                   true,
+                                   {point_argument("goal", {-3.0, 2.0, 0.0}), {"radius", 1.0}}}),
+             .limit = 300};
   DriveResult run;
   EXPECT_GT(drive_until_done(hall(""), {10, 10, 0}, what, "attend", run), 0U);
   const Pose goal = relative(run.end_in_world, {7, 12, 0});

@@ -29,13 +29,13 @@ class FolderTest : public ::testing::Test {
     // Files that are written within a tick of the clock have the same time.
     fs::last_write_time(path_ / name, fs::file_time_type(std::chrono::seconds(++time_)));
   }
-  double step(Executive& executive, std::string* trouble = nullptr) {
+  double step(std::string* trouble = nullptr) {
     ++cycle_;
     const Intent intent{cycle_, true, {{"c", "Counter", 0, true, {}}}};
     Inputs inputs;
     inputs.cycle = cycle_;
     inputs.intent = &intent;
-    const Output output = executive.step(inputs);
+    const Output output = executive_.step(inputs);
     if (trouble != nullptr)
       *trouble = output.trouble;
     else
@@ -45,6 +45,7 @@ class FolderTest : public ::testing::Test {
 
   const test::TempDir temporary_;
   const fs::path path_ = temporary_.path();
+  Executive executive_{{}, {}};
   std::uint64_t cycle_ = 0;
   int time_ = 1'000'000;
 };
@@ -52,48 +53,45 @@ class FolderTest : public ::testing::Test {
 TEST_F(FolderTest, ARunningBehaviorTakesTheNewCodeAndKeepsItsVariables) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  Executive executive({}, {});
-  EXPECT_TRUE(folder.look(executive.registry()).changed);
-  EXPECT_FALSE(folder.look(executive.registry()).changed);
-  EXPECT_DOUBLE_EQ(step(executive), 1);
-  EXPECT_DOUBLE_EQ(step(executive), 2);
+  EXPECT_TRUE(folder.look(executive_.registry()).changed);
+  EXPECT_FALSE(folder.look(executive_.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(), 1);
+  EXPECT_DOUBLE_EQ(step(), 2);
   write("c.beh", counter("100 + n"));
-  const Folder::News news = folder.look(executive.registry());
+  const Folder::News news = folder.look(executive_.registry());
   EXPECT_TRUE(news.changed);
   EXPECT_EQ(news.taken.size(), 1U);
-  EXPECT_DOUBLE_EQ(step(executive), 103);
+  EXPECT_DOUBLE_EQ(step(), 103);
 }
 
 TEST_F(FolderTest, ABrokenFileLeavesWhatRunsUntouchedAndIsTold) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  Executive executive({}, {});
-  folder.look(executive.registry());
-  step(executive);
+  folder.look(executive_.registry());
+  step();
   write("c.beh", counter("n +"));
-  const Folder::News news = folder.look(executive.registry());
+  const Folder::News news = folder.look(executive_.registry());
   EXPECT_TRUE(news.changed);
   ASSERT_EQ(news.faults.size(), 1U);
   EXPECT_NE(news.faults[0].find("c.beh:10:16: expected a number, a variable"), std::string::npos)
       << news.faults[0];
   EXPECT_EQ(folder.trouble(), news.faults[0]);
-  EXPECT_DOUBLE_EQ(step(executive), 2);
+  EXPECT_DOUBLE_EQ(step(), 2);
   write("c.beh", counter("n"));
-  EXPECT_TRUE(folder.look(executive.registry()).changed);
+  EXPECT_TRUE(folder.look(executive_.registry()).changed);
   EXPECT_EQ(folder.trouble(), "");
-  EXPECT_DOUBLE_EQ(step(executive), 3);
+  EXPECT_DOUBLE_EQ(step(), 3);
 }
 
 TEST_F(FolderTest, AVersionThatWantsOtherParametersWaitsUntilItGetsThem) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  Executive executive({}, {});
-  folder.look(executive.registry());
-  step(executive);
+  folder.look(executive_.registry());
+  step();
   write("c.beh", counter("500", "  sfPTR goal\n"));
-  folder.look(executive.registry());
+  folder.look(executive_.registry());
   std::string trouble;
-  EXPECT_DOUBLE_EQ(step(executive, &trouble), 2);
+  EXPECT_DOUBLE_EQ(step(&trouble), 2);
   EXPECT_NE(trouble.find("the old version runs on: parameter \"goal\" is missing"),
             std::string::npos)
       << trouble;
@@ -102,15 +100,14 @@ TEST_F(FolderTest, AVersionThatWantsOtherParametersWaitsUntilItGetsThem) {
 TEST_F(FolderTest, WhatIsGoneCannotBeIntendedAnewButRunsOn) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  Executive executive({}, {});
-  folder.look(executive.registry());
-  step(executive);
+  folder.look(executive_.registry());
+  step();
   fs::remove(path_ / "c.beh");
-  EXPECT_TRUE(folder.look(executive.registry()).changed);
-  EXPECT_DOUBLE_EQ(step(executive), 2);
-  executive.reset();
+  EXPECT_TRUE(folder.look(executive_.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(), 2);
+  executive_.reset();
   std::string trouble;
-  step(executive, &trouble);
+  step(&trouble);
   EXPECT_NE(trouble.find("unknown schema \"Counter\""), std::string::npos);
 }
 
@@ -164,16 +161,15 @@ TEST_F(FolderTest, ALaterSourceCoversAnEarlierOneUntilItIsGone) {
   Sources sources;
   sources.add(std::move(fixed));
   sources.add(Folder(path_.string()));
-  Executive executive({}, {});
-  EXPECT_TRUE(sources.look(executive.registry()).changed);
-  EXPECT_DOUBLE_EQ(step(executive), 11);
+  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(), 11);
   write("mine.beh", counter("20 + n"));
-  EXPECT_TRUE(sources.look(executive.registry()).changed);
-  EXPECT_DOUBLE_EQ(step(executive), 22);
-  EXPECT_FALSE(sources.look(executive.registry()).changed);
+  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(), 22);
+  EXPECT_FALSE(sources.look(executive_.registry()).changed);
   fs::remove(path_ / "mine.beh");
-  EXPECT_TRUE(sources.look(executive.registry()).changed);
-  EXPECT_DOUBLE_EQ(step(executive), 13);
+  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(), 13);
   EXPECT_EQ(sources.trouble(), "");
 }
 

@@ -5,7 +5,6 @@
 
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
-#include "registration/shell/convert.hpp"
 #include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
@@ -13,6 +12,24 @@
 
 namespace saphira::registration {
 namespace {
+
+constexpr std::size_t kMostMatches = 256;  // the bound of Registration.matches
+
+/// The sample of a step at `pose_in_odom`; stamp, odom, revision and switches are the caller's.
+v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) {
+  return {
+      .state = outputs.state,
+      .reason = outputs.reason,
+      .pose_in_map = lps::to_bus(outputs.pose_in_map),
+      .odom_in_map = lps::to_bus(compose(outputs.pose_in_map, relative(pose_in_odom, Pose{}))),
+      .covariance = {outputs.covariance(0, 0), outputs.covariance(0, 1), outputs.covariance(1, 1),
+                     outputs.covariance(0, 2), outputs.covariance(1, 2), outputs.covariance(2, 2)},
+      .confidence = outputs.confidence,
+      .environment = outputs.environment,
+      .matches = converted(
+          outputs.matches, [](const v1::Match& match) { return match; }, kMostMatches),
+      .closed_doors = outputs.closed_doors};
+}
 
 /// The path of the map `name`: a map file, or a shipped one; empty for "none" and for an empty
 /// name. std::invalid_argument that lists the existing maps where it is neither.

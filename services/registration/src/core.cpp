@@ -188,12 +188,10 @@ void Core::set_builder() {
 void Core::end_building() {
   now_.building = false;
   if (!map().features.empty() && maps::named(map(), lps::PointType::position, kStart).empty()) {
-    maps::Feature start;
-    start.type = lps::PointType::position;
-    start.name = kStart;
-    start.pose_in_map = now_.built_from;
-    start.learned = true;
-    now_.editor.put(start);
+    now_.editor.put({.type = lps::PointType::position,
+                     .pose_in_map = now_.built_from,
+                     .name = kStart,
+                     .learned = true});
   }
   registration_->set_map(now_.editor.map());
   registration_->set_pose(now_.builder->pose_in_map());

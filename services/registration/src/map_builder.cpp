@@ -139,8 +139,7 @@ std::size_t MapBuilder::node_near(const Pose& in_odom) const {
 }
 
 SeenLine MapBuilder::seen_line(const lps::Percept& percept) const {
-  SeenLine seen;
-  seen.node = node_near(percept.pose_in_odom);
+  SeenLine seen{.node = node_near(percept.pose_in_odom)};
   Pose wall = percept.pose_in_odom;
   const Pose& from = graph_.nodes[seen.node].in_odom;
   const bool right_of_it =
@@ -298,10 +297,7 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
     const Pose opening = compose(graph_.nodes[seen.node].in_map, seen.in_node);
     index = graph_.points.size();
     graph_.points.push_back({opening.position(), {}});
-    Known fresh;
-    fresh.type = percept.type;
-    fresh.heading = opening.th;
-    known_points_.push_back(fresh);
+    known_points_.push_back({.type = percept.type, .heading = opening.th});
   }
   GraphPoint& point = graph_.points[*index];
   taken_[percept.id] = {false, *index, point.seen.size(), way_, cycle};
@@ -355,12 +351,11 @@ void MapBuilder::hear_walls(const MapBuilderInputs& inputs) {
       if (heard == nullptr)
         continue;
       const Vec2 at = sonar.position() - reading.range * heard->normal();
-      SeenLine seen;
-      seen.node = node;
-      seen.in_node = relative(graph_.nodes[node].in_map, {at.x(), at.y(), heard->heading});
-      seen.sigma_across = kHeardSigma;
-      seen.sigma_heading = kPi;
-      heard->seen.push_back(seen);
+      heard->seen.push_back(
+          {.node = node,
+           .in_node = relative(graph_.nodes[node].in_map, {at.x(), at.y(), heard->heading}),
+           .sigma_across = kHeardSigma,
+           .sigma_heading = kPi});
       news_ = true;
     }
   }
@@ -375,8 +370,7 @@ void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
       if (mount.sonar != reading.sonar || std::abs(norm2_angle(mount.in_robot.th)) > kStraight)
         continue;
       const Vec2 echo = transform(mount.in_robot, {reading.range, 0.0});
-      SeenPoint seen;
-      seen.node = graph_.nodes.size() - 1;
+      SeenPoint seen{.node = graph_.nodes.size() - 1};
       const Pose in_node = relative(graph_.nodes.back().in_odom, pose_in_odom_);
       const Vec2 at = transform(in_node, echo);
       seen.in_node = {at.x(), at.y(), in_node.th};
@@ -570,11 +564,7 @@ void MapBuilder::note_doorways(const std::vector<Feature>& halls) {
         continue;
       const Pose in_node = relative(graph_.nodes[i].in_map, pose);
       graph_.points.push_back({at, {{i, in_node, found->width, 0.1, 0.1}}});
-      Known fresh;
-      fresh.type = PointType::door;
-      fresh.heading = pose.th;
-      fresh.only_driven = true;
-      known_points_.push_back(fresh);
+      known_points_.push_back({.type = PointType::door, .heading = pose.th, .only_driven = true});
     }
   }
 }

@@ -48,9 +48,7 @@ class Matcher {
     const double across = (seen_.position() - point).dot(normal);
     if (std::abs(across) > reach_)
       return;
-    Candidate c;
-    c.feature = feature;
-    c.innovation = {-across, -turned};
+    Candidate c{.feature = feature, .innovation = {-across, -turned}};
     const Vec2 arm = seen_.position() - robot_.position();
     c.jacobian(0, 0) = normal.x();
     c.jacobian(0, 1) = normal.y();
@@ -68,9 +66,7 @@ class Matcher {
     const Vec2 off = seen_.position() - point;
     if (off.norm() > reach_)
       return;
-    Candidate c;
-    c.feature = feature;
-    c.innovation = -off;
+    Candidate c{.feature = feature, .innovation = -off};
     const Vec2 arm = seen_.position() - robot_.position();
     c.jacobian.leftCols<2>().setIdentity();
     c.jacobian(0, 2) = -arm.y();

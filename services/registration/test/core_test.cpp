@@ -1,21 +1,28 @@
-// The registration service without a bus: its answers, decisions, memory and outputs.
+// The registration service without a bus: its answers, decisions, memory and outputs, by core.txt.
 #include "saphira/registration/core.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <optional>
+#include <sstream>
 #include <utility>
 
+#include "arguments.hpp"
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/archive.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::registration {
 namespace {
+
+using test::pose_of;
 
 constexpr int kSonars = 16;
 constexpr const char* kHall =
@@ -86,18 +93,16 @@ class Robot {
     return reading;
   }
   lps::Percept wall(double side) {
-    lps::Percept seen;
-    seen.id = ++last_id_;
-    seen.type = lps::PointType::wall;
-    seen.pose_in_odom = compose(odom_, {0.0, side, side > 0.0 ? kPi : 0.0});
-    seen.length = 1.5;
-    seen.sigma_along = 0.03;
-    seen.sigma_across = 0.03;
-    seen.sigma_heading = radians(1.0);
-    seen.confidence = 1.0;
-    seen.seen = cycle_;
-    seen.readings = {{cycle_, side > 0.0 ? 4 : 12}};
-    return seen;
+    return lps::Percept{.id = ++last_id_,
+                        .type = lps::PointType::wall,
+                        .pose_in_odom = compose(odom_, {0.0, side, side > 0.0 ? kPi : 0.0}),
+                        .length = 1.5,
+                        .sigma_along = 0.03,
+                        .sigma_across = 0.03,
+                        .sigma_heading = radians(1.0),
+                        .confidence = 1.0,
+                        .seen = cycle_,
+                        .readings = {{cycle_, side > 0.0 ? 4 : 12}}};
   }
 
   Random random_;
@@ -139,10 +144,10 @@ Request place(const Pose& pose_in_map) {
   return {"place", {{"position", PlacedPoint{pose_in_map, Frame::map}}}};
 }
 
-Request put(lps::PointType type, const Pose& pose_in_map, std::uint32_t id = 0) {
+Request put(const std::string& type, const Pose& pose_in_map, std::uint32_t id = 0) {
   return {"put",
           {{"id", static_cast<double>(id)},
-           {"type", std::string(maps::traits(type).word)},
+           {"type", type},
            {"position", PlacedPoint{pose_in_map, Frame::map}},
            {"length", 1.0},
            {"width", 1.0}}};
@@ -156,184 +161,204 @@ std::uint32_t id_of(const Answer& answer) {
   return static_cast<std::uint32_t>(number_of(answer.results, "id"));
 }
 
-bool says(const Notes& notes, const std::string& part) {
-  return std::any_of(notes.lines().begin(), notes.lines().end(),
-                     [&](const Note& note) { return note.text.find(part) != std::string::npos; });
-}
-
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A robot in the hall, whose map is loaded.
-class RegistrationInAHall : public testing::Test {
- protected:
-  /// So many steps on its way; returns the outputs of the last one.
-  Core::Outputs drive(int steps) {
-    Core::Outputs last;
-    for (int i = 0; i < steps; ++i)
-      last = robot.step(core);
-    return last;
+/// One case of core.txt: a robot in the hall, whose map is loaded.
+class Hall : public test::LinePlayer {
+ public:
+  Hall() {
+    events_ = {{"no-map", [this](auto&) { settings_ = settings(""); }},
+               {"start-unknown", [this](auto&) { settings_.start.reset(); }},
+               {"stand", [this](auto&) { now_ = robot_.stand(core()); }},
+               {"step", [this](auto& in) { step(read<int>(in)); }},
+               {"reconnect", [this](auto&) { robot_.reconnect(); }},
+               {"new-frame", [this](auto&) { robot_.new_frame(); }},
+               {"restart", [this](auto& in) { restart(rest(in)); }},
+               {"suspend", [this](auto& in) { ask_process(rest(in), ProcessAction::suspend); }},
+               {"resume", [this](auto& in) { ask_process(rest(in), ProcessAction::resume); }},
+               {"ask", [this](auto& in) { ask(in); }},
+               {"load", [this](auto& in) { load_map(in); }},
+               {"put", [this](auto& in) { put_artifact(in); }},
+               {"answers", [this](auto& in) { answers(rest(in)); }},
+               {"reason", [this](auto& in) { expect_like(now_.reason, rest(in)); }},
+               {"says", [this](auto& in) { expect_like(said(), rest(in)); }},
+               {"near", [this](auto& in) { near(now_.pose_in_map, pose_of(rest(in)), 0.1); }},
+               {"keep", [this](auto&) { keep(); }},
+               {"as-kept", [this](auto& in) { near(now_.pose_in_map, kept_, read<double>(in)); }},
+               {"place-ahead", [this](auto& in) { place_ahead(read<double>(in)); }},
+               {"map-starts-near", [this](auto& in) { map_starts_near(pose_of(rest(in))); }},
+               {"has", [this](auto& in) { EXPECT_TRUE(artifact(in)); }},
+               {"has-not", [this](auto& in) { EXPECT_FALSE(artifact(in)); }},
+               {"has-at", [this](auto& in) { EXPECT_TRUE(has_at(pose_of(rest(in)))); }}};
+    facts_ = {{"state", [this] { return std::string(word(now_.state)); }},
+              {"environment", [this] { return std::to_string(now_.environment); }},
+              {"trust", [this] { return trust(); }},
+              {"less sure", [this] { return yes(now_.covariance(0, 0) > kept_variance_); }},
+              {"id", [this] { return std::to_string(id_); }},
+              {"rule", [this] { return rule(); }},
+              {"source", [this] { return core().map_source(); }},
+              {"changed", [this] { return yes(core().map_changed()); }},
+              {"revised", [this] { return yes(core().map_revision() > kept_revision_); }},
+              {"artifacts", [this] { return std::to_string(core().map().features.size()); }},
+              {"some artifacts", [this] { return yes(!core().map().features.empty()); }},
+              {"adds", [this] { return yes(core().adds_features()); }},
+              {"snaps", [this] { return yes(core().snaps()); }},
+              {"remembers", [this] { return remembers(); }}};
   }
 
-  Core core{settings()};
-  Robot robot;
+ private:
+  Core& core() {
+    if (!core_)
+      core_.emplace(settings_);
+    return *core_;
+  }
+  void step(int steps) {
+    for (; steps > 0; --steps)
+      now_ = robot_.step(core());
+  }
+  /// With a map of another file, perhaps.
+  void restart(const std::string& source) {
+    const auto remembered = restored<Remembered>(saved(*core().remembered()));
+    if (!source.empty())
+      settings_.source = source;
+    core_.emplace(settings_, remembered);
+  }
+  void ask_process(const std::string& process, ProcessAction action) {
+    EXPECT_EQ(core().processes().request(process, action), "");
+  }
+  void act(const Request& request) {
+    answer_ = registration::act(core(), request);
+    if (answer_.code == AnswerCode::done && answer_.results.size() == 1)
+      id_ = id_of(answer_);
+  }
+  /// "true" and "false" are truths.
+  void ask(std::istringstream& in) {
+    Request request{read<std::string>(in)};
+    request.arguments = test::arguments_of(rest(in));
+    for (Argument& one : request.arguments)
+      if (one.text == "true" || one.text == "false")
+        one = {one.name, one.text == "true"};
+    act(request);
+  }
+  void load_map(std::istringstream& in) {
+    std::string name;
+    in >> std::quoted(name);
+    const std::string text = rest(in);
+    act(load(text == "hall" ? kHall : text + "\n", name));
+  }
+  void put_artifact(std::istringstream& in) {
+    const auto type = read<std::string>(in);
+    const double x = read<double>(in);
+    const double y = read<double>(in);
+    std::uint32_t id = 0;
+    in >> id;
+    act(put(type, {x, y, 0.0}, id));
+  }
+  /// Nothing: it is done.
+  void answers(const std::string& text) {
+    expect_like(answer_.text, text);
+    EXPECT_EQ(answer_.code == AnswerCode::done, text.empty());
+  }
+  std::string said() const {
+    return joined(now_.notes.lines(), ", ", [](const Note& note) { return note.text; });
+  }
+  static void near(const Pose& is, const Pose& expected, double within) {
+    EXPECT_NEAR(is.x, expected.x, within);
+    EXPECT_NEAR(is.y, expected.y, within);
+  }
+  void keep() {
+    kept_ = now_.pose_in_map;
+    kept_variance_ = now_.covariance(0, 0);
+    kept_revision_ = core().map_revision();
+  }
+  void place_ahead(double way) {
+    kept_.x += way;
+    act(place(kept_));
+  }
+  void map_starts_near(const Pose& expected) {
+    const std::optional<Pose> start = start_pose("start", core().map());
+    ASSERT_TRUE(start);
+    near(*start, expected, 0.1);
+  }
+  const maps::Feature* artifact(std::istringstream& in) {
+    return maps::find(core().map(), read<std::uint32_t>(in));
+  }
+  bool has_at(const Pose& pose) {
+    return std::ranges::any_of(core().map().features,
+                               [&](const auto& one) { return one.pose_in_map == pose; });
+  }
+  static const char* word(v1::RegistrationState state) {
+    switch (state) {
+      case v1::REGISTRATION_TRACKING:
+        return "tracking";
+      case v1::REGISTRATION_LOST:
+        return "lost";
+      case v1::REGISTRATION_OFF:
+        return "off";
+      default:
+        return "unplaced";
+    }
+  }
+  std::string trust() const {
+    const double is = now_.confidence;
+    return is == 0.0 ? "none" : is <= 0.5 ? "at most half" : is > 0.9 ? "full" : decimal(is, 2);
+  }
+  std::string rule() {
+    const maps::Feature* const zone = maps::find(core().map(), id_);
+    return zone == nullptr ? "none"
+                           : std::string(maps::word(zone->rule)) + " " + decimal(zone->speed, 2);
+  }
+  std::string remembers() {
+    const std::optional<Remembered> all = core().remembered();
+    if (!all)
+      return "nothing";
+    EXPECT_EQ(all->map, core().map());
+    if (!all->memory.placed)
+      return "no place";
+    if (all->memory.odom != robot_.frame())
+      return "the place of another frame";
+    const bool same = all->memory.pose_in_map == now_.pose_in_map &&
+                      all->memory.pose_in_odom == robot_.pose_in_odom();
+    return same ? "the place" : "another place";
+  }
+
+  Core::Settings settings_ = settings();
+  std::optional<Core> core_;
+  Robot robot_;
+  Core::Outputs now_;
+  Answer answer_;
+  std::uint32_t id_ = 0;  ///< of the newest answer with one
+  Pose kept_;
+  double kept_variance_ = 0.0;
+  std::uint64_t kept_revision_ = 0;
 };
 
-TEST_F(RegistrationInAHall, RegistersFromTheStartOfTheMapAndSaysItOnce) {
-  const Core::Outputs first = robot.stand(core);
-  EXPECT_EQ(first.state, v1::REGISTRATION_TRACKING);
-  EXPECT_TRUE(says(first.notes, "tracking"));
-  EXPECT_EQ(first.environment, 1U);
-  EXPECT_NEAR(first.pose_in_map.x, 3.5, 0.1);
-  EXPECT_TRUE(robot.stand(core).notes.empty());
-}
-
-TEST(RegistrationCore, WithoutAStartTheRobotHasToBeFound) {
-  Core::Settings unplaced = settings();
-  unplaced.start.reset();
-  Core core(unplaced);
-  Robot robot;
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
+TEST(RegistrationCore, DoesAsWritten) {
+  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 27);
 }
 
 TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {
   EXPECT_THROW(Core(settings("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")), std::invalid_argument);
 }
 
-// Requests.
-
-TEST(RegistrationCore, WhatNeedsARobotIsRefusedBeforeThereIsOne) {
+TEST(RegistrationCore, PlacesTheRobotAtNumbersAlone) {
   Core core(settings());
-  for (const Request& one : {place({5.0, 0.0, 0.0}), request("find"), request("switch"),
-                             request("add_features"), request("snap")})
-    EXPECT_EQ(act(core, one).text, "there is no robot yet");
-  EXPECT_EQ(act(core, put(lps::PointType::position, {5.0, 0.0, 0.0})).text, "");
-  EXPECT_EQ(act(core, load(kHall)).text, "");
-  EXPECT_EQ(act(core, request("delete")).text, "");
-}
-
-TEST_F(RegistrationInAHall, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
-  robot.stand(core);
-  const std::uint64_t revision = core.map_revision();
-  EXPECT_TRUE(
-      contains(act(core, load("CORRIDOR (1) 0, 0, 0, 10000\n", "bad.map")).text, "bad.map:1:"));
-  EXPECT_TRUE(
-      contains(act(core, load("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).text, "at most 25 ha"));
-  EXPECT_EQ(core.map_revision(), revision);
-  EXPECT_EQ(core.map_source(), "hall.map");
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING);
-
-  EXPECT_EQ(act(core, load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
-  EXPECT_GT(core.map_revision(), revision);
-  EXPECT_EQ(core.map_source(), "other.map");
-  EXPECT_FALSE(core.map_changed());
-  EXPECT_EQ(robot.stand(core).environment, 7U);
-}
-
-TEST_F(RegistrationInAHall, OnAnotherMapThePoseIsAGuess) {
-  const Core::Outputs before = drive(100);
-  ASSERT_GT(before.confidence, 0.9);
-  // The same place on it by chance: the readings confirm the guess.
-  EXPECT_EQ(act(core, load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
-  const Core::Outputs guess = robot.stand(core);
-  EXPECT_EQ(guess.state, v1::REGISTRATION_TRACKING);
-  EXPECT_NEAR(guess.pose_in_map.x, before.pose_in_map.x, 0.1);
-  EXPECT_LE(guess.confidence, 0.5);
-  EXPECT_TRUE(contains(guess.reason, "another map was loaded")) << guess.reason;
-  const Core::Outputs later = drive(100);
-  EXPECT_GT(later.confidence, 0.9);
-  EXPECT_FALSE(contains(later.reason, "another map")) << later.reason;
-}
-
-TEST_F(RegistrationInAHall, OffAnotherMapThePoseIsForgotten) {
-  drive(100);
-  EXPECT_EQ(act(core, load("CORRIDOR (7) 60000, 0, 0, 20000, 2000\n")).text, "");
-  const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, v1::REGISTRATION_UNPLACED);
-  EXPECT_EQ(after.confidence, 0.0);
-  EXPECT_TRUE(contains(after.reason, "another map was loaded")) << after.reason;
-  EXPECT_FALSE(core.remembered()->memory.placed);
-}
-
-TEST_F(RegistrationInAHall, AnEditOfTheMapLeavesThePoseInPeace) {
-  drive(100);
-  const std::uint32_t id = id_of(act(core, put(lps::PointType::position, {5.0, 0.0, 0.0})));
-  EXPECT_GT(robot.step(core).confidence, 0.9);
-  Request gone = request("remove");
-  gone.arguments = {saphira::number("id", id)};
-  EXPECT_EQ(act(core, gone).text, "");
-  EXPECT_GT(robot.step(core).confidence, 0.9);
-}
-
-TEST_F(RegistrationInAHall, DeletesTheMap) {
-  robot.stand(core);
-  EXPECT_EQ(act(core, request("delete")).text, "");
-  EXPECT_TRUE(core.map().features.empty());
-  EXPECT_EQ(core.map_source(), "");
-  EXPECT_FALSE(core.adds_features()) << "that is asked for, or of an empty map at the start";
-}
-
-TEST_F(RegistrationInAHall, PutsAndRemovesArtifacts) {
-  robot.stand(core);
-  const Answer made = act(core, put(lps::PointType::position, {5.0, 0.0, 0.0}));
-  EXPECT_EQ(made.text, "");
-  ASSERT_NE(maps::find(core.map(), id_of(made)), nullptr);
-  EXPECT_TRUE(core.map_changed());
-  const Request moved = put(lps::PointType::position, {6.0, 0.0, 0.0}, id_of(made));
-  EXPECT_EQ(id_of(act(core, moved)), id_of(made));
-  EXPECT_EQ(maps::find(core.map(), id_of(made))->pose_in_map.x, 6.0);
-
-  const std::uint64_t revision = core.map_revision();
-  EXPECT_TRUE(contains(act(core, put(lps::PointType::object, {9000.0, 9000.0, 0.0})).text,
-                       "at most 25 ha"));
-  EXPECT_EQ(act(core, remove(4711)).text, "no artifact (4711) in the map");
-  EXPECT_EQ(core.map_revision(), revision);
-  EXPECT_EQ(id_of(act(core, remove(2))), 2U);
-  EXPECT_EQ(maps::find(core.map(), 2), nullptr);
-}
-
-TEST_F(RegistrationInAHall, PlacesTheRobotWhereItCanBe) {
-  robot.stand(core);
+  Robot().stand(core);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Pose& wrong : {Pose{nan, 0.0, 0.0}, Pose{5.0, 1e13, 0.0}, Pose{5.0, 0.0, nan}})
+  for (const Pose& wrong : {Pose{nan, 0.0, 0.0}, Pose{5.0, 0.0, nan}})
     EXPECT_TRUE(contains(act(core, place(wrong)).text, "within 10 km"));
-  EXPECT_NE(act(core, place({5.0, 40.0, 0.0})).text, "");
-  EXPECT_NEAR(robot.stand(core).pose_in_map.x, 3.5, 0.1);
-  EXPECT_EQ(act(core, place({8.0, 0.0, 0.0})).text, "");
-  EXPECT_NEAR(robot.stand(core).pose_in_map.x, 8.0, 0.1);
-}
-
-TEST_F(RegistrationInAHall, FindsAndSwitches) {
-  robot.stand(core);
-  EXPECT_EQ(act(core, request("switch", false)).text, "");
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
-  EXPECT_EQ(act(core, request("switch", true)).text, "");
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING);
-  EXPECT_EQ(act(core, request("find")).text, "");
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
-}
-
-TEST_F(RegistrationInAHall, AddsFeaturesAndSnapsAsItIsAsked) {
-  robot.stand(core);
-  EXPECT_FALSE(core.adds_features());
-  EXPECT_TRUE(core.snaps());
-  EXPECT_EQ(act(core, request("add_features", true)).text, "");
-  EXPECT_EQ(act(core, request("snap", false)).text, "");
-  EXPECT_TRUE(core.adds_features());
-  EXPECT_FALSE(core.snaps());
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_TRACKING)
-      << "on a map that is known it is registered";
 }
 
 TEST(RegistrationCore, WhatItCanBeAskedForIsDeclared) {
-  for (Request one : {load(kHall), request("delete"), put(lps::PointType::door, {5.0, 0.0, 0.0}),
-                      remove(4), place({5.0, 0.0, 0.0}), request("find"), request("switch", true),
+  for (Request one : {load(kHall), request("delete"), put("DOOR", {5.0, 0.0, 0.0}), remove(4),
+                      place({5.0, 0.0, 0.0}), request("find"), request("switch", true),
                       request("add_features", false), request("snap", true)})
     EXPECT_FALSE(refusal(Core::functors(), one)) << describe(one);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (Request one : {request("sing"), request("switch"), remove(0), place({nan, 0.0, 0.0}),
-                      put(lps::PointType::invalid, {5.0, 0.0, 0.0})})
+                      put("", {5.0, 0.0, 0.0})})
     EXPECT_TRUE(refusal(Core::functors(), one)) << describe(one);
 }
 
@@ -342,232 +367,11 @@ TEST(RegistrationCore, WhatItCanBeAskedForIsDocumented) {
       << help(Core::functors());
 }
 
-// A map from nothing.
-
-TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
-  Core core(settings(""));
-  Robot robot;
-  const Core::Outputs first = robot.step(core);
-  EXPECT_EQ(first.reason, "builds the map");
-  EXPECT_TRUE(core.adds_features());
-  for (const char* const action : {"remove", "find", "switch"})
-    EXPECT_EQ(act(core, request(action)).text,
-              "the map is being built: switch that off first (features off)");
-  for (int i = 0; i < 300; ++i)
-    robot.step(core);
-  ASSERT_FALSE(core.map().features.empty());
-  EXPECT_TRUE(core.map_changed());
-  // Building keeps the places that were put, and the walls that were built.
-  const std::size_t built = core.map().features.size();
-  EXPECT_EQ(act(core, put(lps::PointType::position, {1.0, 0.5, 0.0})).text, "");
-  EXPECT_EQ(act(core, request("snap", false)).text, "");
-  EXPECT_EQ(core.map().features.size(), built + 1);
-  // Registration uses the built map, with the robot at the same place.
-  const Pose before = robot.stand(core).pose_in_map;
-  EXPECT_EQ(act(core, request("add_features", false)).text, "");
-  const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
-  EXPECT_NE(after.reason, "builds the map");
-  EXPECT_TRUE(
-      std::any_of(core.map().features.begin(), core.map().features.end(), [](const auto& one) {
-        return one.pose_in_map == Pose{1.0, 0.5, 0.0};
-      }));
-  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.1);
-  EXPECT_NEAR(after.pose_in_map.y, before.y, 0.1);
-  // A robot that is started there again knows where it is.
-  const std::optional<Pose> start = start_pose("start", core.map());
-  ASSERT_TRUE(start);
-  EXPECT_NEAR(start->x, first.pose_in_map.x, 0.1);
-  EXPECT_NEAR(start->y, first.pose_in_map.y, 0.1);
-}
-
-TEST(RegistrationCore, WhileAMapIsBuiltTheRobotCanBePlaced) {
-  Core core(settings(""));
-  Robot robot;
-  robot.step(core);
-  EXPECT_EQ(act(core, place({7.0, -2.0, 0.0})).code, AnswerCode::done);
-  const Core::Outputs placed = robot.stand(core);
-  EXPECT_EQ(placed.reason, "builds the map");
-  EXPECT_NEAR(placed.pose_in_map.x, 7.0, 0.1);
-  EXPECT_NEAR(placed.pose_in_map.y, -2.0, 0.1);
-  for (int i = 0; i < 300; ++i)
-    robot.step(core);
-  const std::size_t built = core.map().features.size();
-  ASSERT_GT(built, 0U);
-  // The map is kept, and additions go on from the new place.
-  const Pose before = robot.stand(core).pose_in_map;
-  EXPECT_EQ(act(core, place({before.x + 1.0, before.y, before.th})).code, AnswerCode::done);
-  EXPECT_NEAR(robot.stand(core).pose_in_map.x, before.x + 1.0, 0.1);
-  EXPECT_GE(core.map().features.size(), built);
-  EXPECT_TRUE(core.adds_features());
-}
-
-TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {
-  Core core(settings(""));
-  Robot robot;
-  for (int i = 0; i < 300; ++i)
-    robot.step(core);
-  EXPECT_EQ(act(core, load(kHall)).text, "");
-  EXPECT_NE(robot.stand(core).reason, "builds the map");
-  EXPECT_EQ(core.map_source(), "other.map");
-  EXPECT_NE(maps::find(core.map(), 2), nullptr);
-}
-
-// Links, frames and micro-tasks.
-
-TEST_F(RegistrationInAHall, WhatWasAskedForOutlastsTheLink) {
-  robot.stand(core);
-  act(core, request("switch", false));
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
-  robot.reconnect();
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_OFF);
-  act(core, request("switch", true));
-  act(core, request("find"));
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED);
-  robot.reconnect();
-  EXPECT_EQ(robot.stand(core).state, v1::REGISTRATION_UNPLACED) << "it may be far from the start";
-}
-
-TEST_F(RegistrationInAHall, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
-  drive(100);
-  const Pose before = robot.stand(core).pose_in_map;
-  EXPECT_GT(before.x, 5.5);
-  robot.reconnect();
-  const Core::Outputs after = robot.stand(core);
-  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
-  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
-}
-
-TEST_F(RegistrationInAHall, InAnotherOdometryFrameThePoseIsAGuessUntilTheReadingsFitIt) {
-  drive(100);
-  const Core::Outputs before = robot.stand(core);
-  robot.new_frame();
-  const Core::Outputs after = robot.stand(core);
-  EXPECT_NEAR(after.pose_in_map.x, before.pose_in_map.x, 0.1);
-  EXPECT_GT(after.covariance(0, 0), before.covariance(0, 0));
-  EXPECT_EQ(after.state, v1::REGISTRATION_LOST);
-  EXPECT_NE(after.reason.find("dead reckoning has begun anew"), std::string::npos) << after.reason;
-  EXPECT_TRUE(core.remembered()->memory.placed) << "a restart now has the same guess";
-  EXPECT_NE(core.remembered()->memory.odom, robot.frame());
-  Core::Outputs later = after;
-  for (int i = 0; i < 100 && later.state != v1::REGISTRATION_TRACKING; ++i)
-    later = robot.step(core);
-  EXPECT_EQ(later.state, v1::REGISTRATION_TRACKING);
-}
-
-TEST(RegistrationCore, AZoneIsPutWithItsRule) {
-  Core core(settings());
-  Request zone = put(lps::PointType::zone, {5.0, 0.0, 0.0});
-  zone.arguments.push_back({"rule", std::string("slow")});
-  zone.arguments.push_back({"speed", 0.15});
-  const Answer made = act(core, zone);
-  EXPECT_EQ(made.text, "");
-  const maps::Feature* const feature = maps::find(core.map(), id_of(made));
-  ASSERT_NE(feature, nullptr);
-  EXPECT_EQ(feature->rule, maps::ZoneRule::slow);
-  EXPECT_DOUBLE_EQ(feature->speed, 0.15);
-  zone.arguments.back().number = 0.0;
-  EXPECT_TRUE(contains(act(core, zone).text, "a speed of a slow zone"));
-}
-
-TEST_F(RegistrationInAHall, APoseThatWasOnlyToldIsHalfTrusted) {
-  const Core::Outputs told = robot.stand(core);
-  EXPECT_EQ(told.state, v1::REGISTRATION_TRACKING);
-  EXPECT_LE(told.confidence, 0.5);
-  EXPECT_NE(told.reason.find("as it was told"), std::string::npos) << told.reason;
-  const Core::Outputs later = drive(100);
-  EXPECT_GT(later.confidence, 0.9);
-}
-
-TEST_F(RegistrationInAHall, ASuspendedProcessDoesNothingUntilItIsResumed) {
-  const auto ask = [&](const char* process, ProcessAction action) {
-    EXPECT_EQ(core.processes().request(process, action), "");
-    return robot.stand(core);
-  };
-  EXPECT_EQ(robot.stand(core).environment, 1U);
-  EXPECT_EQ(ask("test-environment", ProcessAction::suspend).environment, 0U);
-  EXPECT_EQ(ask("test-environment", ProcessAction::resume).environment, 1U);
-  const Core::Outputs suspended = ask("test-match", ProcessAction::suspend);
-  EXPECT_EQ(suspended.state, v1::REGISTRATION_OFF);
-  EXPECT_EQ(suspended.reason, "test-match is suspended: the pose goes on by dead reckoning");
-  EXPECT_EQ(ask("test-match", ProcessAction::resume).state, v1::REGISTRATION_TRACKING);
-}
-
-// State that outlives the core.
-
-TEST_F(RegistrationInAHall, ARestartGoesOnFromWhatWasRemembered) {
-  EXPECT_FALSE(core.remembered()) << "before the first robot there is nothing";
-  drive(100);
-  const std::uint32_t id = id_of(act(core, put(lps::PointType::position, {5.0, 0.0, 0.0})));
-  const Pose before = robot.stand(core).pose_in_map;
-  Core next(settings(), restored<Remembered>(saved(*core.remembered())));
-  EXPECT_NE(maps::find(next.map(), id), nullptr);
-  EXPECT_TRUE(next.map_changed());
-  robot.reconnect();
-  const Core::Outputs after = robot.stand(next);
-  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
-  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
-}
-
-TEST_F(RegistrationInAHall, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDoubt) {
-  robot.stand(core);
-  Core next(settings(), core.remembered());
-  robot.reconnect();
-  robot.new_frame();
-  const Core::Outputs after = robot.stand(next);
-  EXPECT_EQ(after.state, v1::REGISTRATION_TRACKING);
-  EXPECT_LE(after.confidence, 0.5);
-}
-
-TEST_F(RegistrationInAHall, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
-  robot.stand(core);
-  act(core, load("CORRIDOR (5) 0, 0, 0, 30000, 2000\n", "a;b  c.map"));
-  act(core, request("find"));
-  robot.stand(core);
-  Core next(settings(), core.remembered());
-  EXPECT_EQ(next.map_source(), "a;b  c.map");
-  EXPECT_FALSE(next.map_changed());
-  robot.reconnect();
-  EXPECT_EQ(robot.stand(next).state, v1::REGISTRATION_UNPLACED);
-}
-
-TEST_F(RegistrationInAHall, ARestartKnowsThatTheMapWasDeleted) {
-  robot.stand(core);
-  act(core, request("delete"));
-  robot.stand(core);
-  const Core next(settings(), restored<Remembered>(saved(*core.remembered())));
-  EXPECT_EQ(next.map_source(), "");
-  EXPECT_TRUE(next.map().features.empty());
-}
-
-TEST_F(RegistrationInAHall, WhatWasRememberedOfAnotherMapDoesNotCount) {
-  robot.stand(core);
-  act(core, put(lps::PointType::position, {5.0, 0.0, 0.0}));
-  Core::Settings other = settings();
-  other.source = "another.map";
-  EXPECT_EQ(Core(other, core.remembered()).map(), Core(other).map());
-}
-
-TEST(RegistrationCore, WhileAMapIsBuiltTheBuildersPoseIsRemembered) {
-  Core core(settings(""));
-  Robot robot;
-  Core::Outputs newest;
-  for (int i = 0; i < 200; ++i)
-    newest = robot.step(core);
-  const std::optional<Remembered> remembered = core.remembered();
-  ASSERT_TRUE(remembered);
-  EXPECT_TRUE(remembered->memory.placed);
-  EXPECT_EQ(remembered->memory.pose_in_map, newest.pose_in_map);
-  EXPECT_EQ(remembered->memory.odom, robot.frame());
-  EXPECT_EQ(remembered->memory.pose_in_odom, robot.pose_in_odom());
-  EXPECT_EQ(remembered->map, core.map());
-}
-
 /// The events of a core on its way, by cycle.
 void happen(int cycle, Core& core, Robot& robot) {
   switch (cycle) {
     case 40:
-      act(core, put(lps::PointType::position, {5.0, 0.0, 0.0}));
+      act(core, put("POS", {5.0, 0.0, 0.0}));
       break;
     case 80:
       robot.new_frame();

@@ -269,9 +269,7 @@ TEST(FeatureGraph, ALoopThatClosesCorrectsTheWholeWay) {
   Pose odom;
   const auto node = [&] { graph.nodes.push_back({odom, odom, false, false}); };
   const auto see = [&] {
-    SeenLine seen;
-    seen.node = graph.nodes.size() - 1;
-    seen.in_node = relative(truth, {5.0, 1.0, kPi});
+    SeenLine seen{.node = graph.nodes.size() - 1, .in_node = relative(truth, {5.0, 1.0, kPi})};
     graph.lines[0].seen.push_back(seen);
   };
   node();

@@ -14,9 +14,7 @@ Eigen::Matrix3d covariance(double position, double heading) {
 }
 
 TEST(ParticleCloud, BeginsAsItIsTold) {
-  CloudSettings settings;
-  settings.particles = 2000;
-  ParticleCloud cloud(settings);
+  ParticleCloud cloud({.particles = 2000});
   EXPECT_TRUE(cloud.empty());
   cloud.begin({1.0, 2.0, 3.1}, covariance(0.3, radians(8.0)), 0.01, 0.005);
   const auto seen = cloud.estimate();
@@ -56,9 +54,7 @@ TEST(ParticleCloud, HoldsAndLearnsADriftThatNoFilterMayAssume) {
 }
 
 TEST(ParticleCloud, LearnsWhatAFilterLearnt) {
-  CloudSettings settings;
-  settings.particles = 3000;
-  ParticleCloud cloud(settings);
+  ParticleCloud cloud({.particles = 3000});
   const Pose before{5.0, 5.0, 0.0};
   cloud.begin(before, covariance(0.4, radians(5.0)), 0.0, 0.01);
   // A door along x: the filter now knows x to 0.1 m, and y and the heading as before.

@@ -35,19 +35,17 @@ Settings settings() {
 }
 
 lps::Percept percept(std::uint32_t id, PointType type, const Pose& pose, std::uint64_t cycle) {
-  lps::Percept result;
-  result.id = id;
-  result.type = type;
-  result.pose_in_odom = pose;
-  result.length = type == PointType::wall ? 1.5 : 0.0;
-  result.width = type == PointType::wall ? 0.0 : 0.9;
-  result.sigma_along = 0.03;
-  result.sigma_across = 0.03;
-  result.sigma_heading = radians(1.0);
-  result.confidence = 1.0;
-  result.seen = cycle;
-  result.readings = {{cycle, static_cast<int>(id % kSonars)}};
-  return result;
+  return lps::Percept{.id = id,
+                      .type = type,
+                      .pose_in_odom = pose,
+                      .length = type == PointType::wall ? 1.5 : 0.0,
+                      .width = type == PointType::wall ? 0.0 : 0.9,
+                      .sigma_along = 0.03,
+                      .sigma_across = 0.03,
+                      .sigma_heading = radians(1.0),
+                      .confidence = 1.0,
+                      .seen = cycle,
+                      .readings = {{cycle, static_cast<int>(id % kSonars)}}};
 }
 
 /// Drives along the corridor, turns at times, and hears walls, doors and objects that are not on

@@ -51,8 +51,7 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
 }
 
 ProcessesOnBus::~ProcessesOnBus() {
-  v1::ProcessSet sample{.instance = node_.instance()};
-  states_.dispose(sample);
+  states_.dispose({.instance = node_.instance()});
 }
 
 void ProcessesOnBus::step(const v1::Stamp& stamp) {

@@ -21,16 +21,15 @@ Service::Service(runtime::Ports& ports, const Options& options)
 void Service::step(const runtime::Turn& turn) {
   take_channels(turn.stamp.epoch);
   epoch_ = turn.stamp.epoch;
-  Core::Inputs inputs;
-  inputs.cycle = turn.stamp.cycle;
-  inputs.new_robot = turn.new_robot;
-  inputs.new_frame = turn.new_frame;
-  inputs.odom = turn.robot.odom;
-  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom);
-  inputs.channels_per_s = turn.robot.vision_packets_per_s;
-  inputs.picture = pictures_.take(turn.stamp.cycle);
-  inputs.seen = std::exchange(seen_, {});
-  inputs.no_pictures = pictures_.trouble();
+  Core::Inputs inputs{.cycle = turn.stamp.cycle,
+                      .new_robot = turn.new_robot,
+                      .new_frame = turn.new_frame,
+                      .odom = turn.robot.odom,
+                      .pose_in_odom = lps::from_bus(turn.robot.pose_in_odom),
+                      .channels_per_s = turn.robot.vision_packets_per_s,
+                      .picture = pictures_.take(turn.stamp.cycle),
+                      .seen = std::exchange(seen_, {}),
+                      .no_pictures = pictures_.trouble()};
 
   const Core::Outputs outputs = core_.step(inputs);
   v1::Vision sample = to_bus(outputs.things);

@@ -187,10 +187,9 @@ std::pair<int, int> torso_rows(const Rig& rig, int rows) {
 }
 
 Bands bands_of(const DisparityMap& map, const Rig& rig, int rows) {
-  Bands out;
-  out.eye_forward = rig.forward;
-  out.eye_left = rig.baseline / 2.0;
-  out.uncertainty = kSigmaDisparity / (rig.focal * rig.baseline);
+  Bands out{.eye_forward = rig.forward,
+            .eye_left = rig.baseline / 2.0,
+            .uncertainty = kSigmaDisparity / (rig.focal * rig.baseline)};
   std::array<std::vector<double>, kTorso.size()> seen;
   std::vector<double> above;
   for (int column = 0; column < map.columns; column += kColumnStep) {
@@ -262,13 +261,11 @@ std::vector<Sight> find_people(const Bands& bands, const PeopleSettings& setting
     }
     if (agreeing < 2)
       continue;
-    Sight sight;
-    sight.place_in_robot = sum / agreeing;
-    sight.sigma_range = 0.08 + bands.uncertainty * far * far;
-    sight.sigma_across = 0.05 + 0.01 * far;
-    sight.width = width / agreeing;
-    sight.evidence = (agreeing == 3 ? 1.0 : 0.7) * (whole >= 2 ? 1.0 : 0.6);
-    people.push_back(sight);
+    people.push_back({.place_in_robot = sum / agreeing,
+                      .sigma_range = 0.08 + bands.uncertainty * far * far,
+                      .sigma_across = 0.05 + 0.01 * far,
+                      .width = width / agreeing,
+                      .evidence = (agreeing == 3 ? 1.0 : 0.7) * (whole >= 2 ? 1.0 : 0.6)});
   }
   return people;
 }

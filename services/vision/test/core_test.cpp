@@ -11,9 +11,7 @@ class CoreTest : public testing::Test {
   CoreTest() { inputs_.odom = 1; }
 
   static Core::Seen seen(std::uint64_t cycle, std::uint64_t odom = 1) {
-    Core::Seen one;
-    one.cycle = cycle;
-    one.odom = odom;
+    Core::Seen one{.cycle = cycle, .odom = odom};
     one.channels[0] = {80, 60, 400, 20, 20};
     return one;
   }

@@ -10,9 +10,7 @@ namespace {
 using Kind = lps::SeenThing::Kind;
 
 Sight person_at(double x, double y) {
-  Sight sight;
-  sight.place_in_robot = {x, y};
-  return sight;
+  return Sight{.place_in_robot = {x, y}};
 }
 
 bool everywhere(const Vec2&) {

@@ -204,10 +204,9 @@ void Builder::lay_loop() {
 
 void Builder::lay_hall() {
   const Area spine = corridors_.front().area;
-  Area hall;
-  hall.in_world = compose(spine.in_world, {spine.length, between(-1.0, 1.0), 0.0});
-  hall.length = between(5.0, 8.0);
-  hall.width = between(6.0, 9.0);
+  Area hall{.in_world = compose(spine.in_world, {spine.length, between(-1.0, 1.0), 0.0}),
+            .length = between(5.0, 8.0),
+            .width = between(6.0, 9.0)};
   for (const Corridor& corridor : corridors_)
     if (overlap(hall, corridor.area, 0.01))
       return;

@@ -77,12 +77,10 @@ Site shipped(const std::string& name, std::vector<Vec2> tour) {
 }
 
 test::DriveOptions drive_of(const Options& options, const Site& site) {
-  test::DriveOptions drive;
-  drive.made_world = site.world;
-  drive.seed = site.seed;
-  drive.errors = options.errors;
-  drive.robot = options.robot;
-  return drive;
+  return test::DriveOptions{.made_world = site.world,
+                            .robot = options.robot,
+                            .seed = site.seed,
+                            .errors = options.errors};
 }
 
 bool is_right(const Pose& believed, const Pose& truth) {
@@ -167,10 +165,7 @@ void carry_once(const Options& options, const Site& site, const Vec2& first,
   constexpr double kThere = 2.0;  // [m]
   constexpr int kStands = 30;     // [cycles] before and after
   constexpr int kGivenUp = 9000;  // [cycles]
-  test::WholeOptions whole_options;
-  whole_options.drive = drive_of(options, site);
-  whole_options.made_map = site.map;
-  test::Whole whole(whole_options);
+  test::Whole whole({.drive = drive_of(options, site), .made_map = site.map});
   const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
   // It has driven, so that its pose is confirmed.
   whole.achieve("go-to-place", {point("place", {first.x(), first.y(), 0.0}, Frame::map)}, 3000);

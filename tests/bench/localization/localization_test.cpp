@@ -18,10 +18,7 @@ maps::Map office() {
 }
 
 DriveOptions doubled(std::uint64_t seed) {
-  DriveOptions options;
-  options.seed = seed;
-  options.errors = 2.0;
-  return options;
+  return DriveOptions{.seed = seed, .errors = 2.0};
 }
 
 /// The robot's start, facing south.

@@ -378,15 +378,13 @@ std::optional<Crossing> plan_crossing(const CrossingOptions& options,
 
 CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& options,
                               const sim::SonarModel& sonar, bool trace) {
-  DriveOptions drive_options;
-  drive_options.made_world = std::make_shared<const sim::World>(crossing.world);
-  drive_options.robot = options.robot;
-  drive_options.seed = options.seed;
-  drive_options.start_in_world = crossing.start_in_world;
-  drive_options.sonar = sonar;
-  drive_options.guard = true;
-  drive_options.knows_walls = kPlaceError;
-  Drive drive(drive_options);
+  Drive drive({.made_world = std::make_shared<const sim::World>(crossing.world),
+               .robot = options.robot,
+               .seed = options.seed,
+               .start_in_world = crossing.start_in_world,
+               .sonar = sonar,
+               .guard = true,
+               .knows_walls = kPlaceError});
   const double radius = drive.parameters().radius;
   sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());
   drive.scene().set_watch([&watch] { watch.tick(); });

@@ -59,15 +59,13 @@ TEST(PostsStraightAhead, AreHeardAndNotTouched) {
         int touched = 0;
         for (int seed = 1; seed <= 10; ++seed) {
           const std::string start = std::to_string(2000 + 50 * seed);
-          DriveOptions options;
-          options.made_world = std::make_shared<const sim::World>(
-              sim::parse_world("width 10000\nheight 6000\nposition " + start +
-                                   " 3000 0\npost p 5000 3000 " + radius + "\n",
-                               "hall.wld"));
-          options.robot = robot;
-          options.seed = static_cast<std::uint64_t>(seed);
-          options.guard = true;
-          Drive drive(options);
+          Drive drive({.made_world = std::make_shared<const sim::World>(
+                           sim::parse_world("width 10000\nheight 6000\nposition " + start +
+                                                " 3000 0\npost p 5000 3000 " + radius + "\n",
+                                            "hall.wld")),
+                       .robot = robot,
+                       .seed = static_cast<std::uint64_t>(seed),
+                       .guard = true});
           for (int cycle = 0; cycle < 150; ++cycle) {
             if (by_hand)
               drive.drive(0.3, 0.0);

@@ -84,12 +84,10 @@ class Walk {
 Total tours(const std::string& world, int seeds, std::uint64_t cycles) {
   Total total;
   for (int seed = 1; seed <= seeds; ++seed) {
-    DriveOptions options;
-    options.interpretation = true;
-    options.world = world;
-    options.seed = static_cast<std::uint64_t>(seed);
-    options.errors = 2.0;
-    Drive drive(options);
+    Drive drive({.world = world,
+                 .seed = static_cast<std::uint64_t>(seed),
+                 .errors = 2.0,
+                 .interpretation = true});
     Walk walk(world);
     run(
         drive, world, cycles, [&](Drive& d) { walk.act(d); }, total);
@@ -97,37 +95,31 @@ Total tours(const std::string& world, int seeds, std::uint64_t cycles) {
   return total;
 }
 
+/// With so many walls and doors reported, and so many doors passed by.
+void expect_true_and_complete(const Total& total, int walls, int doors, int passed) {
+  EXPECT_GT(total.walls.reported, walls);
+  EXPECT_GE(total.walls.precision(), 0.98);
+  EXPECT_GT(total.doors.reported, doors);
+  EXPECT_GE(total.doors.precision(), 0.98);
+  EXPECT_GT(total.passed, passed);
+  EXPECT_GE(total.found, 0.8 * total.passed);
+}
+
 // Patrols with the errors of dead reckoning doubled; dodging cupboards, round corners and back.
 TEST(Perception, OfTheOfficeFloorIsTrueAndComplete) {
   const Total total = tours("office-floor", 4, 9000);
-  EXPECT_GT(total.walls.reported, 400);
-  EXPECT_GE(total.walls.precision(), 0.98);
-  EXPECT_GT(total.doors.reported, 250);
-  EXPECT_GE(total.doors.precision(), 0.98);
+  expect_true_and_complete(total, 400, 250, 250);
   EXPECT_GE(total.ends.precision(), 0.98);
-  EXPECT_GT(total.passed, 250);
-  EXPECT_GE(total.found, 0.8 * total.passed);
 }
 
 // Its outer wall has closed doors, 0.1 m back.
 TEST(Perception, OfTheLoopIsTrueAndComplete) {
-  const Total total = tours("loop", 2, 9000);
-  EXPECT_GT(total.walls.reported, 150);
-  EXPECT_GE(total.walls.precision(), 0.98);
-  EXPECT_GT(total.doors.reported, 50);
-  EXPECT_GE(total.doors.precision(), 0.98);
-  EXPECT_GT(total.passed, 50);
-  EXPECT_GE(total.found, 0.8 * total.passed);
+  expect_true_and_complete(tours("loop", 2, 9000), 150, 50, 50);
 }
 
 // In a narrow hall, round a cupboard; every way is oblique.
 TEST(Perception, OfASmallOfficeIsTrueAndComplete) {
-  const Total total = tours("small-office", 2, 9000);
-  EXPECT_GT(total.walls.reported, 300);
-  EXPECT_GE(total.walls.precision(), 0.98);
-  EXPECT_GE(total.doors.precision(), 0.98);
-  EXPECT_GT(total.passed, 100);
-  EXPECT_GE(total.found, 0.8 * total.passed);
+  expect_true_and_complete(tours("small-office", 2, 9000), 300, 0, 100);
 }
 
 // Two people who walk about, a door that opens and closes, boxes.
@@ -149,12 +141,10 @@ TEST(Perception, FurnitureIsNoDoor) {
 TEST(Perception, DrivingObliquelyIsNoHindrance) {
   Total total;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    DriveOptions options;
-    options.interpretation = true;
-    options.seed = seed;
-    options.errors = 2.0;
-    options.start_in_world = Pose{13.0, 7.0, 0.0};
-    Drive drive(options);
+    Drive drive({.seed = seed,
+                 .errors = 2.0,
+                 .start_in_world = Pose{13.0, 7.0, 0.0},
+                 .interpretation = true});
     double across = 12.0;
     run(
         drive, "office-floor", 700,

@@ -111,46 +111,10 @@ TEST(BridgeInLockstep, AnEmergencyStopStopsARobotThatHasNone) {
   EXPECT_LT(way_to_standstill("pioneer.p"), 0.2);
 }
 
-Process command_line(const Scene& scene, std::vector<std::string> words) {
-  std::vector<std::string> argv{"saphira", "--robot", scene.robot, "--domain", domain()};
-  argv.insert(argv.end(), words.begin(), words.end());
-  std::string file = "cli";
-  for (const std::string& word : words)
-    file += "." + word;
-  return {argv, scene.folder.path(file)};
-}
-
-TEST(BridgeEstop, ByTheCommandLine) {
-  Driving scene;
-  ASSERT_TRUE(scene.moves()) << scene.bridge_log();
-  Process estop = command_line(scene, {"estop"});
-  ASSERT_TRUE(scene.until([&] { return scene.stopped(); })) << estop.output();
-  EXPECT_EQ(estop.wait(), 0) << estop.output();
-  EXPECT_NE(estop.output().find("EMERGENCY STOP, pressed by saphira estop"), std::string::npos);
-  EXPECT_TRUE(scene.stays_stopped(10)) << "it needs nobody";
-
-  Process status = command_line(scene, {"status"});
-  EXPECT_TRUE(scene.until([&] { return !status.running(); }));
-  EXPECT_NE(status.output().find("drive: EMERGENCY STOP, pressed by"), std::string::npos)
-      << status.output();
-
-  Process reset = command_line(scene, {"estop", "reset"});
-  ASSERT_TRUE(scene.until([&] { return !reset.running(); }));
-  EXPECT_EQ(reset.wait(), 0) << reset.output();
-  EXPECT_NE(reset.output().find("the emergency stop is reset"), std::string::npos)
-      << reset.output();
-  EXPECT_TRUE(scene.until([&] { return scene.grant.waits_for_hand_back; }));
-  EXPECT_TRUE(scene.rests());
-
-  Process back = command_line(scene, {"drive", "hand-back"});
-  ASSERT_TRUE(scene.until([&] { return !back.running(); }));
-  EXPECT_EQ(back.wait(), 0) << back.output();
-  EXPECT_TRUE(scene.moves());
-}
-
 TEST(BridgeEstop, TheCommandLineSaysThatNobodyConfirms) {
   const Scene scene;
-  Process estop = command_line(scene, {"estop"});
+  Process estop({"saphira", "--robot", scene.robot, "--domain", domain(), "estop"},
+                scene.folder.path("estop"));
   ASSERT_TRUE(wait_until([&] { return estop.output().find("NOT CONFIRMED") != std::string::npos; }))
       << estop.output();
   EXPECT_TRUE(estop.running()) << "it goes on trying";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "saphira/protocol/parameters.hpp"
 #include "scene.hpp"
 
 namespace saphira::test {
@@ -22,8 +23,14 @@ TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
       "8000 11500 12000 11500\n";
   scene.start();
   ASSERT_TRUE(scene.until([&] { return scene.description.has_value(); })) << scene.bridge_log();
+  const auto robot = protocol::load_parameters(source("config/robots/" + scene.robot_file));
   EXPECT_TRUE(scene.description->parameter_file.ends_with("/" + scene.robot_file))
       << scene.description->parameter_file;
+  EXPECT_EQ(scene.description->robot_class, robot.robot_class);
+  EXPECT_EQ(scene.description->sonars.size(), robot.sonars.size());
+  EXPECT_EQ(scene.description->radius, robot.radius);
+  EXPECT_EQ(scene.description->max_velocity, robot.max_velocity);
+  EXPECT_EQ(scene.description->stamp.epoch, scene.state.stamp.epoch);
 
   // A third of a metre and a quarter turn, by the robot's own count and by the true pose. Slowly:
   // the smallest robot reaches 0.1 m/s.
@@ -69,62 +76,27 @@ INSTANTIATE_TEST_SUITE_P(All, BridgeRobots,
                            return name;
                          });
 
-TEST(BridgeDevices, OfALaterRobot) {
-  Scene scene;
-  scene.robot_file = "p3dx-sh.p";
+TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
+  Scene scene(true);
+  scene.world += "11500 8000 11500 12000\n";
   scene.start();
-  const auto report = [&](const char* packet, const char* often) {
-    return scene
-        .ask(bus::topics::kServer, "report",
-             {bus::text("packet", packet), bus::text("often", often)})
-        .code;
-  };
-  const auto motors = [&](bool on) {
-    return scene.ask(bus::topics::kServer, "motors", {bus::truth("on", on)}).code;
-  };
-  ASSERT_TRUE(scene.until([&] {
-    return scene.connected() && scene.devices.has_configuration && scene.devices.motors_on;
-  })) << scene.bridge_log();
-  EXPECT_EQ(scene.devices.information_period, 100);
-  EXPECT_FALSE(scene.devices.serial_number.empty());
-
-  // The values come on another topic than the answer: there is no order between the two.
-  EXPECT_EQ(report("encoders", "always"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_encoders; }));
-  EXPECT_EQ(report("encoders", "off"), v1::ANSWER_SENT);
-  EXPECT_EQ(report("io", "once"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_io; }));
-  EXPECT_EQ(report("gripper", "once"), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.devices.has_gripper; }));
-
-  EXPECT_EQ(scene
-                .ask(bus::topics::kDigitalOutput, "output",
-                     {bus::number("bits", 0x05), bus::number("mask", 0x0F)})
-                .code,
-            v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return (scene.state.digital_output & 0x0F) == 0x05; }));
-
-  EXPECT_EQ(scene.ask(bus::topics::kSonar, "sonar", {bus::truth("on", false)}).code,
-            v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s == 0; }));
-  scene.ask(bus::topics::kSonar, "sonar", {bus::truth("on", true)});
-  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s > 0; }));
-
-  EXPECT_EQ(scene
-                .ask(bus::topics::kSound, "tones",
-                     {bus::number("duration", 0.1), bus::number("pitch", 0),
-                      bus::number("duration", 0.1), bus::number("pitch", 60)})
-                .code,
-            v1::ANSWER_SENT);
-
-  // Motors off: the user gets a message, and the robot does not drive until they are on again.
-  EXPECT_EQ(motors(false), v1::ANSWER_DONE);
-  ASSERT_TRUE(scene.until([&] {
-    return scene.status.state == v1::SERVICE_DEGRADED &&
-           scene.status.reason.find("motors are off") != std::string::npos;
-  })) << scene.status.reason;
-  EXPECT_EQ(motors(true), v1::ANSWER_DONE);
-  EXPECT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }));
+  forward(scene.command, 0.4);
+  scene.permit(150);
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 150; })) << scene.bridge_log();
+  EXPECT_EQ(scene.grant.guard, v1::GUARD_STOP);
+  EXPECT_NE(scene.grant.guard_reason.find("ahead"), std::string::npos);
+  EXPECT_TRUE(scene.rests());
+  // Turning away is free.
+  forward(scene.command, 0.4, 0.8);
+  scene.permit(200);
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.3; }));
+  std::vector<sim::TraceRow> rows = scene.end();
+  ASSERT_GE(rows.size(), 150U);
+  rows.resize(150);
+  EXPECT_EQ(rows.back().contacts, 0);
+  // Room for a person, who reaches farther than the shin's echo.
+  EXPECT_GT(rows.back().clearance, 0.2);
+  EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
 }
 
 TEST(BridgeDevices, FromTheCommandLine) {

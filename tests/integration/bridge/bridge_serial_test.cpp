@@ -115,30 +115,5 @@ TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
     }
 }
 
-TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
-  LineScene scene;
-  scene.drive_off();
-  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom.x > 0.5; }));
-  const std::uint64_t epoch = scene.state.stamp.epoch;
-  const std::uint64_t odom = scene.state.odom;
-  scene.simulator->signal(SIGKILL);
-  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason;
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason;
-  // A request in the meantime is refused, and is not executed later.
-  const v1::Answer answer = scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1800)});
-  EXPECT_EQ(answer.code, v1::ANSWER_NOBODY);
-  EXPECT_EQ(answer.text, "no robot is connected");
-  scene.drives = false;
-  scene.start_simulator();
-  scene.expect_halves();
-  ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp.epoch > epoch && scene.state.stamp.cycle > 10;
-  })) << scene.bridge_log();
-  EXPECT_NE(scene.state.odom, odom) << "its position began anew";
-  EXPECT_EQ(scene.state.ptu, 0);
-  for (const sim::TraceRow& row : scene.trace())
-    ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
-}
-
 }  // namespace
 }  // namespace saphira::test

@@ -10,6 +10,12 @@
 namespace saphira {
 namespace {
 
+/// The message of its FileError.
+template <class F>
+std::string trouble(F&& f) {
+  return test::trouble_of<FileError>(std::forward<F>(f));
+}
+
 TEST(Text, NamesAreComparedAsPeopleReadThem) {
   EXPECT_EQ(lowered("EJ-231 [@Z`{"), "ej-231 [@z`{");
   const std::string jose = "jos\u00e9";
@@ -47,17 +53,10 @@ TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
   LineReader reader("a.wld", lines[0]);
   reader.number("x");
   reader.number("y");
-  try {
-    reader.number("x of the end point");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), 1);
-    EXPECT_EQ(error.column(), 5);
-    EXPECT_STREQ(error.what(),
-                 "a.wld:1:5: expected a number (x of the end point), found \"abc\"\n"
-                 "    0 0 abc 3\n"
-                 "        ^");
-  }
+  EXPECT_EQ(trouble([&] { reader.number("x of the end point"); }),
+            "a.wld:1:5: expected a number (x of the end point), found \"abc\"\n"
+            "    0 0 abc 3\n"
+            "        ^");
 }
 
 TEST(Text, OfALongLineThePartAroundThePlaceIsShown) {
@@ -72,13 +71,8 @@ TEST(Text, OfALongLineThePartAroundThePlaceIsShown) {
   const auto words = split_lines(line);
   LineReader reader("a.p", words[0]);
   reader.word("a name");
-  try {
-    reader.number("x");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("found \"" + many.substr(0, 100) + "...\"\n"),
-              std::string::npos);
-  }
+  EXPECT_TRUE(test::has(trouble([&] { reader.number("x"); }),
+                        "found \"" + many.substr(0, 100) + "...\"\n"));
 }
 
 TEST(Text, ControlCharactersDoNotEndAMessage) {
@@ -91,15 +85,8 @@ TEST(Text, ControlCharactersDoNotEndAMessage) {
 TEST(Text, ATextThatEndsWithinALineWasCutOff) {
   for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 \n", "a 1; comment", "a 1\n\n"})
     EXPECT_NO_THROW(expect_last_line_break(whole, "a.p")) << whole;
-  for (const char* cut : {"a 100\n\nb 20", "a 100\n\nb 20 ", "a 100\n\nb 20\t"}) {
-    try {
-      expect_last_line_break(cut, "a.p");
-      ADD_FAILURE() << "no error";
-    } catch (const FileError& error) {
-      EXPECT_EQ(error.line(), 3);
-      EXPECT_EQ(error.column(), 5);
-    }
-  }
+  for (const char* cut : {"a 100\n\nb 20", "a 100\n\nb 20 ", "a 100\n\nb 20\t"})
+    EXPECT_TRUE(trouble([&] { expect_last_line_break(cut, "a.p"); }).starts_with("a.p:3:5: "));
 }
 
 TEST(Text, MissingAndSurplusWordsAreErrors) {
@@ -149,15 +136,10 @@ TEST(Text, AFileInLatin1IsRefusedAtItsPlace) {
   const std::string path = folder.path("office.map");
   std::ofstream(path) << "; caf\u00e9\nPOS (1) 0, 0, 0 \"K\xFC"
                       << "che\"\n";
-  try {
-    read_file(path);
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              path +
-                  ":2:19: expected a text in UTF-8, found the byte 0xFC (Latin-1?): save it as "
-                  "UTF-8\n    POS (1) 0, 0, 0 \"K?che\"\n                      ^");
-  }
+  EXPECT_EQ(trouble([&] { read_file(path); }),
+            path +
+                ":2:19: expected a text in UTF-8, found the byte 0xFC (Latin-1?): save it as "
+                "UTF-8\n    POS (1) 0, 0, 0 \"K?che\"\n                      ^");
   EXPECT_NE(read_bytes(path).find('\xFC'), std::string::npos);
   const std::string good = "\u00fc \u20ac \U0001f600\n";
   std::ofstream(path) << good;
@@ -180,13 +162,8 @@ TEST(Text, FilesOfOtherProgramsAreKnown) {
   EXPECT_EQ(other_format("\x1f\x8b\x08"), "a packed file (gzip)");
   EXPECT_EQ(other_format("define floorplan model\n"), "a world of Stage");
   EXPECT_NO_THROW(expect_own_format("width 1000\n", "a.wld", "a world"));
-  try {
-    expect_own_format("\xFF\xFEw", "a.wld", "a world");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_STREQ(error.what(),
-                 "a.wld:1:1: this is a text in UTF-16 (save it as UTF-8), and not a world");
-  }
+  EXPECT_EQ(trouble([] { expect_own_format("\xFF\xFEw", "a.wld", "a world"); }),
+            "a.wld:1:1: this is a text in UTF-16 (save it as UTF-8), and not a world");
 }
 
 TEST(Text, TheReasonStandsBehindTheFile) {
@@ -209,12 +186,9 @@ TEST(Text, EveryItemOfAListIsSeparated) {
 }
 
 TEST(Text, UnusableFileIsNamed) {
-  try {
-    read_file("/nonexistent/file.wld");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/nonexistent/file.wld"), std::string::npos);
-  }
+  EXPECT_TRUE(
+      test::has(test::trouble_of<std::runtime_error>([] { read_file("/nonexistent/file.wld"); }),
+                "/nonexistent/file.wld"));
   EXPECT_THROW(read_file("/"), std::runtime_error);
   EXPECT_EQ(read_file("/dev/null"), "");
 }

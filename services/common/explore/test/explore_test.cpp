@@ -25,9 +25,7 @@ struct Case {
 class Explore : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
-  DriveOptions options;
-  options.world = GetParam().world;
-  options.seed = GetParam().seed;
+  DriveOptions options{.world = GetParam().world, .seed = GetParam().seed};
   Building built(options);
   built.run(20000);
   const std::string name = options.world + "-" + std::to_string(options.seed);
@@ -58,9 +56,7 @@ TEST(Explore, AClosedWayIsADeadEndFromBothSides) {
   const std::string file = ::testing::TempDir() + "closed-loop.wld";
   std::ofstream(file) << read_file(config_folder() + "/worlds/loop.wld")
                       << "\n23000 9000 25000 9000\n";
-  DriveOptions options;
-  options.world = file;
-  Building built(options);
+  Building built({.world = file});
   built.run(20000);
   built.draw("closed-loop");
   EXPECT_TRUE(built.done()) << built.reason();
@@ -79,10 +75,7 @@ TEST(Explore, AClosedWayIsADeadEndFromBothSides) {
 class HallEnds : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(HallEnds, DoorsBesideThemAreOnTheMap) {
-  DriveOptions options;
-  options.world = "small-office";
-  options.seed = GetParam();
-  Building built(options);
+  Building built({.world = "small-office", .seed = GetParam()});
   built.run(20000);
   EXPECT_TRUE(built.done()) << built.reason();
   const test::MapScore score =
@@ -107,9 +100,7 @@ TEST(FreeFloor, SaysThatItGoesOnBeyondItsCells) {
 
 // The robot finds its way on its own map: from its present place to a door at the other end.
 TEST(Explore, TheRobotNavigatesByTheMapThatItBuilt) {
-  DriveOptions options;
-  options.world = "loop";
-  Building built(options);
+  Building built({.world = "loop"});
   built.run(20000);
   const std::vector<maps::Link> doors = built.whole.topology().links();
   const auto door = std::find_if(doors.begin(), doors.end(), [](const auto& l) {

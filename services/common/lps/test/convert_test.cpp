@@ -6,18 +6,17 @@ namespace saphira::lps {
 namespace {
 
 TEST(Convert, PerceptsRoundTrip) {
-  Percept percept;
-  percept.id = 7;
-  percept.pose_in_odom = {1.0, -2.0, 0.5};
-  percept.length = 3.0;
-  percept.width = 0.9;
-  percept.sigma_along = 0.1;
-  percept.sigma_across = 0.02;
-  percept.sigma_heading = 0.01;
-  percept.confidence = 0.75;
-  percept.since = 10;
-  percept.seen = 99;
-  percept.readings = {{98, 3}, {99, 6}};
+  Percept percept{.id = 7,
+                  .pose_in_odom = {1.0, -2.0, 0.5},
+                  .length = 3.0,
+                  .width = 0.9,
+                  .sigma_along = 0.1,
+                  .sigma_across = 0.02,
+                  .sigma_heading = 0.01,
+                  .confidence = 0.75,
+                  .since = 10,
+                  .seen = 99,
+                  .readings = {{98, 3}, {99, 6}}};
   for (const PointType type : {PointType::wall, PointType::door, PointType::breach,
                                PointType::junction, PointType::corridor})
     for (const Side side : {Side::none, Side::left, Side::right}) {
@@ -28,20 +27,19 @@ TEST(Convert, PerceptsRoundTrip) {
 }
 
 TEST(Convert, SeenThings) {
-  SeenThing thing;
-  thing.id = 7;
-  thing.pose_in_odom = {1.0, 2.0, 0.3};
-  thing.velocity_in_odom = {0.4, -0.5};
-  thing.range_known = false;
-  thing.sigma = 0.2;
-  thing.width = 0.5;
-  thing.height = 1.7;
-  thing.area = 0.1;
-  thing.confidence = 0.8;
-  thing.since = 10;
-  thing.seen = 12;
-  thing.points_in_odom = 1.2;
-  thing.pointed = 11;
+  SeenThing thing{.id = 7,
+                  .pose_in_odom = {1.0, 2.0, 0.3},
+                  .velocity_in_odom = {0.4, -0.5},
+                  .range_known = false,
+                  .sigma = 0.2,
+                  .width = 0.5,
+                  .height = 1.7,
+                  .area = 0.1,
+                  .confidence = 0.8,
+                  .since = 10,
+                  .seen = 12,
+                  .points_in_odom = 1.2,
+                  .pointed = 11};
   for (const int channel : {-1, 0, 1, 2}) {
     thing.kind = channel < 0 ? SeenThing::Kind::person : SeenThing::Kind::blob;
     thing.channel = channel;

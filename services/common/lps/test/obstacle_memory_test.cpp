@@ -54,9 +54,7 @@ TEST_F(ObstacleMemoryTest, ForgetsInTime) {
 }
 
 TEST(ObstacleMemory, MayForgetNothingAtRest) {
-  MemorySettings settings;
-  settings.keeps_at_rest = true;
-  ObstacleMemory memory(settings);
+  ObstacleMemory memory({.keeps_at_rest = true});
   memory.move_to(kOrigin);
   memory.echo(kOrigin, 1.0);
   for (int cycle = 0; cycle < 2000; ++cycle)
@@ -212,10 +210,7 @@ std::uint64_t hash_of_a_drive(const MemorySettings& settings) {
 
 TEST(ObstacleMemory, ItsPointsAreTheSameToTheBit) {
   EXPECT_EQ(hash_of_a_drive({}), 1334408415855143555U);
-  MemorySettings cautious;
-  cautious.least = 0.0;
-  cautious.fading = 0.985;
-  cautious.keeps_at_rest = true;
+  MemorySettings cautious{.least = 0.0, .fading = 0.985, .keeps_at_rest = true};
   EXPECT_EQ(hash_of_a_drive(for_range(1.0, cautious)), 16328973453298622847U);
 }
 

@@ -24,11 +24,10 @@ TEST(Drawing, ShowsEveryRoomDoorAndCorridor) {
   drawing.trajectories = {{"driven", {{17.5, 14.0}, {17.5, 7.0}, {30.0, 7.0}}}};
   drawing.matches = {{{16.5, 13.0}, {16.5, 13.1}, true}, {{18.5, 13.0}, {18.5, 14.1}, false}};
   drawing.robot = DrawnRobot{{30.0, 7.0, 0.3}, 0.22, 0.2, 0.05, 0.05};
-  Raster raster;
-  raster.lower_left_in_map = {28.0, 6.0, 0.0};
-  raster.width = 4;
-  raster.height = 2;
-  raster.occupied = {-1.0F, 0.0F, 0.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F};
+  Raster raster{.lower_left_in_map = {28.0, 6.0, 0.0},
+                .width = 4,
+                .height = 2,
+                .occupied = {-1.0F, 0.0F, 0.0F, 1.0F, 0.5F, 0.5F, 0.5F, 0.5F}};
   drawing.raster = raster;
   const std::string svg = to_svg(drawing);
   for (const Feature& feature : drawing.map.features) {

@@ -13,11 +13,18 @@
 #include "saphira/base/random.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/topology.hpp"
+#include "trouble.hpp"
 
 namespace saphira::maps {
 namespace {
 
 using lps::PointType;
+
+/// The message of its FileError.
+template <class F>
+std::string trouble(F&& f) {
+  return test::trouble_of<FileError>(std::forward<F>(f));
+}
 
 // Manual 6.9.1 as it is printed.
 constexpr const char* kManualsExample =
@@ -111,14 +118,8 @@ TEST(Map, ZonesHaveARule) {
         {"ZONE (1) 0,0,0,1,1 fast", "found \"fast\""},
         {"ZONE (1) 0,0,0,1,1 slow", "expected the speed in mm/s, found the end of the line"},
         {"ZONE (1) 0,0,0,1,1 slow 0", "expected the speed in mm/s between 1 and 10000"},
-        {"ZONE (1) 0,0,0,1,1 keep-out 3", "found \"3\""}}) {
-    try {
-      parse_map(line, "m");
-      ADD_FAILURE() << line;
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-    }
-  }
+        {"ZONE (1) 0,0,0,1,1 keep-out 3", "found \"3\""}})
+    EXPECT_TRUE(test::has(trouble([&] { parse_map(line, "m"); }), why)) << line;
 }
 
 TEST(Map, WhatIsWrittenIsReadAgain) {
@@ -172,21 +173,13 @@ TEST(Map, WhatNoFileHoldsIsNotWritten) {
   const Feature door{PointType::door, 1, {}, 0.0, 0.9, "EJ-231"};
   EXPECT_NO_THROW(to_text({{door}}));
   EXPECT_THROW(to_text({{door, door}}), std::invalid_argument);
-  Feature wrong = door;
-  wrong.id = 0;
-  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
-  wrong = door;
-  wrong.width = 0.0;
-  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
-  wrong = door;
-  wrong.name = "\"";
-  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
-  wrong = door;
-  wrong.pose_in_map.x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
-  wrong = door;
-  wrong.type = PointType::invalid;
-  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Feature& wrong : {Feature{PointType::door, 0, {}, 0.0, 0.9, "EJ-231"},
+                               Feature{PointType::door, 1, {}, 0.0, 0.0, "EJ-231"},
+                               Feature{PointType::door, 1, {}, 0.0, 0.9, "\""},
+                               Feature{PointType::door, 1, {nan, 0.0, 0.0}, 0.0, 0.9, "EJ-231"},
+                               Feature{PointType::invalid, 1, {}, 0.0, 0.9, "EJ-231"}})
+    EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
 }
 
 using test::Broken;
@@ -226,13 +219,8 @@ TEST(MapFile, ThatIsUnlikelyIsRefused) {
       ::testing::TempDir() + "saphira-unlikely-" + std::to_string(::getpid()) + ".map";
   const auto loading = [&path](const std::string& text) -> std::string {
     std::ofstream(path) << text;
-    try {
-      load_map(path);
-    } catch (const FileError& error) {
-      const std::string what = error.what();
-      return what.substr(path.size(), what.find('\n') - path.size());
-    }
-    return "";
+    const std::string what = trouble([&] { load_map(path); });
+    return what.empty() ? "" : what.substr(path.size(), what.find('\n') - path.size());
   };
   const std::string nothing = ":1:1: expected a line for each artifact of the map, found none";
   EXPECT_EQ(loading(""), nothing);
@@ -270,21 +258,15 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
   };
   EXPECT_EQ(load("DOOR (1) 1000, 2000, 90, 900\n"), 1U);
   EXPECT_EQ(load("DOOR (1) 1000, 2000, 90, 900 \"EJ-231\""), 1U) << "a name is whole";
-  try {
-    load("DOOR (1) 1000, 2000, 90, 900\nDOOR (2) 1000, 2000, 90, 90");
-    ADD_FAILURE() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), 2);
-    EXPECT_NE(std::string(error.what()).find("cut off"), std::string::npos);
-  }
-  try {
-    load(
-        "\xFF\xFE"
-        "D O O R");
-    ADD_FAILURE() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("this is a text in UTF-16"), std::string::npos);
-  }
+  const std::string cut =
+      trouble([&] { load("DOOR (1) 1000, 2000, 90, 900\nDOOR (2) 1000, 2000, 90, 90"); });
+  EXPECT_TRUE(test::has(cut, ".map:2:") && test::has(cut, "cut off")) << cut;
+  EXPECT_TRUE(test::has(trouble([&] {
+                          load(
+                              "\xFF\xFE"
+                              "D O O R");
+                        }),
+                        "this is a text in UTF-16"));
   std::remove(path.c_str());
 }
 

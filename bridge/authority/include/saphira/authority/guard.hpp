@@ -91,4 +91,9 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
               double velocity, double rotation_velocity, double turning = 0.0,
               double contact_speed = 0.0, const std::vector<Vec2>& edges = {});
 
+/// Limits the speed by the age [s] of the command: the robot moves no further than kUnseenWay on a
+/// decision from an old state. Up to `fresh` [s] a command counts as new, since it holds until the
+/// next cycle's command comes.
+Guarded slow_for_age(Guarded guarded, double age, double fresh);
+
 }  // namespace saphira::authority

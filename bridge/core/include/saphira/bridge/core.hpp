@@ -14,7 +14,6 @@
 #include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
-#include "saphira/bridge/doubts.hpp"
 #include "saphira/bridge/events.hpp"
 #include "saphira/bridge/line.hpp"
 #include "saphira/protocol/packet.hpp"

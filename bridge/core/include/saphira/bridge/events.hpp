@@ -37,11 +37,11 @@ std::string trouble(const reflector::Motion& motion, double contact_speed);
 /// The surroundings that the shell sees.
 struct Surroundings {
   bool link_open = false;
-  std::string link_trouble;  ///< why it is not open
-  std::string address;       ///< of the robot, for people
-  bool serial = false;       ///< the line is the same after a loss, and so is the session
+  std::string link_trouble = {};  ///< why it is not open
+  std::string address = {};       ///< of the robot, for people
+  bool serial = false;            ///< the line is the same after a loss, and so is the session
   /// Another bridge with a robot of this name, in words; empty: none.
-  std::string namesake;
+  std::string namesake = {};
   bool has_keeper = false;
   bool keeper_alive = false;
   int keeper_restarts = 0;

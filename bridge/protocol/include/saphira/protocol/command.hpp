@@ -268,25 +268,17 @@ using SimReset = BareCommand<Number::kSimReset>;
 // 0: no more of these packets, 1: one, 2: one with every information packet.
 using ConfigRequest = IntCommand<Number::kConfigRequest>;
 using EncoderRequest = IntCommand<Number::kEncoderRequest>;
-using GripperRequest = IntCommand<Number::kGripperRequest>;
 using IoRequest = IntCommand<Number::kIoRequest>;
 using BatteryRequest = IntCommand<Number::kBatteryRequest>;
-using SimStatus = IntCommand<Number::kSimStatus>;
 
 using AnalogSelect = IntCommand<Number::kAnalogSelect>;
 using GripperValue = IntCommand<Number::kGripperValue>;
-using Aux1Read = IntCommand<Number::kAux1Read>;
-using Aux2Read = IntCommand<Number::kAux2Read>;
-using Aux3Read = IntCommand<Number::kAux3Read>;
 using BumpStall = IntCommand<Number::kBumpStall>;
 using Sound = IntCommand<Number::kSound>;
-using BatteryTest = IntCommand<Number::kBatteryTest>;
 
 /// SAY: pairs of duration [20 ms] and half-cycle of the tone.
 using Say = TextCommand<Number::kSay>;
 using Aux1Send = TextCommand<Number::kAux1Send>;
-using Aux2Send = TextCommand<Number::kAux2Send>;
-using Aux3Send = TextCommand<Number::kAux3Send>;
 /// VISION_COM of manual 9.1: "pioneer_X_mode=N" and the line parameters.
 using VisionCommand = TextCommand<Number::kVision>;
 

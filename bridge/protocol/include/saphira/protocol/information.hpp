@@ -45,19 +45,19 @@ struct InformationPacket {
   std::int16_t th = 0;
   std::int16_t left_velocity = 0;
   std::int16_t right_velocity = 0;
-  std::uint8_t battery = 0;      ///< [0.1 V]
-  std::uint8_t left_stall = 0;   ///< P2OS, ARCOS: bit 0 the stall, the others the rear bumpers
-  std::uint8_t right_stall = 0;  ///< likewise, the front bumpers
-  std::int16_t control = 0;      ///< the server's heading setpoint
-  std::uint16_t ptu = 0;         ///< ARCOS: flags; see kFlagMotors and the others
-  std::uint8_t say = 0;          ///< P2OS, ARCOS: the compass [2 deg]
-  std::vector<RawSonar> sonars;  ///< the new readings, in the order of firing
+  std::uint8_t battery = 0;           ///< [0.1 V]
+  std::uint8_t left_stall = 0;        ///< P2OS, ARCOS: bit 0 the stall, the others the rear bumpers
+  std::uint8_t right_stall = 0;       ///< likewise, the front bumpers
+  std::int16_t control = 0;           ///< the server's heading setpoint
+  std::uint16_t ptu = 0;              ///< ARCOS: flags; see kFlagMotors and the others
+  std::uint8_t say = 0;               ///< P2OS, ARCOS: the compass [2 deg]
+  std::vector<RawSonar> sonars = {};  ///< the new readings, in the order of firing
   // Some servers omit the fields behind the sonars: 0 then.
   std::uint16_t timer = 0;  ///< P2OS, ARCOS: the gripper's bits in the high byte
   std::uint8_t analog = 0;
   std::uint8_t digital_input = 0;
   std::uint8_t digital_output = 0;
-  TrailingFields trailing;
+  TrailingFields trailing = {};
   std::size_t unknown_bytes = 0;  ///< behind all that; not written by encode
 
   bool operator==(const InformationPacket&) const = default;

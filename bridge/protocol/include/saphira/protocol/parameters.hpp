@@ -34,10 +34,10 @@ enum class Protocol {
 /// The content of a robot parameter file (manual 3.2 and 10), in SI units. The defaults are the
 /// Pioneer 1's, except that there are no sonars.
 struct RobotParameters {
-  std::string file;         ///< where it was read
-  std::string name;         ///< keyword Name
-  std::string robot_class;  ///< Class; the second string of the SYNC2 answer
-  std::string subclass;     ///< Subclass
+  std::string file = {};         ///< where it was read
+  std::string name = {};         ///< keyword Name
+  std::string robot_class = {};  ///< Class; the second string of the SYNC2 answer
+  std::string subclass = {};     ///< Subclass
   /// True for the class and subclass that a robot names, in letters of either case.
   bool is_of(std::string_view of_class, std::string_view of_subclass) const;
 
@@ -111,10 +111,10 @@ struct RobotParameters {
   int side_buffer = 40;          ///< readings of each side; SideBuffer
   double front_max_range = 2.5;  ///< [m] FrontMaxRange (sfFrontMaxRange, manual 6.6.1)
 
-  std::vector<SonarUnit> sonars;  ///< SonarNum of them, by number
+  std::vector<SonarUnit> sonars = {};  ///< SonarNum of them, by number
 
   /// Harmless oddities, as lines to print ("file:line: ..."): units beyond SonarNum.
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = {};
 
   bool operator==(const RobotParameters&) const = default;
 };

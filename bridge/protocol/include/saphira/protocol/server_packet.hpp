@@ -54,16 +54,16 @@ enum class PacketType : std::uint8_t {
 /// and accelerations they do not drive. Fields behind the packet's end are zero.
 struct ConfigPacket {
   static constexpr PacketType kType = PacketType::kConfig;
-  std::string robot_class;
-  std::string subclass;
-  std::string serial;
+  std::string robot_class = {};
+  std::string subclass = {};
+  std::string serial = {};
   std::uint8_t four_motors = 0;
   std::uint16_t rotation_velocity_top = 0;      ///< [deg/s]
   std::uint16_t velocity_top = 0;               ///< [mm/s]
   std::uint16_t rotation_acceleration_top = 0;  ///< [deg/s2]
   std::uint16_t acceleration_top = 0;           ///< [mm/s2]
   std::uint16_t pwm_max = 0;
-  std::string name;
+  std::string name = {};
   std::uint8_t cycle = 0;  ///< [ms] between information packets
   std::uint8_t host_baud = 0;
   std::uint8_t aux1_baud = 0;
@@ -101,7 +101,7 @@ struct ConfigPacket {
   std::uint8_t aux3_baud = 0;
   std::uint16_t encoder_ticks_per_mm = 0;
   std::uint16_t shutdown_volts = 0;  ///< [0.1 V]
-  std::string firmware;
+  std::string firmware = {};
   std::uint16_t gyro_clockwise = 0;
   std::uint16_t gyro_counter_clockwise = 0;
   std::uint8_t kinematics_delay = 0;  ///< [ms]

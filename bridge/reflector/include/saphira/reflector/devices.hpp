@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "saphira/protocol/command.hpp"
@@ -29,7 +28,7 @@ struct DeviceRequest {
 
 /// Sends requests to the devices until the robot's packets show their effect (manual 5.1.3). A
 /// request without a visible effect is sent three times where that is harmless, and once where a
-/// second one would have another meaning. Keeps the newest request of each device and action, and
+/// second one would have another meaning. Keeps the newest request of each device and setting, and
 /// its result.
 class Devices {
  public:
@@ -38,10 +37,9 @@ class Devices {
 
   /// A connection begins, or ended: requests under way are lost.
   void connect();
-  /// A request to a device (wishes.hpp). A newer request replaces an older one of the same device
-  /// and action.
-  void request(const Request& request, const Wish& wish,
-               const protocol::RobotParameters& parameters);
+  /// A request to a device (wish_of). A newer request replaces an older one of the same device and
+  /// setting.
+  void request(const Request& request, const protocol::RobotParameters& parameters);
   /// The commands at the start of a session: a robot since P2OS needs a command to switch its
   /// motors on, and reports its configuration. No answer is harmless.
   void begin(const protocol::RobotParameters& parameters);
@@ -55,7 +53,7 @@ class Devices {
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const;
 
-  /// The newest request of each device and action, in the order of the devices.
+  /// The newest request of each device and setting, in the order of the devices.
   std::vector<DeviceRequest> requests() const;
   /// The requests with news since the last call, in that order.
   std::vector<DeviceRequest> take_answered() { return std::exchange(answered_, {}); }
@@ -74,32 +72,24 @@ class Devices {
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
  private:
-  /// The sign that a request was heard.
-  enum class Proof { once, thrice, output, servo, origin, motors, sonar, analog, packet };
   struct Item {
     DeviceRequest request;
     double deadline = 0.0;        ///< [s] from the first time that it is sent; 0: none
     std::optional<double> first;  ///< [s] time of that
-    std::vector<protocol::Command> commands;
-    Proof proof = Proof::once;
-    int value = 0;  ///< the expected value
-    int mask = 0;
+    Wish wish;
     bool quiet = false;  ///< our own request: no message where it fails
     double at = 0.0;
   };
-  using Key = std::pair<std::size_t, int>;  ///< device, action
 
-  Item& put(const Request& request, const Wish& wish, const protocol::RobotParameters& parameters);
+  Item& put(const Request& request, const protocol::RobotParameters& parameters);
   void note(const Item& item);
   bool shown(const Item& item, const protocol::InformationPacket& packet,
              const protocol::Information& information, bool origin) const;
 
   void end(Item& item, AnswerCode code, const std::string& words);
-  static void plan(Item& item, const Wish& wish, const protocol::RobotParameters& parameters,
-                   std::uint8_t digital_output);
 
-  std::map<Key, Item> items_;
-  std::uint8_t digital_output_ = 0;  ///< as the robot shows it
+  std::map<std::pair<Device, int>, Item> items_;  ///< by device and setting
+  std::uint8_t digital_output_ = 0;               ///< as the robot shows it
   Reports reports_;
   bool changed_ = false;
   std::vector<DeviceRequest> answered_;

@@ -24,10 +24,10 @@ struct RawPose {
 /// The state by which an odom frame continues later: over a reconnection, or a restart of the
 /// bridge.
 struct OdometryMemory {
-  std::uint64_t odom = 0;  ///< the frame's number
-  RawPose raw;             ///< of the newest packet
-  Pose raw_unwrapped;      ///< the same without the roll-over [m, rad], server's frame
-  Pose server_in_odom;     ///< pose of the server's frame in odom
+  std::uint64_t odom = 0;    ///< the frame's number
+  RawPose raw = {};          ///< of the newest packet
+  Pose raw_unwrapped = {};   ///< the same without the roll-over [m, rad], server's frame
+  Pose server_in_odom = {};  ///< pose of the server's frame in odom
 };
 
 /// The greatest way of an unheard robot.

@@ -77,9 +77,7 @@ class Reflector {
   /// The hardest stop that the server has, instead of setpoints, until hold() is called again.
   void emergency_stop();
   /// Requests to the devices, and their results.
-  void request(const Request& request, const Wish& wish) {
-    devices_.request(request, wish, parameters_);
-  }
+  void request(const Request& request) { devices_.request(request, parameters_); }
   Devices& devices() { return devices_; }
 
   /// The commands to be sent now. Includes a PULSE where nothing else was sent for half a second.

@@ -13,10 +13,21 @@
 #include "saphira/maps/edit.hpp"
 #include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
-#include "saphira/registration/remembered.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::registration {
+
+/// State that outlives the service: the pose, and the changed map.
+struct Remembered {
+  Memory memory;
+  std::string option;    ///< the map at the start of the service
+  std::string source;    ///< the origin of this map: that one, or another that was loaded later
+  bool changed = false;  ///< since its origin
+  maps::Map map;
+  std::set<std::uint32_t> closed_doors;
+
+  bool operator==(const Remembered&) const = default;
+};
 
 /// The pose of `start` on the map: the name of a POS of it, "x,y,th" [m, rad], or "unknown";
 /// nothing for "unknown", and for "start" where the map has none. std::invalid_argument gives the

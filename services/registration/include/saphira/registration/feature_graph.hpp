@@ -25,7 +25,7 @@ struct FeatureGraphSettings {
 /// A stretch of wall seen from a place on the way.
 struct SeenLine {
   std::size_t node = 0;
-  Pose in_node;         ///< its middle; along it, with the free side on the left
+  Pose in_node = {};    ///< its middle; along it, with the free side on the left
   double length = 0.0;  ///< [m]
   double sigma_across = 0.05;
   double sigma_heading = 0.02;
@@ -34,7 +34,7 @@ struct SeenLine {
 /// A seen opening.
 struct SeenPoint {
   std::size_t node = 0;
-  Pose in_node;  ///< its middle; the normal, towards the robot
+  Pose in_node = {};  ///< its middle; the normal, towards the robot
   double width = 0.0;
   double sigma_along = 0.1;   ///< [m] along the normal
   double sigma_across = 0.1;  ///< [m] along the wall

@@ -112,7 +112,7 @@ class MapBuilder {
     lps::PointType type = lps::PointType::wall;  ///< wall, door or junction
     double heading = 0.0;   ///< of an opening: its normal, in the map, at the first sighting
     double last_way = 0.0;  ///< [m] driven at the newest sighting
-    Passes passes;
+    Passes passes = {};
     bool beside = false;       ///< the robot is passing it
     bool found = false;        ///< ...and has seen it
     bool only_driven = false;  ///< a doorway that no percept shows: passing it by says nothing

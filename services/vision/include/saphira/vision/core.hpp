@@ -22,8 +22,8 @@ class Core {
   struct Seen {
     std::uint64_t cycle = 0;
     std::uint64_t odom = 0;
-    Pose pose_in_odom;
-    Channels channels;
+    Pose pose_in_odom = {};
+    Channels channels = {};
   };
   struct Inputs {
     std::uint64_t cycle = 0;

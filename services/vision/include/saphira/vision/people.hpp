@@ -19,8 +19,8 @@ using Band = std::vector<std::optional<Vec2>>;
 
 /// Ranges of stereo at the heights of a torso.
 struct Bands {
-  std::array<Band, kTorso.size()> bands;
-  Band above;                ///< the same above people's heads; empty: not used
+  std::array<Band, kTorso.size()> bands = {};
+  Band above = {};           ///< the same above people's heads; empty: not used
   double eye_forward = 0.0;  ///< [m] of the cameras, before the robot's centre
   /// [m] Of the left camera, whose columns these are; the other is as far to the right.
   double eye_left = 0.0;
