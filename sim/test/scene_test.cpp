@@ -90,33 +90,6 @@ TEST(Scene, SonarsHearEachOther) {
   EXPECT_NEAR(hears(kPi / 2.0, 0, facing), 4.0 - 0.22, 0.002);            // looks elsewhere
 }
 
-TEST(Scene, RobotsStopEachOther) {
-  const World world = arena();
-  for (const double speed : {0.0, 0.1, 0.4}) {
-    Scene scene(world);
-    Robot& one = scene.add_robot({}, {2.0, 5.0, 0.0}, 1);
-    Robot& other = scene.add_robot({}, {4.0, 5.1, kPi}, 2);
-    one.set_velocity(0.4);
-    other.set_velocity(speed);
-    for (int i = 0; i < 1000; ++i) {
-      scene.tick();
-      ASSERT_GE(one.clearance(), -1e-9) << i;
-      ASSERT_GE(other.clearance(), -1e-9) << i;
-    }
-    EXPECT_LT(one.clearance(), 1e-3);
-    EXPECT_GE(one.contacts(), 1);
-    EXPECT_TRUE(one.left_stalled());
-  }
-}
-
-TEST(Scene, RefusesARobotInARobot) {
-  WorldScene scene(arena());
-  scene.add_robot({}, {2.0, 5.0, 0.0}, 1);
-  EXPECT_THROW(scene.add_robot({}, {2.3, 5.0, 0.0}, 1), std::invalid_argument);
-  EXPECT_EQ(scene.robots(), 1U);
-  scene.add_robot({}, {2.5, 5.0, 0.0}, 1);
-}
-
 class SimulationTest : public ::testing::Test {
  protected:
   SimulationTest() : world_(arena()) {}

@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "../src/served_robot.hpp"
 #include "behaviors/shell/convert.hpp"
 #include "bridge/shell/enums.hpp"
 #include "geometry/shell/convert.hpp"
@@ -245,7 +244,7 @@ std::optional<Call> device_call(const protocol::Bytes& packet) {
   }
 }
 
-class BusRobot final : public ServedRobot {
+class BusRobot final : public Robot {
  public:
   BusRobot(bus::NodeOptions options, Say say, std::shared_ptr<bus::MemoryBus> memory)
       : options_(std::move(options)), memory_(std::move(memory)), say_(std::move(say)) {
@@ -671,7 +670,7 @@ class BusRobot final : public ServedRobot {
   bool told_limit_ = false;
   bus::StopNotice notice_;
 
-  // Shared with the program's thread, as those of ServedRobot.
+  // Shared with the program's thread, as those of Robot.
   bus::Node* node_ = nullptr;
   std::uint64_t sessions_ = 0;
   std::uint64_t epoch_ = 0;

@@ -22,15 +22,11 @@ Pose global_of(const Artifact& p) {
 }
 template <class Artifact>
 void set_local(Artifact& p, const Pose& pose) {
-  p.x = static_cast<float>(pose.x * 1000.0);
-  p.y = static_cast<float>(pose.y * 1000.0);
-  p.th = static_cast<float>(pose.th / Os::get().angle_unit);
+  put(pose, p.x, p.y, p.th);
 }
 template <class Artifact>
 void set_global(Artifact& p, const Pose& pose) {
-  p.ax = static_cast<float>(pose.x * 1000.0);
-  p.ay = static_cast<float>(pose.y * 1000.0);
-  p.ath = static_cast<float>(pose.th / Os::get().angle_unit);
+  put(pose, p.ax, p.ay, p.ath);
 }
 
 point system_point(int id) {
@@ -260,6 +256,7 @@ void Os::match() {
 
 using saphira::Pose;
 using saphira::c::Os;
+using saphira::c::real;
 namespace lps = saphira::lps;
 
 namespace {
@@ -294,10 +291,6 @@ int answer(const lps::Occupancy& found, int* x, int* y) {
 bool wrong(const char* function, const char* expected) {
   Os::get().say(std::string(function) + ": expected " + expected, true);
   return true;
-}
-
-float real(double value) {
-  return static_cast<float>(value);
 }
 
 }  // namespace

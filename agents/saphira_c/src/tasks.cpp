@@ -53,10 +53,7 @@ void start(int first, int last) {
 
 /// "test matching" is test_match_proc: the manual has several spellings.
 std::string plain(const std::string& name) {
-  std::string text;
-  for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string text = bare(name);
   if (text.ends_with("proc"))
     text.resize(text.size() - 4);
   if (text.ends_with("ing"))
@@ -65,6 +62,14 @@ std::string plain(const std::string& name) {
 }
 
 }  // namespace
+
+std::string bare(std::string_view name) {
+  std::string text;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 Task* Os::add(const char* name, void (*fn)(), bool intention) {
   const std::lock_guard lock(mutex);
