@@ -161,7 +161,7 @@ class Play {
     watches_.push_back(std::make_unique<ContactWatch>(scene(), robot_->number(), parameters_));
   }
   void run(long ticks) {
-    for (; ticks > 0 && !testing::Test::HasFailure(); --ticks) {
+    for (; ticks > 0 && testing::Test::HasFailure() == failed_; --ticks) {
       scene().tick();
       for (const std::string& fact : always_)
         check(fact);
@@ -260,6 +260,7 @@ class Play {
   Robot* robot_ = nullptr;
   std::vector<std::unique_ptr<ContactWatch>> watches_;
   std::vector<std::string> always_;
+  const bool failed_ = testing::Test::HasFailure();  ///< an earlier case has
 };
 
 TEST(Scenes, GoOnAsWritten) {

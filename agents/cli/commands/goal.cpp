@@ -292,9 +292,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
                 status.requester.c_str(), bus::describe(status).c_str());
   if (!goals.empty())
     return bus::kExitOk;
-  const bool alone = processes.all().empty();
-  (alone ? std::cerr << "saphira: " : std::cout) << "no goals; " << who_is_there(processes) << '\n';
-  return alone ? bus::kExitFailed : bus::kExitOk;
+  return nothing_there("goals", processes, who_is_there(processes));
 }
 
 const char* kind_word(v1::ParameterKind kind) {

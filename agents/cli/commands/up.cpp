@@ -129,19 +129,12 @@ class RenewSignal {
 
 /// The reason why a program cannot be added to the running ones; empty: it can.
 std::string other_contract(const std::string& program) {
-  std::string said;
-  if (FILE* const output = popen(("'" + program + "' --version 2>&1").c_str(), "r")) {
-    char line[200];
-    while (fgets(line, sizeof line, output) != nullptr)
-      said += line;
-    pclose(output);
-  }
   const auto contract = [](const std::string& text) {
     const std::size_t at = text.find("contract ");
     return at == std::string::npos ? std::string() : text.substr(at + 9, 8);
   };
   const std::string ours = contract(bus::version());
-  const std::string theirs = contract(said);
+  const std::string theirs = contract(said_by("'" + program + "' --version 2>&1").text);
   if (theirs == ours)
     return {};
   return "the new one has " + (theirs.empty() ? "no contract" : "the contract " + theirs) +
@@ -214,22 +207,13 @@ class OwnVersion {
     for (const auto& [name, value] : environment_)
       setenv(name.c_str(), value.c_str(), 1);
     setenv(kHandedVariable, std::to_string(handed).c_str(), 1);
-    std::vector<char*> argv = pointers_to(words);
-    execv(program_.c_str(), argv.data());
+    execv(program_.c_str(), pointers(words).data());
     return "the supervisor stays as it is: " + cannot_be(program_, "run");
   }
 
  private:
-  static std::vector<char*> pointers_to(std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (std::string& word : words)
-      argv.push_back(word.data());
-    argv.push_back(nullptr);
-    return argv;
-  }
-
   int start_and_wait(std::vector<std::string>& words) const {
-    std::vector<char*> argv = pointers_to(words);
+    const std::vector<char*> argv = pointers(words);
     const pid_t child = fork();
     if (child == 0) {
       for (const auto& [name, value] : environment_)
@@ -407,10 +391,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
   std::vector<std::string> words{"saphira", "up", name};
   for (const std::string& one : set)
     words.insert(words.end(), {"--set", one});
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
+  const std::vector<char*> argv = pointers(words);
   auto environment = as_environment(options);
   environment[kLogVariable] = path;
   const pid_t child = fork();

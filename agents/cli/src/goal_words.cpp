@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "saphira/base/guess.hpp"
@@ -158,9 +159,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
         rest[i] = exact(*length);
   // The name of a place can have several words.
   if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
-    std::string place = rest[0];
-    for (std::size_t i = 1; i < bare; ++i)
-      place += " " + rest[i];
+    const std::string place = joined(std::span(rest).first(bare), " ");
     return parse_goal("go-to-place", with("place=" + place));
   }
   if (words[0] == "go") {

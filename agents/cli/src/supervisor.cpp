@@ -64,15 +64,6 @@ std::vector<std::string> merged_environment(const std::map<std::string, std::str
   return all;
 }
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> all;
-  all.reserve(words.size() + 1);
-  for (std::string& word : words)
-    all.push_back(word.data());
-  all.push_back(nullptr);
-  return all;
-}
-
 milliseconds until(Supervisor::Clock::time_point when) {
   return std::max(milliseconds(0),
                   std::chrono::ceil<milliseconds>(when - Supervisor::Clock::now()));
@@ -114,6 +105,15 @@ class Pipe {
 };
 
 }  // namespace
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> all;
+  all.reserve(words.size() + 1);
+  for (std::string& word : words)
+    all.push_back(word.data());
+  all.push_back(nullptr);
+  return all;
+}
 
 std::string file_of(const std::string& path) {
   struct stat info {};
