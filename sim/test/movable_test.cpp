@@ -17,20 +17,13 @@ namespace {
 
 using protocol::RobotParameters;
 
-World world(const std::string& things) {
-  return parse_world(
-      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 10000 10000 0 10000 0 10000 0 0\n" +
-          things,
-      "things.wld");
-}
-
 void run(Scene& scene, double seconds) {
   for (int i = 0; i < std::lround(seconds / kTick); ++i)
     scene.tick();
 }
 
 TEST(Movable, IsReadInItsFrame) {
-  const World it = world(
+  const World it = room(
       "push 1000 2000 90\n"
       "person ann 500 0 tall 1600 wide 600 color red walk 1500 0 800 wait 2.5 repeat\n"
       "door d1 0 0 900 0 -90 open 5 close 10 period 20\n"
@@ -64,8 +57,8 @@ TEST(Movable, IsReadInItsFrame) {
 
 TEST(Movable, WhoPointsStretchesOutAnArmForThatTime) {
   WorldScene scene(
-      world("push 0 0 90 person ann 5000 -5000 wait 1 point -45 2 walk 5000 -6000 500 repeat pop\n"
-            "person ben 2000 2000 point 180 1000"));
+      room("push 0 0 90 person ann 5000 -5000 wait 1 point -45 2 walk 5000 -6000 500 repeat pop\n"
+           "person ben 2000 2000 point 180 1000"));
   const Person& ann = scene.persons()[0];
   EXPECT_FALSE(arm(ann));
   EXPECT_EQ(scene.persons()[1].points, kPi) << "from the beginning";
@@ -113,17 +106,17 @@ TEST(Movable, MistakesAreNamedWithTheirPlaceAndWhatWasExpected) {
     const std::string text = line.substr(0, arrow);
     const std::string wanted = line.substr(arrow + 4);
     if (wanted == "well") {
-      EXPECT_NO_THROW(world(text));
+      EXPECT_NO_THROW(room(text));
       return;
     }
     const std::size_t space = wanted.find(' ');
-    test::expect_mistake({text.c_str(), 2, std::stoi(wanted), wanted.c_str() + space + 1}, world);
+    test::expect_mistake({text.c_str(), 2, std::stoi(wanted), wanted.c_str() + space + 1}, room);
   });
 }
 
 // Everything at once, ten minutes, twice.
 TEST(Movable, OneSceneOneCourse) {
-  const World it = world(
+  const World it = room(
       "person ann 1000 1000 walk 9000 1000 900 walk 9000 9000 1200 walk 1000 1000 700 repeat\n"
       "person bob 9000 8000 walk 1000 8000 900 wait 3 walk 9000 8000 900 repeat\n"
       "door d 5000 4500 5000 5500 -90 open 5 close 15 period 20\n"

@@ -61,7 +61,7 @@ TEST(Robot, TurnsByATrapezoid) {
   }
   EXPECT_NEAR(robot->pose_in_odom().th, radians(170.0), 0.002);
   EXPECT_FALSE(robot->moving());
-  const double top = *std::max_element(speeds.begin(), speeds.end());
+  const double top = *std::ranges::max_element(speeds);
   EXPECT_NEAR(top, parameters.max_rotation_velocity, 1e-9);
   const double step = parameters.rotation_acceleration * kTick;
   EXPECT_NEAR(speeds[9], 10 * step, 1e-9);  // the rising side

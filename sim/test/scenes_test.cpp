@@ -14,6 +14,7 @@
 
 #include "lines.hpp"
 #include "saphira/sim/contacts.hpp"
+#include "world_scene.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -30,6 +31,8 @@ using protocol::RobotParameters;
 /// `run SECONDS`
 /// `NAME == | < | > | <= | >= VALUE`, `NAME ~ VALUE +- TOLERANCE`    a fact
 /// `contact BLAME KIND [NAME] [walks]`     the robot's first contact
+/// `ear X DEGREES`             a sonar without noise, on no robot; `model rough | weak`, `strict`
+/// `hears X Y DEGREES RANGE TOLERANCE`, `deaf X Y DEGREES`    it, in a frame that is there
 class Play {
  public:
   void take(const std::string& line) {
@@ -50,6 +53,16 @@ class Play {
       parameters_.*kParameters().at(sign) = number(rest);
     else if (word == "sonar")
       parameters_.sonars = {{0, {0.1, 0.0, radians(number(line))}}};
+    else if (word == "ear")
+      parameters_.sonars = {{0, {std::stod(sign), 0.0, radians(number(line))}}};
+    else if (word == "model")
+      (sign == "rough" ? model_.roughness : model_.strength) = sign == "rough" ? 1.0 : 0.0;
+    else if (word == "strict")
+      model_.lost_angle = model_.critical_angle;
+    else if (word == "hears")
+      hear(line, rest);
+    else if (word == "deaf")
+      EXPECT_FALSE(range_at(pose(rest))) << line;
     else if (word == "robot")
       add(pose(rest));
     else if (word == "refused")
@@ -124,7 +137,8 @@ class Play {
     static const std::map<std::string, double RobotParameters::*> all{
         {"max_velocity", &RobotParameters::max_velocity},
         {"deceleration", &RobotParameters::deceleration},
-        {"max_acceleration", &RobotParameters::max_acceleration}};
+        {"max_acceleration", &RobotParameters::max_acceleration},
+        {"sonar_min_range", &RobotParameters::sonar_min_range}};
     return all;
   }
   static bool is_sign(const std::string& word) {
@@ -166,6 +180,17 @@ class Play {
       for (const std::string& fact : always_)
         check(fact);
     }
+  }
+
+  std::optional<double> range_at(const Pose& at) {
+    return Sonars(scene(), kNobody, parameters_, model_, 1).fire(0, at).range;
+  }
+  void hear(const std::string& line, const std::string& rest) {
+    std::istringstream in(rest);
+    double range = 0.0;
+    double tolerance = 0.0;
+    in >> range >> range >> range >> range >> tolerance;
+    EXPECT_NEAR(range_at(pose(rest)).value_or(0.0), range, tolerance) << line;
   }
 
   void check(const std::string& line) {
@@ -252,10 +277,12 @@ class Play {
   }
 
   std::string text_ =
-      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 10000 10000 0 10000 0 10000 0 0";
+      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 "
+      "10000 10000 0 10000 0 10000 0 0";
   World world_;
   std::unique_ptr<Scene> scene_;
   RobotParameters parameters_;
+  SonarModel model_ = exact();
   Pose start_;
   Robot* robot_ = nullptr;
   std::vector<std::unique_ptr<ContactWatch>> watches_;
@@ -264,7 +291,7 @@ class Play {
 };
 
 TEST(Scenes, GoOnAsWritten) {
-  EXPECT_EQ(test::play<Play>("sim/test/scenes.txt"), 56);
+  EXPECT_EQ(test::play<Play>("sim/test/scenes.txt"), 65);
 }
 
 }  // namespace

@@ -224,7 +224,7 @@ TEST(View, OwnWorldsAreBesideTheGivenOne) {
   const json world = viewer.next("world");
   const auto names = world.at("worlds").get<std::vector<std::string>>();
   const auto offered = [&](const char* name) {
-    return std::count(names.begin(), names.end(), std::string(name));
+    return std::ranges::count(names, std::string(name));
   };
   EXPECT_EQ(offered("mine"), 1);
   EXPECT_EQ(offered("arena"), 1);
@@ -243,7 +243,7 @@ TEST(View, OwnWorldsAreBesideTheGivenOne) {
   viewer.say(R"({"do":"files"})");
   const json files = viewer.next("files");
   const auto worlds = files.at("worlds").get<std::vector<std::string>>();
-  EXPECT_EQ(std::count(worlds.begin(), worlds.end(), std::string("new")), 1);
+  EXPECT_EQ(std::ranges::count(worlds, std::string("new")), 1);
   EXPECT_FALSE(files.at("robots").empty());
   Viewer later(host, folder.path("view"));
   EXPECT_EQ(later.next("world").at("worlds"), files.at("worlds"));

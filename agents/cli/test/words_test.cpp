@@ -63,7 +63,7 @@ SeenProcess program(const Json& json) {
 }
 std::vector<SeenProcess> programs(const Json& json) {
   std::vector<SeenProcess> all;
-  std::transform(json.begin(), json.end(), std::back_inserter(all), program);
+  std::ranges::transform(json, std::back_inserter(all), program);
   return all;
 }
 

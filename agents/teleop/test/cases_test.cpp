@@ -194,7 +194,10 @@ class Stick : public saphira::test::LinePlayer {
     facts_ = {{"drives",
                [this] {
                  const Order order = stick_.order(now_);
-                 return order.active ? format("%.3g %.3g", order.velocity, order.rotation) : "no";
+                 // + 0.0: no "-0"
+                 return order.active
+                            ? format("%.3g %.3g", order.velocity + 0.0, order.rotation + 0.0)
+                            : "no";
                }},
               {"silent", [this] { return yes(stick_.is_silent(now_)); }},
               {"dead man", [this] { return stick_.dead_man(); }}};
@@ -319,7 +322,7 @@ TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
   };
   for (const Device& device : devices) {
     const auto number_of = [&](std::uint8_t code) {
-      const auto found = std::find(device.axes.begin(), device.axes.end(), code);
+      const auto found = std::ranges::find(device.axes, code);
       return static_cast<unsigned>(found - device.axes.begin());
     };
     for (unsigned i = 0; i < device.buttons.size(); ++i) {
