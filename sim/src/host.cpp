@@ -501,8 +501,8 @@ class Serving : ViewedHost {
       timed_ = true;
       return -1;
     }
-    const bool pending = std::any_of(stations_.begin(), stations_.end(),
-                                     [](const auto& station) { return station->packet_pending(); });
+    const bool pending = std::ranges::any_of(
+        stations_, [](const auto& station) { return station->packet_pending(); });
     const bool tells = pacing_.paused && simulation_.runs();
     if (pending || tells) {
       const double rest = std::chrono::duration<double>(tells_at_ - Clock::now()).count();

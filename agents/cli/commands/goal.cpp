@@ -138,7 +138,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
 class Silence {
  public:
   void look(const std::vector<SeenProcess>& processes) {
-    if (std::any_of(processes.begin(), processes.end(), [](const SeenProcess& one) {
+    if (std::ranges::any_of(processes, [](const SeenProcess& one) {
           return (one.status.name == "intentions" || one.status.name == "all") &&
                  one.age <= kSilent;
         })) {

@@ -58,8 +58,7 @@ Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
   }
   const bool colors = isatty(STDOUT_FILENO) != 0;
   return [width, names, colors](std::string_view from, std::string_view line) {
-    const auto index =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), from) - names.begin());
+    const auto index = static_cast<std::size_t>(std::ranges::find(names, from) - names.begin());
     const std::string_view name = from.empty() ? "saphira" : from;
     std::string text;
     if (colors)
@@ -145,7 +144,7 @@ std::string other_contract(const std::string& program) {
 std::string objection(const ChildSpec& child) {
   if (!child.robot.empty())
     return other_contract(child.argv[0]);
-  return std::find(child.argv.begin(), child.argv.end(), "--resume") != child.argv.end()
+  return std::ranges::find(child.argv, "--resume") != child.argv.end()
              ? ""
              : "it is not on the bus, and would begin anew (it has no --resume)";
 }
@@ -250,7 +249,7 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   options.name = "saphira";
   options.lockstep = false;
   const std::vector<Running> own = running_deployments();
-  if (std::any_of(own.begin(), own.end(), [&](const Running& one) {
+  if (std::ranges::any_of(own, [&](const Running& one) {
         return one.robot == bus.robot && one.domain == bus.domain;
       }))
     return std::nullopt;
@@ -259,8 +258,8 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   for (const runtime::Unit& unit : system::units())
     names.insert(unit.name);
   std::erase_if(names, [&](const std::string& name) {
-    return std::none_of(deployment.programs.begin(), deployment.programs.end(),
-                        [&](const Program& program) { return program.name == name; });
+    return std::ranges::none_of(deployment.programs,
+                                [&](const Program& program) { return program.name == name; });
   });
   if (names.empty())
     return std::nullopt;
@@ -410,7 +409,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
 /// True once its programs are started.
 bool is_found(const RunningBus& bus) {
   const std::vector<RunningBus> all = running_buses();
-  return std::any_of(all.begin(), all.end(), [&](const RunningBus& one) {
+  return std::ranges::any_of(all, [&](const RunningBus& one) {
     return one.what == bus.what && one.robot == bus.robot && one.domain == bus.domain;
   });
 }
@@ -532,8 +531,7 @@ int stop_running(const Meant& wanted, const bus::Stop& stop) {
   const auto began = Clock::now();
   while (!stop.requested() && seconds_since(began) < kStopped) {
     const auto left = running_deployments();
-    if (std::none_of(left.begin(), left.end(),
-                     [&](const Running& one) { return one.name == running->name; })) {
+    if (std::ranges::none_of(left, [&](const Running& one) { return one.name == running->name; })) {
       std::cout << running->name << " has stopped\n";
       return bus::kExitOk;
     }

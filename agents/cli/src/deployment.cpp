@@ -103,8 +103,8 @@ class Parser {
     std::set<std::string> seen;
     for (const auto& entry : map) {
       const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-      const auto handler = std::find_if(handlers.begin(), handlers.end(),
-                                        [&](const auto& known) { return known.first == key; });
+      const auto handler =
+          std::ranges::find_if(handlers, [&](const auto& known) { return known.first == key; });
       if (handler == handlers.end()) {
         fail(entry.first.Mark(), "unknown key " + kind(entry.first) + ": expected one of " +
                                      joined(handlers, ", ", &Handlers::value_type::first));

@@ -256,7 +256,7 @@ std::string schema_display(const v1::BehaviorSchema& schema) {
 }
 
 std::string unknown_behavior(const std::string& name, std::vector<std::string> names) {
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return "no behavior \"" + name.substr(0, 200) + '"' + did_you_mean(name, names, ".") +
          " There are " + (names.empty() ? "none now" : joined(names));
@@ -278,11 +278,11 @@ std::string behavior_display(const v1::BehaviorState& behavior,
       left.push_back("  " + parameter.name + " = " + value_text(parameter));
   if (schema != nullptr)
     for (const v1::BehaviorParameter& parameter : schema->parameters) {
-      const bool given = intended != nullptr &&
-                         std::any_of(intended->parameters.begin(), intended->parameters.end(),
-                                     [&](const v1::Argument& argument) {
-                                       return argument.name == parameter.name;
-                                     });
+      const bool given =
+          intended != nullptr &&
+          std::ranges::any_of(intended->parameters, [&](const v1::Argument& argument) {
+            return argument.name == parameter.name;
+          });
       if (!given && parameter.kind == v1::ARGUMENT_NUMBER)
         left.push_back("  " + parameter.name + format(" = %.4g (as usual)", parameter.usual));
     }
@@ -339,9 +339,9 @@ std::string state_text(const v1::Process& process) {
 }
 
 std::string processes_table(std::vector<v1::ProcessSet> services) {
-  std::stable_sort(
-      services.begin(), services.end(),
-      [](const v1::ProcessSet& a, const v1::ProcessSet& b) { return a.service < b.service; });
+  std::ranges::stable_sort(services, [](const v1::ProcessSet& a, const v1::ProcessSet& b) {
+    return a.service < b.service;
+  });
   std::vector<std::vector<std::string>> rows{
       {"SERVICE", "PROCESS", "STATE", "SINCE CYCLE", "DOES"}};
   for (const v1::ProcessSet& service : services)

@@ -46,7 +46,7 @@ std::array<std::string, 2> two_lines(const std::string& text, std::size_t width)
 
 std::string status_table(std::vector<SeenProcess> processes,
                          const std::vector<std::string>& unheard) {
-  std::sort(processes.begin(), processes.end(), [](const SeenProcess& a, const SeenProcess& b) {
+  std::ranges::sort(processes, [](const SeenProcess& a, const SeenProcess& b) {
     return std::pair(a.status.name, a.status.pid) < std::pair(b.status.name, b.status.pid);
   });
   std::vector<std::vector<std::string>> rows{{"NAME", "STATE", "AGE s", "EPOCH", "CYCLE", "LATE",
@@ -67,8 +67,8 @@ std::string status_table(std::vector<SeenProcess> processes,
               : status.reason});
   }
   for (const std::string& name : unheard)
-    if (std::none_of(processes.begin(), processes.end(),
-                     [&name](const SeenProcess& one) { return one.status.name == name; }))
+    if (std::ranges::none_of(processes,
+                             [&name](const SeenProcess& one) { return one.status.name == name; }))
       rows.push_back({name, "not heard"});
   return table(rows);
 }

@@ -435,8 +435,8 @@ class BusRobot final : public Robot {
       buckets_.clear();
     odom_ = state.odom;
     for (const protocol::Sonar& sonar : state.information.sonars) {
-      const auto unit = std::find_if(parameters_.sonars.begin(), parameters_.sonars.end(),
-                                     [&](const auto& each) { return each.number == sonar.number; });
+      const auto unit = std::ranges::find_if(
+          parameters_.sonars, [&](const auto& each) { return each.number == sonar.number; });
       if (unit == parameters_.sonars.end())
         continue;
       buckets_[sonar.number] = {sonar, state.cycle, state.pose_in_odom,

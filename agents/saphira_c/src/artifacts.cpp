@@ -147,7 +147,7 @@ void Os::read_map() {
 void Os::show_map(const maps::Map& map) {
   std::vector<std::unique_ptr<wall>> next;
   for (const maps::Feature& feature : map.features) {
-    const auto same = std::find_if(map_points_.begin(), map_points_.end(), [&](const auto& each) {
+    const auto same = std::ranges::find_if(map_points_, [&](const auto& each) {
       return each && feature.id != 0 && each->id == static_cast<int>(feature.id);
     });
     const wall now = to_c(feature);
@@ -180,12 +180,12 @@ void Os::interpret() {
     return;
   }
   const behaviors::RobotModel model = model_of(parameters);
-  interpretation::Core::Inputs inputs;
-  inputs.cycle = cycle;
-  inputs.new_robot = interpretation_began_ ? nullptr : &model.lps.sonars;
-  inputs.new_frame = new_frame_;
-  inputs.pose_in_odom = robot_in_odom;
-  inputs.readings = readings_;
+  interpretation::Core::Inputs inputs{
+      .cycle = cycle,
+      .new_robot = interpretation_began_ ? nullptr : &model.lps.sonars,
+      .new_frame = new_frame_,
+      .pose_in_odom = robot_in_odom,
+      .readings = readings_};
   interpretation_began_ = true;
   constexpr std::pair<void (*)(), const char*> parts[] = {
       {side_segment_proc, "side-segment"},

@@ -135,10 +135,10 @@ constexpr const char* kInC = "behavior in C";
 }  // namespace
 
 void register_behaviors(behaviors::Registry& registry) {
-  behaviors::Schema schema;
-  schema.name = kInC;
-  schema.summary = "a behavior of this program";
-  schema.parameters = {behaviors::number_parameter("closure", "which one", 0.0, 1e9, 0.0)};
+  behaviors::Schema schema{
+      .name = kInC,
+      .summary = "a behavior of this program",
+      .parameters = {behaviors::number_parameter("closure", "which one", 0.0, 1e9, 0.0)}};
   schema.make = [] { return std::make_unique<InC>(); };
   registry.add(std::move(schema));
 }
@@ -197,8 +197,8 @@ behaviors::Intended Os::intended(const Closure& closure) {
   intended.running = closure.shown.running != FALSE;
   const auto known = predefined().find(closure.shown.beh);
   if (known == predefined().end()) {
-    const auto index = std::find_if(closures.begin(), closures.end(),
-                                    [&](const auto& each) { return each.get() == &closure; });
+    const auto index =
+        std::ranges::find_if(closures, [&](const auto& each) { return each.get() == &closure; });
     intended.parameters.push_back(number("closure", static_cast<double>(index - closures.begin())));
     return intended;
   }

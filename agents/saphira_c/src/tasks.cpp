@@ -244,8 +244,8 @@ void Os::share(Robot& robot, std::uint64_t robot_cycle) {
 std::optional<SharedMind> Os::mind(std::uint64_t robot_cycle) const {
   SharedMind mind{robot_cycle, behaviors_said_, {}};
   const auto id_of = [this](const process* shown) {
-    const auto found = std::find_if(tasks_.begin(), tasks_.end(),
-                                    [&](const auto& task) { return &task->shown == shown; });
+    const auto found =
+        std::ranges::find_if(tasks_, [&](const auto& task) { return &task->shown == shown; });
     return found == tasks_.end() ? 0U : static_cast<std::uint32_t>(found - tasks_.begin()) + 1U;
   };
   for (const auto& task : tasks_)
