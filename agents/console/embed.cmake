@@ -9,7 +9,7 @@ foreach(file index.html simulator.html manifest.json icon.svg)
   string(APPEND list "      {\"/${file}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
 endforeach()
 file(WRITE ${OUT} "// Made by embed.cmake.
-#include \"page_files.hpp\"
+#include \"server.hpp\"
 
 namespace saphira::console {
 namespace {

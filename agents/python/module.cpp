@@ -209,8 +209,7 @@ class Bus {
     const auto declared = sample_of<v1::Capability>(capability, "Capability");
     agent().can(declared, [&own = parts()](const v1::Request& request) {
       own.asked.push_back(request);
-      v1::Answer underway;
-      underway.code = v1::ANSWER_UNDERWAY;
+      v1::Answer underway{.code = v1::ANSWER_UNDERWAY};
       return underway;
     });
   }

@@ -2,7 +2,7 @@
 file(READ ${IN} hex HEX)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
 file(WRITE ${OUT} "// Made by embed.cmake.
-#include \"contract.hpp\"
+#include \"saphira/viewer/schema.hpp\"
 
 namespace saphira::viewer {
 namespace {

@@ -151,16 +151,15 @@ double ContactWatch::heard(const Thing& thing) const {
 
 bool ContactWatch::in_a_lobe(const Pose& robot, const Vec2& point) const {
   const double cosine = std::cos(kLobe);
-  return std::any_of(
-      parameters_.sonars.begin(), parameters_.sonars.end(), [&](const protocol::SonarUnit& unit) {
-        const Pose at = compose(robot, unit.pose_in_robot);
-        const Vec2 way = point - at.position();
-        const double range = way.norm();
-        if (range < kLeastRange || range > most_range_ || way.dot(at.direction()) < range * cosine)
-          return false;
-        return !cast_ray(near_.around(robot.position()), at.position(), way / range,
-                         range - kSameThing);
-      });
+  return std::ranges::any_of(parameters_.sonars, [&](const protocol::SonarUnit& unit) {
+    const Pose at = compose(robot, unit.pose_in_robot);
+    const Vec2 way = point - at.position();
+    const double range = way.norm();
+    if (range < kLeastRange || range > most_range_ || way.dot(at.direction()) < range * cosine)
+      return false;
+    return !cast_ray(near_.around(robot.position()), at.position(), way / range,
+                     range - kSameThing);
+  });
 }
 
 std::string ContactWatch::name_of(const Thing& thing) const {

@@ -20,8 +20,8 @@ bool before(const Vec2& a, const Vec2& b) {
 
 // The first corner with at least this x.
 std::vector<Corner>::iterator first_from(std::vector<Corner>& corners, double x) {
-  return std::lower_bound(corners.begin(), corners.end(), x,
-                          [](const Corner& corner, double low) { return corner.point.x() < low; });
+  return std::ranges::lower_bound(corners, x, {},
+                                  [](const Corner& corner) { return corner.point.x(); });
 }
 
 void add_arm(Corner& corner, const Vec2& towards) {
@@ -30,7 +30,7 @@ void add_arm(Corner& corner, const Vec2& towards) {
 }
 
 void tidy(std::vector<double>& arms) {
-  std::sort(arms.begin(), arms.end());
+  std::ranges::sort(arms);
   std::vector<double> kept;
   for (const double arm : arms)
     if (kept.empty() || arm - kept.back() > kSameArm)
@@ -52,7 +52,7 @@ std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
     ends.push_back(segment.from);
     ends.push_back(segment.to);
   }
-  std::sort(ends.begin(), ends.end(), before);
+  std::ranges::sort(ends, before);
   std::vector<Corner> corners;  // by x
   for (const Vec2& end : ends) {
     const auto near = [&](const Corner& c) { return (c.point - end).norm() <= kSame; };
@@ -86,7 +86,7 @@ CornerShape shape_from(const Corner& corner, const Vec2& viewer) {
   const Vec2 away = viewer - corner.point;
   const double at = norm_angle(std::atan2(away.y(), away.x()));
   // The sector between the two arms around the viewer.
-  const auto next = std::upper_bound(corner.arms.begin(), corner.arms.end(), at);
+  const auto next = std::ranges::upper_bound(corner.arms, at);
   const bool wraps = next == corner.arms.begin() || next == corner.arms.end();
   const double sector =
       wraps ? corner.arms.front() + 2.0 * kPi - corner.arms.back() : *next - *std::prev(next);

@@ -23,8 +23,7 @@ constexpr int kTimerTick = 10;         // [ms]
 // means a table. The first PeopleBot (p2pb) has none.
 bool has_table_sensors(const RobotParameters& parameters) {
   constexpr std::array kPeopleBots{"p2pp", "perfpb", "perfpb+", "peoplebot-sh"};
-  return std::find(kPeopleBots.begin(), kPeopleBots.end(), parameters.subclass) !=
-         kPeopleBots.end();
+  return std::ranges::find(kPeopleBots, parameters.subclass) != kPeopleBots.end();
 }
 
 }  // namespace

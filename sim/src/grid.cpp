@@ -60,7 +60,7 @@ const std::vector<std::uint32_t>& Grid::near(const Vec2& point, double reach) co
       const auto& cell = cells_[y * columns_ + x];
       found_.insert(found_.end(), cell.begin(), cell.end());
     }
-  std::sort(found_.begin(), found_.end());
+  std::ranges::sort(found_);
   return found_;
 }
 

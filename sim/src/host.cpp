@@ -1,5 +1,6 @@
 #include "saphira/sim/host.hpp"
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -15,20 +16,20 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "feeds.hpp"
 #include "listener.hpp"
-#include "picture_feed.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/sim/line_check.hpp"
+#include "saphira/protocol/check.hpp"
 #include "saphira/sim/resume.hpp"
 #include "saphira/sim/simulation.hpp"
 #include "saphira/sim/view.hpp"
-#include "view_feed.hpp"
 #include "world_check.hpp"
 
 namespace saphira::sim {
@@ -102,6 +103,55 @@ class TraceFile {
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
 };
+
+// The strict checker on a robot's line: violations of the protocol's tables are appended to a file,
+// a line each, at once and in one write, so that several simulators may share the file and a killed
+// one has written all its findings.
+class LineCheck {
+ public:
+  /// `prefix` begins each line.
+  LineCheck(const std::string& path, std::string prefix,
+            const protocol::RobotParameters& parameters)
+      : prefix_(std::move(prefix)),
+        file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)),
+        checker_([parameters](const protocol::RobotIdentity&) { return parameters; }) {
+    if (!file_)
+      throw UnusableFile(cannot_be(path, "written"));
+  }
+  /// The time [s] as for the checker: only where the robot's time is the client's.
+  void pass(protocol::Side side, protocol::ByteView bytes, std::optional<double> time) {
+    checker_.feed(side, bytes, time);
+    report();
+  }
+  /// The connection is closed: also writes the summary since the beginning.
+  void disconnect() {
+    checker_.disconnect();
+    report();
+    std::istringstream lines(checker_.summary());
+    for (std::string line; std::getline(lines, line);)
+      write(line);
+  }
+
+ private:
+  void report() {
+    for (; reported_ < checker_.findings().size(); ++reported_)
+      write(to_string(checker_.findings()[reported_]));
+  }
+  void write(const std::string& text) const {
+    const std::string line = prefix_ + text + "\n";
+    [[maybe_unused]] const ssize_t size = ::write(file_.get(), line.data(), line.size());
+  }
+
+  std::string prefix_;
+  Fd file_;
+  protocol::Checker checker_;
+  std::size_t reported_ = 0;
+};
+
+std::string default_check() {
+  const char* path = std::getenv("SAPHIRA_CHECK");
+  return path != nullptr ? path : "";
+}
 
 // The ticks that are due by the wall clock. Time in which the whole process slept (stopped, or the
 // machine suspended) is skipped, not made up.
@@ -364,7 +414,7 @@ class Station {
   Clock::time_point heard_ = Clock::now();
 };
 
-class Serving {
+class Serving : ViewedHost {
  public:
   /// `view`, which may be null, outlives it.
   Serving(const HostOptions& options, Simulation& simulation, ViewFeed* view)
@@ -451,8 +501,8 @@ class Serving {
       timed_ = true;
       return -1;
     }
-    const bool pending = std::any_of(stations_.begin(), stations_.end(),
-                                     [](const auto& station) { return station->packet_pending(); });
+    const bool pending = std::ranges::any_of(
+        stations_, [](const auto& station) { return station->packet_pending(); });
     const bool tells = pacing_.paused && simulation_.runs();
     if (pending || tells) {
       const double rest = std::chrono::duration<double>(tells_at_ - Clock::now()).count();
@@ -537,40 +587,42 @@ class Serving {
 
   /// Carries out a line from the view; returns the answer, as a line.
   std::string obey(const std::string& text) {
-    std::string trouble;
     try {
-      const Wish wish = parse_wish(text);
-      if (std::holds_alternative<ListFiles>(wish))
-        return describe_files(choice_());
-      trouble = obey(wish);
+      const std::string trouble = sim::obey(text, simulation_, *this);
+      return trouble.empty() ? std::exchange(answer_, {}) : complaint(trouble);
     } catch (const std::invalid_argument& error) {
-      trouble = error.what();
+      return complaint(error.what());
     }
-    return trouble.empty() ? "" : complaint(trouble);
   }
-  std::string obey(const Wish& wish) {
-    if (const auto* pause = std::get_if<Pause>(&wish)) {
-      pacing_.paused = pause->on;
-      steps_ = 0;
-    } else if (std::holds_alternative<StepOnce>(wish)) {
-      if (!pacing_.paused)
-        return "time is not paused";
-      steps_ = std::min(steps_ + 1, kMostSteps);
-      take_steps();
-    } else if (const auto* rate = std::get_if<SetRate>(&wish)) {
-      if (unpaced_)
-        return "the simulator runs as fast as it can";
-      pacing_.rate = rate->rate;
-      pace_ = Pace(rate->rate);
-    } else if (const auto* disconnect = std::get_if<Disconnect>(&wish)) {
-      if (disconnect->robot >= stations_.size())
-        return "there is no robot " + std::to_string(disconnect->robot);
-      stations_[disconnect->robot]->drop();
-    } else if (const auto* load = std::get_if<Load>(&wish)) {
-      load_ = *load;
-    } else {
-      return change_scene(simulation_, wish);
-    }
+  std::string pause(bool on) override {
+    pacing_.paused = on;
+    steps_ = 0;
+    return {};
+  }
+  std::string step_once() override {
+    if (!pacing_.paused)
+      return "time is not paused";
+    steps_ = std::min(steps_ + 1, kMostSteps);
+    take_steps();
+    return {};
+  }
+  std::string set_rate(double rate) override {
+    if (unpaced_)
+      return "the simulator runs as fast as it can";
+    pacing_.rate = rate;
+    pace_ = Pace(rate);
+    return {};
+  }
+  std::string disconnect(RobotNumber robot) override {
+    stations_[robot]->drop();
+    return {};
+  }
+  std::string load(Load wish) override {
+    load_ = std::move(wish);
+    return {};
+  }
+  std::string list_files() override {
+    answer_ = describe_files(choice_());
     return {};
   }
 
@@ -579,6 +631,7 @@ class Serving {
   std::function<Choice()> choice_;      // of files, at present
   std::optional<std::uint64_t> shown_;  // [ticks] time of the newest view
   std::optional<Load> load_;
+  std::string answer_;  // to a line from the view
   bool unpaced_;
   Pacing pacing_;
   Pace pace_;

@@ -39,8 +39,8 @@ Look MovableReader::read_look(LineReader& in, double height) {
   look.name = in.word("a name");
   look.height = height;
   const auto has = [&](const auto& plans) {
-    return std::any_of(plans.begin(), plans.end(),
-                       [&](const auto& plan) { return plan.look.name == look.name; });
+    return std::ranges::any_of(plans,
+                               [&](const auto& plan) { return plan.look.name == look.name; });
   };
   if (has(plans_.persons) || has(plans_.doors) || has(plans_.boxes) || has(plans_.posts))
     in.fail("expected another name: there is one called \"" + look.name + "\" already");

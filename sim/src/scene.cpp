@@ -116,8 +116,8 @@ Scene::Scene(const World& world)
     widest_person_ = std::max(widest_person_, plan.radius + kStep);
     persons_.push_back({&plan, plan.at});
     persons_.back().from = plan.at;
-    const auto walk = std::find_if(plan.script.begin(), plan.script.end(),
-                                   [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
+    const auto walk = std::ranges::find_if(
+        plan.script, [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
     if (walk != plan.script.end())
       look_towards(persons_.back(), walk->to);
     if (!plan.script.empty())
@@ -177,9 +177,8 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
 void Scene::tick() {
   ++ticks_;
   // In order of time: the oldest are dropped first.
-  const auto fresh = std::find_if(pings_.begin(), pings_.end(), [this](const Ping& ping) {
-    return ping.tick + kPingTicks > ticks_;
-  });
+  const auto fresh = std::ranges::find_if(
+      pings_, [this](const Ping& ping) { return ping.tick + kPingTicks > ticks_; });
   pings_.erase(pings_.begin(), fresh);
   for (std::uint32_t i = 0; i < persons_.size(); ++i) {
     walk(persons_[i]);
@@ -232,9 +231,8 @@ bool Scene::set_person(std::string_view name, const Vec2& at) {
       continue;
     const double radius = person.plan->radius;
     const auto near = [&](const Segment& segment) { return distance_to(segment, at) < radius; };
-    if (sim::distance(world_->segments, at) < radius ||
-        std::any_of(segments_.begin(), segments_.end(), near) ||
-        std::any_of(hulls_.begin(), hulls_.end(), [&](const Disc& hull) {
+    if (sim::distance(world_->segments, at) < radius || std::ranges::any_of(segments_, near) ||
+        std::ranges::any_of(hulls_, [&](const Disc& hull) {
           return (hull.centre - at).norm() < radius + hull.radius;
         }))
       return false;
@@ -342,14 +340,14 @@ void Scene::next_leg(Person& person) {
 
 bool Scene::has_robot_within(double reach, const Vec2& point) const {
   const auto& near = hulls_near_.near(point, reach);
-  return std::any_of(near.begin(), near.end(),
-                     [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
+  return std::ranges::any_of(
+      near, [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
 bool Scene::has_robot_ahead(const Person& person) const {
   const Vec2 way = person.plan->script[person.leg].to - person.at;
   const auto& near = hulls_near_.near(person.at, kSees);
-  return std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+  return std::ranges::any_of(near, [&](std::uint32_t i) {
     const Vec2 there = hulls_[i].centre - person.at;
     return there.norm() < kSees && way.dot(there) > 0.0;
   });
@@ -371,7 +369,7 @@ double Scene::room_but_robots(const Person& person, const Vec2& at) const {
   const auto look = [&](const Disc& disc) {
     best = std::min(best, (disc.centre - at).norm() - disc.radius);
   };
-  std::for_each(posts_.begin(), posts_.end(), look);
+  std::ranges::for_each(posts_, look);
   for (const Person& other : persons_)
     if (&other != &person)
       look({other.at, other.plan->radius});
@@ -465,7 +463,7 @@ Person::Refuge Scene::refuge(const Person& person) const {
           (at - person.at).norm() + kDetour * std::abs(aside.dot(its - robot->centre));
       if (person.yielded % 2 == 1 && cost < least &&
           room_but_robots(person, its) >= robot->radius + kItsRoom &&
-          std::none_of(world_->segments.begin(), world_->segments.end(), [&](const Segment& wall) {
+          std::ranges::none_of(world_->segments, [&](const Segment& wall) {
             return intersect(wall, {at, its});
           })) {
         best = {at, kGivesWay};
@@ -528,7 +526,7 @@ bool Scene::lets_pass(const Person& person, const Vec2& to) {
   }
   if (person.aside && room(person, to) < std::min(0.0, room(person, person.at)))
     return false;
-  if (std::any_of(world_->segments.begin(), world_->segments.end(), [&](const Segment& wall) {
+  if (std::ranges::any_of(world_->segments, [&](const Segment& wall) {
         return intersect(wall, {person.at, to});
       }))
     return false;
@@ -588,13 +586,12 @@ bool Scene::is_free(std::size_t number, const Pose& pose_in_world, RobotNumber p
            std::abs(inside.y()) < box.plan->width / 2.0;
   };
   const auto hits_segment = [&](const Segment& segment) {
-    return contains(segment.from) ||
-           std::any_of(sides.begin(), sides.end(),
-                       [&](const Segment& side) { return intersect(side, segment); });
+    return contains(segment.from) || std::ranges::any_of(sides, [&](const Segment& side) {
+             return intersect(side, segment);
+           });
   };
   const auto hits_disc = [&](const Disc& disc) {
-    return contains(disc.centre) ||
-           std::any_of(sides.begin(), sides.end(), [&](const Segment& side) {
+    return contains(disc.centre) || std::ranges::any_of(sides, [&](const Segment& side) {
              return distance_to(side, disc.centre) < disc.radius;
            });
   };
@@ -608,8 +605,8 @@ bool Scene::is_free(std::size_t number, const Pose& pose_in_world, RobotNumber p
   for (const Person& person : persons_)
     if (hits_disc({person.at, person.plan->radius}))
       return false;
-  return std::none_of(posts_.begin(), posts_.end(), hits_disc) &&
-         std::none_of(world_->segments.begin(), world_->segments.end(), hits_segment);
+  return std::ranges::none_of(posts_, hits_disc) &&
+         std::ranges::none_of(world_->segments, hits_segment);
 }
 
 bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
@@ -651,8 +648,8 @@ bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
 void Scene::put(std::size_t number, const Pose& pose_in_world) {
   boxes_[number].pose_in_world = pose_in_world;
   const auto sides = outline(boxes_[number], pose_in_world);
-  std::copy(sides.begin(), sides.end(),
-            segments_.begin() + static_cast<std::ptrdiff_t>(doors_.size() + 4 * number));
+  std::ranges::copy(sides,
+                    segments_.begin() + static_cast<std::ptrdiff_t>(doors_.size() + 4 * number));
 }
 
 void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const {

@@ -139,7 +139,7 @@ class Faces {
     meetings.clear();
     for (const Face& face : faces_)
       face.round ? meet_disc(face, way, meetings) : meet_segment(face, way, meetings);
-    std::sort(meetings.begin(), meetings.end(), [](const Meeting& a, const Meeting& b) {
+    std::ranges::sort(meetings, [](const Meeting& a, const Meeting& b) {
       return a.depth != b.depth ? a.depth < b.depth : a.face < b.face;
     });
     for (std::size_t i = 0; i < meetings.size(); ++i) {

@@ -65,23 +65,6 @@ Pose pose_in(const Json& object) {
   const Vec2 at = place_in(object);
   return {at.x(), at.y(), norm2_angle(number(object, "th", -1e3, 1e3))};
 }
-RobotNumber robot_in(const Json& object) {
-  return static_cast<RobotNumber>(number(object, "robot", 0.0, 1000.0));
-}
-
-SetInput input_in(const Json& object) {
-  SetInput input{robot_in(object), {}, 0, {}};
-  if (object.contains("digital"))
-    input.digital = byte_in(object, "digital");
-  if (object.contains("analog"))
-    input.analog = byte_in(object, "analog");
-  if (object.contains("port"))
-    input.port = byte_in(object, "port");
-  if (!input.digital && !input.analog)
-    throw std::invalid_argument("expected \"digital\" or \"analog\"");
-  return input;
-}
-
 Json describe_inputs(const Devices& devices) {
   Json analogs = Json::array();
   for (std::size_t port = 0; port < devices.analog_ports(); ++port)
@@ -114,24 +97,32 @@ Json describe_robot(const Server& server) {
   return out;
 }
 
-std::string set_input(Simulation& simulation, const SetInput& input) {
-  if (input.robot >= simulation.size())
-    return "there is no robot " + std::to_string(input.robot);
-  Devices& devices = simulation.server(input.robot).devices();
-  if (input.port >= devices.analog_ports())
+/// A person at the robot's inputs: bits of pins [digital], [5 V / 255] at a port [analog].
+std::string set_input(const Json& wish, Devices& devices) {
+  const bool digital = wish.contains("digital");
+  const bool analog = wish.contains("analog");
+  const std::uint8_t bits = digital ? byte_in(wish, "digital") : std::uint8_t{0};
+  const std::uint8_t value = analog ? byte_in(wish, "analog") : std::uint8_t{0};
+  const std::size_t port = wish.contains("port") ? byte_in(wish, "port") : 0;
+  if (!digital && !analog)
+    throw std::invalid_argument("expected \"digital\" or \"analog\"");
+  if (port >= devices.analog_ports())
     return "this robot has the analog ports 0 to " + std::to_string(devices.analog_ports() - 1);
-  if (input.digital)
-    devices.set_digital_input(*input.digital);
-  if (input.analog)
-    devices.set_analog(*input.analog, input.port);
+  if (digital)
+    devices.set_digital_input(bits);
+  if (analog)
+    devices.set_analog(value, port);
   return {};
+}
+
+std::string line(const Json& all) {
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
 std::string describe_files(const Choice& choice) {
-  const Json all{{"type", "files"}, {"worlds", choice.worlds}, {"robots", choice.robots}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return line({{"type", "files"}, {"worlds", choice.worlds}, {"robots", choice.robots}});
 }
 
 std::string describe_world(const World& world, const Choice& choice) {
@@ -145,10 +136,14 @@ std::string describe_world(const World& world, const Choice& choice) {
                      {"y", rounded(post.at.y())},
                      {"radius", post.radius},
                      {"color", post.look.color}});
-  const Json all{{"type", "world"},         {"world", choice.world},  {"width", world.width},
-                 {"height", world.height},  {"walls", walls},         {"posts", posts},
-                 {"worlds", choice.worlds}, {"robots", choice.robots}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return line({{"type", "world"},
+               {"world", choice.world},
+               {"width", world.width},
+               {"height", world.height},
+               {"walls", walls},
+               {"posts", posts},
+               {"worlds", choice.worlds},
+               {"robots", choice.robots}});
 }
 
 std::string describe_scene(const Simulation& simulation, const Pacing& pacing) {
@@ -182,77 +177,62 @@ std::string describe_scene(const Simulation& simulation, const Pacing& pacing) {
                      {"th", rounded(box.pose_in_world.th)},
                      {"corners", corners}});
   }
-  const Json all{
-      {"type", "scene"},         {"time", rounded(static_cast<double>(scene.ticks()) * kTick)},
-      {"paused", pacing.paused}, {"rate", pacing.rate},
-      {"robots", robots},        {"people", people},
-      {"doors", doors},          {"boxes", boxes}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return line({{"type", "scene"},
+               {"time", rounded(static_cast<double>(scene.ticks()) * kTick)},
+               {"paused", pacing.paused},
+               {"rate", pacing.rate},
+               {"robots", robots},
+               {"people", people},
+               {"doors", doors},
+               {"boxes", boxes}});
 }
 
 std::string complaint(const std::string& text) {
-  const Json all{{"type", "trouble"}, {"text", text}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return line({{"type", "trouble"}, {"text", text}});
 }
 
-Wish parse_wish(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object())
+std::string obey(std::string_view request, Simulation& simulation, ViewedHost& host) {
+  const Json wish = Json::parse(request, nullptr, /*allow_exceptions=*/false);
+  if (!wish.is_object())
     throw std::invalid_argument("expected one JSON object");
-  const std::string what = name_in(json, "do");
-  if (what == "place")
-    return PlaceRobot{robot_in(json), pose_in(json)};
-  if (what == "person")
-    return PlacePerson{name_in(json, "name"), place_in(json)};
-  if (what == "point") {
-    RaiseArm wish{name_in(json, "name"), {}};
-    if (json.contains("th"))
-      wish.direction_in_world = norm2_angle(number(json, "th", -1e3, 1e3));
-    return wish;
+  Scene& scene = simulation.scene();
+  const std::string what = name_in(wish, "do");
+  if (what == "place" || what == "input" || what == "disconnect") {
+    const auto robot = static_cast<RobotNumber>(number(wish, "robot", 0.0, 1000.0));
+    const Pose pose = what == "place" ? pose_in(wish) : Pose{};
+    if (robot >= simulation.size())
+      return "there is no robot " + std::to_string(robot);
+    if (what == "place")
+      return scene.robot(robot).place(pose) ? "" : "there is no room for it";
+    return what == "input" ? set_input(wish, simulation.server(robot).devices())
+                           : host.disconnect(robot);
   }
-  if (what == "box")
-    return PlaceBox{name_in(json, "name"), pose_in(json)};
-  if (what == "door")
-    return SetDoor{name_in(json, "name"), truth(json, "open")};
-  if (what == "input")
-    return input_in(json);
+  if (what == "person" || what == "point" || what == "box" || what == "door") {
+    const std::string name = name_in(wish, "name");
+    if (what == "person")
+      return scene.set_person(name, place_in(wish)) ? "" : "there is no room for " + name;
+    if (what == "box")
+      return scene.set_box(name, pose_in(wish)) ? "" : "there is no room for " + name;
+    if (what == "door")
+      return scene.set_door(name, truth(wish, "open")) ? "" : "there is no door " + name;
+    std::optional<double> direction;  // [rad] in the world; none: the arm is lowered
+    if (wish.contains("th"))
+      direction = norm2_angle(number(wish, "th", -1e3, 1e3));
+    return scene.set_arm(name, direction) ? "" : "there is no person " + name;
+  }
   if (what == "pause")
-    return Pause{truth(json, "on")};
+    return host.pause(truth(wish, "on"));
   if (what == "step")
-    return StepOnce{};
+    return host.step_once();
   if (what == "rate")
-    return SetRate{number(json, "rate", 0.1, 100.0)};
-  if (what == "disconnect")
-    return Disconnect{robot_in(json)};
+    return host.set_rate(number(wish, "rate", 0.1, 100.0));
   if (what == "load")
-    return Load{name_in(json, "world", true), name_in(json, "robot", true)};
+    return host.load({name_in(wish, "world", true), name_in(wish, "robot", true)});
   if (what == "files")
-    return ListFiles{};
+    return host.list_files();
   throw std::invalid_argument(
       "\"do\": expected place, person, point, box, door, input, pause, step, rate, disconnect, "
       "load or files");
-}
-
-std::string change_scene(Simulation& simulation, const Wish& wish) {
-  Scene& scene = simulation.scene();
-  if (const auto* place = std::get_if<PlaceRobot>(&wish)) {
-    if (place->robot >= scene.robots())
-      return "there is no robot " + std::to_string(place->robot);
-    return scene.robot(place->robot).place(place->pose_in_world) ? "" : "there is no room for it";
-  }
-  if (const auto* person = std::get_if<PlacePerson>(&wish))
-    return scene.set_person(person->name, person->at) ? "" : "there is no room for " + person->name;
-  if (const auto* raise = std::get_if<RaiseArm>(&wish))
-    return scene.set_arm(raise->name, raise->direction_in_world)
-               ? ""
-               : "there is no person " + raise->name;
-  if (const auto* box = std::get_if<PlaceBox>(&wish))
-    return scene.set_box(box->name, box->pose_in_world) ? "" : "there is no room for " + box->name;
-  if (const auto* door = std::get_if<SetDoor>(&wish))
-    return scene.set_door(door->name, door->open) ? "" : "there is no door " + door->name;
-  if (const auto* input = std::get_if<SetInput>(&wish))
-    return set_input(simulation, *input);
-  return {};
 }
 
 }  // namespace saphira::sim

@@ -52,8 +52,8 @@ class View {
       one_.discs.assign(1, disc);
       meet(direction, layer);
     }
-    std::stable_sort(layers_.begin(), layers_.end(),
-                     [](const Layer& a, const Layer& b) { return a.range < b.range; });
+    std::ranges::stable_sort(layers_,
+                             [](const Layer& a, const Layer& b) { return a.range < b.range; });
     return layers_;
   }
 
@@ -168,9 +168,8 @@ std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
       // Always the same draws, so that one column does not shift the next one's.
       const bool matched = !random.chance(camera.dropout);
       const double noise = random.normal();
-      const auto first = std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) {
-        return layer.height > camera.bands[band];
-      });
+      const auto first = std::ranges::find_if(
+          layers, [&](const Layer& layer) { return layer.height > camera.bands[band]; });
       std::optional<double> measured;
       if (first != layers.end() && matched) {
         const double along = first->range * std::cos(bearing);

@@ -91,7 +91,7 @@ std::optional<std::string> trouble_of_leg(const World& world, std::size_t person
 std::optional<std::string> trouble_of_repeat(const World& world, std::size_t person) {
   const PersonPlan& plan = world.movable.persons[person];
   const auto walks = [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; };
-  const auto first = std::find_if(plan.script.begin(), plan.script.end(), walks);
+  const auto first = std::ranges::find_if(plan.script, walks);
   const auto last = std::find_if(plan.script.rbegin(), plan.script.rend(), walks);
   if (first == plan.script.end())
     return std::nullopt;

@@ -14,22 +14,8 @@ namespace {
 
 using protocol::RobotParameters;
 
-RobotParameters one_sonar() {
-  RobotParameters parameters;
-  parameters.sonars.push_back({0, {}});
-  return parameters;
-}
-
 RobotParameters p3dx() {
   return protocol::load_parameters(test::source("config/robots/p3dx.p"));
-}
-
-SonarModel exact(double strength = 40.0) {
-  SonarModel model;
-  model.strength = strength;
-  model.noise = model.relative_noise = model.dropout = model.roughness = model.crosstalk =
-      model.spread = model.soft_spread = 0.0;
-  return model;
 }
 
 World world_with(const std::string& what) {
@@ -179,30 +165,6 @@ TEST(Echo, WhoWalksHasALegThatAnswersHalfOfTheTime) {
     heard += range && *range < 0.55 ? 1 : 0;
   }
   EXPECT_NEAR(heard, 500, 60);
-}
-
-TEST(Echo, WhatStandsNearerHidesWhatStandsBehind) {
-  // An unheard soft post before a wall.
-  WorldScene scene(world_with(post(11.0, 10.0, 0.2) + "cloth 60  12000 5000 12000 15000"));
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  EXPECT_FALSE(sonars.fire(0, {10.0, 10.0, 0.0}).range);
-  EXPECT_NEAR(*sonars.fire(0, {10.0, 11.0, 0.0}).range, 2.0, 1e-9);
-}
-
-TEST(Echo, ASquareInnerCornerIsHeardAsAWallIs) {
-  WorldScene scene(
-      world_with("12000 5000 12000 11000  12000 11000 5000 11000  18000 18000 19000 18000 "
-                 "18000 18000 18500 19000"));
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  // Neither wall within 17 degrees, and both too far to be heard from aside.
-  SonarModel model = exact();
-  model.lost_angle = model.critical_angle;
-  Sonars strict(scene, kNobody, one_sonar(), model, 1);
-  const double to_corner = std::hypot(2.0, 1.5);
-  const double at = std::atan2(1.5, 2.0);
-  EXPECT_NEAR(*strict.fire(0, {10.0, 9.5, at}).range, to_corner, 0.001);
-  EXPECT_NEAR(*strict.fire(0, {10.0, 9.5, at - radians(11.0)}).range, to_corner, 0.02);
-  EXPECT_FALSE(strict.fire(0, {18.5, 18.2, radians(-158.0)}).range) << "of 63 degrees";
 }
 
 TEST(Echo, TheWorldSaysHowStrongEchoesAre) {

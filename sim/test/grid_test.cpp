@@ -24,11 +24,11 @@ TEST(Grid, FindsAllThatAreNearInOrder) {
     const Vec2 point(random.uniform(-3.0, 23.0), random.uniform(-3.0, 13.0));
     const double reach = random.uniform(0.0, 4.0);
     const auto& found = grid.near(point, reach);
-    EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
-    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+    EXPECT_TRUE(std::ranges::is_sorted(found));
+    EXPECT_EQ(std::ranges::adjacent_find(found), found.end());
     for (std::uint32_t i = 0; i < places.size(); ++i) {
       if ((places[i] - point).norm() <= reach) {
-        EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << i;
+        EXPECT_TRUE(std::ranges::binary_search(found, i)) << i;
       }
     }
     most = std::max(most, found.size());

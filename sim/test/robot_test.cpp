@@ -48,25 +48,6 @@ void turn_to(const Alone& alone, double heading, int ticks) {
   run(alone, ticks);
 }
 
-// Manual 5.5: constant acceleration to the set speed.
-TEST(Robot, AcceleratesAtAConstantRate) {
-  RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
-  const Alone robot(parameters);
-  drive(robot, 0.3, 30);
-  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
-  run(robot, 40);
-  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
-  drive(robot, -1.0, 15);  // clamped
-  EXPECT_NEAR(robot->velocity(), 0.0, 1e-9);
-  run(robot, 80);
-  EXPECT_NEAR(robot->velocity(), -0.4, 1e-9);
-  robot->stop();
-  run(robot, 20);
-  EXPECT_EQ(robot->velocity(), 0.0);
-  EXPECT_FALSE(robot->moving());
-  EXPECT_EQ(robot->pose_in_world().y, 0.0);
-}
-
 // Manual Figure 5-2.
 TEST(Robot, TurnsByATrapezoid) {
   RobotParameters parameters;
@@ -80,7 +61,7 @@ TEST(Robot, TurnsByATrapezoid) {
   }
   EXPECT_NEAR(robot->pose_in_odom().th, radians(170.0), 0.002);
   EXPECT_FALSE(robot->moving());
-  const double top = *std::max_element(speeds.begin(), speeds.end());
+  const double top = *std::ranges::max_element(speeds);
   EXPECT_NEAR(top, parameters.max_rotation_velocity, 1e-9);
   const double step = parameters.rotation_acceleration * kTick;
   EXPECT_NEAR(speeds[9], 10 * step, 1e-9);  // the rising side
@@ -89,15 +70,6 @@ TEST(Robot, TurnsByATrapezoid) {
   // 170 degrees at 100 deg/s with both ramps of 1/3 s: 1.7 + 1/3 s.
   const auto done = std::find(speeds.begin() + 10, speeds.end(), 0.0) - speeds.begin();
   EXPECT_NEAR(static_cast<double>(done) * kTick, 2.03, 0.1);
-}
-
-TEST(Robot, TurnsTheShortWayRound) {
-  const Alone robot;
-  turn_to(robot, radians(350.0), 100);
-  EXPECT_NEAR(robot->pose_in_odom().th, radians(-10.0), 0.002);
-  robot->turn_by(radians(-20.0));
-  run(robot, 100);
-  EXPECT_NEAR(robot->pose_in_odom().th, radians(-30.0), 0.003);
 }
 
 TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
@@ -114,21 +86,6 @@ TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
     last = robot->rotation_velocity();
   }
   EXPECT_NEAR(robot->pose_in_odom().th, radians(-90.0), 0.002);
-}
-
-TEST(Robot, WheelVelocities) {
-  RobotParameters parameters;
-  const Alone robot(parameters);
-  robot->set_wheel_velocities(0.1, 0.2);
-  run(robot, 100);
-  EXPECT_NEAR(robot->left_velocity(), 0.1, 1e-9);
-  EXPECT_NEAR(robot->right_velocity(), 0.2, 1e-9);
-  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
-  EXPECT_NEAR(robot->rotation_velocity(), 0.05 * parameters.rotation_per_difference, 1e-9);
-  // Another command leaves the mode (manual 5.4.6).
-  turn_to(robot, robot->pose_in_odom().th, 100);
-  EXPECT_NEAR(robot->velocity(), 0.15, 1e-9);
-  EXPECT_EQ(robot->rotation_velocity(), 0.0);
 }
 
 // The time of the fastest motion straight on or on the spot.
@@ -164,20 +121,6 @@ TEST(Robot, WheelVelocitiesBeyondTheLimitKeepTheirRatio) {
     EXPECT_LE(std::abs(robot->left_velocity()), wheel_limit(parameters) + 1e-9);
     EXPECT_LE(std::abs(robot->right_velocity()), wheel_limit(parameters) + 1e-9);
   }
-}
-
-TEST(Robot, AtFullSpeedATurnWaitsUntilItsWheelCan) {
-  RobotParameters parameters;
-  parameters.max_velocity = 1.0;  // more than a turn on the spot needs of a wheel
-  const Alone robot(parameters);
-  drive(robot, 1.0, 400);
-  EXPECT_NEAR(robot->right_velocity(), 1.0, 1e-9);
-  turn_to(robot, radians(90.0), 30);
-  EXPECT_LT(robot->velocity(), 0.9);
-  EXPECT_GT(robot->rotation_velocity(), 0.2);
-  run(robot, 600);
-  EXPECT_NEAR(robot->pose_in_odom().th, radians(90.0), 0.002);
-  EXPECT_NEAR(robot->velocity(), 1.0, 0.01);
 }
 
 TEST(Robot, TheWheelsLimitChangesNothingThatItDoesNotReach) {
@@ -274,82 +217,6 @@ TEST(Robot, NoWheelIsEverFasterThanItsLimitAndNoSpeedJumps) {
   }
 }
 
-TEST(Robot, BrakingKeepsTheVelocityForLater) {
-  const Alone robot;
-  robot->set_velocity(0.3);
-  robot->set_rotation_velocity(0.5);
-  run(robot, 100);
-  robot->brake(true);
-  run(robot, 30);
-  EXPECT_FALSE(robot->moving());
-  EXPECT_EQ(robot->target_velocity(), 0.0);
-  robot->brake(false);
-  run(robot, 100);
-  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
-  EXPECT_EQ(robot->rotation_velocity(), 0.0);  // at the current heading
-}
-
-TEST(Robot, StopsAtAWallAndNeverBehindIt) {
-  for (const double th : {0.0, 20.0, -20.0, 60.0, -60.0, 80.0}) {
-    RobotParameters parameters;
-    const Alone robot(parameters, {1.0, 0.0, radians(th)}, 1, kWalled);
-    robot->set_velocity(0.4);
-    for (int i = 0; i < 2000; ++i) {
-      robot->tick();
-      ASSERT_GE(robot->clearance(), -1e-12) << th;
-    }
-    EXPECT_LT(robot->clearance(), 1e-6) << th;
-    EXPECT_EQ(robot->contacts(), 1) << th;
-    EXPECT_EQ(robot->velocity(), 0.0) << th;
-    // Manual 6.3.1: head on both motors stall, otherwise the one at that side.
-    EXPECT_EQ(robot->left_stalled(), th < 30.0) << th;
-    EXPECT_EQ(robot->right_stalled(), th > -30.0) << th;
-  }
-}
-
-TEST(Robot, BacksIntoAWallTheSameWay) {
-  const Alone robot({}, {1.0, 0.0, radians(180.0 - 60.0)}, 1, kWalled);
-  drive(robot, -0.4, 2000);
-  EXPECT_GE(robot->clearance(), -1e-12);
-  EXPECT_EQ(robot->contacts(), 1);
-  // The wall is at +x; the robot looks to 120 degrees, so it is behind and to its right.
-  EXPECT_FALSE(robot->left_stalled());
-  EXPECT_TRUE(robot->right_stalled());
-}
-
-TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
-  const Alone robot({}, {1.5, 0.0, 0.0}, 1, kWalled);
-  for (int i = 1; i <= 3; ++i) {
-    drive(robot, 0.2, 400);
-    EXPECT_EQ(robot->contacts(), i);
-    robot->clear_stalls();
-    drive(robot, -0.2, 200);
-    EXPECT_GT(robot->clearance(), 0.2);
-    EXPECT_FALSE(robot->left_stalled());
-  }
-}
-
-TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
-  const Pose start{3.0, 4.0, 1.0};
-  const Alone robot({}, start);
-  robot->set_velocity(0.4);
-  robot->set_rotation_velocity(0.3);
-  run(robot, 3000);
-  const Pose expected = compose(start, robot->pose_in_odom());
-  EXPECT_NEAR(expected.x, robot->pose_in_world().x, 1e-9);
-  EXPECT_NEAR(expected.y, robot->pose_in_world().y, 1e-9);
-  robot->set_origin();
-  EXPECT_EQ(robot->pose_in_odom(), Pose{});
-}
-
-TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
-  const Alone robot;
-  turn_to(robot, 1.0, 20);
-  robot->set_origin();
-  run(robot, 200);
-  EXPECT_NEAR(robot->pose_in_world().th, 1.0, 0.003);
-}
-
 // Manual Table 3-1 with the Pioneer's values, as a person would measure them: 10 m by dead
 // reckoning, and one revolution by dead reckoning, against the true motion. The figures are those
 // of sim/README.md.
@@ -429,89 +296,6 @@ TEST(Robot, MovesAWayByATrapezoid) {
   drive(robot, 0.0, 200);  // another command leaves the mode
   EXPECT_FALSE(robot->moving());
   EXPECT_LT(robot->pose_in_odom().x, 0.6);
-}
-
-TEST(Robot, NoAccelerationIsSetBeyondWhatItCan) {
-  RobotParameters parameters;
-  parameters.deceleration = 0.3;
-  parameters.max_acceleration = 2.0;
-  const Alone robot(parameters);
-  robot->set_deceleration(100.0);
-  drive(robot, 0.4, 400);
-  const double from = robot->pose_in_world().x;
-  drive(robot, 0.0, 100);
-  EXPECT_FALSE(robot->moving());
-  EXPECT_NEAR(robot->pose_in_world().x - from, 0.4 * 0.4 / (2.0 * 2.0), 0.003);
-}
-
-TEST(Robot, WheelsSlipInAnEmergencyStop) {
-  RobotParameters parameters;
-  parameters.max_velocity = 2.0;
-  const Alone robot(parameters);
-  drive(robot, 2.0, 400);
-  EXPECT_EQ(robot->pose_in_odom().x, robot->pose_in_world().x);
-  const double from = robot->pose_in_world().x;
-  robot->emergency_stop();
-  run(robot, 100);
-  EXPECT_FALSE(robot->moving());
-  // v^2 / 2a, by the motors and by the grip.
-  EXPECT_NEAR(robot->pose_in_world().x - from, 0.5, 0.02);
-  EXPECT_NEAR(robot->pose_in_odom().x - from, 4.0 / 12.0, 0.02);
-}
-
-TEST(Robot, WithoutPowerItStands) {
-  const Alone robot;
-  robot->enable(false);
-  robot->set_velocity(0.3);
-  turn_to(robot, 1.0, 100);
-  EXPECT_FALSE(robot->moving());
-  robot->enable(true);
-  run(robot, 300);
-  EXPECT_NEAR(robot->velocity(), 0.3, 1e-12);
-  EXPECT_NEAR(robot->pose_in_odom().th, 1.0, 0.002);
-}
-
-TEST(Robot, BumpersSayWhereItTouches) {
-  const auto touched = [&](double th, bool rear, int switches) {
-    const Alone robot({}, {1.7, 0.0, radians(th)}, 1, kWalled);
-    EXPECT_EQ(robot->bumpers(switches, rear), 0);
-    drive(robot, std::abs(th) < 90.0 ? 0.2 : -0.2, 500);
-    return static_cast<int>(robot->bumpers(switches, rear));
-  };
-  // Five in front: 36 degrees each, the leftmost first.
-  EXPECT_EQ(touched(0.0, false, 5), 0b00100);
-  EXPECT_EQ(touched(-40.0, false, 5), 0b00010);  // the wall is at its left
-  EXPECT_EQ(touched(40.0, false, 5), 0b01000);
-  EXPECT_EQ(touched(0.0, true, 5), 0);
-  EXPECT_EQ(touched(180.0, true, 5), 0b00100);
-  EXPECT_EQ(touched(180.0, false, 5), 0);
-  EXPECT_EQ(touched(140.0, true, 5), 0b01000);  // behind it and to its right
-  EXPECT_EQ(touched(0.0, false, 0), 0);
-}
-
-TEST(Robot, TheBatteryRunsDown) {
-  const Alone robot;
-  EXPECT_DOUBLE_EQ(robot->battery(), 12.6);
-  run(robot, 360000);  // an hour
-  const double rest = 12.6 - robot->battery();
-  EXPECT_NEAR(rest, 12.6 * 0.13 / 4.0, 0.01);
-  robot->set_rotation_velocity(0.5);
-  run(robot, 100);
-  EXPECT_LT(robot->battery(), 12.6 - rest - 0.1) << "sags under load";
-  run(robot, 359900);
-  robot->stop();
-  run(robot, 100);
-  EXPECT_NEAR(12.6 - rest - robot->battery(), 2.5 * rest, 0.01);
-  robot->set_battery(11.5);
-  EXPECT_NEAR(robot->battery(), 11.5, 1e-9);
-}
-
-TEST(Robot, IsPlacedWhereThereIsRoom) {
-  const Alone robot({}, {1.0, 0.0, 0.0}, 1, kWalled);
-  EXPECT_FALSE(robot->place({1.9, 0.0, 0.0}));
-  EXPECT_TRUE(robot->place({2.5, 1.0, 4.0}));
-  EXPECT_EQ(robot->pose_in_world().x, 2.5);
-  EXPECT_EQ(robot->pose_in_odom(), Pose{});
 }
 
 TEST(Robot, OneSeedOneTrajectory) {

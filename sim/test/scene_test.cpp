@@ -17,18 +17,6 @@ namespace {
 using protocol::encode;
 using protocol::RobotParameters;
 
-World arena() {
-  return parse_world(
-      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 10000 10000 0 10000 0 10000 0 0",
-      "arena.wld");
-}
-
-RobotParameters with_sonar() {
-  RobotParameters parameters;
-  parameters.sonars.push_back({0, {}});
-  return parameters;
-}
-
 TEST(Things, DiscsAreSeenAndTouched) {
   Things things;
   things.discs.push_back({{3.0, 0.0}, 0.5});
@@ -51,13 +39,13 @@ TEST(Things, DiscsAreSeenAndTouched) {
 }
 
 TEST(Scene, RobotsSeeEachOther) {
-  WorldScene scene(arena());
-  scene.add_robot(with_sonar(), {2.0, 5.0, 0.0}, 1);
-  scene.add_robot(with_sonar(), {4.0, 5.0, kPi}, 2);
-  SonarModel exact;
-  exact.noise = exact.relative_noise = exact.dropout = 0.0;
+  WorldScene scene(room());
+  scene.add_robot(one_sonar(), {2.0, 5.0, 0.0}, 1);
+  scene.add_robot(one_sonar(), {4.0, 5.0, kPi}, 2);
+  SonarModel model;
+  model.noise = model.relative_noise = model.dropout = 0.0;
   for (RobotNumber i = 0; i < 2; ++i) {
-    Sonars sonars(scene, i, with_sonar(), exact, 1);
+    Sonars sonars(scene, i, one_sonar(), model, 1);
     for (int tick = 0; tick < 10; ++tick)
       scene.tick();  // or the second would hear the first one's sound
     const auto echo = sonars.fire(0, scene.robot(i).pose_in_world());
@@ -69,15 +57,15 @@ TEST(Scene, RobotsSeeEachOther) {
 
 // Two sonars that face each other: one hears the other's sound, once, and directly.
 TEST(Scene, SonarsHearEachOther) {
-  const World world = arena();
-  SonarModel exact;
-  exact.noise = exact.relative_noise = exact.dropout = exact.crosstalk = 0.0;
+  const World world = room();
+  SonarModel model;
+  model.noise = model.relative_noise = model.dropout = model.crosstalk = 0.0;
   const auto hears = [&](double th, int ticks_between, const Pose& other) {
     Scene scene(world);
-    scene.add_robot(with_sonar(), {2.0, 5.0, 0.0}, 1);
-    scene.add_robot(with_sonar(), other, 2);
-    Sonars one(scene, 0, with_sonar(), exact, 1);
-    Sonars two(scene, 1, with_sonar(), exact, 1);
+    scene.add_robot(one_sonar(), {2.0, 5.0, 0.0}, 1);
+    scene.add_robot(one_sonar(), other, 2);
+    Sonars one(scene, 0, one_sonar(), model, 1);
+    Sonars two(scene, 1, one_sonar(), model, 1);
     one.fire(0, {2.0, 5.0, th});
     for (int i = 0; i < ticks_between; ++i)
       scene.tick();
@@ -90,36 +78,9 @@ TEST(Scene, SonarsHearEachOther) {
   EXPECT_NEAR(hears(kPi / 2.0, 0, facing), 4.0 - 0.22, 0.002);            // looks elsewhere
 }
 
-TEST(Scene, RobotsStopEachOther) {
-  const World world = arena();
-  for (const double speed : {0.0, 0.1, 0.4}) {
-    Scene scene(world);
-    Robot& one = scene.add_robot({}, {2.0, 5.0, 0.0}, 1);
-    Robot& other = scene.add_robot({}, {4.0, 5.1, kPi}, 2);
-    one.set_velocity(0.4);
-    other.set_velocity(speed);
-    for (int i = 0; i < 1000; ++i) {
-      scene.tick();
-      ASSERT_GE(one.clearance(), -1e-9) << i;
-      ASSERT_GE(other.clearance(), -1e-9) << i;
-    }
-    EXPECT_LT(one.clearance(), 1e-3);
-    EXPECT_GE(one.contacts(), 1);
-    EXPECT_TRUE(one.left_stalled());
-  }
-}
-
-TEST(Scene, RefusesARobotInARobot) {
-  WorldScene scene(arena());
-  scene.add_robot({}, {2.0, 5.0, 0.0}, 1);
-  EXPECT_THROW(scene.add_robot({}, {2.3, 5.0, 0.0}, 1), std::invalid_argument);
-  EXPECT_EQ(scene.robots(), 1U);
-  scene.add_robot({}, {2.5, 5.0, 0.0}, 1);
-}
-
 class SimulationTest : public ::testing::Test {
  protected:
-  SimulationTest() : world_(arena()) {}
+  SimulationTest() : world_(room()) {}
 
   static void send(Simulation& simulation, RobotNumber number, const protocol::Command& command) {
     simulation.receive(number, encode(command));
@@ -144,9 +105,9 @@ TEST_F(SimulationTest, OneRobotIsAServerAlone) {
   ServerOptions options;
   options.trace = true;
   Simulation simulation(world_);
-  simulation.add(with_sonar(), {2.0, 5.0, 0.0}, options);
+  simulation.add(one_sonar(), {2.0, 5.0, 0.0}, options);
   Scene scene(world_);
-  Server server(scene, with_sonar(), {2.0, 5.0, 0.0}, options);
+  Server server(scene, one_sonar(), {2.0, 5.0, 0.0}, options);
   open(simulation, 0);
   for (int i = 0; i < 3; ++i)
     server.receive(protocol::encode_sync(i));
@@ -177,8 +138,8 @@ TEST_F(SimulationTest, AStepIsMadeWhenAllHaveAskedForIt) {
   options.single_step = true;
   options.trace = true;
   Simulation simulation(world_);
-  simulation.add(with_sonar(), {2.0, 5.0, 0.0}, options);
-  simulation.add(with_sonar(), {2.0, 7.0, 0.0}, options);
+  simulation.add(one_sonar(), {2.0, 5.0, 0.0}, options);
+  simulation.add(one_sonar(), {2.0, 7.0, 0.0}, options);
   open(simulation, 0);
   send(simulation, 0, protocol::Step{});
   EXPECT_EQ(simulation.scene().ticks(), 0U) << "before the second robot is open";
@@ -220,7 +181,7 @@ TEST_F(SimulationTest, TheOrderOfTheClientsDoesNotMatter) {
     Simulation simulation(world_);
     for (int i = 0; i < 2; ++i) {
       options.seed = static_cast<std::uint64_t>(i + 1);
-      RobotParameters parameters = with_sonar();
+      RobotParameters parameters = one_sonar();
       parameters.encode_jitter = parameters.angle_jitter = 0.02;
       simulation.add(parameters, {4.0 + i, 5.0 + 0.1 * i, 0.0}, options);
     }

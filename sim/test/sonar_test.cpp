@@ -11,69 +11,10 @@ namespace {
 
 using protocol::RobotParameters;
 
-RobotParameters one_sonar(double x = 0.0, double th = 0.0) {
-  RobotParameters parameters;
-  parameters.sonars.push_back({0, {x, 0.0, radians(th)}});
-  return parameters;
-}
-
-SonarModel exact() {
-  SonarModel model;
-  model.noise = model.relative_noise = model.dropout = model.roughness = model.crosstalk =
-      model.spread = model.soft_spread = 0.0;
-  return model;
-}
-
 World wall_at(double millimetres) {
   return parse_world("width 9000 height 9000\n" + std::to_string(millimetres) + " -5000 " +
                          std::to_string(millimetres) + " 5000",
                      "wall.wld");
-}
-
-TEST(Sonars, RangeIsFromTheTransducer) {
-  WorldScene scene(wall_at(2000));
-  Sonars sonars(scene, kNobody, one_sonar(0.13), exact(), 1);
-  const auto echo = sonars.fire(0, {0.5, 1.0, 0.0});
-  ASSERT_TRUE(echo.range);
-  EXPECT_NEAR(*echo.range, 1.37, 1e-9);
-}
-
-TEST(Sonars, WhatIsNearerThanTheirLeastRangeReadsAsThat) {
-  WorldScene scene(wall_at(2000));
-  RobotParameters parameters = one_sonar();
-  EXPECT_NEAR(*Sonars(scene, kNobody, parameters, exact(), 1).fire(0, {1.98, 0.0, 0.0}).range, 0.05,
-              1e-9);
-  parameters.sonar_min_range = 0.005;
-  EXPECT_NEAR(*Sonars(scene, kNobody, parameters, exact(), 1).fire(0, {1.98, 0.0, 0.0}).range, 0.02,
-              1e-9);
-}
-
-TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
-  WorldScene scene(wall_at(2000));
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  for (const double off : {0.0, 10.0, -14.0}) {
-    const auto echo = sonars.fire(0, {0.0, 0.0, radians(off)});
-    ASSERT_TRUE(echo.range) << off;
-    EXPECT_NEAR(*echo.range, 2.0, 1e-9) << off;
-  }
-}
-
-TEST(Sonars, TheNearestCounts) {
-  WorldScene scene(parse_world(
-      "width 9000 height 9000\n2000 -1000 2000 1000  3000 -4000 3000 4000  500 2000 700 2000",
-      "w"));
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  EXPECT_NEAR(*sonars.fire(0, {0.0, 0.0, 0.0}).range, 2.0, 1e-9);
-  // The far wall is met behind the near one's end; the end itself is 14 degrees aside.
-  EXPECT_NEAR(*sonars.fire(0, {0.0, 1.5, radians(0.0)}).range, 3.0, 1e-9);
-}
-
-TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
-  WorldScene scene(wall_at(6000));
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  EXPECT_FALSE(sonars.fire(0, {0.0, 0.0, 0.0}).range);
-  EXPECT_TRUE(sonars.fire(0, {1.5, 0.0, 0.0}).range);
-  EXPECT_FALSE(sonars.fire(0, {1.5, 0.0, kPi}).range);
 }
 
 // Beyond 17 degrees a wall is heard less and less, and at a larger distance even less.
@@ -96,42 +37,9 @@ TEST(Sonars, GlancingSurfacesAreLost) {
   EXPECT_EQ(share(4000, 17.1), 0.0);
 }
 
-TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
-  WorldScene scene(wall_at(1000));
-  SonarModel model = exact();
-  model.roughness = 1.0;
-  Sonars sonars(scene, kNobody, one_sonar(), model, 1);
-  const auto echo = sonars.fire(0, {0.0, 0.0, radians(70.0)});
-  ASSERT_TRUE(echo.range);
-  EXPECT_NEAR(*echo.range, 1.0 / std::cos(radians(57.5)), 1e-9);
-}
-
-// A sonar along a corridor's wall hears its door posts.
-TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
-  // A wall along y = 1 with a door in it, and a partition that meets it from behind at x = 5.
-  WorldScene scene(parse_world(
-      "width 9000 height 9000\n0 1000 2000 1000 2900 1000 9000 1000 5000 1000 5000 2000",
-      "door.wld"));
-  SonarModel model = exact();
-  model.lost_angle = model.critical_angle;
-  Sonars sonars(scene, kNobody, one_sonar(), model, 1);
-  const auto post = sonars.fire(0, {1.0, 0.0, radians(45.0)});
-  ASSERT_TRUE(post.range);
-  EXPECT_NEAR(*post.range, std::sqrt(2.0), 0.002);  // weak, so a little late
-  EXPECT_TRUE(sonars.fire(0, {1.0, 0.0, radians(54.0)}).range);
-  EXPECT_FALSE(sonars.fire(0, {1.0, 0.0, radians(56.0)}).range);
-  // Towards the partition the wall is smooth, and it hides the partition's end.
-  EXPECT_FALSE(sonars.fire(0, {4.0, 0.0, radians(45.0)}).range);
-  EXPECT_FALSE(sonars.fire(0, {6.0, 0.0, radians(125.0)}).range);
-  model.strength = 0.0;
-  Sonars deaf(scene, kNobody, one_sonar(), model, 1);
-  EXPECT_FALSE(deaf.fire(0, {1.0, 0.0, radians(45.0)}).range);
-}
-
 TEST(Sonars, NoiseAndDropouts) {
   const World world = wall_at(2000);
-  SonarModel model;
-  model.dropout = 0.1;
+  SonarModel model{.dropout = 0.1};
   Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
   constexpr int kFirings = 20000;

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 
 #include "process.hpp"
+#include "saphira/base/local_socket.hpp"
 #include "saphira/sim/host.hpp"
 
 namespace saphira::sim {
@@ -25,6 +25,16 @@ World small() {
       "post can 6000 2000 60 color red",
       "small.wld");
 }
+
+/// A host of which nothing is asked.
+struct NoHost : ViewedHost {
+  std::string pause(bool) override { return "asked"; }
+  std::string step_once() override { return "asked"; }
+  std::string set_rate(double) override { return "asked"; }
+  std::string disconnect(RobotNumber) override { return "asked"; }
+  std::string load(Load) override { return "asked"; }
+  std::string list_files() override { return "asked"; }
+} nothing_else;
 
 TEST(View, TellsWhatIsThere) {
   const World world = small();
@@ -45,9 +55,7 @@ TEST(View, DoesWhatItIsAskedForAndSaysWhyNot) {
   const World world = small();
   Simulation simulation(world);
   simulation.add({}, Pose{2.0, 2.0, 0.0}, {});
-  const auto act = [&](const std::string& text) {
-    return change_scene(simulation, parse_wish(text));
-  };
+  const auto act = [&](const std::string& text) { return obey(text, simulation, nothing_else); };
   EXPECT_EQ(act(R"({"do":"place","robot":0,"x":4,"y":3,"th":1.5})"), "");
   EXPECT_EQ(simulation.scene().robot(0).pose_in_world(), (Pose{4.0, 3.0, 1.5}));
   EXPECT_NE(act(R"({"do":"place","robot":0,"x":0.1,"y":3,"th":0})"), "");
@@ -76,9 +84,7 @@ TEST(View, InputsAreInTheRobotsPackets) {
   for (const int sync : {0, 1, 2})
     server.receive(protocol::encode_sync(sync));
   server.receive(protocol::encode(protocol::Open{}));
-  const auto act = [&](const std::string& text) {
-    return change_scene(simulation, parse_wish(text));
-  };
+  const auto act = [&](const std::string& text) { return obey(text, simulation, nothing_else); };
   const auto packet = [&] {
     server.take_output();
     simulation.advance(kTicksPerPacket);
@@ -113,6 +119,9 @@ TEST(View, InputsAreInTheRobotsPackets) {
 }
 
 TEST(View, WhatIsNoWishIsRefusedWithWhatWasExpected) {
+  const World world = small();
+  Simulation simulation(world);
+  simulation.add({}, Pose{2.0, 2.0, 0.0}, {});
   for (const char* const text :
        {"", "[]", "{", R"({"do":"fly"})", R"({"do":"place","robot":0,"x":1e9,"y":0,"th":0})",
         R"({"do":"place","robot":-1,"x":0,"y":0,"th":0})", R"({"do":"pause","on":1})",
@@ -120,18 +129,14 @@ TEST(View, WhatIsNoWishIsRefusedWithWhatWasExpected) {
         R"({"do":"load","world":"../../etc/passwd"})", R"({"do":"load","world":"/tmp/x.wld"})",
         R"({"do":"input","robot":0})", R"({"do":"input","robot":0,"digital":256})",
         R"({"do":"input","robot":0,"digital":0.5})", R"({"do":"input","robot":0,"analog":-1})"})
-    EXPECT_THROW(parse_wish(text), std::invalid_argument) << text;
+    EXPECT_THROW(obey(text, simulation, nothing_else), std::invalid_argument) << text;
 }
 
 /// A viewer on the socket of a host, both in this thread.
 class Viewer {
  public:
-  explicit Viewer(Host& host, const std::string& path) : host_(host) {
-    fd_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path.copy(address.sun_path, sizeof address.sun_path - 1);
-    EXPECT_EQ(::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  Viewer(Host& host, const std::string& path) : host_(host), fd_(connect_local(path)) {
+    EXPECT_GE(fd_, 0);
   }
   ~Viewer() { ::close(fd_); }
   void say(const std::string& text) {
@@ -219,7 +224,7 @@ TEST(View, OwnWorldsAreBesideTheGivenOne) {
   const json world = viewer.next("world");
   const auto names = world.at("worlds").get<std::vector<std::string>>();
   const auto offered = [&](const char* name) {
-    return std::count(names.begin(), names.end(), std::string(name));
+    return std::ranges::count(names, std::string(name));
   };
   EXPECT_EQ(offered("mine"), 1);
   EXPECT_EQ(offered("arena"), 1);
@@ -238,7 +243,7 @@ TEST(View, OwnWorldsAreBesideTheGivenOne) {
   viewer.say(R"({"do":"files"})");
   const json files = viewer.next("files");
   const auto worlds = files.at("worlds").get<std::vector<std::string>>();
-  EXPECT_EQ(std::count(worlds.begin(), worlds.end(), std::string("new")), 1);
+  EXPECT_EQ(std::ranges::count(worlds, std::string("new")), 1);
   EXPECT_FALSE(files.at("robots").empty());
   Viewer later(host, folder.path("view"));
   EXPECT_EQ(later.next("world").at("worlds"), files.at("worlds"));

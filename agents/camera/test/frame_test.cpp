@@ -13,11 +13,7 @@ namespace saphira::camera {
 namespace {
 
 sim::PinholeCamera lens() {
-  sim::PinholeCamera camera;
-  camera.columns = 4;
-  camera.rows = 2;
-  camera.pose_in_robot = {0.1, 0.0, 0.25};
-  return camera;
+  return {.pose_in_robot = {0.1, 0.0, 0.25}, .columns = 4, .rows = 2};
 }
 
 /// A picture as the simulator sends it.

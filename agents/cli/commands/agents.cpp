@@ -190,11 +190,8 @@ int list_one(const bus::NodeOptions& options, const bus::Stop& stop) {
   }
   if (!known.empty())
     return bus::kExitOk;
-  const bool alone = processes.all().empty();
   const std::string absent = absence(node, processes, kFacilitator);
-  (alone ? std::cerr << "saphira: " : std::cout)
-      << "no agents; " << (absent.empty() ? who_is_there(processes) : absent) << '\n';
-  return alone ? bus::kExitFailed : bus::kExitOk;
+  return nothing_there("agents", processes, absent.empty() ? who_is_there(processes) : absent);
 }
 
 /// Of every robot, one after another. Success: one has agents.

@@ -25,7 +25,7 @@ std::vector<std::string> benchmarks(const std::string& bin) {
     if (name.starts_with(kPrefix) && entry.path().extension().empty())
       names.push_back(name.substr(std::strlen(kPrefix)));
   }
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 
@@ -39,7 +39,7 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
       return bus::kExitOk;
     return failed("no benchmarks are built here (./saphira bench builds them)");
   }
-  if (std::find(names.begin(), names.end(), name) == names.end())
+  if (std::ranges::find(names, name) == names.end())
     throw std::invalid_argument(
         "no benchmark \"" + name + '"' + did_you_mean(name, names, ":") +
         (names.empty() ? " none is built here (./saphira bench, in the source tree, builds them)"

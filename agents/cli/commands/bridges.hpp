@@ -30,8 +30,8 @@ class Bridges {
   /// True where there is a bridge, and it holds for each.
   template <class Holds>
   bool all(Holds holds) const {
-    return !heard_.empty() && std::all_of(heard_.begin(), heard_.end(),
-                                          [&](const auto& one) { return holds(one.second.grant); });
+    return !heard_.empty() &&
+           std::ranges::all_of(heard_, [&](const auto& one) { return holds(one.second.grant); });
   }
   /// " of 2 robots of this name: give one of them another (--robot)"; empty with one bridge.
   std::string several() const {

@@ -24,30 +24,15 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// The result of a dry run of one program: success, and the output. Only saphira's programs are
-/// run: others may not know the option --dry-run.
-struct Said {
-  bool well = true;
-  bool misused = false;  ///< `saphira up` ends for that
-  std::string text;
-};
+/// A dry run of one program. Only saphira's programs are run: others may not know the option
+/// --dry-run.
 Said ask(const ChildSpec& child) {
   std::string command = "env";
   for (const auto& [name, value] : child.environment)
     command += " " + quoted(name + "=" + value);
   for (const std::string& word : child.argv)
     command += " " + quoted(word);
-  Said said;
-  FILE* const output = popen((command + " --dry-run 2>&1 </dev/null").c_str(), "r");
-  if (output == nullptr)
-    return {false, false, "it cannot be started"};
-  std::array<char, 4096> part;
-  while (fgets(part.data(), part.size(), output) != nullptr)
-    said.text += part.data();
-  const int status = pclose(output);
-  said.well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  said.misused = WIFEXITED(status) && WEXITSTATUS(status) == bus::kExitUsage;
-  return said;
+  return said_by(command + " --dry-run 2>&1 </dev/null");
 }
 
 /// The command lines of its programs, for this run folder. The memory of a running deployment is
@@ -111,6 +96,20 @@ int check(const std::string& name, const std::vector<std::string>& set,
 }
 
 }  // namespace
+
+Said said_by(const std::string& command) {
+  FILE* const output = popen(command.c_str(), "r");
+  if (output == nullptr)
+    return {false, false, "it cannot be started"};
+  Said said;
+  std::array<char, 4096> part;
+  while (fgets(part.data(), part.size(), output) != nullptr)
+    said.text += part.data();
+  const int status = pclose(output);
+  said.well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  said.misused = WIFEXITED(status) && WEXITSTATUS(status) == bus::kExitUsage;
+  return said;
+}
 
 std::string refusal(const Deployment& deployment, const Places& places,
                     const std::vector<std::string>& set, const bus::NodeOptions& options) {

@@ -32,7 +32,7 @@ std::vector<std::string> commands(const CLI::App& root) {
 void add_options(const CLI::App& command, std::vector<std::string>& words) {
   for (const CLI::Option* const option : command.get_options())
     for (const std::string& name : option->get_lnames())
-      if (std::find(words.begin(), words.end(), "--" + name) == words.end())
+      if (std::ranges::find(words, "--" + name) == words.end())
         words.push_back("--" + name);
 }
 
@@ -56,7 +56,7 @@ Begun begun(const CLI::App& root, const std::vector<std::string>& words) {
         ++i;  // its value
     } else if (result.command != nullptr) {
       ++result.behind;
-    } else if (std::find(names.begin(), names.end(), words[i]) != names.end()) {
+    } else if (std::ranges::find(names, words[i]) != names.end()) {
       result.command = root.get_subcommand(words[i]);
     }
   }
@@ -136,7 +136,7 @@ std::vector<std::string> candidates(const CLI::App& root, const std::vector<std:
   if ((name == "goal" || name == "ask") && !line.bus && (named || !running_buses().empty())) {
     try {
       for (const std::string& word : declared(name == "goal", options, stop))
-        if (std::find(found.begin(), found.end(), word) == found.end())
+        if (std::ranges::find(found, word) == found.end())
           found.push_back(word);
     } catch (const std::exception&) {
       // Without the bus there are the fixed words.

@@ -85,13 +85,8 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
   if (!options.people.empty())
     more.insert(more.end(),
                 {"--things", find_file(config_folder() + "/people", options.people, ".wld")});
-  if (options.single_process) {
-    // saphira-all takes the options of all programs, and those of the bus once.
-    Program all{"all", {"saphira-all"}, {}, {}, true, true};
-    for (const Program& program : deployment.programs)
-      all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
-    deployment.programs = {all};
-  }
+  if (options.single_process)
+    put_in_one(deployment);
   std::vector<ChildSpec> children = command_lines_on(node, deployment, places, set);
   // The simulator is the deployment's first program; with saphira-all there is only one.
   children.at(0).argv.insert(children.at(0).argv.end(), more.begin(), more.end());
@@ -259,16 +254,8 @@ class Screen {
     page += "\x1b[K" + Picture::legend(utf8_) + "\r\n";
     const std::string line = watcher.line(status);
     const auto width = static_cast<std::size_t>(columns);
-    // On two lines, between words.
-    std::size_t end = line.size();
-    if (line.size() > width) {
-      end = line.rfind(' ', width);
-      end = end == std::string::npos ? width : end;
-    }
-    const std::size_t next = line.find_first_not_of(' ', end);
-    page += "\x1b[K" + line.substr(0, end) + "\r\n\x1b[K";
-    if (next != std::string::npos)
-      page += line.substr(next, width - 1);
+    const auto [first, second] = two_lines(line, width);
+    page += "\x1b[K" + first + "\r\n\x1b[K" + second.substr(0, width - 1);
     out().show(page);
   }
 

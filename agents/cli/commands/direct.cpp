@@ -28,7 +28,7 @@ std::vector<std::string> topic_names() {
 
 void expect_topic(const std::string& topic) {
   const std::vector<std::string> names = topic_names();
-  if (std::find(names.begin(), names.end(), topic) == names.end())
+  if (std::ranges::find(names, topic) == names.end())
     throw std::invalid_argument("no topic \"" + topic.substr(0, 200) + '"' +
                                 did_you_mean(topic, names, ": expected one such as robot/state;") +
                                 " saphira wiring shows all, saphira list those of what runs");

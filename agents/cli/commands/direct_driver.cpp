@@ -32,8 +32,7 @@ void DirectDriver::drive(v1::MotorCommand command) {
 
 void DirectDriver::release() {
   for (int i = 0; i < kReleases; ++i) {
-    v1::MotorCommand command;
-    command.source = source_;
+    v1::MotorCommand command{.source = source_};
     drive(command);
     node_.wait(milliseconds(20));
   }

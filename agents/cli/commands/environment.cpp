@@ -7,19 +7,17 @@
 #include <random>
 #include <system_error>
 
+#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
 
 std::map<std::string, std::string> as_environment(const bus::NodeOptions& options) {
-  std::string peers;
-  for (const std::string& peer : options.peers)
-    peers += (peers.empty() ? "" : ",") + peer;
   return {{"SAPHIRA_ROBOT", options.robot},
           {"SAPHIRA_DOMAIN", std::to_string(options.domain)},
           {"SAPHIRA_PROFILE", name_of(options.profile)},
-          {"SAPHIRA_PEERS", peers},
+          {"SAPHIRA_PEERS", joined(options.peers, ",")},
           {"SAPHIRA_INTERFACE", options.interface},
           {"SAPHIRA_SECURITY", options.security.empty() ? bus::kOpenBus : options.security}};
 }
@@ -67,6 +65,14 @@ Deployment own_deployment(const std::string& name, const Places& places,
   return deployment;
 }
 
+void put_in_one(Deployment& deployment, const std::set<std::string>& without) {
+  Program all{"all", {"saphira-all"}, {}, {}, true, true};
+  for (const Program& program : deployment.programs)
+    if (!without.contains(program.name))
+      all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
+  deployment.programs = {all};
+}
+
 std::vector<ChildSpec> command_lines_on(const bus::NodeOptions& options,
                                         const Deployment& deployment, const Places& places,
                                         const std::vector<std::string>& set,
@@ -85,11 +91,7 @@ const std::string& Kept::add(std::string_view from, std::string_view line) {
 }
 
 void execute(std::vector<std::string> words) {
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
-  execv(argv[0], argv.data());
+  execv(words[0].c_str(), pointers(words).data());
   throw std::system_error(errno, std::generic_category(), words[0]);
 }
 

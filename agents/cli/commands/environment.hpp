@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,9 @@ bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name);
 /// people or optional; with_people: with all.
 Deployment own_deployment(const std::string& name, const Places& places,
                           const bus::NodeOptions& options, bool with_people);
+/// Puts the programs into one, saphira-all, which takes the options of all, and those of the bus
+/// once; without those of these names.
+void put_in_one(Deployment& deployment, const std::set<std::string>& without = {});
 /// As command_lines, for our bus.
 std::vector<ChildSpec> command_lines_on(const bus::NodeOptions& options,
                                         const Deployment& deployment, const Places& places,

@@ -143,7 +143,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
 class Silence {
  public:
   void look(const std::vector<SeenProcess>& processes) {
-    if (std::any_of(processes.begin(), processes.end(), [](const SeenProcess& one) {
+    if (std::ranges::any_of(processes, [](const SeenProcess& one) {
           return (one.status.name == "intentions" || one.status.name == "all") &&
                  one.age <= kSilent;
         })) {
@@ -297,9 +297,7 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
                 status.requester.c_str(), bus::describe(status).c_str());
   if (!goals.empty())
     return bus::kExitOk;
-  const bool alone = processes.all().empty();
-  (alone ? std::cerr << "saphira: " : std::cout) << "no goals; " << who_is_there(processes) << '\n';
-  return alone ? bus::kExitFailed : bus::kExitOk;
+  return nothing_there("goals", processes, who_is_there(processes));
 }
 
 const char* kind_word(v1::ParameterKind kind) {

@@ -171,9 +171,8 @@ void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::D
   for (const v1::DrawnPoint& point : drawn.points)
     if (std::isfinite(point.x) && std::isfinite(point.y))
       points.emplace_back(point.x, point.y);
-  const bool in_legend =
-      std::any_of(drawing.strokes.begin(), drawing.strokes.end(),
-                  [&](const maps::Strokes& one) { return one.name == drawn.source; });
+  const bool in_legend = std::ranges::any_of(
+      drawing.strokes, [&](const maps::Strokes& one) { return one.name == drawn.source; });
   const double width = std::isfinite(drawn.width) ? std::clamp(drawn.width, 0.04, 1.0) : 0.04;
   maps::Strokes strokes{in_legend ? std::string() : drawn.source, color, width, {}};
   const auto line = [&](const Vec2& from, const Vec2& to) {

@@ -279,8 +279,7 @@ std::vector<RunningBus> running_buses() {
       if (auto bus = parse_running_bus(text))
         found.push_back({entry.last_write_time(none), std::move(*bus)});
     }
-  std::sort(found.begin(), found.end(),
-            [](const Found& one, const Found& other) { return one.at > other.at; });
+  std::ranges::sort(found, [](const Found& one, const Found& other) { return one.at > other.at; });
   std::vector<RunningBus> buses;
   for (Found& each : found)
     buses.push_back(std::move(each.bus));
@@ -298,7 +297,7 @@ std::vector<std::string> newest_files(const std::string& folder, const std::stri
       for (const auto& file : std::filesystem::directory_iterator(run.path() / folder, none))
         if (file.path().extension() == ending)
           found.push_back(file);
-  std::sort(found.begin(), found.end(), [&](const auto& one, const auto& other) {
+  std::ranges::sort(found, [&](const auto& one, const auto& other) {
     return one.last_write_time(none) > other.last_write_time(none);
   });
   std::vector<std::string> files;

@@ -99,12 +99,8 @@ std::vector<ChildSpec> one_program(const ScenarioOptions& options, const Run& ru
   const Places places = places_of(run);
   Deployment deployment = deployment_of(run, node, places);
   deployment.bus.lockstep = true;
-  Program all{"all", {"saphira-all"}, {}, {}, true, true};
-  all.restart = false;
-  for (const Program& program : deployment.programs)
-    if (program.name != "dialogue" && program.name != "facilitator")
-      all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
-  deployment.programs = {all};
+  put_in_one(deployment, {"dialogue", "facilitator"});
+  deployment.programs[0].restart = false;
   std::vector<ChildSpec> children =
       command_lines_on(node, deployment, places, {"seed=" + std::to_string(run.seed)});
   children.at(0).argv.insert(children.at(0).argv.end(),

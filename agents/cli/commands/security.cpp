@@ -38,13 +38,6 @@ std::string day_of(std::int64_t seconds) {
   return utc_text(seconds, "%Y-%m-%d");
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ",") + word;
-  return text;
-}
-
 void tell_folder(const std::string& folder) {
   std::cout << folder
             << "\nCopy this folder, whole, to its machine; it holds private keys. For a person's "
@@ -108,7 +101,8 @@ int list(const Words& words) {
                        {"until", day_of(member.until)},
                        {"state", state}});
     if (!words.json)
-      std::printf("%-20s %-28s %-12s until %s  %s\n", name.c_str(), joined(member.roles).c_str(),
+      std::printf("%-20s %-28s %-12s until %s  %s\n", name.c_str(),
+                  joined(member.roles, ",").c_str(),
                   member.robot.empty() ? "any robot" : member.robot.c_str(),
                   day_of(member.until).c_str(), state.c_str());
   }

@@ -97,9 +97,8 @@ int status(bool again, bool json, const bus::NodeOptions& options, const bus::St
   if (again)
     return bus::kExitOk;
   std::fputs(text_of(mind, restarts).c_str(), stdout);
-  const bool starting =
-      std::any_of(now.programs.begin(), now.programs.end(),
-                  [](const situation::Program& each) { return each.status.uptime < kStarting; });
+  const bool starting = std::ranges::any_of(
+      now.programs, [](const situation::Program& each) { return each.status.uptime < kStarting; });
   if (took > kSlow && !starting)
     std::printf(
         "slow: the last of this was heard after %.1f s, by a network or a machine that is "

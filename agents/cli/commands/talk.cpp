@@ -43,13 +43,6 @@ std::string user() {
   return name == nullptr || *name == '\0' ? "somebody" : name;
 }
 
-std::string words_in_line(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
 /// The reason why a sentence got no answer; empty while one may still come. `silence`: [s] since it
 /// was said. `advice`: where the dialogue hears it.
 std::string no_answer(const bus::Node& node, const Processes& processes,
@@ -108,7 +101,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   auto said = node.reader(bus::topics::kSaid);
   const v1::Utterance utterance = situation::typed(
       node.instance(), 1, say_options.speaker.empty() ? user() : say_options.speaker,
-      words_in_line(say_options.words), unix_time());
+      joined(say_options.words, " "), unix_time());
   writer.write(utterance);
   print("%s\n", line_of(utterance).c_str());
   const auto began = Clock::now();

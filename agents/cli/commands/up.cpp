@@ -58,8 +58,7 @@ Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
   }
   const bool colors = isatty(STDOUT_FILENO) != 0;
   return [width, names, colors](std::string_view from, std::string_view line) {
-    const auto index =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), from) - names.begin());
+    const auto index = static_cast<std::size_t>(std::ranges::find(names, from) - names.begin());
     const std::string_view name = from.empty() ? "saphira" : from;
     std::string text;
     if (colors)
@@ -129,19 +128,12 @@ class RenewSignal {
 
 /// The reason why a program cannot be added to the running ones; empty: it can.
 std::string other_contract(const std::string& program) {
-  std::string said;
-  if (FILE* const output = popen(("'" + program + "' --version 2>&1").c_str(), "r")) {
-    char line[200];
-    while (fgets(line, sizeof line, output) != nullptr)
-      said += line;
-    pclose(output);
-  }
   const auto contract = [](const std::string& text) {
     const std::size_t at = text.find("contract ");
     return at == std::string::npos ? std::string() : text.substr(at + 9, 8);
   };
   const std::string ours = contract(bus::version());
-  const std::string theirs = contract(said);
+  const std::string theirs = contract(said_by("'" + program + "' --version 2>&1").text);
   if (theirs == ours)
     return {};
   return "the new one has " + (theirs.empty() ? "no contract" : "the contract " + theirs) +
@@ -152,7 +144,7 @@ std::string other_contract(const std::string& program) {
 std::string objection(const ChildSpec& child) {
   if (!child.robot.empty())
     return other_contract(child.argv[0]);
-  return std::find(child.argv.begin(), child.argv.end(), "--resume") != child.argv.end()
+  return std::ranges::find(child.argv, "--resume") != child.argv.end()
              ? ""
              : "it is not on the bus, and would begin anew (it has no --resume)";
 }
@@ -214,22 +206,13 @@ class OwnVersion {
     for (const auto& [name, value] : environment_)
       setenv(name.c_str(), value.c_str(), 1);
     setenv(kHandedVariable, std::to_string(handed).c_str(), 1);
-    std::vector<char*> argv = pointers_to(words);
-    execv(program_.c_str(), argv.data());
+    execv(program_.c_str(), pointers(words).data());
     return "the supervisor stays as it is: " + cannot_be(program_, "run");
   }
 
  private:
-  static std::vector<char*> pointers_to(std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (std::string& word : words)
-      argv.push_back(word.data());
-    argv.push_back(nullptr);
-    return argv;
-  }
-
   int start_and_wait(std::vector<std::string>& words) const {
-    std::vector<char*> argv = pointers_to(words);
+    const std::vector<char*> argv = pointers(words);
     const pid_t child = fork();
     if (child == 0) {
       for (const auto& [name, value] : environment_)
@@ -266,7 +249,7 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   options.name = "saphira";
   options.lockstep = false;
   const std::vector<Running> own = running_deployments();
-  if (std::any_of(own.begin(), own.end(), [&](const Running& one) {
+  if (std::ranges::any_of(own, [&](const Running& one) {
         return one.robot == bus.robot && one.domain == bus.domain;
       }))
     return std::nullopt;
@@ -275,8 +258,8 @@ std::optional<Taken> taken(const Deployment& deployment, bus::NodeOptions option
   for (const runtime::Unit& unit : system::units())
     names.insert(unit.name);
   std::erase_if(names, [&](const std::string& name) {
-    return std::none_of(deployment.programs.begin(), deployment.programs.end(),
-                        [&](const Program& program) { return program.name == name; });
+    return std::ranges::none_of(deployment.programs,
+                                [&](const Program& program) { return program.name == name; });
   });
   if (names.empty())
     return std::nullopt;
@@ -407,10 +390,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
   std::vector<std::string> words{"saphira", "up", name};
   for (const std::string& one : set)
     words.insert(words.end(), {"--set", one});
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
+  const std::vector<char*> argv = pointers(words);
   auto environment = as_environment(options);
   environment[kLogVariable] = path;
   const pid_t child = fork();
@@ -429,7 +409,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
 /// True once its programs are started.
 bool is_found(const RunningBus& bus) {
   const std::vector<RunningBus> all = running_buses();
-  return std::any_of(all.begin(), all.end(), [&](const RunningBus& one) {
+  return std::ranges::any_of(all, [&](const RunningBus& one) {
     return one.what == bus.what && one.robot == bus.robot && one.domain == bus.domain;
   });
 }
@@ -551,8 +531,7 @@ int stop_running(const Meant& wanted, const bus::Stop& stop) {
   const auto began = Clock::now();
   while (!stop.requested() && seconds_since(began) < kStopped) {
     const auto left = running_deployments();
-    if (std::none_of(left.begin(), left.end(),
-                     [&](const Running& one) { return one.name == running->name; })) {
+    if (std::ranges::none_of(left, [&](const Running& one) { return one.name == running->name; })) {
       std::cout << running->name << " has stopped\n";
       return bus::kExitOk;
     }

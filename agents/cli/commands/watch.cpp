@@ -4,9 +4,11 @@
 
 #include <array>
 #include <ctime>
+#include <iostream>
 #include <string_view>
 
 #include "saphira/base/format.hpp"
+#include "saphira/bus/program.hpp"
 #include "saphira/cli/printer.hpp"
 
 namespace saphira::cli {
@@ -38,6 +40,12 @@ std::string person(const std::string& program, bool since) {
     where += (where.empty() ? "" : ", ") + local_text(std::time(nullptr), "since %H:%M");
   }
   return where.empty() ? text : text + " (" + where + ")";
+}
+
+int nothing_there(const std::string& what, const Processes& processes, const std::string& why) {
+  const bool alone = processes.all().empty();
+  (alone ? std::cerr << "saphira: " : std::cout) << "no " << what << "; " << why << '\n';
+  return alone ? bus::kExitFailed : bus::kExitOk;
 }
 
 std::string called(const std::string& robot) {

@@ -6,7 +6,6 @@
 
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/request_client.hpp"
-#include "saphira/cli/second_deployment.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/watch/processes.hpp"
 
@@ -43,6 +42,9 @@ class DeploymentWatch {
 /// A program of this name and its user, for people: "keyboard of ann at laptop (pts/3)"; with
 /// `since`, also the time of this call: "(pts/3, since 14:02)".
 std::string person(const std::string& program, bool since = false);
+
+/// The end of a list without items, with the reason `why`: a failure where nobody is on the bus.
+int nothing_there(const std::string& what, const Processes& processes, const std::string& why);
 
 /// In place of a robot's name.
 inline constexpr const char* kEveryRobot = "*";

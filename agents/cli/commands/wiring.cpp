@@ -24,9 +24,8 @@ struct WiringOptions {
 
 /// The reason why a unit does not run well, in words; empty: it does.
 std::string trouble_of(const runtime::Unit& unit, const std::vector<SeenProcess>& seen) {
-  const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
-    return process.status.name == unit.name;
-  });
+  const auto found = std::ranges::find_if(
+      seen, [&](const SeenProcess& process) { return process.status.name == unit.name; });
   return found == seen.end() ? "not on the bus" : found->status.reason;
 }
 

@@ -103,13 +103,11 @@ class Parser {
     std::set<std::string> seen;
     for (const auto& entry : map) {
       const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-      const auto handler = std::find_if(handlers.begin(), handlers.end(),
-                                        [&](const auto& known) { return known.first == key; });
+      const auto handler =
+          std::ranges::find_if(handlers, [&](const auto& known) { return known.first == key; });
       if (handler == handlers.end()) {
-        std::string names;
-        for (const auto& [name, _] : handlers)
-          names += (names.empty() ? "" : ", ") + name;
-        fail(entry.first.Mark(), "unknown key " + kind(entry.first) + ": expected one of " + names);
+        fail(entry.first.Mark(), "unknown key " + kind(entry.first) + ": expected one of " +
+                                     joined(handlers, ", ", &Handlers::value_type::first));
       }
       if (!seen.insert(key).second)
         fail(entry.first.Mark(), "the key \"" + key + "\" is there already");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
@@ -25,6 +26,15 @@ std::string padded(std::string text, std::size_t width) {
   if (text.size() < width)
     text.append(width - text.size(), ' ');
   return text;
+}
+
+/// The length of the longest text.
+template <class Items, class Text>
+std::size_t widest(const Items& items, Text text) {
+  std::size_t most = 0;
+  for (const auto& item : items)
+    most = std::max(most, std::invoke(text, item).size());
+  return most;
 }
 
 /// |===>>>| : activity on both sides of the line, the recommendation (left or right of it) over it.
@@ -77,14 +87,6 @@ struct TreeLine {
   std::string right;
 };
 
-const v1::BehaviorState* find_state(const v1::BehaviorSet* behaviors, const std::string& name) {
-  if (behaviors != nullptr)
-    for (const v1::BehaviorState& state : behaviors->behaviors)
-      if (state.name == name)
-        return &state;
-  return nullptr;
-}
-
 /// The instance in brackets: "Stop (rest, instance 32)", "GoToPos (instance 7)".
 std::string with_instance(const std::string& schema, const std::string& name) {
   const bool same = name != schema && without_instance(name) == schema;
@@ -95,9 +97,11 @@ std::string with_instance(const std::string& schema, const std::string& name) {
 TreeLine behavior_line(const std::string& indent, bool blocking, const std::string& schema,
                        const std::string& name, const v1::BehaviorSet* behaviors) {
   TreeLine line{indent + (blocking ? "* " : "o ") + with_instance(schema, name) + " B", ""};
-  if (const v1::BehaviorState* const state = find_state(behaviors, name))
-    line.right = format("activity %.2f, goal %.2f",
-                        std::max(state->turn_activity, state->speed_activity), state->goal);
+  if (behaviors != nullptr)
+    for (const v1::BehaviorState& state : behaviors->behaviors)
+      if (state.name == name)
+        line.right = format("activity %.2f, goal %.2f",
+                            std::max(state.turn_activity, state.speed_activity), state.goal);
   return line;
 }
 
@@ -164,9 +168,7 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
     return "nothing is intended\n";
   std::vector<TreeLine> lines;
   add_tree(intentions, behaviors, 0, 0, lines);
-  std::size_t width = 0;
-  for (const TreeLine& line : lines)
-    width = std::max(width, line.left.size());
+  const std::size_t width = widest(lines, &TreeLine::left);
   std::string text;
   for (const TreeLine& line : lines)
     text += (line.right.empty() ? line.left : padded(line.left, width + 3) + line.right) + "\n";
@@ -254,7 +256,7 @@ std::string schema_display(const v1::BehaviorSchema& schema) {
 }
 
 std::string unknown_behavior(const std::string& name, std::vector<std::string> names) {
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return "no behavior \"" + name.substr(0, 200) + '"' + did_you_mean(name, names, ".") +
          " There are " + (names.empty() ? "none now" : joined(names));
@@ -276,11 +278,11 @@ std::string behavior_display(const v1::BehaviorState& behavior,
       left.push_back("  " + parameter.name + " = " + value_text(parameter));
   if (schema != nullptr)
     for (const v1::BehaviorParameter& parameter : schema->parameters) {
-      const bool given = intended != nullptr &&
-                         std::any_of(intended->parameters.begin(), intended->parameters.end(),
-                                     [&](const v1::Argument& argument) {
-                                       return argument.name == parameter.name;
-                                     });
+      const bool given =
+          intended != nullptr &&
+          std::ranges::any_of(intended->parameters, [&](const v1::Argument& argument) {
+            return argument.name == parameter.name;
+          });
       if (!given && parameter.kind == v1::ARGUMENT_NUMBER)
         left.push_back("  " + parameter.name + format(" = %.4g (as usual)", parameter.usual));
     }
@@ -291,9 +293,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
       format("Act Vel   %.2f   weight %.2f", behavior.speed_activity, behavior.speed_weight),
       format("Goal      %.2f", behavior.goal),
       format("Progress  %.2f", behavior.progress)};
-  std::size_t width = 0;
-  for (const std::string& line : left)
-    width = std::max(width, line.size());
+  std::size_t width = widest(left, std::identity());
   for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
     const std::string& first = i < left.size() ? left[i] : std::string();
     text += i < right.size() ? padded(first, width + 3) + right[i] : first;
@@ -301,9 +301,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
   }
 
   text += "\nRules\n";
-  width = 0;
-  for (const v1::RuleState& rule : behavior.rules)
-    width = std::max(width, rule.name.size());
+  width = widest(behavior.rules, &v1::RuleState::name);
   for (const v1::RuleState& rule : behavior.rules) {
     const bool turn = rule.action == v1::CONTROL_TURN_LEFT || rule.action == v1::CONTROL_TURN_RIGHT;
     text += "  " + padded(rule.name, width) +
@@ -318,9 +316,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
   }
   if (!behavior.variables.empty()) {
     text += "\nFuzzy variables\n";
-    width = 0;
-    for (const v1::FuzzyVariable& variable : behavior.variables)
-      width = std::max(width, variable.name.size());
+    width = widest(behavior.variables, &v1::FuzzyVariable::name);
     for (const v1::FuzzyVariable& variable : behavior.variables)
       text += "  " + padded(variable.name, width) + format("  %.2f", variable.value) + "\n";
   }
@@ -343,9 +339,9 @@ std::string state_text(const v1::Process& process) {
 }
 
 std::string processes_table(std::vector<v1::ProcessSet> services) {
-  std::stable_sort(
-      services.begin(), services.end(),
-      [](const v1::ProcessSet& a, const v1::ProcessSet& b) { return a.service < b.service; });
+  std::ranges::stable_sort(services, [](const v1::ProcessSet& a, const v1::ProcessSet& b) {
+    return a.service < b.service;
+  });
   std::vector<std::vector<std::string>> rows{
       {"SERVICE", "PROCESS", "STATE", "SINCE CYCLE", "DOES"}};
   for (const v1::ProcessSet& service : services)

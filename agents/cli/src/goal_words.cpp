@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "saphira/base/guess.hpp"
@@ -158,9 +159,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
         rest[i] = exact(*length);
   // The name of a place can have several words.
   if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
-    std::string place = rest[0];
-    for (std::size_t i = 1; i < bare; ++i)
-      place += " " + rest[i];
+    const std::string place = joined(std::span(rest).first(bare), " ");
     return parse_goal("go-to-place", with("place=" + place));
   }
   if (words[0] == "go") {
@@ -168,7 +167,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
   // The activity drive in its long form also requires a speed.
-  if (words[0] == "drive" && std::none_of(rest.begin(), rest.end(), [](const std::string& word) {
+  if (words[0] == "drive" && std::ranges::none_of(rest, [](const std::string& word) {
         return word.starts_with("speed=");
       })) {
     expect(1, "drive SPEED [m/s]", "m/s");
@@ -196,8 +195,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
 std::string advice_after_failure(const v1::Goal& goal) {
   const auto& arguments = goal.arguments;
   const bool off_the_map =
-      goal.functor == "go_to" &&
-      std::any_of(arguments.begin(), arguments.end(), [](const v1::Argument& one) {
+      goal.functor == "go_to" && std::ranges::any_of(arguments, [](const v1::Argument& one) {
         return one.kind == v1::ARGUMENT_POINT && one.frame != v1::FRAME_MAP;
       });
   return off_the_map ? "go X Y heads straight for a point of odom, where the robot began at 0 0; "

@@ -21,21 +21,9 @@ struct Look {
   char letter;
 };
 Look look(Layer layer) {
-  switch (layer) {
-    case Layer::wall:
-      return {"\x1b[90m", ':'};
-    case Layer::echo:
-      return {"\x1b[37m", '.'};
-    case Layer::wake:
-      return {"\x1b[34m", '-'};
-    case Layer::goal:
-      return {"\x1b[31m", 'X'};
-    case Layer::robot:
-      return {"\x1b[32m", 'O'};
-    case Layer::none:
-      break;
-  }
-  return {"", ' '};
+  constexpr Look kLooks[]{{"", ' '},         {"\x1b[90m", ':'}, {"\x1b[37m", '.'},
+                          {"\x1b[34m", '-'}, {"\x1b[31m", 'X'}, {"\x1b[32m", 'O'}};
+  return kLooks[static_cast<std::size_t>(layer)];
 }
 
 /// The order of the dots in a Braille character: Unicode, block 2800.

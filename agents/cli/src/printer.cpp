@@ -105,7 +105,7 @@ void Printer::run(const std::shared_ptr<Shared>& shared) {
     lock.lock();
     shared->printing = false;
     if ((why == ENOSPC || why == EDQUOT) && shared->outlasts) {
-      shared->left_out += static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+      shared->left_out += static_cast<std::size_t>(std::ranges::count(text, '\n'));
     } else if (why != 0) {
       shared->closed = true;
       shared->trouble = output_trouble(shared->fd, why);

@@ -64,15 +64,6 @@ std::vector<std::string> merged_environment(const std::map<std::string, std::str
   return all;
 }
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> all;
-  all.reserve(words.size() + 1);
-  for (std::string& word : words)
-    all.push_back(word.data());
-  all.push_back(nullptr);
-  return all;
-}
-
 milliseconds until(Supervisor::Clock::time_point when) {
   return std::max(milliseconds(0),
                   std::chrono::ceil<milliseconds>(when - Supervisor::Clock::now()));
@@ -114,6 +105,15 @@ class Pipe {
 };
 
 }  // namespace
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> all;
+  all.reserve(words.size() + 1);
+  for (std::string& word : words)
+    all.push_back(word.data());
+  all.push_back(nullptr);
+  return all;
+}
 
 std::string file_of(const std::string& path) {
   struct stat info {};
@@ -233,9 +233,8 @@ void Supervisor::take_over(const std::string& children) {
   Slot taken;
   int output = -1;
   while (in >> name >> taken.pid >> taken.starts >> output >> taken.beats >> taken.file) {
-    const auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& one) {
-      return one.spec.name == name && one.pid == 0;
-    });
+    const auto slot = std::ranges::find_if(
+        slots_, [&](const Slot& one) { return one.spec.name == name && one.pid == 0; });
     for (const int fd : {output, taken.beats})
       if (fd >= 0)
         fcntl(fd, F_SETFD, FD_CLOEXEC);
@@ -278,7 +277,7 @@ void Supervisor::renew(const std::function<std::string(const ChildSpec& child)>&
     const Slot& slot = slots_[i];
     const std::string& program = slot.spec.argv[0];
     if (slot.pid == 0 || file_of(program) == slot.file ||
-        std::find(to_renew_.begin(), to_renew_.end(), i) != to_renew_.end())
+        std::ranges::find(to_renew_, i) != to_renew_.end())
       continue;
     const std::string why_not = objection(slot.spec);
     if (why_not.empty())
@@ -471,7 +470,7 @@ void Supervisor::stop(milliseconds limit) {
     while (slots_[i].pid != 0 && Clock::now() < next)
       poll_once(until(next));
   }
-  while (std::any_of(slots_.begin(), slots_.end(), running) && Clock::now() < end)
+  while (std::ranges::any_of(slots_, running) && Clock::now() < end)
     poll_once(until(end));
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i].pid == 0)
@@ -498,8 +497,7 @@ std::optional<std::string> Supervisor::misused() const {
 }
 
 bool Supervisor::finished() const {
-  return std::none_of(slots_.begin(), slots_.end(),
-                      [](const Slot& slot) { return slot.pid != 0 || slot.due; });
+  return std::ranges::none_of(slots_, [](const Slot& slot) { return slot.pid != 0 || slot.due; });
 }
 
 }  // namespace saphira::cli

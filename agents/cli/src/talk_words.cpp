@@ -88,8 +88,8 @@ v1::Argument parse_slot(const std::string& word) {
   v1::Argument argument{
       .name = word.substr(0, open), .kind = v1::ARGUMENT_UNBOUND, .text = word.substr(open + 2)};
   const std::string& variable = argument.text;
-  if (!std::all_of(variable.begin(), variable.end(),
-                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }))
+  if (!std::ranges::all_of(
+          variable, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }))
     throw std::invalid_argument("expected name=? or name=?VARIABLE, found \"" + word + "\"");
   return argument;
 }

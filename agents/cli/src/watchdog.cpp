@@ -26,7 +26,7 @@ bool Watchdog::Voice::waits_for(std::chrono::seconds time, Time now) const {
 }
 
 bool Watchdog::Child::was_deaf() const {
-  return !voices.empty() && std::all_of(voices.begin(), voices.end(), [](const auto& item) {
+  return !voices.empty() && std::ranges::all_of(voices, [](const auto& item) {
     return item.second.waits && !item.second.heard;
   });
 }
@@ -38,8 +38,8 @@ Watchdog::Watchdog(std::vector<std::string> robots) {
 
 void Watchdog::forget(std::size_t child) {
   Child& gone = children_[child];
-  const bool bridge = std::any_of(gone.voices.begin(), gone.voices.end(),
-                                  [](const auto& item) { return item.second.bridge; });
+  const bool bridge =
+      std::ranges::any_of(gone.voices, [](const auto& item) { return item.second.bridge; });
   gone.deaf_lives = gone.was_deaf() ? gone.deaf_lives + 1 : 0;
   gone.voices.clear();
   if (!bridge)
@@ -110,8 +110,8 @@ template <class Is>
 bool Watchdog::any(const std::string& robot, std::optional<std::size_t> but, Is is) const {
   for (std::size_t i = 0; i < children_.size(); ++i)
     if (i != but && children_[i].robot == robot &&
-        std::any_of(children_[i].voices.begin(), children_[i].voices.end(),
-                    [&](const auto& item) { return is(children_[i], item.second); }))
+        std::ranges::any_of(children_[i].voices,
+                            [&](const auto& item) { return is(children_[i], item.second); }))
       return true;
   return false;
 }

@@ -46,7 +46,7 @@ std::array<std::string, 2> two_lines(const std::string& text, std::size_t width)
 
 std::string status_table(std::vector<SeenProcess> processes,
                          const std::vector<std::string>& unheard) {
-  std::sort(processes.begin(), processes.end(), [](const SeenProcess& a, const SeenProcess& b) {
+  std::ranges::sort(processes, [](const SeenProcess& a, const SeenProcess& b) {
     return std::pair(a.status.name, a.status.pid) < std::pair(b.status.name, b.status.pid);
   });
   std::vector<std::vector<std::string>> rows{{"NAME", "STATE", "AGE s", "EPOCH", "CYCLE", "LATE",
@@ -67,10 +67,39 @@ std::string status_table(std::vector<SeenProcess> processes,
               : status.reason});
   }
   for (const std::string& name : unheard)
-    if (std::none_of(processes.begin(), processes.end(),
-                     [&name](const SeenProcess& one) { return one.status.name == name; }))
+    if (std::ranges::none_of(processes,
+                             [&name](const SeenProcess& one) { return one.status.name == name; }))
       rows.push_back({name, "not heard"});
   return table(rows);
+}
+
+std::string second_deployment(const std::vector<SeenProcess>& processes) {
+  std::string programs;
+  for (const SeenProcess& process : processes) {
+    const v1::ServiceStatus& status = process.status;
+    if (process.namesake && process.age <= kLostAge)
+      programs += (programs.empty() ? "" : ", ") + status.name +
+                  (status.state == v1::SERVICE_WAITING ? " (waits, process " : " (process ") +
+                  std::to_string(status.pid) + " at " + status.host + ")";
+  }
+  if (programs.empty())
+    return {};
+  return "two deployments have this robot; a second time there are: " + programs +
+         ". Stop one of the two (Ctrl-C of its saphira up), or give its robot another name "
+         "(robot: in the deployment, or --robot)";
+}
+
+std::optional<std::string> SecondDeployment::news(const std::vector<SeenProcess>& processes,
+                                                  double now) {
+  const std::string words = second_deployment(processes);
+  if (seen_ == words.empty()) {
+    seen_ = !words.empty();
+    since_ = now;
+  }
+  if (!doubtful() || now - since_ < kCertain)
+    return std::nullopt;
+  told_ = seen_;
+  return seen_ ? words : "there is one deployment with this robot again";
 }
 
 void expect_ending(const std::string& path, const std::string& ending) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "trouble.hpp"
@@ -147,64 +148,20 @@ TEST_F(DeploymentTest, AnOptionalProgramThatIsNotInstalledIsLeftOutWithAWord) {
       FileError);
 }
 
-struct Broken {
-  const char* text;
-  int line;
-  int column;
-  const char* says;
-};
-
-class BrokenDeployment : public testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenDeployment, IsRefusedWithThePlaceAndWhatWasExpected) {
-  const Broken& broken = GetParam();
-  try {
-    command_lines(parse_deployment(broken.text, "broken.yaml"), {"/nowhere", "/conf", "/run"});
-    FAIL() << "was taken: " << broken.text;
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.file(), "broken.yaml");
-    EXPECT_EQ(error.line(), broken.line) << error.what();
-    EXPECT_EQ(error.column(), broken.column) << error.what();
-    EXPECT_NE(std::string(error.what()).find(broken.says), std::string::npos) << error.what();
-  }
+TEST(Deployments, AMistakeIsNamedWithItsPlaceAndWhatWasExpected) {
+  test::each_line("agents/cli/test/deployments.txt", '#', [](const std::string& line) {
+    const std::size_t arrow = line.find(" => ");
+    std::string text = line.substr(0, arrow);
+    std::ranges::replace(text, '|', '\n');
+    const std::string wanted = line.substr(arrow + 4);
+    const std::string said = test::trouble_of<FileError>([&] {
+      command_lines(parse_deployment(text, "broken.yaml"), {"/nowhere", "/conf", "/run"});
+    });
+    const std::size_t space = wanted.find(' ');
+    EXPECT_TRUE(said.starts_with("broken.yaml:" + wanted.substr(0, space) + ":")) << said;
+    EXPECT_TRUE(test::has(said, wanted.substr(space + 1))) << said;
+  });
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Each, BrokenDeployment,
-    testing::Values(
-        Broken{"", 1, 1, "expected a deployment"}, Broken{"- a\n- b", 1, 1, "found a list"},
-        Broken{"programs: [", 1, 1, "in YAML"}, Broken{"robot: a\n", 1, 1, "expected programs:"},
-        Broken{"programs: []\n", 1, 1, "at least one program"},
-        Broken{"\nprogram:\n  - x\n", 2, 1, "unknown key \"program\": expected one of robot"},
-        Broken{"programs:\n  - program: sh\n    argument: [a]\n", 3, 5,
-               "unknown key \"argument\": expected one of program, name, arguments"},
-        Broken{"programs:\n  - name: a\n", 2, 5, "expected program:"},
-        Broken{"programs:\n  - program: sh\n    arguments: --x 1\n", 3, 16,
-               "expected a list of arguments, found \"--x 1\""},
-        Broken{"programs:\n  - program: sh\n    arguments: [[a]]\n", 3, 17, "found a list"},
-        Broken{"programs:\n  - program: sh\n    bus: perhaps\n", 3, 10, "expected true or false"},
-        Broken{"programs:\n  - program: sh\n    when: [on]\n", 3, 11,
-               "expected on, off or a ${setting}, found a list"},
-        Broken{"programs:\n  - program: sh\n    when: \"${speech}\"\n", 3, 11,
-               "unknown ${speech}: expected one of config"},
-        Broken{"programs:\n  - program: sh\n  - program: sh\n", 3, 5, "is there already"},
-        Broken{"robot: a\nrobot: b\nprograms: [{program: sh}]\n", 2, 1, "is there already"},
-        Broken{"domain: 232\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 231"},
-        Broken{"domain: -1\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 231"},
-        Broken{"profile: wifi\nprograms: [{program: sh}]\n", 1, 10, "host, lan or wan"},
-        Broken{"robot: \"*\"\nprograms: [{program: sh}]\n", 1, 8, "the name of one robot"},
-        Broken{"robot: a/b\nprograms: [{program: sh}]\n", 1, 8,
-               "the name of one robot (1 to 64 letters, digits, -, _ and .), found \"a/b\""},
-        Broken{"robot: r\u00f6ver\nprograms: [{program: sh}]\n", 1, 8, "the name of one robot"},
-        Broken{"settings: [a]\nprograms: [{program: sh}]\n", 1, 11, "expected settings"},
-        Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
-        Broken{"programs:\n  - program: sh\n    arguments: [a, \"${wrold}\"]\n", 3, 20,
-               "unknown ${wrold}: expected one of config"},
-        Broken{"forget: [a/b]\nprograms: [{program: sh}]\n", 1, 9, "files in ${run}"},
-        Broken{"settings:\n  a: \"${b}\"\nprograms: [{program: sh}]\n", 2, 6, "unknown ${b}"},
-        Broken{"programs:\n  - program: sh\n    arguments: [\"${run\"]\n", 3, 17, "expected }"},
-        Broken{"programs:\n  - program: no-such-program\n", 2, 14, "found no \"no-such-program\""},
-        Broken{"programs:\n  - program: ./no/such\n", 2, 14, "no executable"}));
 
 TEST(FindDeployment, NamesWhatThereIs) {
   const Places places{"/nowhere", test::source("config"), ""};
@@ -255,7 +212,7 @@ TEST(ShippedDeployments, HearAndSpeakWhereTheyUnderstandSentences) {
       return std::vector<std::string>{};
     };
     const auto grammar = [](const std::vector<std::string>& argv) {
-      const auto option = std::find(argv.begin(), argv.end(), "--grammar");
+      const auto option = std::ranges::find(argv, "--grammar");
       return option == argv.end() ? "flakey" : *std::next(option);
     };
     const auto usual = command_lines(deployment, places);
@@ -272,7 +229,7 @@ TEST(ShippedDeployments, HearAndSpeakWhereTheyUnderstandSentences) {
     EXPECT_EQ(grammar(speech), grammar(dialogue)) << entry.path();
     for (const auto& [option, value] :
          std::map<std::string, std::string>{{"--microphone", "hw:1"}, {"--speaker", "none"}}) {
-      const auto found = std::find(speech.begin(), speech.end(), option);
+      const auto found = std::ranges::find(speech, option);
       ASSERT_NE(found, speech.end()) << entry.path() << option;
       EXPECT_EQ(*std::next(found), value) << entry.path();
     }
@@ -285,7 +242,7 @@ TEST(ServiceSight, FilesInHomesAndInTheSharedTmpAreNamed) {
       {"/usr/bin/saphira-bridge", "--link", "unix:/tmp/robot", "--map=/home/ann/lab.map", "--state",
        "/tmp/run/bridge.state", "/etc/saphira/home/x", "/dev/ttyUSB0"},
       "/tmp/run");
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  EXPECT_EQ(std::ranges::count(text, '\n'), 2) << text;
   EXPECT_NE(text.find("does not see /tmp/robot:"), std::string::npos) << text;
   EXPECT_NE(text.find("does not see /home/ann/lab.map:"), std::string::npos) << text;
 }

@@ -45,7 +45,7 @@ class SupervisorTest : public testing::Test {
   }
 
   bool said(const std::string& line) const {
-    return std::find(lines_.begin(), lines_.end(), line) != lines_.end();
+    return std::ranges::find(lines_, line) != lines_.end();
   }
   std::string all() const {
     std::string text;

@@ -56,10 +56,9 @@ class Robot {
 
  private:
   void beat(std::size_t child, std::uint64_t cycle, std::uint64_t flags) {
-    Heartbeat beat;
-    beat.instance = 100 + child;
-    beat.cycle = cycle;
-    beat.flags = flags | (child == 0 ? std::uint64_t{Heartbeat::kWritesRobot} : 0);
+    Heartbeat beat{.instance = 100 + child,
+                   .cycle = cycle,
+                   .flags = flags | (child == 0 ? std::uint64_t{Heartbeat::kWritesRobot} : 0)};
     dog_.hear(child, beat, now_);
   }
   void second(const std::set<std::size_t>& waiting) {

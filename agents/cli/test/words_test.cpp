@@ -20,7 +20,6 @@
 #include "saphira/cli/done.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/map_words.hpp"
-#include "saphira/cli/second_deployment.hpp"
 #include "saphira/cli/talk_words.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "trouble.hpp"
@@ -64,7 +63,7 @@ SeenProcess program(const Json& json) {
 }
 std::vector<SeenProcess> programs(const Json& json) {
   std::vector<SeenProcess> all;
-  std::transform(json.begin(), json.end(), std::back_inserter(all), program);
+  std::ranges::transform(json, std::back_inserter(all), program);
   return all;
 }
 
@@ -229,6 +228,45 @@ TEST(Words, TheEndingIsThatOfTheContent) {
   EXPECT_NO_THROW(expect_ending("floor.svg", ".svg"));
   EXPECT_EQ(test::trouble_of<std::invalid_argument>([] { expect_ending("floor.txt", ".svg"); }),
             "floor.txt: expected a name that ends with .svg, the kind of file that this writes");
+}
+
+SeenProcess process(const std::string& name, std::uint32_t pid, bool namesake) {
+  SeenProcess seen;
+  seen.status.name = name;
+  seen.status.pid = pid;
+  seen.status.host = "attic";
+  seen.namesake = namesake;
+  return seen;
+}
+
+const std::vector<SeenProcess> kOne{process("bridge", 1, false), process("intentions", 2, false)};
+const std::vector<SeenProcess> kTwo{process("bridge", 1, false), process("bridge", 8, true),
+                                    process("intentions", 2, false),
+                                    process("intentions", 9, true)};
+
+TEST(SecondDeployment, IsToldOnceWhenItIsCertain) {
+  SecondDeployment second;
+  EXPECT_FALSE(second.news(kOne, 0.0));
+  EXPECT_FALSE(second.doubtful());
+  EXPECT_FALSE(second.news(kTwo, 1.0));
+  EXPECT_TRUE(second.doubtful());
+  EXPECT_FALSE(second.news(kTwo, 2.9));
+  EXPECT_EQ(second.news(kTwo, 3.0), second_deployment(kTwo));
+  EXPECT_FALSE(second.news(kTwo, 9.0));
+  EXPECT_FALSE(second.doubtful());
+  EXPECT_FALSE(second.news(kOne, 10.0));
+  ASSERT_TRUE(second.news(kOne, 12.0));
+  EXPECT_FALSE(second.news(kOne, 20.0));
+}
+
+TEST(SecondDeployment, AProgramThatIsStartedAgainIsNone) {
+  SecondDeployment second;
+  EXPECT_FALSE(second.news(kTwo, 1.0));
+  EXPECT_FALSE(second.news(kOne, 2.0));
+  EXPECT_FALSE(second.doubtful());
+  EXPECT_FALSE(second.news(kTwo, 10.0));
+  EXPECT_FALSE(second.news(kOne, 11.9));
+  EXPECT_FALSE(second.news(kOne, 99.0));
 }
 
 }  // namespace

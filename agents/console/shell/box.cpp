@@ -32,7 +32,7 @@ void prune(const std::string& folder) {
   for (const auto& file : fs::directory_iterator(folder, none))
     if (file.path().extension() == ".mcap")
       files.push_back(file.path());
-  std::sort(files.begin(), files.end(), std::greater<>());
+  std::ranges::sort(files, std::greater<>());
   std::uintmax_t bytes = 0;
   for (std::size_t i = 0; i < files.size(); ++i) {
     bytes += fs::file_size(files[i], none);

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "key.hpp"
-#include "page_files.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
@@ -234,7 +233,7 @@ void Gateway::look_at_simulator() {
 }
 
 void Gateway::look_at_cameras() {
-  cameras_.look(std::any_of(pages_.begin(), pages_.end(), [](const auto& each) {
+  cameras_.look(std::ranges::any_of(pages_, [](const auto& each) {
     return each.second.channel == Channel::pictures && each.second.greeted;
   }));
 }
@@ -295,8 +294,7 @@ std::vector<RobotSeen> Gateway::robots_seen() const {
 
 void Gateway::show_robots() {
   if (viewers_ > 0)
-    robots_.look(std::any_of(pages_.begin(), pages_.end(),
-                             [](const auto& each) { return each.second.robots; }),
+    robots_.look(std::ranges::any_of(pages_, [](const auto& each) { return each.second.robots; }),
                  now());
   robots_.poll(now());
   if (now() - robots_shown_ < kExplain)

@@ -150,7 +150,7 @@ void Gateway::ask_simulator(Connection connection, const Page& page, std::string
   if (!page.visitor.may(DoorRight::operate))
     return refuse(
         "with this key, or without one, you may watch: open the address that saphira has printed");
-  std::replace(text.begin(), text.end(), '\n', ' ');  // one line for each wish
+  std::ranges::replace(text, '\n', ' ');  // one line for each wish
   if (!simulator_ || !simulator_->say(text))
     refuse("the simulator is not there");
 }

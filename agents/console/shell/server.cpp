@@ -134,9 +134,8 @@ int Server::answer(lws* wsi, Http& http, std::string_view path) const {
   }
   if (const std::string why = refusal(access_, caller); !why.empty())
     return say(wsi, HTTP_STATUS_FORBIDDEN, why + "\n");
-  const auto page = std::find_if(pages_.begin(), pages_.end(), [&](const Page& each) {
-    return each.path == (name == "/" ? "/index.html" : name);
-  });
+  const auto page = std::ranges::find_if(
+      pages_, [&](const Page& each) { return each.path == (name == "/" ? "/index.html" : name); });
   if (page == pages_.end())
     return say(wsi, HTTP_STATUS_NOT_FOUND,
                "There is only the page; its address ends with a slash: /\n");

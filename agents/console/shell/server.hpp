@@ -18,6 +18,9 @@ struct PageFile {
   std::string_view content;
 };
 
+/// The files of the page, embedded in the program.
+std::vector<PageFile> page_files();
+
 struct ServerOptions {
   /// To listen on. port: the first to try.
   web::Place place{"127.0.0.1", 8642, {}, {}};

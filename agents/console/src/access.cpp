@@ -54,8 +54,8 @@ bool is_address(std::string_view name) {
 }
 
 bool is_known(const AccessSettings& settings, const std::string& name) {
-  return std::any_of(settings.names.begin(), settings.names.end(),
-                     [&](const std::string& each) { return comparable(each) == name; });
+  return std::ranges::any_of(settings.names,
+                             [&](const std::string& each) { return comparable(each) == name; });
 }
 
 /// A browser names the port of each host but for the one of the scheme. A host without it has come

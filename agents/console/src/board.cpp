@@ -80,8 +80,8 @@ std::string Board::members(const std::vector<int>& topics, double now) const {
 
 std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
   const std::deque<Viewer::UnderWay>& under_way = viewer.under_way;
-  const bool whole = std::count_if(under_way.begin(), under_way.end(),
-                                   [](const auto& one) { return one.whole; }) < settings_.unseen;
+  const bool whole = std::ranges::count_if(under_way, [](const auto& one) { return one.whole; }) <
+                     settings_.unseen;
   const double delay =
       under_way.empty() ? viewer.delay : std::max(viewer.delay, now - under_way.front().sent);
   const bool full = delay > viewer.quickest + settings_.queue;

@@ -51,8 +51,7 @@ void PictureFlow::sent(Lane lane, std::uint64_t number, double now) {
 
 void PictureFlow::acknowledged(Lane lane, std::uint64_t number, double now) {
   std::deque<UnderWay>& under_way = lanes_.at(lane);
-  const auto found = std::find_if(under_way.begin(), under_way.end(),
-                                  [&](const UnderWay& each) { return each.number == number; });
+  const auto found = std::ranges::find(under_way, number, &UnderWay::number);
   if (found == under_way.end())
     return;
   const double delay = now - found->sent;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <nlohmann/json.hpp>
+
+#include "lines.hpp"
 
 namespace saphira::console {
 namespace {
@@ -21,23 +24,59 @@ Json read(const Board& board, Viewer& viewer, double now) {
   return json;
 }
 
-TEST(Board, ANewViewerGetsAllAndThenWhatChanged) {
-  Board board;
-  const int robot = board.topic("robot/state");
-  const int map = board.topic("map");
-  board.put(map, "", R"({"doors":2})", 1.0);
-  board.put(robot, "", R"({"x":1})", 2.0);
-  Viewer viewer;
-  const Json all = read(board, viewer, 2.5);
-  ASSERT_EQ(all.at("items").size(), 2U);
-  // In the order of the topics, with their age.
-  EXPECT_EQ(all["items"][0], Json::parse(R"({"t":"robot/state","k":"","a":500,"d":{"x":1}})"));
-  EXPECT_EQ(all["items"][1]["a"], 1500);
-  EXPECT_TRUE(read(board, viewer, 2.6).is_null());
-  board.put(robot, "", R"({"x":2})", 2.7);
-  const Json news = read(board, viewer, 2.7);
-  ASSERT_EQ(news.at("items").size(), 1U);
-  EXPECT_EQ(news["items"][0]["d"]["x"], 2);
+/// The cases of board.txt: `topic NAME [MOST]`, `put TOPIC KEY JSON [OWNER]`, `withdraw TOPIC KEY`,
+/// `lose TOPIC OWNER`, `at SECONDS`, `acknowledge FRAME`; "news" are the items of a viewer's next
+/// frame, which it acknowledges, and "frame" says if there is one, which it does not.
+class Told : public test::LinePlayer {
+ public:
+  Told() {
+    events_ = {
+        {"topic",
+         [this](auto& in) {
+           const auto name = read<std::string>(in);
+           std::size_t most = 1;
+           in >> most;
+           topics_[name] = board_.topic(name, most);
+         }},
+        {"put",
+         [this](auto& in) {
+           const int topic = topics_.at(read<std::string>(in));
+           const auto key = read<std::string>(in);
+           const auto json = read<std::string>(in);
+           std::string owner;
+           in >> owner;
+           board_.put(topic, key, json, now_, owner);
+         }},
+        {"withdraw",
+         [this](auto& in) {
+           const int topic = topics_.at(read<std::string>(in));
+           board_.withdraw(topic, rest(in));
+         }},
+        {"lose",
+         [this](auto& in) {
+           const int topic = topics_.at(read<std::string>(in));
+           board_.lose(topic, rest(in));
+         }},
+        {"at", [this](auto& in) { now_ = read<double>(in); }},
+        {"acknowledge", [this](auto& in) { Board::seen(viewer_, read<std::uint64_t>(in), now_); }}};
+    facts_ = {{"news",
+               [this] {
+                 const Json json = console::read(board_, viewer_, now_);
+                 return json.is_null() ? "none" : json.at("items").dump();
+               }},
+              {"frame", [this] { return yes(board_.frame(viewer_, now_).has_value()); }},
+              {"size", [this] { return std::to_string(board_.size()); }}};
+  }
+
+ private:
+  Board board_;
+  Viewer viewer_;
+  std::map<std::string, int> topics_;
+  double now_ = 0.0;
+};
+
+TEST(Board, IsAsWritten) {
+  EXPECT_EQ(test::play<Told>("agents/console/test/board.txt"), 6);
 }
 
 TEST(Board, ItsItemsAreToldWhateverAViewerHas) {
@@ -116,67 +155,6 @@ TEST(Board, OnAFullLinkNothingIsAddedToTheWholeFrames) {
   EXPECT_GE(thin.wholes, 25);
 }
 
-TEST(Board, WhatIsSeenBeforeItWasSentCountsForNothing) {
-  Board board;
-  const int robot = board.topic("robot/state");
-  Viewer viewer;
-  Board::seen(viewer, 1'000'000, 0.0);
-  int frames = 0;
-  for (int i = 0; i < 10; ++i) {
-    board.put(robot, "", std::to_string(i), i);
-    frames += board.frame(viewer, i).has_value() ? 1 : 0;
-  }
-  EXPECT_EQ(frames, 2);
-}
-
-TEST(Board, AWithdrawnItemIsToldOnce) {
-  Board board;
-  const int goals = board.topic("goals", 10);
-  board.put(goals, "a", "1", 0.0);
-  board.put(goals, "b", "2", 0.0);
-  Viewer viewer;
-  EXPECT_EQ(read(board, viewer, 0.0).at("items").size(), 2U);
-  board.withdraw(goals, "a");
-  board.withdraw(goals, "never there");
-  const Json news = read(board, viewer, 0.1);
-  ASSERT_EQ(news.at("items").size(), 1U);
-  EXPECT_EQ(news["items"][0]["k"], "a");
-  EXPECT_TRUE(news["items"][0]["d"].is_null());
-  EXPECT_TRUE(read(board, viewer, 0.2).is_null());
-}
-
-TEST(Board, TheItemsOfALostOwnerAreWithdrawn) {
-  Board board;
-  const int tasks = board.topic("system/processes", 10);
-  const int goals = board.topic("goals", 10);
-  board.put(tasks, "a", "1", 0.0, "one");
-  board.put(tasks, "b", "2", 0.0, "one");
-  board.put(tasks, "c", "3", 0.0, "two");
-  board.put(goals, "a", "4", 0.0, "one");
-  Viewer viewer;
-  read(board, viewer, 0.0);
-  board.lose(tasks, "one");
-  EXPECT_EQ(board.size(), 2U);
-  const Json gone = read(board, viewer, 1.0);
-  ASSERT_EQ(gone.at("items").size(), 2U);
-  EXPECT_TRUE(gone["items"][0]["d"].is_null());
-  EXPECT_TRUE(gone["items"][1]["d"].is_null());
-}
-
-TEST(Board, OfManyItemsTheNewestAreKept) {
-  Board board;
-  const int log = board.topic("log", 3);
-  const int other = board.topic("other");
-  board.put(other, "", "0", 0.0);
-  for (int i = 0; i < 10; ++i)
-    board.put(log, "line " + std::to_string(i), std::to_string(i), 0.0);
-  EXPECT_EQ(board.size(), 4U);
-  Viewer viewer;
-  const Json all = read(board, viewer, 0.0);
-  EXPECT_EQ(all.at("items")[0]["d"], 7);
-  EXPECT_EQ(all.at("items")[2]["d"], 9);
-}
-
 TEST(Board, ALargeBoardComesInPartsWithTheFirstTopicsFirst) {
   Board board({.frame_bytes = 1000});
   const int robot = board.topic("robot/state");
@@ -200,14 +178,6 @@ TEST(Board, ALargeBoardComesInPartsWithTheFirstTopicsFirst) {
   }
   EXPECT_EQ(tiles, 20U);
   EXPECT_GT(frames, 5);
-}
-
-TEST(Board, SilenceIsTold) {
-  const Board board;
-  Viewer viewer;
-  EXPECT_FALSE(read(board, viewer, 0.0).is_null());
-  EXPECT_TRUE(read(board, viewer, 0.4).is_null());
-  EXPECT_TRUE(read(board, viewer, 0.6).at("items").empty());
 }
 
 TEST(Board, TextsAreQuoted) {

@@ -15,62 +15,49 @@ std::string wrong(std::string_view text) {
   return why == nullptr ? "" : why->why;
 }
 
+template <class Kind>
+Kind read(const char* text) {
+  return std::get<Kind>(parse_message(text));
+}
+
 TEST(Message, EachKindIsRead) {
-  const Message drive = parse_message(
+  const auto sample = read<teleop::Control::Sample>(
       R"({"type":"drive","number":7,"at":1.5,"active":true,"velocity":-0.1,"rotation":0.2,"cycle":9})");
-  const auto& sample = std::get<teleop::Control::Sample>(drive);
   EXPECT_EQ(sample.number, 7U);
   EXPECT_DOUBLE_EQ(sample.device_time, 1.5);
   EXPECT_TRUE(sample.active);
   EXPECT_DOUBLE_EQ(sample.velocity, -0.1);
   EXPECT_DOUBLE_EQ(sample.rotation, 0.2);
   EXPECT_EQ(sample.cycle, 9U);
-  EXPECT_EQ(std::get<Hello>(parse_message(R"({"type":"hello","key":"k","name":"ann"})")).name,
-            "ann");
-  EXPECT_EQ(std::get<Ack>(parse_message(R"({"type":"ack","frame":3})")).frame, 3U);
-  EXPECT_TRUE(std::get<TakeControl>(parse_message(R"({"type":"take","force":true})")).force);
-  EXPECT_EQ(
-      std::get<Hello>(parse_message(R"({"type":"hello","key":"k","name":"ann","ticket":"t"})"))
-          .ticket,
-      "t");
-  EXPECT_EQ(std::get<Rename>(parse_message(R"({"type":"rename","name":"ann"})")).name, "ann");
-  EXPECT_EQ(std::get<Say>(parse_message(R"({"type":"say","text":"hello"})")).text, "hello");
-  EXPECT_TRUE(std::holds_alternative<AskForControl>(parse_message(R"({"type":"ask"})")));
-  EXPECT_EQ(std::get<GiveControl>(parse_message(R"({"type":"give","to":7})")).to, 7U);
-  EXPECT_TRUE(std::holds_alternative<Wrong>(parse_message(R"({"type":"give"})")));
-  EXPECT_TRUE(std::holds_alternative<ReleaseControl>(parse_message(R"({"type":"release"})")));
-  EXPECT_TRUE(std::holds_alternative<HandBack>(parse_message(R"({"type":"hand_back"})")));
-  EXPECT_TRUE(std::holds_alternative<StopRobot>(parse_message(R"({"type":"stop","reference":1})")));
-  EXPECT_TRUE(std::holds_alternative<EmergencyStop>(parse_message(R"({"type":"estop"})")));
-  EXPECT_TRUE(
-      std::holds_alternative<ResetEmergencyStop>(parse_message(R"({"type":"estop_reset"})")));
-  EXPECT_EQ(
-      std::get<AskGoal>(parse_message(R"({"type":"goal","reference":1,"words":"go 3 1"})")).words,
-      "go 3 1");
-  EXPECT_EQ(std::get<CancelGoal>(parse_message(R"({"type":"cancel","reference":1,"id":"a:1"})")).id,
-            "a:1");
-  EXPECT_EQ(
-      std::get<AskProcess>(
-          parse_message(
-              R"({"type":"process","reference":1,"service":"s","process":"p","functor":"f"})"))
-          .process,
-      "p");
-  EXPECT_EQ(std::get<ChangeMap>(parse_message(R"({"type":"map","reference":1,"words":"remove 3"})"))
-                .words,
+  EXPECT_EQ(read<Hello>(R"({"type":"hello","key":"k","name":"ann"})").name, "ann");
+  EXPECT_EQ(read<Hello>(R"({"type":"hello","key":"k","name":"ann","ticket":"t"})").ticket, "t");
+  EXPECT_EQ(read<Ack>(R"({"type":"ack","frame":3})").frame, 3U);
+  EXPECT_TRUE(read<TakeControl>(R"({"type":"take","force":true})").force);
+  EXPECT_EQ(read<Rename>(R"({"type":"rename","name":"ann"})").name, "ann");
+  EXPECT_EQ(read<Say>(R"({"type":"say","text":"hello"})").text, "hello");
+  read<AskForControl>(R"({"type":"ask"})");
+  EXPECT_EQ(read<GiveControl>(R"({"type":"give","to":7})").to, 7U);
+  EXPECT_NE(wrong(R"({"type":"give"})"), "");
+  read<ReleaseControl>(R"({"type":"release"})");
+  read<HandBack>(R"({"type":"hand_back"})");
+  read<StopRobot>(R"({"type":"stop","reference":1})");
+  read<EmergencyStop>(R"({"type":"estop"})");
+  read<ResetEmergencyStop>(R"({"type":"estop_reset"})");
+  EXPECT_EQ(read<AskGoal>(R"({"type":"goal","reference":1,"words":"go 3 1"})").words, "go 3 1");
+  EXPECT_EQ(read<CancelGoal>(R"({"type":"cancel","reference":1,"id":"a:1"})").id, "a:1");
+  const auto process = read<AskProcess>(
+      R"({"type":"process","reference":1,"service":"s","process":"p","functor":"f"})");
+  EXPECT_EQ(process.process, "p");
+  EXPECT_EQ(read<ChangeMap>(R"({"type":"map","reference":1,"words":"remove 3"})").words,
             "remove 3");
-  EXPECT_TRUE(std::get<ShowRobots>(parse_message(R"({"type":"robots","shown":true})")).shown);
-  EXPECT_EQ(
-      std::get<StopRobots>(parse_message(R"({"type":"stop_robots","reference":1,"robot":"b"})"))
-          .robot,
-      "b");
-  EXPECT_EQ(std::get<SaveMap>(parse_message(R"({"type":"save_map","reference":4})")).reference, 4U);
-  const Message piece = parse_message(
+  EXPECT_TRUE(read<ShowRobots>(R"({"type":"robots","shown":true})").shown);
+  EXPECT_EQ(read<StopRobots>(R"({"type":"stop_robots","reference":1,"robot":"b"})").robot, "b");
+  EXPECT_EQ(read<SaveMap>(R"({"type":"save_map","reference":4})").reference, 4U);
+  const auto piece = read<LoadMap>(
       R"({"type":"load_map","reference":5,"name":"a.map","text":"WALL\n","more":true})");
-  EXPECT_EQ(std::get<LoadMap>(piece).text, "WALL\n");
-  EXPECT_TRUE(std::get<LoadMap>(piece).more);
-  EXPECT_FALSE(
-      std::get<PointOut>(parse_message(R"({"type":"point_out","x":1,"y":2,"in_map":false})"))
-          .in_map);
+  EXPECT_EQ(piece.text, "WALL\n");
+  EXPECT_TRUE(piece.more);
+  EXPECT_FALSE(read<PointOut>(R"({"type":"point_out","x":1,"y":2,"in_map":false})").in_map);
 }
 
 TEST(Message, WhatIsNoneSaysWhatWasExpected) {

@@ -116,9 +116,8 @@ void Door::ask_for_approval() {
     if (!needs_approval(each)) {
       session_.take_back(each.question);
     } else if (each.question == 0) {
-      const auto call = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto& waiting) {
-        return waiting.second.goal == each.id;
-      });
+      const auto call = std::ranges::find_if(
+          waiting_, [&](const auto& waiting) { return waiting.second.goal == each.id; });
       const std::uint64_t number = call == waiting_.end() ? 0 : call->first;
       each.question = session_.ask_person(
           "The model wants the robot to do this: " + each.text + ". May it begin?", number);
@@ -128,7 +127,7 @@ void Door::ask_for_approval() {
   }
   for (const auto& [question, yes] : session_.take_consents()) {
     const auto of = [number = question](const Own& each) { return each.question == number; };
-    const auto found = std::find_if(own_.begin(), own_.end(), of);
+    const auto found = std::ranges::find_if(own_, of);
     if (found == own_.end())
       continue;
     if (yes)
@@ -204,14 +203,14 @@ void Door::turn(double now) {
       session_.answer(call.number, {std::string("not done: ") + error.what(), nullptr, true});
     }
   }
-  if (std::any_of(waiting_.begin(), waiting_.end(),
-                  [](const auto& each) { return each.second.what == Waiting::For::estop; }))
+  if (std::ranges::any_of(waiting_,
+                          [](const auto& each) { return each.second.what == Waiting::For::estop; }))
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
   // The camera is off while nobody reads.
-  if (std::none_of(waiting_.begin(), waiting_.end(),
-                   [](const auto& each) { return each.second.what == Waiting::For::picture; }))
+  if (std::ranges::none_of(
+          waiting_, [](const auto& each) { return each.second.what == Waiting::For::picture; }))
     picture_reader_.reset();
   note();
 }
@@ -236,8 +235,7 @@ void Door::refuse(const Call& call, const std::string& why) {
 /// call is answered.
 bool Door::is_allowed(const Call& call) {
   const auto& tools = robot_.tools();
-  const auto tool = std::find_if(tools.begin(), tools.end(),
-                                 [&](const Tool& one) { return one.name == call.tool; });
+  const auto tool = std::ranges::find(tools, call.tool, &Tool::name);
   if (right_ >= DoorRight::drive || (tool != tools.end() && (tool->reads || tool->always)))
     return true;
   refuse(call, "not done: the key of " + person_.name +
@@ -249,8 +247,7 @@ void Door::begin(const Call& call) {
   if (!is_allowed(call))
     return;
   if (call.question != 0) {
-    const auto asked = std::find_if(
-        own_.begin(), own_.end(), [&](const Own& each) { return each.question == call.question; });
+    const auto asked = std::ranges::find(own_, call.question, &Own::question);
     return asked == own_.end() ? refuse(call, "not done: the goal has ended")
                                : await(call, asked->id);
   }
@@ -440,8 +437,7 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
 
 /// Null: this client has not asked for it, or it has ended.
 Door::Own* Door::own(const v1::GoalId& id) {
-  const auto found =
-      std::find_if(own_.begin(), own_.end(), [&](const Own& each) { return each.id == id; });
+  const auto found = std::ranges::find(own_, id, &Own::id);
   return found == own_.end() ? nullptr : &*found;
 }
 
@@ -457,18 +453,16 @@ bool Door::has_ended(const v1::GoalId& id) const {
 }
 
 bool Door::has_words_underway() const {
-  return std::any_of(words_.begin(), words_.end(),
-                     [](const auto& each) { return each.second.acts; });
+  return std::ranges::any_of(words_, [](const auto& each) { return each.second.acts; });
 }
 
 bool Door::is_busy() const {
-  return has_words_underway() || !std::all_of(own_.begin(), own_.end(), [this](const Own& each) {
-           return has_ended(each.id);
-         });
+  return has_words_underway() ||
+         !std::ranges::all_of(own_, [this](const Own& each) { return has_ended(each.id); });
 }
 
 bool Door::is_silent() const {
-  return std::any_of(own_.begin(), own_.end(), [this](const Own& each) {
+  return std::ranges::any_of(own_, [this](const Own& each) {
     return needs_approval(each) && session_.is_silent_for(each.question);
   });
 }
@@ -672,8 +666,7 @@ Result Door::outcome(const v1::GoalId& id) const {
             false};
   const bool bad = bus::ended(known->state) && known->state != v1::GOAL_SUCCEEDED;
   std::string text = "goal " + bus::describe(id) + ": " + words(id, *known);
-  const auto mine =
-      std::find_if(own_.begin(), own_.end(), [&](const Own& each) { return each.id == id; });
+  const auto mine = std::ranges::find(own_, id, &Own::id);
   if (mine != own_.end() && needs_approval(*mine))
     text += std::string(mine->question != 0 ? "; the person at this client is asked"
                                             : "; this client may not approve it: a person "

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "saphira/bus/goal_client.hpp"
-#include "saphira/mcp/actions.hpp"
+#include "saphira/mcp/results.hpp"
 #include "saphira/mcp/session.hpp"
 #include "saphira/mcp/surroundings.hpp"
 #include "saphira/security/door_keys.hpp"

@@ -61,8 +61,8 @@ void HttpDoor::refuse(Exchange exchange, int status, const std::string& text) {
 
 /// The call of a tool that is always allowed.
 bool HttpDoor::is_stop(const Sender& sender) const {
-  return std::any_of(robot_.tools().begin(), robot_.tools().end(),
-                     [&](const Tool& tool) { return tool.always && tool.name == sender.tool; });
+  return std::ranges::any_of(
+      robot_.tools(), [&](const Tool& tool) { return tool.always && tool.name == sender.tool; });
 }
 
 /// The client of a request. Null: the request is refused.

@@ -118,10 +118,9 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
 /// True for an activity that needs a value without a declared kind, such as a path: only another
 /// activity has that.
 bool is_part(const v1::ActivitySchema& schema) {
-  return std::any_of(schema.parameters.begin(), schema.parameters.end(),
-                     [](const v1::ActivityParameter& parameter) {
-                       return parameter.required && parameter.kind == v1::PARAMETER_ANY;
-                     });
+  return std::ranges::any_of(schema.parameters, [](const v1::ActivityParameter& parameter) {
+    return parameter.required && parameter.kind == v1::PARAMETER_ANY;
+  });
 }
 
 /// The names on a map, for the model to choose from.
@@ -267,8 +266,7 @@ void Robot::make_tools() {
   capabilities_.clear();
   const auto is_new = [&](const std::string& name) {
     return !name.empty() && tools_.size() < kMostTools &&
-           std::none_of(tools_.begin(), tools_.end(),
-                        [&](const Tool& tool) { return tool.name == name; });
+           std::ranges::none_of(tools_, [&](const Tool& tool) { return tool.name == name; });
   };
   std::set<std::string> activities;
   const std::vector<v1::ActivitySchema> none;
@@ -295,8 +293,8 @@ void Robot::make_tools() {
     // members are known, an agent of another program than the robot's own goes by its member.
     const auto& sender = agent.info.sender;
     const bool is_own = !sender || sender->role == "services" || sender->role == "robot";
-    const bool is_shown = std::find(described_.begin(), described_.end(),
-                                    is_own ? agent.data.name : sender->name) != described_.end();
+    const bool is_shown =
+        std::ranges::find(described_, is_own ? agent.data.name : sender->name) != described_.end();
     for (v1::Capability capability : agent.data.capabilities) {
       const std::string name = tool_name(capability.functor);
       // The agent "robot" announces the activities once more.

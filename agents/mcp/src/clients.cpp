@@ -12,8 +12,8 @@ std::optional<std::string> Clients::place() const {
     return std::tuple(each.first == kNobody || each.second.state.busy, each.second.state.waits,
                       each.second.asked);
   };
-  const auto first = std::min_element(
-      all_.begin(), all_.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  const auto first = std::ranges::min_element(
+      all_, [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return std::get<0>(rank(*first)) ? std::nullopt : std::optional(first->first);
 }
 
@@ -64,7 +64,7 @@ bool Clients::is_pinged(const std::string& id, double now) {
 
 bool Clients::may_begin(const std::string& id) const {
   return id != kNobody &&
-         static_cast<std::size_t>(std::count_if(all_.begin(), all_.end(), [&](const auto& each) {
+         static_cast<std::size_t>(std::ranges::count_if(all_, [&](const auto& each) {
            return each.first != id && each.second.state.busy;
          })) < kMostBusy;
 }

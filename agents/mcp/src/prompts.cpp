@@ -1,8 +1,8 @@
-#include "prompts.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "protocol.hpp"
 
 namespace saphira::mcp {
 namespace {
@@ -62,9 +62,8 @@ Json prompts() {
 }
 
 Json prompt(const Json& name, const Json& arguments) {
-  const auto* const found = std::find_if(kPrompts.begin(), kPrompts.end(), [&](const Prompt& each) {
-    return name.is_string() && name == each.name;
-  });
+  const auto* const found = std::ranges::find_if(
+      kPrompts, [&](const Prompt& each) { return name.is_string() && name == each.name; });
   if (found == kPrompts.end())
     return "there is no such prompt; prompts/list has their names";
   std::string text(found->text);

@@ -21,6 +21,11 @@ inline Json member(const Json& object, const std::string& name) {
   return found == object.end() ? Json() : *found;
 }
 
+/// The usual jobs, as prompts that a person picks in the client: the answer to prompts/list.
+Json prompts();
+/// One of them with its arguments filled in: the answer to prompts/get. A text: the error.
+Json prompt(const Json& name, const Json& arguments);
+
 inline bool is_resource(const Tool& tool) {
   return tool.reads && member(tool.input, "properties").empty();
 }

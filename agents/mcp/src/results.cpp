@@ -108,6 +108,27 @@ Json json_of(const v1::Argument& argument) {
   return nullptr;
 }
 
+v1::GoalState state_of(const v1::Answer& answer, bool withdrawn) {
+  switch (answer.code) {
+    case v1::ANSWER_UNDERWAY:
+      return v1::GOAL_UNDERWAY;
+    case v1::ANSWER_DONE:
+    case v1::ANSWER_SENT:
+      return v1::GOAL_SUCCEEDED;
+    case v1::ANSWER_REFUSED:
+    case v1::ANSWER_UNKNOWN_FUNCTOR:
+    case v1::ANSWER_BAD_ARGUMENT:
+    case v1::ANSWER_NOBODY:
+      return withdrawn ? v1::GOAL_CANCELED : v1::GOAL_REFUSED;
+    case v1::ANSWER_GIVEN_UP:
+      return withdrawn ? v1::GOAL_CANCELED : v1::GOAL_FAILED;
+    case v1::ANSWER_TOO_LATE:
+    case v1::ANSWER_LOST:
+      break;
+  }
+  return v1::GOAL_FAILED;
+}
+
 }  // namespace
 
 std::string for_model(std::string text) {
@@ -157,7 +178,7 @@ std::string quotation(const std::string& text) {
   std::string line = one_line(std::string(first_letters(text, kLongest)));
   if (line.size() < text.size())
     line += "...";
-  std::replace(line.begin(), line.end(), '"', '\'');
+  std::ranges::replace(line, '"', '\'');
   return '"' + line + '"';
 }
 
@@ -178,9 +199,7 @@ Json values_of(const std::vector<v1::Argument>& arguments,
                const std::vector<v1::CapabilityParameter>& declared) {
   Json value = Json::object();
   for (const v1::Argument& result : arguments) {
-    const auto parameter =
-        std::find_if(declared.begin(), declared.end(),
-                     [&](const v1::CapabilityParameter& each) { return each.name == result.name; });
+    const auto parameter = std::ranges::find(declared, result.name, &v1::CapabilityParameter::name);
     if (parameter != declared.end() && parameter->kind != v1::ARGUMENT_UNBOUND &&
         parameter->kind != result.kind)
       continue;
@@ -276,6 +295,44 @@ Json form_of(const v1::Capability& capability) {
     properties[parameter.name] = {{"anyOf", Json::array({one, list_of(one)})}};
   }
   return capability.acts ? goal_with(object(std::move(properties))) : object(std::move(properties));
+}
+
+Action action_of(const v1::GoalId& id, const v1::Request& request) {
+  Action action;
+  action.status.id = id;
+  action.status.functor = request.functor;
+  action.status.requester = request.source;
+  action.status.state = v1::GOAL_WAITING;
+  action.status.reason = "no agent has answered yet; without saphira-facilitator none does";
+  return action;
+}
+
+void take_answer(Action& action, const v1::Answer& answer, bool withdrawn,
+                 const std::vector<v1::CapabilityParameter>& declared) {
+  action.status.state = state_of(answer, withdrawn);
+  const bool silent = answer.text.empty() && !bus::well(answer.code);
+  const bool late = answer.code == v1::ANSWER_TOO_LATE;
+  const std::string text = (silent ? "no reason was given" : answer.text) +
+                           (late ? "; whether it was done is not known" : "");
+  action.status.reason =
+      (answer.service.empty() || text.empty() ? "" : answer.service + ": ") + text;
+  if (bus::ended(answer.code))
+    action.results = values_of(answer.results, declared);
+}
+
+Json json_of(const Action& action) {
+  Json json = json_of(action.status);
+  json.erase("progress");
+  json["results"] = action.results;
+  return json;
+}
+
+std::string words_of(const Action& action) {
+  const v1::GoalStatus& status = action.status;
+  return bus::describe(status.state) + (status.reason.empty() ? "" : ": " + status.reason) +
+         (action.results.empty()
+              ? ""
+              : "; results " + action.results.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace saphira::mcp

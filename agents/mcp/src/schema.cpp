@@ -11,8 +11,7 @@ namespace {
 
 bool has_type(const Json& value, const Json& type) {
   if (type.is_array())
-    return std::any_of(type.begin(), type.end(),
-                       [&](const Json& each) { return has_type(value, each); });
+    return std::ranges::any_of(type, [&](const Json& each) { return has_type(value, each); });
   if (type == "number")
     return value.is_number();
   if (type == "integer")
@@ -51,7 +50,7 @@ std::string misfit_at(const std::string& where, const Json& value, const Json& s
       return why;
   }
   if (const Json choices = member(schema, "enum");
-      choices.is_array() && std::find(choices.begin(), choices.end(), value) == choices.end())
+      choices.is_array() && std::ranges::find(choices, value) == choices.end())
     return who + ": expected one of " + choices.dump() + ", found " + value.dump().substr(0, 60);
   if (value.is_number()) {
     const double number = value.get<double>();

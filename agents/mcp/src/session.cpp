@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "prompts.hpp"
 #include "protocol.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
@@ -63,8 +62,7 @@ Sender sender_of(std::string_view message) {
   if (message.size() > Session::kLongestLine)
     return sender;
   const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
-  sender.answers =
-      is_answer(json) || (json.is_array() && std::any_of(json.begin(), json.end(), is_answer));
+  sender.answers = is_answer(json) || (json.is_array() && std::ranges::any_of(json, is_answer));
   if (!json.is_object())
     return sender;
   const Json parameters = member(json, "params");
@@ -93,7 +91,7 @@ void Session::wait_for_tools(bool waits) {
 
 bool Session::leave() {
   left_ = true;
-  return !held_.empty() || std::any_of(open_.begin(), open_.end(), [](const auto& each) {
+  return !held_.empty() || std::ranges::any_of(open_, [](const auto& each) {
     return !each.second.watches && each.second.task.empty();
   });
 }
@@ -199,8 +197,8 @@ bool Session::has_to_wait(const std::string& method, const Json& parameters) con
     return false;
   const Json name = member(parameters, "name");
   if (method == "tools/call")
-    return std::none_of(tools_.begin(), tools_.end(),
-                        [&](const Tool& each) { return each.always && name == each.name; });
+    return std::ranges::none_of(tools_,
+                                [&](const Tool& each) { return each.always && name == each.name; });
   return method == "tools/list" || method == "resources/list" || method == "resources/read" ||
          method == "resources/subscribe" || method == "subscriptions/listen";
 }
@@ -347,7 +345,7 @@ bool Session::fits(const std::string& method, const Request& request, const Json
   if (!request.modern) {
     // Before the answer to `initialize` a client cannot know the version.
     if (headers.version.empty() ||
-        std::find(kRevisions.begin(), kRevisions.end(), headers.version) != kRevisions.end())
+        std::ranges::find(kRevisions, headers.version) != kRevisions.end())
       return true;
     respond(request,
             {{"jsonrpc", "2.0"},
@@ -383,7 +381,7 @@ bool Session::fits(const std::string& method, const Request& request, const Json
 void Session::ask(const std::string& method, const Request& request, const Json& parameters) {
   if (method == "initialize") {
     const Json asked = member(parameters, "protocolVersion");
-    const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
+    const bool known = std::ranges::find(kRevisions, asked) != kRevisions.end();
     older().tools = true;
     elicits_ = has_forms(member(parameters, "capabilities"));
     revision_ = known ? asked.get<std::string>() : kLegacy;
@@ -480,9 +478,8 @@ void Session::list_resources(const Request& request) {
 
 /// The tool behind a resource; null: there is none.
 const Tool* Session::resource(const Json& uri) const {
-  const auto tool = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& each) {
-    return is_resource(each) && uri == kResources + each.name;
-  });
+  const auto tool = std::ranges::find_if(
+      tools_, [&](const Tool& each) { return is_resource(each) && uri == kResources + each.name; });
   return tool == tools_.end() ? nullptr : &*tool;
 }
 
@@ -521,8 +518,8 @@ double Session::too_soon() {
 
 void Session::call(const Request& request, const Json& parameters, const Json& uri) {
   const Json name = member(parameters, "name");
-  const auto tool = std::find_if(tools_.begin(), tools_.end(),
-                                 [&](const Tool& each) { return name == each.name; });
+  const auto tool =
+      std::ranges::find_if(tools_, [&](const Tool& each) { return name == each.name; });
   if (tool == tools_.end()) {
     std::vector<std::string> names;
     for (const Tool& each : tools_)
@@ -547,8 +544,8 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
     const Json meant = member(arguments, "name");
     if (meant.is_null())
       return answer(number, others());
-    if (std::any_of(tools_.begin(), tools_.end(),
-                    [&](const Tool& each) { return each.apart && meant == each.name; })) {
+    if (std::ranges::any_of(tools_,
+                            [&](const Tool& each) { return each.apart && meant == each.name; })) {
       open_.erase(number);
       Json inner = parameters;
       inner["name"] = meant;
@@ -622,7 +619,7 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
   std::erase_if(listeners_, [&](const Listener& each) {
     return each.request.id == id && each.request.exchange == exchange;
   });
-  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& each) {
+  const auto found = std::ranges::find_if(open_, [&](const auto& each) {
     const Request& request = each.second.request;
     // Clients of the newer era may share this session, so an id is unique within a connection only.
     return request.id == id && (!request.modern || request.exchange == exchange) &&
@@ -630,7 +627,7 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
   });
   if (found != open_.end())
     return erase(found->first);
-  const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& each) {
+  const auto held = std::ranges::find_if(held_, [&](const Held& each) {
     return each.request.id == id && (!each.request.modern || each.request.exchange == exchange);
   });
   if (held == held_.end())

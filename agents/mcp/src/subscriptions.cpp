@@ -14,8 +14,7 @@ constexpr double kPause = 1.0;  // [s] between two notifications of one thing
 }  // namespace
 
 void Session::set_tools(std::vector<Tool> tools) {
-  std::sort(tools.begin(), tools.end(),
-            [](const Tool& a, const Tool& b) { return a.name < b.name; });
+  std::ranges::sort(tools, [](const Tool& a, const Tool& b) { return a.name < b.name; });
   if (tools == tools_)
     return;
   tools_ = std::move(tools);
@@ -39,7 +38,7 @@ void Session::turn(double time, double date) {
   date_ = date;
   tell_tools();
   std::erase_if(watched_, [this](const auto& each) {
-    return std::none_of(listeners_.begin(), listeners_.end(), [&](const Listener& listener) {
+    return std::ranges::none_of(listeners_, [&](const Listener& listener) {
       return listener.resources.contains(each.first);
     });
   });
@@ -90,8 +89,8 @@ void Session::tell(const Listener& listener, const std::string& method, Json par
 
 /// The listener of the older era.
 Session::Listener& Session::older() {
-  const auto found = std::find_if(listeners_.begin(), listeners_.end(),
-                                  [](const Listener& each) { return !each.request.modern; });
+  const auto found =
+      std::ranges::find_if(listeners_, [](const Listener& each) { return !each.request.modern; });
   return found == listeners_.end() ? listeners_.emplace_back() : *found;
 }
 

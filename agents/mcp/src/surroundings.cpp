@@ -60,9 +60,8 @@ std::string name_of(const v1::MapArtifact& artifact) {
 
 const v1::MapArtifact* find(const v1::FloorMap& map, std::uint32_t id) {
   const auto& all = map.artifacts;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const v1::MapArtifact& each) {
-    return id != 0 && each.id == id;
-  });
+  const auto found = std::ranges::find_if(
+      all, [&](const v1::MapArtifact& each) { return id != 0 && each.id == id; });
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -176,8 +175,8 @@ Result map_of(const Surroundings& around) {
   const auto distance = [&](const v1::MapArtifact* artifact) {
     return (pose(artifact->pose_in_map).position() - here).norm();
   };
-  std::stable_sort(named.begin(), named.end(),
-                   [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
+  std::ranges::stable_sort(named,
+                           [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
   named.resize(std::min(named.size(), kMostPlaces));
   text += named.empty() ? "\nno place of the map has a name" : "\nplaces, nearest first:";
   for (const v1::MapArtifact* const place : named) {
@@ -209,8 +208,8 @@ Result view_of(const Surroundings& around) {
     add(people(*around.vision, robot));
   if (around.sonars != nullptr && around.sonars->odom == around.robot->odom)
     add(echoes(*around.sonars, robot));
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Seen& a, const Seen& b) { return a.place.norm() < b.place.norm(); });
+  std::ranges::stable_sort(
+      all, [](const Seen& a, const Seen& b) { return a.place.norm() < b.place.norm(); });
   all.resize(std::min(all.size(), kMostSeen));
   Json value{{"seen", Json::array()}};
   std::string text;

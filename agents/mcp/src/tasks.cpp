@@ -66,11 +66,10 @@ void Session::forget_tasks() {
     return each.second.call == 0 && time_ >= each.second.begun + kKept;
   });
   while (tasks_.size() > kMostTasks) {
-    const auto oldest =
-        std::min_element(tasks_.begin(), tasks_.end(), [](const auto& a, const auto& b) {
-          return std::pair(a.second.call != 0, a.second.begun) <
-                 std::pair(b.second.call != 0, b.second.begun);
-        });
+    const auto oldest = std::ranges::min_element(tasks_, [](const auto& a, const auto& b) {
+      return std::pair(a.second.call != 0, a.second.begun) <
+             std::pair(b.second.call != 0, b.second.begun);
+    });
     if (oldest->second.call != 0)
       return;
     tasks_.erase(oldest);

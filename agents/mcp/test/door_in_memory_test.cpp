@@ -112,16 +112,13 @@ TEST_F(DoorInMemory, TheDescriptionsOfAgentsAreQuotedWhereAPersonHasAllowedThem)
 
 // An agent may call itself as the robot's own programs do; its certificate does not.
 TEST_F(DoorInMemory, WhereMembersAreKnownTheirDescriptionsGoByTheMember) {
-  v1::Agent agent;
-  agent.id = 8;
-  agent.name = "dialogue";
-  agent.capabilities = {bus::action("cook", "cooks", {})};
+  v1::Agent agent{.id = 8, .name = "dialogue", .capabilities = {bus::action("cook", "cooks", {})}};
   const auto is_shown = [&](const Identity& sender, const std::string& described) {
     agents.set_sender(sender);
     agents.write(agent);
     Robot shown{node, {described}};
     shown.poll(now);
-    return std::any_of(shown.tools().begin(), shown.tools().end(), [](const Tool& tool) {
+    return std::ranges::any_of(shown.tools(), [](const Tool& tool) {
       return tool.name == "cook" && tool.description.find("says") != std::string::npos;
     });
   };
@@ -185,8 +182,7 @@ TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
   early.poll(1.1);
   early.poll(1.7);
   EXPECT_TRUE(early.knows_tools());
-  const auto patrol = std::find_if(early.tools().begin(), early.tools().end(),
-                                   [](const Tool& tool) { return tool.name == "patrol"; });
+  const auto patrol = std::ranges::find(early.tools(), "patrol", &Tool::name);
   ASSERT_NE(patrol, early.tools().end());
   const Json& properties = patrol->input["properties"];
   EXPECT_EQ(properties["place"]["description"], "a place of the map: N2");

@@ -32,8 +32,7 @@ std::string_view repeated_by(std::string_view topic) {
 bool is_wanted(const bus::TopicEntry& topic) {
   return topic.qos != "motion" && topic.qos != "command" && topic.qos != "presence" &&
          topic.name != bus::topics::kRecallGoals.name &&
-         std::none_of(kKept.begin(), kKept.end(),
-                      [&](const auto& each) { return topic.name == each.second; });
+         std::ranges::none_of(kKept, [&](const auto& each) { return topic.name == each.second; });
 }
 
 std::pair<std::uint64_t, std::uint64_t> stamp_in(const std::string& json) {
@@ -105,9 +104,8 @@ bool LastMinute::write(bus::Node& node, Writer& writer) {
   // All else was so before the minute, as far as anybody knows.
   for (Timed& sample : samples)
     sample.time_ns = std::max(sample.time_ns, oldest);
-  std::stable_sort(samples.begin(), samples.end(), [](const Timed& one, const Timed& other) {
-    return one.time_ns < other.time_ns;
-  });
+  std::ranges::stable_sort(
+      samples, [](const Timed& one, const Timed& other) { return one.time_ns < other.time_ns; });
   std::map<std::string, std::uint16_t> channels;
   const std::string& robot = node.options().robot;
   viewer::Scene scene(kGridPeriod);

@@ -28,13 +28,11 @@ bool is_command(const bus::TopicEntry& topic) {
 std::vector<bus::TopicEntry> recorded_topics(const std::vector<std::string>& only) {
   const std::vector<bus::TopicEntry> all = bus::known_topics();
   for (const std::string& name : only)
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const bus::TopicEntry& topic) { return topic.name == name; }))
+    if (std::ranges::none_of(all, [&](const bus::TopicEntry& topic) { return topic.name == name; }))
       throw std::invalid_argument("no topic \"" + name + "\"; saphira list shows them");
   std::vector<bus::TopicEntry> topics;
   for (const bus::TopicEntry& topic : all)
-    if (only.empty() ? topic.qos != "recall"
-                     : std::find(only.begin(), only.end(), topic.name) != only.end())
+    if (only.empty() ? topic.qos != "recall" : std::ranges::find(only, topic.name) != only.end())
       topics.push_back(topic);
   return topics;
 }
@@ -89,8 +87,8 @@ Player::Player(bus::Node& node, Reader& reader, const Contents& contents, const 
       from_ns_(played_ns_) {
   const std::vector<bus::TopicEntry> known = bus::known_topics();
   for (const auto& [topic, count] : contents.samples) {
-    const auto entry = std::find_if(known.begin(), known.end(),
-                                    [&](const auto& each) { return each.name == topic; });
+    const auto entry =
+        std::ranges::find_if(known, [&](const auto& each) { return each.name == topic; });
     if (entry == known.end() || is_command(*entry) ||
         (!options.only.empty() && !options.only.contains(topic)))
       left_out_.insert(topic);

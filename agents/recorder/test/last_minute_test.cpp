@@ -52,9 +52,7 @@ TEST_F(LastMinuteTest, HasWhatWasKeptUnderItsLiveTopicsAtItsTimes) {
     live.write({.stamp = {7, cycle}});
   }
   maps.write({.stamp = {7, 3}, .source = "office"});
-  v1::GoalStatus goal;
-  goal.stamp = {7, 101};
-  goal.state = v1::GOAL_FAILED;
+  v1::GoalStatus goal{.stamp = {7, 101}, .state = v1::GOAL_FAILED};
   goals.write({.stamp = {7, 101}, .goals = {goal}});
   const auto rows = record();
   EXPECT_TRUE(is_written);

@@ -12,11 +12,10 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 
 bool is_name(std::string_view text) {
-  return !text.empty() && text.size() <= 64 &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                  c == '_' || c == '-' || c == '.';
-         });
+  return !text.empty() && text.size() <= 64 && std::ranges::all_of(text, [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+           c == '-' || c == '.';
+  });
 }
 
 /// 1 to 65535; 0: invalid.
@@ -134,7 +133,7 @@ std::optional<Rendezvous::Visitor> Rendezvous::arrive(const std::string& robot,
   if (counts[from] >= kMostFromOne)
     crowd = from;
   else if (there >= kMost)
-    crowd = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+    crowd = std::ranges::max_element(counts, [](const auto& a, const auto& b) {
               return a.second < b.second;
             })->first;
   std::optional<Visitor> gone;

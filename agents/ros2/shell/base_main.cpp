@@ -154,9 +154,9 @@ class Program {
     }
     const double now = unix_time();
     const auto seconds = static_cast<std::int32_t>(now);
-    TwistStamped message;
-    message.header = {{seconds, static_cast<std::uint32_t>((now - seconds) * 1e9)}, base_.frame()};
-    message.twist = *output.cmd_vel;
+    TwistStamped message{
+        .header = {{seconds, static_cast<std::uint32_t>((now - seconds) * 1e9)}, base_.frame()},
+        .twist = *output.cmd_vel};
     cmd_vel_->write(bytes_of(message));
   }
 

@@ -19,9 +19,7 @@ constexpr const char* kSource = "cmd_vel of ROS 2";
 
 /// A part of a service. ROS 2 complains about an endpoint without any user data.
 bus::ForeignTopic part(const std::string& name, const char* type) {
-  bus::ForeignTopic topic;
-  topic.name = name;
-  topic.type = type;
+  bus::ForeignTopic topic{.name = name, .type = type};
   topic.user_data = "saphira=1;";
   return topic;
 }
@@ -43,7 +41,7 @@ std::string node_info(const bus::WriterId& participant, const std::string& name,
                       const std::vector<bus::WriterId>& writers) {
   const auto gid = [](const bus::WriterId& id) {
     Gid made;
-    std::copy(id.begin(), id.end(), made.data.begin());
+    std::ranges::copy(id, made.data.begin());
     return made;
   };
   Info info;

@@ -163,11 +163,10 @@ bool Base::take(const LaserScan& scan, double now) {
 
 bool Base::take(const Range& range, double now) {
   // A scan of one ray.
-  LaserScan scan;
-  scan.header = range.header;
-  scan.range_min = range.min_range;
-  scan.range_max = range.max_range;
-  scan.ranges = {range.range};
+  LaserScan scan{.header = range.header,
+                 .range_min = range.min_range,
+                 .range_max = range.max_range,
+                 .ranges = {range.range}};
   return hear(scan, place(range.header.frame_id), ranges_[range.header.frame_id], now);
 }
 
@@ -203,14 +202,14 @@ std::string Base::trouble(double now) const {
     return "no odometry has come";
   if (!odometry_.lives(now))
     return "the odometry has ended";
-  const bool has_ranges = std::any_of(ranges_.begin(), ranges_.end(),
-                                      [](const auto& each) { return each.second.came; });
+  const bool has_ranges =
+      std::ranges::any_of(ranges_, [](const auto& each) { return each.second.came.has_value(); });
   if (!robot_.sonars.empty() && !scan_.came && !has_ranges)
     return bad_ranges_.empty() ? "no scan and no range has come" : bad_ranges_;
   if (scan_.came && !scan_.lives(now))
     return "the scan has ended";
-  if (has_ranges && std::none_of(ranges_.begin(), ranges_.end(),
-                                 [&](const auto& each) { return each.second.lives(now); }))
+  if (has_ranges &&
+      std::ranges::none_of(ranges_, [&](const auto& each) { return each.second.lives(now); }))
     return "the ranges have ended";
   return is_heard_ ? "" : "nobody takes cmd_vel";
 }

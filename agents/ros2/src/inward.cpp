@@ -63,12 +63,8 @@ std::optional<v1::Argument> argument_of(const std::string& name, const Header& h
   if (frame == frames.end() || !std::isfinite(point.x) || !std::isfinite(point.y) ||
       !std::isfinite(point.th))
     return std::nullopt;
-  v1::Argument made;
-  made.name = name;
-  made.kind = v1::ARGUMENT_POINT;
-  made.point = point;
-  made.frame = frame->second;
-  return made;
+  return v1::Argument{
+      .name = name, .kind = v1::ARGUMENT_POINT, .point = point, .frame = frame->second};
 }
 
 PoseStamped in_odom(const PoseStamped& pose, const v1::Pose2& robot_in_odom) {
@@ -84,8 +80,7 @@ std::optional<v1::Goal> goal_of(const PoseStamped& pose) {
   const std::optional<v1::Argument> position = argument_of("position", pose.header, pose.pose);
   if (!position)
     return std::nullopt;
-  v1::Goal goal;
-  goal.functor = "go_to";
+  v1::Goal goal{.functor = "go_to"};
   goal.arguments.push_back(*position);
   if (position->frame != v1::FRAME_ROBOT) {
     v1::Argument facing;

@@ -57,8 +57,8 @@ Duration duration_of(double seconds) {
 }  // namespace
 
 Navigate::Entry* Navigate::find(const Uuid& goal) {
-  const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const Entry& entry) { return entry.info.goal_id == goal; });
+  const auto found = std::ranges::find_if(
+      entries_, [&](const Entry& entry) { return entry.info.goal_id == goal; });
   return found == entries_.end() ? nullptr : &*found;
 }
 
@@ -109,14 +109,13 @@ Navigate::Canceled Navigate::cancel(const CancelRequest& request) {
 }
 
 std::optional<ResultResponse> Navigate::result(const Uuid& goal) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const Entry& entry) { return entry.info.goal_id == goal; });
+  const auto found = std::ranges::find_if(
+      entries_, [&](const Entry& entry) { return entry.info.goal_id == goal; });
   if (found == entries_.end())
     return ResultResponse{};
   if (!found->ended())
     return std::nullopt;
-  ResultResponse response;
-  response.status = found->state;
+  ResultResponse response{.status = found->state};
   if (found->state != kSucceeded) {
     response.result.error_code = static_cast<std::uint16_t>(found->status.code);
     response.result.error_msg = found->status.reason;
@@ -145,12 +144,10 @@ GoalStatusArray Navigate::statuses() const {
 
 std::optional<FeedbackMessage> Navigate::feedback(const std::optional<viewer::Place>& place,
                                                   std::int64_t time_ns) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [](const Entry& entry) { return entry.state == kExecuting; });
+  const auto found = std::ranges::find(entries_, kExecuting, &Entry::state);
   if (found == entries_.end() || !place)
     return std::nullopt;
-  FeedbackMessage message;
-  message.goal_id = found->info.goal_id;
+  FeedbackMessage message{.goal_id = found->info.goal_id};
   auto& feedback = message.feedback;
   feedback.current_pose.header = {time_of(time_ns), place->odom_in_map ? "map" : "odom"};
   feedback.current_pose.pose = pose_of(place->pose);

@@ -56,14 +56,12 @@ std::string sonar_frame(std::uint8_t sonar) {
 
 Marker marker(const char* space, std::int32_t id, std::int32_t type, const char* frame,
               std::int64_t time_ns, const Color& color) {
-  Marker made;
-  made.header = header_of(frame, time_ns);
-  made.ns = space;
-  made.id = id;
-  made.type = type;
-  made.pose = pose_of({});
-  made.color = color;
-  return made;
+  return {.header = header_of(frame, time_ns),
+          .ns = space,
+          .id = id,
+          .type = type,
+          .pose = pose_of({}),
+          .color = color};
 }
 
 /// Without lines: their withdrawal.
@@ -147,11 +145,11 @@ class Canvas {
 
 DiagnosticStatus diagnosis(const situation::Program& program) {
   const v1::ServiceStatus& status = program.status;
-  DiagnosticStatus made;
-  made.name = "saphira: " + status.name;
-  made.hardware_id = status.host;
-  made.message = status.reason.empty() ? situation::name_of(status.state) : status.reason;
-  made.level = status.state == v1::SERVICE_RUNNING ? 0 : 1;
+  DiagnosticStatus made{
+      .level = static_cast<std::uint8_t>(status.state == v1::SERVICE_RUNNING ? 0 : 1),
+      .name = "saphira: " + status.name,
+      .message = status.reason.empty() ? situation::name_of(status.state) : status.reason,
+      .hardware_id = status.host};
   if (program.age > kOldStatus) {
     made.level = 3;
     made.message = "silent for " + situation::seconds_text(program.age);
@@ -164,14 +162,13 @@ DiagnosticStatus diagnosis(const situation::Program& program) {
 }
 
 DiagnosticStatus diagnosis(const v1::Grant& grant) {
-  DiagnosticStatus made;
-  made.name = "saphira: drive";
-  made.message = situation::describe(grant);
-  made.level = grant.estopped ? 2 : grant.guard >= v1::GUARD_SLOW ? 1 : 0;
-  made.values = {{"driver", grant.source},
-                 {"role", situation::name_of(grant.role)},
-                 {"guard", situation::name_of(grant.guard)}};
-  return made;
+  const int level = grant.estopped ? 2 : grant.guard >= v1::GUARD_SLOW ? 1 : 0;
+  return {.level = static_cast<std::uint8_t>(level),
+          .name = "saphira: drive",
+          .message = situation::describe(grant),
+          .values = {{"driver", grant.source},
+                     {"role", situation::name_of(grant.role)},
+                     {"guard", situation::name_of(grant.guard)}}};
 }
 
 }  // namespace
@@ -188,9 +185,7 @@ Pose3 pose_of(const v1::Pose2& pose) {
 Messages Outward::take(const v1::RobotState& state, std::int64_t time_ns) {
   Messages made;
   place_ = placing_.of(state);
-  Odometry odom;
-  odom.header = header_of(kOdomFrame, time_ns);
-  odom.child_frame_id = kRobotFrame;
+  Odometry odom{.header = header_of(kOdomFrame, time_ns), .child_frame_id = kRobotFrame};
   odom.pose.pose = pose_of(state.pose_in_odom);
   odom.twist.twist.linear.x = state.velocity;
   odom.twist.twist.angular.z = state.rotation_velocity;
@@ -250,8 +245,7 @@ Messages Outward::take(const v1::Registration& registration, std::int64_t time_n
   placing_.take(registration);
   if (!with_map_ || registration.state != v1::REGISTRATION_TRACKING)
     return {};
-  PoseWithCovarianceStamped pose;
-  pose.header = header_of(kMapFrame, time_ns);
+  PoseWithCovarianceStamped pose{.header = header_of(kMapFrame, time_ns)};
   pose.pose.pose = pose_of(registration.pose_in_map);
   const v1::Covariance2& c = registration.covariance;
   auto& all = pose.pose.covariance;  // of x, y, z and three turns, by rows
@@ -298,11 +292,11 @@ Messages Outward::take(const v1::GridTile& tile, bool disposed, std::int64_t tim
   const std::optional<viewer::Cells> cells = tiles_.take(tile, disposed, time_ns);
   if (!cells)
     return made;
-  OccupancyGrid grid;
-  grid.header = header_of(kOdomFrame, time_ns);
-  grid.info = {time_of(time_ns), static_cast<float>(cells->resolution),
+  OccupancyGrid grid{
+      .header = header_of(kOdomFrame, time_ns),
+      .info = {time_of(time_ns), static_cast<float>(cells->resolution),
                static_cast<std::uint32_t>(cells->columns), static_cast<std::uint32_t>(cells->rows),
-               pose_of({cells->x, cells->y, 0.0})};
+               pose_of({cells->x, cells->y, 0.0})}};
   for (const char cell : cells->cells) {
     const auto value = static_cast<std::uint8_t>(cell);
     grid.data.push_back(value > 200 ? kUnknown : static_cast<std::int8_t>(value / 2));
@@ -313,10 +307,9 @@ Messages Outward::take(const v1::GridTile& tile, bool disposed, std::int64_t tim
 
 Messages Outward::take(const v1::SonarBuckets& sonars, std::int64_t time_ns) {
   const std::string points = viewer::echoes_of(sonars);
-  PointCloud2 cloud;
-  cloud.header = header_of(kOdomFrame, time_ns);
-  cloud.height = 1;
-  cloud.width = static_cast<std::uint32_t>(points.size() / viewer::kEchoBytes);
+  PointCloud2 cloud{.header = header_of(kOdomFrame, time_ns),
+                    .height = 1,
+                    .width = static_cast<std::uint32_t>(points.size() / viewer::kEchoBytes)};
   for (std::uint32_t i = 0; i < 3; ++i)
     cloud.fields.push_back({std::string(1, "xyz"[i]), 4 * i, kFloat32, 1});
   cloud.point_step = viewer::kEchoBytes;

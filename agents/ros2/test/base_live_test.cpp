@@ -161,9 +161,7 @@ TEST_F(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
   // The emergency stop, backward.
   EXPECT_TRUE(drive(-0.2));
   bus::Writer<v1::MotorCommand> estop = scene.node.writer(bus::topics::kDriveEstop);
-  v1::MotorCommand press;
-  press.source = "test";
-  press.active = true;
+  v1::MotorCommand press{.source = "test", .active = true};
   EXPECT_TRUE(scene.until([&] {
     ++press.number;
     estop.write(press);

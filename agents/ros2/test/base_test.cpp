@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lines.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 
@@ -102,8 +104,13 @@ TEST(Echoes, ALaserIsWhereItIs) {
 }
 
 /// A client of a robot whose topics come each 50 ms.
-class BaseTest : public ::testing::Test {
- protected:
+struct Client {
+  Client() {
+    base.take(fixed("base_footprint", "base_link", 0.0, 0.0));
+    base.take(fixed("base_link", "laser", 0.0, 0.0));
+    base.heard(true);
+    topics();
+  }
   void topics() {
     if (has_odometry)
       base.take(odometry_at(pose, velocity), now);
@@ -115,10 +122,10 @@ class BaseTest : public ::testing::Test {
       now += 0.01;
       if (++ticks % 5 == 0)
         topics();
-      take(base.advance(now));
+      receive(base.advance(now));
     }
   }
-  void take(const Base::Output& output) {
+  void receive(const Base::Output& output) {
     if (output.cmd_vel) {
       cmd_vel = *output.cmd_vel;
       ++written;
@@ -141,12 +148,6 @@ class BaseTest : public ::testing::Test {
     say(protocol::Enable{true});
     run(0.2);
   }
-  void SetUp() override {
-    base.take(fixed("base_footprint", "base_link", 0.0, 0.0));
-    base.take(fixed("base_link", "laser", 0.0, 0.0));
-    base.heard(true);
-    topics();
-  }
 
   double now = 100.0;
   int ticks = 0;
@@ -164,6 +165,56 @@ class BaseTest : public ::testing::Test {
   int written = 0;
 };
 
+class BaseTest : public ::testing::Test, protected Client {};
+
+/// The cases of base.txt. "cmd" is cmd_vel, forward [m/s] and turning [deg/s]; what is counted is
+/// counted from "mark" on.
+class Play : public test::LinePlayer, private Client {
+ public:
+  Play() {
+    const auto says = [this](auto command) { return [=, this](auto&) { say(command); }; };
+    events_ = {{"open", [this](auto&) { open(); }},
+               {"velocity", [this](auto& in) { say(protocol::Velocity{read<double>(in)}); }},
+               {"rotation",
+                [this](auto& in) { say(protocol::RotationVelocity{radians(read<double>(in))}); }},
+               {"heading", [this](auto& in) { say(protocol::Heading{radians(read<double>(in))}); }},
+               {"emergency", says(protocol::EmergencyStop{})},
+               {"close", says(protocol::Close{})},
+               {"origin", says(protocol::SetOrigin{})},
+               {"disconnect", [this](auto&) { base.disconnect(); }},
+               {"run", [this](auto& in) { run(read<double>(in)); }},
+               {"pose",
+                [this](auto& in) {
+                  pose.x = read<double>(in);
+                  pose.y = read<double>(in);
+                  pose.th = radians(read<double>(in));
+                }},
+               {"odometry", [this](auto& in) { has_odometry = rest(in) == "on"; }},
+               {"scan", [this](auto& in) { has_scan = rest(in) == "on"; }},
+               {"stamped-scan",
+                [this](auto&) {
+                  scan.header.stamp = {5, 0};
+                  topics();
+                }},
+               {"mark", [this](auto&) {
+                  written = packets = 0;
+                  fastest = 0.0;
+                }}};
+    facts_ = {
+        {"cmd",
+         [this] { return format("%.3g %.3g", cmd_vel.linear.x, degrees(cmd_vel.angular.z)); }},
+        {"fastest", [this] { return format("%.3g", fastest); }},
+        {"written", [this] { return std::to_string(written); }},
+        {"heard", [this] { return yes(packets > 0); }},
+        {"place", [this] { return format("%d %d", newest.x, newest.y); }},
+        {"trouble", [this] { return base.trouble(now); }}};
+  }
+};
+
+TEST(Base, IsAsWritten) {
+  EXPECT_EQ(test::play<Play>("agents/ros2/test/base.txt"), 9);
+}
+
 TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {
   base.heard(false);
   run(1.0);
@@ -176,8 +227,7 @@ TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {
   EXPECT_EQ(cmd_vel, Twist{});
   pose = {1.0, -0.5, 0.3};
   velocity = 0.2;
-  BatteryState battery;
-  battery.voltage = 12.1F;
+  BatteryState battery{.voltage = 12.1F};
   base.take(battery);
   open();
   EXPECT_GE(packets, 4);  // the answers to SYNC
@@ -191,92 +241,6 @@ TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {
   ASSERT_EQ(in.sonars.size(), 24U);
   EXPECT_NEAR(in.sonars[0].range, 2.0, 0.001);
   EXPECT_TRUE(in.sonars[0].echo);
-}
-
-TEST_F(BaseTest, VelocityGrowsByTheAccelerationOfTheFile) {
-  open();
-  say(protocol::Velocity{0.25});
-  run(0.5);
-  EXPECT_NEAR(cmd_vel.linear.x, 0.15, 0.02);
-  run(1.0);
-  EXPECT_NEAR(cmd_vel.linear.x, 0.25, kEps);
-  say(protocol::Velocity{2.0});
-  run(1.0);
-  EXPECT_NEAR(cmd_vel.linear.x, robot().max_velocity, kEps);
-  say(protocol::Velocity{0.1});
-  say(protocol::RotationVelocity{radians(30.0)});
-  run(1.0);
-  EXPECT_NEAR(cmd_vel.linear.x, 0.1, kEps);
-  EXPECT_NEAR(cmd_vel.angular.z, radians(30.0), kEps);
-}
-
-TEST_F(BaseTest, EmergencyStopIsAtOnceAndCloseEndsInSilence) {
-  open();
-  say(protocol::Velocity{0.3});
-  run(2.0);
-  say(protocol::EmergencyStop{});
-  run(0.1);
-  EXPECT_EQ(cmd_vel, Twist{});
-  const int before = written;
-  run(1.0);
-  EXPECT_EQ(written - before, 20);  // it holds the robot
-  say(protocol::Close{});
-  run(1.0);
-  const int closed = written;
-  EXPECT_LE(closed - before - 20, 11);
-  run(5.0);
-  EXPECT_EQ(written, closed);
-}
-
-TEST_F(BaseTest, WithoutCommandsTheRobotStands) {
-  open();
-  say(protocol::Velocity{0.3});
-  run(1.9);
-  EXPECT_GT(cmd_vel.linear.x, 0.2);
-  run(0.1 + 0.3 / robot().deceleration + 0.06);
-  EXPECT_EQ(cmd_vel, Twist{});
-}
-
-TEST_F(BaseTest, ALostClientStopsItAtOnce) {
-  open();
-  say(protocol::Velocity{0.3});
-  run(1.5);
-  base.disconnect();
-  run(0.01);
-  EXPECT_EQ(cmd_vel, Twist{});
-}
-
-TEST_F(BaseTest, LostTopicsStopItAndMakeItSilent) {
-  for (bool* const topic : {&has_odometry, &has_scan}) {
-    open();
-    say(protocol::Velocity{0.3});
-    run(1.5);
-    EXPECT_GT(cmd_vel.linear.x, 0.2);
-    *topic = false;
-    run(Base::kLost - 0.05);
-    EXPECT_GT(cmd_vel.linear.x, 0.2);
-    run(0.1);
-    EXPECT_EQ(cmd_vel, Twist{});
-    const int before = packets;
-    say(protocol::Velocity{0.3});
-    fastest = 0.0;
-    run(2.0);
-    EXPECT_EQ(packets, before);
-    EXPECT_EQ(fastest, 0.0);
-    *topic = true;
-    run(1.0);
-    EXPECT_GT(packets, before);
-    EXPECT_EQ(fastest, 0.0);  // a new command is needed
-    say(protocol::Close{});
-    run(0.1);
-  }
-}
-
-TEST_F(BaseTest, AScanThatIsRepeatedGrowsOld) {
-  scan.header.stamp = {5, 0};
-  topics();
-  run(Base::kLost + 0.1);
-  EXPECT_EQ(base.trouble(now), "the scan has ended");
 }
 
 TEST_F(BaseTest, TroubleIsNamed) {
@@ -331,28 +295,6 @@ TEST_F(BaseTest, ATurnToAHeadingDoesNotOvershootDespiteTheLag) {
   EXPECT_NEAR(pose.th, radians(90.0), radians(1.0));
   EXPECT_LT(furthest, radians(92.0));
   EXPECT_EQ(cmd_vel.angular.z, 0.0);
-}
-
-TEST_F(BaseTest, AJumpOfTheOdometryEndsTheMotionAndIsShown) {
-  open();
-  say(protocol::Heading{radians(90.0)});
-  run(0.5);
-  EXPECT_GT(cmd_vel.angular.z, 0.1);
-  pose = {5.0, 0.0, -1.0};
-  run(0.11);
-  EXPECT_EQ(cmd_vel, Twist{});
-  run(0.1);
-  EXPECT_EQ(newest.x, 5000);
-}
-
-TEST_F(BaseTest, OriginIsSet) {
-  pose = {2.0, 1.0, kPi / 2};
-  open();
-  say(protocol::SetOrigin{});
-  pose = {2.0, 1.5, kPi / 2};
-  run(0.2);
-  EXPECT_EQ(newest.x, 500);
-  EXPECT_EQ(newest.y, 0);
 }
 
 }  // namespace

@@ -17,23 +17,16 @@ constexpr std::int64_t kNow = 1'700'000'000'250'000'000;
 constexpr double kHalfTurn = 3.14159265358979323846;
 
 v1::RobotState robot_at(const v1::Pose2& pose) {
-  v1::RobotState state;
-  state.odom = 3;
-  state.pose_in_odom = pose;
-  state.velocity = 0.2;
-  state.rotation_velocity = -0.1;
-  state.battery = 12.5;
-  return state;
+  return {
+      .odom = 3, .pose_in_odom = pose, .velocity = 0.2, .rotation_velocity = -0.1, .battery = 12.5};
 }
 
 v1::Registration tracking(const v1::Pose2& odom_in_map) {
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.odom = 3;
-  registration.odom_in_map = odom_in_map;
-  registration.pose_in_map = {11.0, 20.0, 0.5};
-  registration.covariance = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
-  return registration;
+  return {.state = v1::REGISTRATION_TRACKING,
+          .odom = 3,
+          .pose_in_map = {11.0, 20.0, 0.5},
+          .odom_in_map = odom_in_map,
+          .covariance = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}};
 }
 
 TEST(Outward, OdometryAndItsFrames) {
@@ -81,8 +74,7 @@ TEST(Outward, EachReadingIsARangeInTheFrameOfItsSonar) {
   EXPECT_EQ(messages.sonar[0].header.frame_id, "sonar_4");
   EXPECT_EQ(messages.sonar[0].range, 1.25F);
   EXPECT_EQ(messages.sonar[1].range, std::numeric_limits<float>::infinity());
-  v1::RobotDescription description;
-  description.sonars = {{4, {0.1, 0.2, 0.3}}};
+  v1::RobotDescription description{.sonars = {{4, {0.1, 0.2, 0.3}}}};
   const Messages frames = outward.take(description, kNow);
   EXPECT_EQ(frames.tf_static->transforms.at(0).child_frame_id, "sonar_4");
   EXPECT_EQ(frames.tf_static->transforms.at(0).transform.translation.y, 0.2);
@@ -129,11 +121,7 @@ TEST(Outward, MapHasItsFloorsAndWalls) {
 
 TEST(Outward, CellsAreInPercent) {
   Outward outward(true);
-  v1::GridTile tile;
-  tile.side = 2;
-  tile.resolution = 0.1;
-  tile.column = 1;
-  tile.cells = {0, 200, 255, 51};
+  v1::GridTile tile{.column = 1, .resolution = 0.1, .side = 2, .cells = {0, 200, 255, 51}};
   const OccupancyGrid grid = *outward.take(tile, false, kNow).local_map;
   EXPECT_EQ(grid.data, (std::vector<std::int8_t>{0, 100, -1, 25}));
   EXPECT_EQ(grid.info.origin.position.x, 0.2);
@@ -238,10 +226,7 @@ SendRequest request(std::uint8_t number) {
 }
 
 v1::GoalStatus status_of(const v1::GoalId& id, v1::GoalState state) {
-  v1::GoalStatus status;
-  status.id = id;
-  status.state = state;
-  return status;
+  return {.id = id, .state = state};
 }
 
 /// The states of all goals, the oldest first.
@@ -347,9 +332,7 @@ TEST(Bytes, EarlierDistributionsLackTheLastMembers) {
   const std::string range = bytes_of(Range{});
   EXPECT_EQ(bytes_of(Range{}, Distribution::humble).size(), range.size() - 4);
   EXPECT_EQ(bytes_of(Range{}, Distribution::iron), range);
-  ResultResponse response;
-  response.status = 6;
-  response.result = {204, "no way"};
+  ResultResponse response{.status = 6, .result = {204, "no way"}};
   EXPECT_EQ(bytes_of(response, Distribution::humble), std::string("\0\1\0\0\6\0", 6));
   EXPECT_EQ(bytes_of(response, Distribution::iron).size(), 8U);
   EXPECT_EQ(read<ResultResponse>(bytes_of(response, Distribution::jazzy)), response);

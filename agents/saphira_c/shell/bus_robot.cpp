@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "../src/served_robot.hpp"
 #include "behaviors/shell/convert.hpp"
 #include "bridge/shell/enums.hpp"
 #include "geometry/shell/convert.hpp"
@@ -245,7 +244,7 @@ std::optional<Call> device_call(const protocol::Bytes& packet) {
   }
 }
 
-class BusRobot final : public ServedRobot {
+class BusRobot final : public Robot {
  public:
   BusRobot(bus::NodeOptions options, Say say, std::shared_ptr<bus::MemoryBus> memory)
       : options_(std::move(options)), memory_(std::move(memory)), say_(std::move(say)) {
@@ -436,8 +435,8 @@ class BusRobot final : public ServedRobot {
       buckets_.clear();
     odom_ = state.odom;
     for (const protocol::Sonar& sonar : state.information.sonars) {
-      const auto unit = std::find_if(parameters_.sonars.begin(), parameters_.sonars.end(),
-                                     [&](const auto& each) { return each.number == sonar.number; });
+      const auto unit = std::ranges::find_if(
+          parameters_.sonars, [&](const auto& each) { return each.number == sonar.number; });
       if (unit == parameters_.sonars.end())
         continue;
       buckets_[sonar.number] = {sonar, state.cycle, state.pose_in_odom,
@@ -671,7 +670,7 @@ class BusRobot final : public ServedRobot {
   bool told_limit_ = false;
   bus::StopNotice notice_;
 
-  // Shared with the program's thread, as those of ServedRobot.
+  // Shared with the program's thread, as those of Robot.
   bus::Node* node_ = nullptr;
   std::uint64_t sessions_ = 0;
   std::uint64_t epoch_ = 0;

@@ -22,15 +22,11 @@ Pose global_of(const Artifact& p) {
 }
 template <class Artifact>
 void set_local(Artifact& p, const Pose& pose) {
-  p.x = static_cast<float>(pose.x * 1000.0);
-  p.y = static_cast<float>(pose.y * 1000.0);
-  p.th = static_cast<float>(pose.th / Os::get().angle_unit);
+  put(pose, p.x, p.y, p.th);
 }
 template <class Artifact>
 void set_global(Artifact& p, const Pose& pose) {
-  p.ax = static_cast<float>(pose.x * 1000.0);
-  p.ay = static_cast<float>(pose.y * 1000.0);
-  p.ath = static_cast<float>(pose.th / Os::get().angle_unit);
+  put(pose, p.ax, p.ay, p.ath);
 }
 
 point system_point(int id) {
@@ -151,7 +147,7 @@ void Os::read_map() {
 void Os::show_map(const maps::Map& map) {
   std::vector<std::unique_ptr<wall>> next;
   for (const maps::Feature& feature : map.features) {
-    const auto same = std::find_if(map_points_.begin(), map_points_.end(), [&](const auto& each) {
+    const auto same = std::ranges::find_if(map_points_, [&](const auto& each) {
       return each && feature.id != 0 && each->id == static_cast<int>(feature.id);
     });
     const wall now = to_c(feature);
@@ -184,12 +180,12 @@ void Os::interpret() {
     return;
   }
   const behaviors::RobotModel model = model_of(parameters);
-  interpretation::Core::Inputs inputs;
-  inputs.cycle = cycle;
-  inputs.new_robot = interpretation_began_ ? nullptr : &model.lps.sonars;
-  inputs.new_frame = new_frame_;
-  inputs.pose_in_odom = robot_in_odom;
-  inputs.readings = readings_;
+  interpretation::Core::Inputs inputs{
+      .cycle = cycle,
+      .new_robot = interpretation_began_ ? nullptr : &model.lps.sonars,
+      .new_frame = new_frame_,
+      .pose_in_odom = robot_in_odom,
+      .readings = readings_};
   interpretation_began_ = true;
   constexpr std::pair<void (*)(), const char*> parts[] = {
       {side_segment_proc, "side-segment"},
@@ -260,6 +256,7 @@ void Os::match() {
 
 using saphira::Pose;
 using saphira::c::Os;
+using saphira::c::real;
 namespace lps = saphira::lps;
 
 namespace {
@@ -294,10 +291,6 @@ int answer(const lps::Occupancy& found, int* x, int* y) {
 bool wrong(const char* function, const char* expected) {
   Os::get().say(std::string(function) + ": expected " + expected, true);
   return true;
-}
-
-float real(double value) {
-  return static_cast<float>(value);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Behaviors of C programs (manual 7.6, 7.7), and the library's own (7.8).
+// Fuzzy variables (manual 7.5) and behaviors of C programs (7.6, 7.7), and the library's own (7.8).
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 #include <map>
 
 #include "os.hpp"
+#include "saphira/behaviors/fuzzy.hpp"
 
 int Accel = 1, Decel = 2, Turn_left = 3, Turn_right = 4;
 
@@ -134,10 +135,10 @@ constexpr const char* kInC = "behavior in C";
 }  // namespace
 
 void register_behaviors(behaviors::Registry& registry) {
-  behaviors::Schema schema;
-  schema.name = kInC;
-  schema.summary = "a behavior of this program";
-  schema.parameters = {behaviors::number_parameter("closure", "which one", 0.0, 1e9, 0.0)};
+  behaviors::Schema schema{
+      .name = kInC,
+      .summary = "a behavior of this program",
+      .parameters = {behaviors::number_parameter("closure", "which one", 0.0, 1e9, 0.0)}};
   schema.make = [] { return std::make_unique<InC>(); };
   registry.add(std::move(schema));
 }
@@ -196,8 +197,8 @@ behaviors::Intended Os::intended(const Closure& closure) {
   intended.running = closure.shown.running != FALSE;
   const auto known = predefined().find(closure.shown.beh);
   if (known == predefined().end()) {
-    const auto index = std::find_if(closures.begin(), closures.end(),
-                                    [&](const auto& each) { return each.get() == &closure; });
+    const auto index =
+        std::ranges::find_if(closures, [&](const auto& each) { return each.get() == &closure; });
     intended.parameters.push_back(number("closure", static_cast<double>(index - closures.begin())));
     return intended;
   }
@@ -393,11 +394,8 @@ Closure* closure_of(const char* function, BEHCLOSURE b) {
   return closure;
 }
 
-std::string plain(const char* name) {
-  std::string text;
-  for (const char* c = name; *c != '\0'; ++c)
-    if (std::isalnum(static_cast<unsigned char>(*c)) != 0)
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(*c)));
+std::string plain(std::string_view name) {
+  const std::string text = bare(name);
   return text.starts_with("sf") ? text.substr(2) : text;
 }
 
@@ -472,9 +470,34 @@ BEHCLOSURE sfFindBehavior(const char* name) {
   if (name == nullptr)
     return nullptr;
   for (const auto& closure : Os::get().closures)
-    if (!closure->removed && plain(closure->name.c_str()) == plain(name))
+    if (!closure->removed && plain(closure->name) == plain(name))
       return &closure->shown;
   return nullptr;
+}
+
+float straight_up(float x, float min, float max) {
+  return real(saphira::behaviors::straight_up(x, min, max));
+}
+float down_straight(float x, float min, float max) {
+  return real(saphira::behaviors::down_straight(x, min, max));
+}
+float f_greater(float x, float c, float delta) {
+  return real(saphira::behaviors::f_greater(x, c, delta));
+}
+float f_smaller(float x, float c, float delta) {
+  return real(saphira::behaviors::f_smaller(x, c, delta));
+}
+float f_eq(float x, float c, float delta) {
+  return real(saphira::behaviors::f_eq(x, c, delta));
+}
+float f_not(float x) {
+  return real(saphira::behaviors::f_not(x));
+}
+float f_and(float x, float y) {
+  return real(saphira::behaviors::f_and(x, y));
+}
+float f_or(float x, float y) {
+  return real(saphira::behaviors::f_or(x, y));
 }
 
 }  // extern "C"

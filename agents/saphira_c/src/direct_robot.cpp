@@ -11,12 +11,12 @@
 #include <utility>
 #include <variant>
 
+#include "robot.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/transport/keeper.hpp"
 #include "saphira/transport/link.hpp"
-#include "served_robot.hpp"
 
 namespace saphira::c {
 namespace {
@@ -40,7 +40,7 @@ bridge::CoreSettings settings_of_environment() {
   return settings;
 }
 
-class DirectRobot final : public ServedRobot {
+class DirectRobot final : public Robot {
  public:
   DirectRobot(const std::string& address, Say say)
       : say_(std::move(say)),
@@ -72,7 +72,7 @@ class DirectRobot final : public ServedRobot {
     wake();
   }
   void end() override {
-    ServedRobot::end();
+    Robot::end();
     keeper_.reset();
     if (wake_ >= 0)
       ::close(std::exchange(wake_, -1));
@@ -271,7 +271,7 @@ class DirectRobot final : public ServedRobot {
   bool guarded_ = false;
   bool told_limit_ = false;
 
-  // Shared with the program's thread, as those of ServedRobot.
+  // Shared with the program's thread, as those of Robot.
   int wake_ = -1;
   std::uint64_t next_session_ = 0;
   std::optional<bridge::DriveCommand> wish_;

@@ -8,7 +8,6 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/behaviors/folder.hpp"
 #include "saphira/transport/address.hpp"
-#include "window.hpp"
 
 namespace saphira::c {
 namespace {

@@ -2,25 +2,37 @@
 
 #include <array>
 #include <atomic>
-#include <condition_variable>
-#include <cstdint>
 #include <deque>
-#include <memory>
-#include <mutex>
-#include <optional>
 #include <set>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "robot.hpp"
 #include "saphira.h"
 #include "saphira/behaviors/core.hpp"
 #include "saphira/interpretation/core.hpp"
 #include "saphira/registration/core.hpp"
-#include "view.hpp"
 
 namespace saphira::c {
+
+using ::point;  // not the argument of a request
+
+/// The state of the robot for a C program: one whole cycle.
+struct View {
+  std::uint64_t cycle = 0;
+  struct robot robot {};
+  std::array<sdata, SF_MAX_SONARS> sonars{};
+  std::array<std::uint64_t, SF_MAX_SONARS> read{};  ///< cycle of each sonar's newest reading
+  std::array<cbuf, 3> buffers{};                    ///< front, left, right
+  std::array<wall, 2> walls{};                      ///< left, right
+  std::array<vinfo, 3> vision{};
+};
+
+/// The view of the calling thread. The micro-tasks' thread has that of its cycle; any other has a
+/// copy of the newest, taken now: so no thread reads while another one writes.
+View& view();
+/// The calling thread runs the micro-tasks: its view changes in publish() only.
+void own_view();
+/// A new cycle, from the thread that runs the micro-tasks.
+void publish(const View& next);
 
 /// A micro-task or an intention.
 struct Task {
@@ -212,6 +224,20 @@ bool read_arguments(const std::string& function, std::vector<beh_param>& params,
                     std::vector<int>& kinds, va_list list);
 /// The parameters' types of one of the library's behaviors.
 std::vector<int> kinds_of(const behavior* b);
+/// A pose as members of the C API's structures [mm, angle_unit].
+void put(const Pose& pose, float& x, float& y, float& th);
+inline float real(double value) {
+  return static_cast<float>(value);
+}
+/// For comparing names: letters and digits, in lower case.
+std::string bare(std::string_view name);
+/// The rectangles and lines that were drawn since the last call.
+std::vector<Drawn> take_drawn();
+
+/// Passes typed keys to the program. In the thread of the micro-tasks, once a cycle.
+void take_keys();
+/// Likewise a place that a person has pointed out [m] [robot], as a click there.
+void click(const Vec2& in_robot);
 /// Sets the program's sfRobotName, sfRobotClass and sfRobotSubclass.
 void show_names(const protocol::RobotIdentity& robot);
 

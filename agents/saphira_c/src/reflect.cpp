@@ -8,18 +8,32 @@
 namespace saphira::c {
 namespace {
 
-float mm(double meters) {
-  return static_cast<float>(meters * 1000.0);
-}
-float real(double value) {
-  return static_cast<float>(value);
+std::mutex of_newest;
+View newest;  // under that mutex
+std::uint64_t newest_number = 0;
+
+struct Mine {
+  View view;
+  std::uint64_t number = 0;
+  bool owned = false;
+};
+Mine& mine() {
+  thread_local const std::unique_ptr<Mine> of_thread = std::make_unique<Mine>();
+  return *of_thread;
 }
 
-/// Puts a pose into a C program's members [mm, angle_unit].
-void put(const Pose& pose, float& x, float& y, float& th) {
-  x = mm(pose.x);
-  y = mm(pose.y);
-  th = real(pose.th / Os::get().angle_unit);
+/// Takes the next view. A sonar reading counts as new for each thread once.
+void take(Mine& of_thread, const View& next) {
+  const View before = of_thread.view;
+  of_thread.view = next;
+  for (std::size_t i = 0; i < next.sonars.size(); ++i) {
+    const bool same = next.read[i] == before.read[i];
+    of_thread.view.sonars[i].snew = same ? before.sonars[i].snew : 0xFFFF;
+  }
+}
+
+float mm(double meters) {
+  return static_cast<float>(meters * 1000.0);
 }
 
 cbuf to_c(const lps::SonarBuffer& buffer) {
@@ -65,6 +79,35 @@ wall to_c(const lps::Percept& percept, const Pose& robot_in_odom, const Pose& od
 }
 
 }  // namespace
+
+void put(const Pose& pose, float& x, float& y, float& th) {
+  x = mm(pose.x);
+  y = mm(pose.y);
+  th = real(pose.th / Os::get().angle_unit);
+}
+
+View& view() {
+  Mine& of_thread = mine();
+  if (of_thread.owned)
+    return of_thread.view;
+  const std::lock_guard lock(of_newest);
+  if (of_thread.number != newest_number) {
+    take(of_thread, newest);
+    of_thread.number = newest_number;
+  }
+  return of_thread.view;
+}
+
+void own_view() {
+  mine().owned = true;
+}
+
+void publish(const View& next) {
+  take(mine(), next);
+  const std::lock_guard lock(of_newest);
+  newest = next;
+  ++newest_number;
+}
 
 /// Registers all geometry with the present pose of the robot.
 void Os::clamp(const reflector::State& now) {

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "saphira/base/process.hpp"
@@ -15,7 +20,6 @@
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
-#include "window.hpp"
 
 namespace saphira::c {
 
@@ -60,31 +64,76 @@ struct TaskRequest {
   ProcessAction action = ProcessAction::suspend;
 };
 
+/// The style of the next drawing.
+struct Pen {
+  int width = 1;  ///< [pixels]
+  int dashed = 0;
+  int line = 14;  ///< a colour of Table 6-4
+  int patch = 14;
+};
+/// A rectangle from the program, or the line across it: its lower left corner in the LPS, its
+/// extent [mm].
+struct Drawn {
+  Pen pen;
+  bool line = false;
+  float x = 0.0F;
+  float y = 0.0F;
+  float dx = 0.0F;
+  float dy = 0.0F;
+};
+
 /// The robot of a C program, on any connection. A thread of its own serves it, so that the robot
-/// stops when the program hangs.
+/// stops when the program hangs. A derived class starts the thread, and calls end() in its
+/// destructor.
 class Robot {
  public:
   virtual ~Robot() = default;
 
   /// Of the connection; changed between two sessions only.
-  virtual std::uint64_t session() const = 0;  ///< 0: not connected
-  virtual protocol::RobotParameters parameters() const = 0;
-  virtual protocol::RobotIdentity identity() const = 0;
+  std::uint64_t session() const { return shared(session_); }  ///< 0: not connected
+  protocol::RobotParameters parameters() const { return shared(parameters_); }
+  protocol::RobotIdentity identity() const { return shared(identity_); }
   /// The reason why it is not connected, in words.
-  virtual std::string trouble() const = 0;
+  std::string trouble() const { return shared(trouble_); }
 
   /// Waits until a new cycle begins; nothing where none does in time, or the connection is lost.
   /// The newest counts: cycles in which the caller was busy are skipped, with their sonar readings
   /// kept.
-  virtual std::optional<Reflected> next(int milliseconds) = 0;
+  std::optional<Reflected> next(int milliseconds) {
+    std::unique_lock lock(mutex_);
+    came_.wait_for(lock, std::chrono::milliseconds(milliseconds),
+                   [this] { return fresh_ || ended_; });
+    if (!std::exchange(fresh_, false))
+      return std::nullopt;
+    Reflected now{session_, newest_};
+    now.state.information.sonars = std::exchange(readings_, {});
+    return now;
+  }
   /// The program's motion command, in answer to the cycle. It is valid for 0.3 s.
   virtual void drive(const reflector::Motion& motion, std::uint64_t cycle) = 0;
   /// A packet to the robot, as it is.
-  virtual void send(protocol::Bytes packet) = 0;
+  void send(protocol::Bytes packet) {
+    const std::lock_guard lock(mutex_);
+    packets_.push_back(std::move(packet));
+    wake();
+  }
   /// The newest packet of the camera; count: the number of packets so far.
-  virtual protocol::VisionPacket vision(std::uint64_t& count) const = 0;
+  protocol::VisionPacket vision(std::uint64_t& count) const {
+    const std::lock_guard lock(mutex_);
+    count = seen_count_;
+    return seen_;
+  }
   /// Stops the robot and releases it. Waits a second at most.
-  virtual void end() = 0;
+  virtual void end() {
+    {
+      std::unique_lock lock(mutex_);
+      ending_ = true;
+      wake();
+      came_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; });
+    }
+    if (thread_.joinable())
+      thread_.join();
+  }
 
   // ---- Only for a robot on the bus.
   // The results of its services; nothing: it has none, and the program computes them itself.
@@ -107,6 +156,54 @@ class Robot {
   /// Sends a request to registration; reports it and its result.
   virtual void load_map(const std::string& /*text*/, const std::string& /*name*/) {}
   virtual void place(const Pose& /*robot_in_map*/) {}
+
+ protected:
+  /// Ends the thread's wait. Call these under the mutex.
+  virtual void wake() = 0;
+  void cycle_began(const reflector::State& state) {
+    constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
+    newest_ = state;
+    const auto& readings = state.information.sonars;
+    readings_.insert(readings_.end(), readings.begin(), readings.end());
+    if (readings_.size() > kMostKept)
+      readings_.erase(readings_.begin(), readings_.end() - static_cast<std::ptrdiff_t>(kMostKept));
+    fresh_ = true;
+    came_.notify_all();
+  }
+  void session_lost(const std::string& why) {
+    session_ = 0;
+    fresh_ = false;
+    trouble_ = why;
+    came_.notify_all();
+  }
+  void thread_ended() {
+    session_ = 0;
+    ended_ = true;
+    came_.notify_all();
+  }
+
+  mutable std::mutex mutex_;  ///< of the following members
+  std::condition_variable came_;
+  bool ending_ = false;
+  bool ended_ = false;
+  bool fresh_ = false;
+  std::uint64_t session_ = 0;
+  protocol::RobotParameters parameters_;
+  protocol::RobotIdentity identity_;
+  std::string trouble_;
+  reflector::State newest_;
+  std::vector<protocol::Sonar> readings_;
+  std::vector<protocol::Bytes> packets_;
+  protocol::VisionPacket seen_;
+  std::uint64_t seen_count_ = 0;
+  std::thread thread_;
+
+ private:
+  template <class T>
+  T shared(const T& member) const {
+    const std::lock_guard lock(mutex_);
+    return member;
+  }
 };
 
 /// Takes lines for people; called in any thread.

@@ -53,10 +53,7 @@ void start(int first, int last) {
 
 /// "test matching" is test_match_proc: the manual has several spellings.
 std::string plain(const std::string& name) {
-  std::string text;
-  for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string text = bare(name);
   if (text.ends_with("proc"))
     text.resize(text.size() - 4);
   if (text.ends_with("ing"))
@@ -65,6 +62,14 @@ std::string plain(const std::string& name) {
 }
 
 }  // namespace
+
+std::string bare(std::string_view name) {
+  std::string text;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 Task* Os::add(const char* name, void (*fn)(), bool intention) {
   const std::lock_guard lock(mutex);
@@ -239,8 +244,8 @@ void Os::share(Robot& robot, std::uint64_t robot_cycle) {
 std::optional<SharedMind> Os::mind(std::uint64_t robot_cycle) const {
   SharedMind mind{robot_cycle, behaviors_said_, {}};
   const auto id_of = [this](const process* shown) {
-    const auto found = std::find_if(tasks_.begin(), tasks_.end(),
-                                    [&](const auto& task) { return &task->shown == shown; });
+    const auto found =
+        std::ranges::find_if(tasks_, [&](const auto& task) { return &task->shown == shown; });
     return found == tasks_.end() ? 0U : static_cast<std::uint32_t>(found - tasks_.begin()) + 1U;
   };
   for (const auto& task : tasks_)

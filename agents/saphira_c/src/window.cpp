@@ -1,7 +1,5 @@
 // Messages, keys and drawing (manual 6.1, 6.8) without a window: the terminal.
 
-#include "window.hpp"
-
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>

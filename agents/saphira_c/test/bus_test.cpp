@@ -53,7 +53,7 @@ class OnBus : public testing::Test {
           for (const auto& sample : tasks_.take())
             shown_[sample.data.service] = sample.data.processes;
           const std::vector<v1::Process>& processes = shown_[service];
-          return std::any_of(processes.begin(), processes.end(), [&](const v1::Process& one) {
+          return std::ranges::any_of(processes, [&](const v1::Process& one) {
             return one.name == name && one.state == state;
           });
         },

@@ -41,8 +41,7 @@ class OnMemory : public testing::Test {
  protected:
   OnMemory() {
     stamp_.epoch = 7;
-    v1::RobotDescription description;
-    description.stamp = stamp_;
+    v1::RobotDescription description{.stamp = stamp_};
     descriptions_.write(description);
     EXPECT_TRUE(test::wait_until([this] {
       v1::RobotState state;
@@ -54,9 +53,7 @@ class OnMemory : public testing::Test {
     }));
   }
   void drive(double velocity) {
-    reflector::Motion motion;
-    motion.translation = reflector::Translation::velocity;
-    motion.velocity = velocity;
+    reflector::Motion motion{.translation = reflector::Translation::velocity, .velocity = velocity};
     robot_->drive(motion, stamp_.cycle);
   }
   /// The speeds of the commands until this one comes, which are not releases.
@@ -72,10 +69,7 @@ class OnMemory : public testing::Test {
   }
   /// Registration's pose, until the robot has taken it or one later sample.
   void registers(double x) {
-    v1::Registration sample;
-    sample.stamp = stamp_;
-    sample.odom = 1;
-    sample.state = v1::REGISTRATION_TRACKING;
+    v1::Registration sample{.stamp = stamp_, .state = v1::REGISTRATION_TRACKING, .odom = 1};
     sample.odom_in_map.x = x;
     registrations_.write(sample);
     v1::Registration next = sample;
@@ -109,8 +103,7 @@ TEST_F(OnMemory, SfStopRobotAsksTheBridgeForAStop) {
 }
 
 TEST_F(OnMemory, AfterAStopCommandsAreDroppedUntilOneStands) {
-  v1::Grant grant;
-  grant.stamp = stamp_;
+  v1::Grant grant{.stamp = stamp_};
   grants_.write(grant);
   drive(0.3);
   EXPECT_EQ(until(0.3), std::vector<double>{0.3});
@@ -136,10 +129,7 @@ TEST_F(OnMemory, SfMoveRobotHoldsUntilRegistrationHasAnswered) {
   EXPECT_EQ(asked->functor, "place");
   registers(1.0);
   EXPECT_FALSE(robot_->found()->odom_in_map) << "its pose is the one before";
-  v1::Answer answer;
-  answer.asker = asked->asker;
-  answer.number = asked->number;
-  answer.code = v1::ANSWER_DONE;
+  v1::Answer answer{.asker = asked->asker, .number = asked->number, .code = v1::ANSWER_DONE};
   answers_.write(answer);
   EXPECT_TRUE(test::wait_until([&] {
     registers(5.0);

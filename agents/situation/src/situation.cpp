@@ -181,8 +181,7 @@ std::vector<std::pair<std::string, Condition>> conditions(const Situation& s) {
   std::vector<std::pair<std::string, Condition>> all;
   for (const char* const name : kPrograms) {
     const Condition how = condition(s, name);
-    const bool needed =
-        std::find(kMakeItGo.begin(), kMakeItGo.end(), std::string_view(name)) != kMakeItGo.end();
+    const bool needed = std::ranges::find(kMakeItGo, std::string_view(name)) != kMakeItGo.end();
     if (needed || how.health == Health::hung || how.health == Health::lost ||
         (how.health == Health::absent && !missed(s, name).empty()))
       all.emplace_back(name, how);
@@ -267,7 +266,7 @@ std::vector<std::string> unheard(const Situation& situation) {
 }
 
 bool misses(const Situation& situation) {
-  return std::any_of(kPrograms.begin(), kPrograms.end(), [&](const char* const name) {
+  return std::ranges::any_of(kPrograms, [&](const char* const name) {
     return find(situation.programs, name) == nullptr && !missed(situation, name).empty();
   });
 }

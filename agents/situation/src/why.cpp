@@ -132,7 +132,7 @@ Explanation Reason::stopped() const {
   if (reasons.empty())
     reasons.push_back({"nobody drives it: " + grant.reason});
   if (!grant.stop_source.empty() && !grant.estopped &&
-      std::none_of(reasons.begin(), reasons.end(), [&](const Part& part) {
+      std::ranges::none_of(reasons, [&](const Part& part) {
         return part.text.find(grant.stop_source) != std::string::npos;
       })) {
     const std::string last = "the last to stop it was " + grant.stop_source;
@@ -246,7 +246,7 @@ Explanation Reason::by_behaviors_known() {
   std::vector<const v1::BehaviorState*> mentioned;
   for (const std::vector<Say>* const all : {&speeds, &turns})
     for (const Say& say : *all)
-      if (std::find(mentioned.begin(), mentioned.end(), say.behavior) == mentioned.end())
+      if (std::ranges::find(mentioned, say.behavior) == mentioned.end())
         mentioned.push_back(say.behavior);
 
   const char* separator = ": ";

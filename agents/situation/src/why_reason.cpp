@@ -37,7 +37,7 @@ std::string Reason::name_of(const v1::BehaviorState& behavior) const {
   };
   const std::string name = short_name(behavior);
   const auto& all = scene_.behaviors->behaviors;
-  const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
+  const auto alike = std::ranges::count_if(all, [&](const v1::BehaviorState& other) {
     return other.running && short_name(other) == name;
   });
   return alike <= 1 ? name : behavior.name;
@@ -49,8 +49,7 @@ std::vector<Say> Reason::says(Channel channel) const {
   for (const v1::BehaviorState& behavior : scene_.behaviors->behaviors) {
     if (!behavior.running || !recommends(behavior, channel))
       continue;
-    Say say;
-    say.behavior = &behavior;
+    Say say{.behavior = &behavior};
     for (const v1::RuleState& rule : behavior.rules) {
       if (channel_of(rule) != channel)
         continue;
@@ -68,8 +67,7 @@ std::vector<Say> Reason::says(Channel channel) const {
   }
   for (Say& say : result)
     say.share = all > 0.0 ? say.weight / all : 0.0;
-  std::stable_sort(result.begin(), result.end(),
-                   [](const Say& a, const Say& b) { return a.weight > b.weight; });
+  std::ranges::stable_sort(result, [](const Say& a, const Say& b) { return a.weight > b.weight; });
   return result;
 }
 
@@ -230,7 +228,7 @@ std::string Reason::detour() const {
   if (scene_.past || !scene_.intentions)
     return {};
   const auto& nodes = scene_.intentions->nodes;
-  if (std::none_of(nodes.begin(), nodes.end(), [](const v1::IntentionNode& one) {
+  if (std::ranges::none_of(nodes, [](const v1::IntentionNode& one) {
         return one.schema == "follow-path" && one.state == v1::INTENTION_RUNNING;
       }))
     return {};

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "saphira/situation/sentence.hpp"
 #include "saphira/situation/why.hpp"
+#include "saphira/situation/words.hpp"
 #include "why_words.hpp"
 
 namespace saphira::situation {

@@ -96,12 +96,11 @@ v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::strin
 }
 
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
-  return node.label == "B" || std::any_of(intentions.behaviors.begin(), intentions.behaviors.end(),
-                                          [&](const v1::IntendedBehavior& behavior) {
-                                            return behavior.intention == node.id &&
-                                                   behavior.name == node.name &&
-                                                   behavior.schema == node.schema;
-                                          });
+  return node.label == "B" ||
+         std::ranges::any_of(intentions.behaviors, [&](const v1::IntendedBehavior& behavior) {
+           return behavior.intention == node.id && behavior.name == node.name &&
+                  behavior.schema == node.schema;
+         });
 }
 
 std::string seconds_text(double seconds) {
@@ -113,6 +112,48 @@ std::string listed(const std::vector<std::string>& parts, const char* last) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     text += (i == 0 ? "" : i + 1 == parts.size() ? last : ", ") + parts[i];
   return text;
+}
+
+void Sentence::add(int rank, std::string text, std::string brief) {
+  if (!text.empty())
+    parts_.push_back({rank, std::move(text), std::move(brief)});
+}
+
+std::string Sentence::text() const {
+  std::vector<Part> parts = parts_;
+  const auto joined = [&parts] {
+    std::string text;
+    for (const Part& part : parts)
+      text += part.text;
+    return text;
+  };
+  const auto fits = [&] { return joined().size() + 1 < kLongestSentence; };
+  int most = 0;
+  for (const Part& part : parts)
+    most = std::max(most, part.rank);
+  // Among equal ranks, the last part is less important.
+  for (int rank = most; rank >= 0 && !fits(); --rank)
+    for (std::size_t i = parts.size(); i-- > 0 && !fits();)
+      if (parts[i].rank == rank && !parts[i].brief.empty())
+        parts[i].text = parts[i].brief;
+  for (int rank = most; rank > 0 && !fits(); --rank)
+    for (std::size_t i = parts.size(); i-- > 0 && !fits();)
+      if (parts[i].rank == rank)
+        parts[i].text.clear();
+  return cut(joined(), kLongestSentence - 2) + ".";
+}
+
+std::string cut(const std::string& text, std::size_t most) {
+  constexpr std::size_t kDots = 3;
+  if (text.size() <= most || most <= kDots)
+    return text;
+  std::size_t end = text.rfind(' ', most - kDots);
+  if (end == std::string::npos || end < most / 2)
+    end = most - kDots;
+  // Not within a character of several bytes.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
+    --end;
+  return text.substr(0, end) + "...";
 }
 
 }  // namespace saphira::situation

@@ -1,6 +1,6 @@
-#include "saphira/situation/sentence.hpp"
-
 #include <gtest/gtest.h>
+
+#include "saphira/situation/words.hpp"
 
 namespace saphira::situation {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "office.hpp"
 #include "saphira/base/enumerators.hpp"
-#include "saphira/situation/sentence.hpp"
 #include "saphira/situation/why.hpp"
 #include "saphira/situation/words.hpp"
 

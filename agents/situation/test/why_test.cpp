@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "office.hpp"
-#include "saphira/situation/sentence.hpp"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::situation {
 namespace {

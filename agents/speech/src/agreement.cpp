@@ -22,8 +22,8 @@ bool has(const std::vector<std::string>& words, std::string_view word) {
     std::erase(without, '\'');
     return without;
   };
-  return std::any_of(words.begin(), words.end(),
-                     [&](const std::string& each) { return letters(each) == letters(word); });
+  return std::ranges::any_of(
+      words, [&](const std::string& each) { return letters(each) == letters(word); });
 }
 
 }  // namespace
@@ -48,9 +48,8 @@ double difference(const std::vector<std::string>& heard, const std::vector<std::
 }
 
 bool is_turned(const std::vector<std::string>& heard, const std::vector<std::string>& command) {
-  return std::any_of(kTurning.begin(), kTurning.end(), [&](std::string_view word) {
-    return has(heard, word) && !has(command, word);
-  });
+  return std::ranges::any_of(
+      kTurning, [&](std::string_view word) { return has(heard, word) && !has(command, word); });
 }
 
 }  // namespace saphira::speech

@@ -50,7 +50,7 @@ void Conversation::listen() {
     std::string text;
     for (const std::string& word : agent_interface::words_of(name))
       text += (text.empty() ? "" : " ") + word;
-    if (!text.empty() && std::find(names.begin(), names.end(), text) == names.end())
+    if (!text.empty() && std::ranges::find(names, text) == names.end())
       names.push_back(text);
   }
   recognizer_.listen_for(grammar_.graph(names, replies));
@@ -71,7 +71,7 @@ std::string Conversation::lone_stop(const Heard& heard) const {
   if (grammar_.urgent(joined(heard.freely, " ")).alone)
     return *word;
   if (heard.freely.size() > kMostAround || grammar_.keywords().empty() ||
-      std::find(kOtherStops.begin(), kOtherStops.end(), heard.freely.back()) != kOtherStops.end())
+      std::ranges::find(kOtherStops, heard.freely.back()) != kOtherStops.end())
     return {};
   const std::string named = grammar_.keywords().front() + " " + joined(heard.freely, " ");
   return grammar_.urgent(named).meaning ? *word : std::string();

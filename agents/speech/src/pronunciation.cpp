@@ -63,9 +63,8 @@ const std::vector<std::string>& phones() {
 }
 
 bool is_code(const std::string& word) {
-  return std::any_of(word.begin(), word.end(), is_digit) &&
-         std::any_of(word.begin(), word.end(),
-                     [](unsigned char c) { return std::isalpha(c) != 0; });
+  return std::ranges::any_of(word, is_digit) &&
+         std::ranges::any_of(word, [](unsigned char c) { return std::isalpha(c) != 0; });
 }
 
 std::string spelled(const std::string& word) {
@@ -97,7 +96,7 @@ Pronunciations::Pronunciations(std::string_view text, const std::string& file,
       continue;
     std::string sound;
     for (std::string phone; words >> phone;) {
-      if (std::find(phones().begin(), phones().end(), phone) == phones().end())
+      if (std::ranges::find(phones(), phone) == phones().end())
         throw FileError(file, number, static_cast<int>(line.find(phone, word.size())) + 1,
                         "expected phones of the CMU dictionary, such as F L EY K IY", all);
       sound += (sound.empty() ? "" : " ") + phone;
@@ -117,7 +116,7 @@ Phones Pronunciations::of(const std::string& word) const {
     return {"Z", "S", "IH Z"};
   if (is_code(word))
     return of_code(word);
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_digit))
+  if (!word.empty() && std::ranges::all_of(word, is_digit))
     return of_code(word);
   Phones known = dictionary_(word);
   if (!known.empty())

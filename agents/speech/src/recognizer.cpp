@@ -52,8 +52,8 @@ std::vector<std::string> words_of(const std::string& text) {
 /// A stop is not heard once more: nobody waits for that.
 bool is_at_once(const std::string& command) {
   const std::vector<std::string> words = words_of(command);
-  return std::any_of(kAtOnce.begin(), kAtOnce.end(), [&](std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::any_of(kAtOnce, [&](std::string_view word) {
+    return std::ranges::find(words, word) != words.end();
   });
 }
 

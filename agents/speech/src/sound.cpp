@@ -101,7 +101,7 @@ Sound read_sound(const std::string& bytes, const std::string& file) {
           static_cast<std::int16_t>(std::clamp(std::lround(kFull * block[i]), -32768L, 32767L)));
       loudness[i % channels] += std::abs(block[i]);
     }
-  const auto loudest = std::max_element(loudness.begin(), loudness.end()) - loudness.begin();
+  const auto loudest = std::ranges::max_element(loudness) - loudness.begin();
   if (all.empty() || all.front().empty())
     throw UnusableFile(file + ": it has no samples");
   return resampled(all[static_cast<std::size_t>(loudest)], info.samplerate);

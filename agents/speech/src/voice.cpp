@@ -78,7 +78,7 @@ Voice::Voice(const std::string& name) : self_(std::make_unique<Self>()) {
   std::call_once(once, [] { flite_init(); });
   if (name.rfind(kEspeak, 0) == 0) {
     self_->espeak = name.substr(std::string(kEspeak).size());
-    if (self_->espeak.empty() || !std::all_of(self_->espeak.begin(), self_->espeak.end(), is_safe))
+    if (self_->espeak.empty() || !std::ranges::all_of(self_->espeak, is_safe))
       throw std::invalid_argument("voice \"" + name + "\": expected a name such as espeak:en-us");
     return;
   }

@@ -102,8 +102,7 @@ TEST_F(RecognizerTest, AnotherGrammarTakesTheOldOnesPlace) {
 }
 
 TEST(RecognizerFiles, AModelThatIsMissingIsNamedWithItsPackage) {
-  RecognizerSettings settings;
-  settings.model = "/nowhere";
+  RecognizerSettings settings{.model = "/nowhere"};
   const std::string said = test::trouble_of<std::runtime_error>(
       [&] { Recognizer recognizer(settings, "", "pronunciations"); });
   EXPECT_TRUE(test::has(said, "/nowhere")) << said;

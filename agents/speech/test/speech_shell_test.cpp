@@ -13,13 +13,11 @@ namespace {
 class SpeechOnTheBus : public WithModel {
  protected:
   SpeechOptions options() {
-    SpeechOptions made;
-    made.grammar = test::source("config/grammars/flakey.grammar");
-    made.pronunciations = test::source("config/speech/pronunciations.dict");
-    made.microphone = folder.path("heard.wav");
-    made.speaker = folder.path("");
-    made.person = "Alice";
-    return made;
+    return {.grammar = test::source("config/grammars/flakey.grammar"),
+            .pronunciations = test::source("config/speech/pronunciations.dict"),
+            .microphone = folder.path("heard.wav"),
+            .speaker = folder.path(""),
+            .person = "Alice"};
   }
   void speak(const std::string& text) {
     std::ofstream(folder.path("heard.wav"), std::ios::binary) << wav(said_by("rms", text));

@@ -100,7 +100,7 @@ bool Story::stands_at(const Cast::Spot& spot) const {
   if (time_ - stands_since_ < kPause)
     return false;
   const Vec2 robot = pose_in_map_.position();
-  return std::any_of(map_.features.begin(), map_.features.end(), [&](const maps::Feature& feature) {
+  return std::ranges::any_of(map_.features, [&](const maps::Feature& feature) {
     return feature.name == spot.place &&
            (feature.type == lps::PointType::door
                 ? (feature.pose_in_map.position() - robot).norm() <= spot.distance

@@ -39,8 +39,7 @@ Cast::Cast(std::string_view text, const std::string& file) : file_(file) {
   expect_own_format(text, file, "a file of people");
   std::optional<Spot> near;
   const auto knows_person = [this](const std::string& name) {
-    return std::any_of(people_.begin(), people_.end(),
-                       [&](const Person& one) { return one.name == name; });
+    return std::ranges::any_of(people_, [&](const Person& one) { return one.name == name; });
   };
   for (const saphira::Line& line : split_lines(text)) {
     LineReader reader(file, line);
@@ -113,13 +112,12 @@ void Cast::check(const std::function<bool(const std::string& place)>& is_place) 
 }
 
 bool Cast::has(const std::string& person, const std::string& object) const {
-  return std::any_of(people_.begin(), people_.end(), [&](const Person& one) {
-    return one.name == person && one.has.contains(object);
-  });
+  return std::ranges::any_of(
+      people_, [&](const Person& one) { return one.name == person && one.has.contains(object); });
 }
 
 bool Cast::all_got() const {
-  return std::all_of(people_.begin(), people_.end(), [](const Person& one) {
+  return std::ranges::all_of(people_, [](const Person& one) {
     return std::includes(one.has.begin(), one.has.end(), one.gets.begin(), one.gets.end());
   });
 }

@@ -86,7 +86,7 @@ std::string Control::ask(OperatorId id) {
     return "nobody has control: take it";
   if (holder_ == id)
     return "you have control";
-  if (std::find(asked_.begin(), asked_.end(), id) == asked_.end())
+  if (std::ranges::find(asked_, id) == asked_.end())
     asked_.push_back(id);
   return {};
 }
@@ -94,7 +94,7 @@ std::string Control::ask(OperatorId id) {
 std::string Control::give(OperatorId id, OperatorId to, double now) {
   if (holder_ != id || holder_ == 0)
     return "you do not have control";
-  if (std::find(asked_.begin(), asked_.end(), to) == asked_.end())
+  if (std::ranges::find(asked_, to) == asked_.end())
     return name_of(to) + " does not ask for control any more";
   hand_to(to, name_of(id) + " gave control to " + name_of(to), now);
   return {};

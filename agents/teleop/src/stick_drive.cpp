@@ -18,7 +18,7 @@ template <class Code>
 std::set<unsigned> numbers_of(const std::vector<Code>& all, std::initializer_list<int> wanted) {
   std::set<unsigned> numbers;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (std::find(wanted.begin(), wanted.end(), all[i]) != wanted.end())
+    if (std::ranges::find(wanted, all[i]) != wanted.end())
       numbers.insert(static_cast<unsigned>(i));
   return numbers;
 }

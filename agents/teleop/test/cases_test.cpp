@@ -1,7 +1,10 @@
-// The cases of pages.txt and keys.txt: the test is the operators' pages, and the keyboard.
+// The cases of pages.txt, keys.txt, sticks.txt and pilot.txt: the test is the operators' pages, the
+// keyboard, the joystick, and the bridge.
 #include <gtest/gtest.h>
+#include <linux/joystick.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "lines.hpp"
 #include "pages.hpp"
@@ -10,6 +13,8 @@
 #include "saphira/base/text.hpp"
 #include "saphira/teleop/control.hpp"
 #include "saphira/teleop/key_drive.hpp"
+#include "saphira/teleop/pilot.hpp"
+#include "saphira/teleop/stick_drive.hpp"
 
 namespace saphira::teleop {
 namespace {
@@ -153,9 +158,198 @@ class Keyboard : public saphira::test::LinePlayer {
   std::string input_;
 };
 
+std::string event(unsigned type, unsigned number, int value) {
+  js_event made{};
+  made.type = static_cast<std::uint8_t>(type);
+  made.number = static_cast<std::uint8_t>(number);
+  made.value = static_cast<std::int16_t>(value);
+  std::string bytes(sizeof made, '\0');
+  std::memcpy(bytes.data(), &made, sizeof made);
+  return bytes;
+}
+
+/// A gamepad whose shoulder buttons are 4 to 7; axis 0 is X, axis 1 is Y.
+class Stick : public saphira::test::LinePlayer {
+ public:
+  Stick() {
+    set_gamepad();
+    const auto take = [this](unsigned type, unsigned number, int value) {
+      stick_.take(event(type, number, value), now_);
+    };
+    events_ = {
+        {"at", [this](auto& in) { now_ = read<double>(in); }},
+        {"limit", [this](auto& in) { stick_.set_max_velocity(read<double>(in)); }},
+        {"down", [take](auto& in) { take(JS_EVENT_BUTTON, read<unsigned>(in), 1); }},
+        {"up", [take](auto& in) { take(JS_EVENT_BUTTON, read<unsigned>(in), 0); }},
+        {"is-down",
+         [take](auto& in) { take(JS_EVENT_BUTTON | JS_EVENT_INIT, read<unsigned>(in), 1); }},
+        {"x", [take](auto& in) { take(JS_EVENT_AXIS, 0, read<int>(in)); }},
+        {"y", [take](auto& in) { take(JS_EVENT_AXIS, 1, read<int>(in)); }},
+        {"is-y", [take](auto& in) { take(JS_EVENT_AXIS | JS_EVENT_INIT, 1, read<int>(in)); }},
+        {"new", [this](auto&) { stick_ = {}; }},
+        {"gamepad", [this](auto&) { set_gamepad(); }},
+        {"nameless", [this](auto&) { stick_.set_layout({}, {}); }},
+        {"lost", [this](auto&) { stick_.lost(); }},
+        {"let-go", [this](auto&) { stick_.let_go(); }}};
+    facts_ = {{"drives",
+               [this] {
+                 const Order order = stick_.order(now_);
+                 // + 0.0: no "-0"
+                 return order.active
+                            ? format("%.3g %.3g", order.velocity + 0.0, order.rotation + 0.0)
+                            : "no";
+               }},
+              {"silent", [this] { return yes(stick_.is_silent(now_)); }},
+              {"dead man", [this] { return stick_.dead_man(); }}};
+  }
+
+ private:
+  void set_gamepad() {
+    stick_.set_layout({ABS_X, ABS_Y}, {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_TL, BTN_TR,
+                                       BTN_TL2, BTN_TR2, BTN_SELECT});
+  }
+  StickDrive stick_;
+  double now_ = 1.0;
+};
+
+/// What ann orders and the bridge grants, and the commands from that.
+class Piloted : public saphira::test::LinePlayer {
+ public:
+  Piloted() {
+    events_ = {{"holds", [this](auto& in) { order_ = {true, read<double>(in), 0, {}, 90, "ann"}; }},
+               {"frees", [this](auto&) { order_ = {}; }},
+               {"rotates", [this](auto& in) { order_.rotation = read<double>(in); }},
+               {"turns",
+                [this](auto& in) {
+                  const auto by = read<double>(in);
+                  order_.turn = {by, read<std::uint64_t>(in)};
+                }},
+               {"drive",
+                [this](auto& in) {
+                  command_ = pilot_.drive(order_, {.epoch = 7, .cycle = read<std::uint64_t>(in)});
+                }},
+               {"hand-back", [this](auto&) { pilot_.hand_back(); }},
+               {"press", [this](auto&) { pilot_.press("ann"); }},
+               {"latched", [this](auto& in) { command_ = pilot_.stop(rest(in) == "yes"); }},
+               {"at", [this](auto& in) { now_ = read<double>(in); }},
+               {"refused", [this](auto& in) {
+                  v1::Grant grant;
+                  const auto source = read<std::string>(in);
+                  grant.refused = {{.role = v1::ROLE_TELEOP, .source = source, .reason = rest(in)}};
+                  pilot_.heard(grant, now_);
+                }}};
+    facts_ = {{"command", [this] { return command(); }},
+              {"number", [this] { return std::to_string(command_->number); }},
+              {"motion", [this] { return motion(); }},
+              {"refusal", [this] { return pilot_.refusal(now_); }}};
+  }
+
+ private:
+  std::string command() const {
+    if (!command_)
+      return "none";
+    return (command_->active ? "active" : "free") + (" of " + command_->source) +
+           format(", cycle %d.%d", static_cast<int>(command_->stamp.epoch),
+                  static_cast<int>(command_->stamp.cycle)) +
+           (command_->hand_back ? ", handed back" : "");
+  }
+  std::string motion() const {
+    return std::string(name_of(command_->translation)) + format(" %g, ", command_->velocity) +
+           name_of(command_->rotation) +
+           format(" %g %g %d", command_->rotation_velocity, command_->heading,
+                  static_cast<int>(command_->move));
+  }
+  template <class E>
+  static std::string name_of(E value) {
+    return std::string(kEnumeratorNames<E>.at(static_cast<std::size_t>(value)));
+  }
+
+  Pilot pilot_{"console"};
+  Order order_;
+  std::optional<v1::MotorCommand> command_;
+  double now_ = 0.0;
+};
+
 TEST(Teleop, IsAsWritten) {
   EXPECT_EQ(saphira::test::play<Pages>("agents/teleop/test/pages.txt"), 15);
   EXPECT_EQ(saphira::test::play<Keyboard>("agents/teleop/test/keys.txt"), 15);
+  EXPECT_EQ(saphira::test::play<Stick>("agents/teleop/test/sticks.txt"), 7);
+  EXPECT_EQ(saphira::test::play<Piloted>("agents/teleop/test/pilot.txt"), 6);
+}
+
+std::string button(unsigned number, bool down) {
+  return event(JS_EVENT_BUTTON, number, down);
+}
+std::string axis(unsigned number, int value) {
+  return event(JS_EVENT_AXIS, number, value);
+}
+
+struct Device {
+  const char* name;
+  std::vector<std::uint8_t> axes;
+  std::vector<std::uint16_t> buttons;
+  std::set<unsigned> hold;  ///< numbers of the buttons
+  const char* dead_man;
+};
+
+TEST(StickDrive, TheButtonToHoldIsFoundByTheKernelsNames) {
+  const std::vector<Device> devices{
+      {"gamepad with analog triggers",
+       {ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ},
+       {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_TL, BTN_TR, BTN_SELECT, BTN_START, BTN_MODE},
+       {4, 5},
+       "a shoulder button (4 or 5)"},
+      {"gamepad with four shoulder buttons, and axes the other way round",
+       {ABS_Y, ABS_X},
+       {BTN_SOUTH, BTN_C, BTN_EAST, BTN_NORTH, BTN_WEST, BTN_Z, BTN_TL, BTN_TR, BTN_TL2, BTN_TR2},
+       {6, 7, 8, 9},
+       "a shoulder button (6 or 7 or 8 or 9)"},
+      {"joystick",
+       {ABS_X, ABS_Y, ABS_RZ, ABS_THROTTLE},
+       {BTN_TRIGGER, BTN_THUMB, BTN_THUMB2, BTN_TOP, BTN_TOP2, BTN_PINKIE, BTN_BASE},
+       {0},
+       "the trigger (0)"},
+      {"joystick whose sixteenth button has the name of a dead-man by its number alone",
+       {ABS_X, ABS_Y},
+       {BTN_THUMB, BTN_TRIGGER, BTN_DEAD},
+       {1},
+       "the trigger (1)"},
+      {"a box with a dead-man", {ABS_X, ABS_Y}, {BTN_0, BTN_DEAD}, {1}, "the dead-man button (1)"},
+      {"buttons without names", {ABS_X, ABS_Y}, {BTN_0, BTN_1, BTN_2}, {}, ""},
+      {"face buttons alone", {ABS_X, ABS_Y}, {BTN_SOUTH, BTN_EAST, BTN_NORTH, BTN_WEST}, {}, ""},
+      {"no first stick", {ABS_Z, ABS_RZ}, {BTN_TL, BTN_TR}, {}, ""},
+      {"half a stick", {ABS_X, ABS_HAT0Y}, {BTN_TRIGGER}, {}, ""},
+  };
+  for (const Device& device : devices) {
+    const auto number_of = [&](std::uint8_t code) {
+      const auto found = std::ranges::find(device.axes, code);
+      return static_cast<unsigned>(found - device.axes.begin());
+    };
+    for (unsigned i = 0; i < device.buttons.size(); ++i) {
+      StickDrive stick;
+      stick.set_layout(device.axes, device.buttons);
+      EXPECT_EQ(stick.dead_man(), device.dead_man) << device.name;
+      stick.take(axis(number_of(ABS_Y), -32767) + axis(number_of(ABS_X), 16384), 1.0);
+      stick.take(button(i, true), 1.0);
+      const Order setpoint = stick.order(1.0);
+      EXPECT_EQ(setpoint.active, device.hold.contains(i)) << device.name << ", button " << i;
+      if (!setpoint.active)
+        continue;
+      EXPECT_GT(setpoint.velocity, 0.3) << device.name;
+      EXPECT_LT(setpoint.rotation, 0.0) << device.name;
+    }
+  }
+}
+
+TEST(StickDrive, EventsMayComeInPieces) {
+  StickDrive stick;
+  stick.set_layout({ABS_X, ABS_Y}, {BTN_TL});
+  const std::string bytes = button(0, true) + axis(1, -32767);
+  for (const char byte : bytes) {
+    EXPECT_LT(stick.order(1.0).velocity, 0.1);
+    stick.take(std::string(1, byte), 1.0);
+  }
+  EXPECT_NEAR(stick.order(1.0).velocity, 0.4, 1e-9);
 }
 
 }  // namespace

@@ -87,8 +87,8 @@ Server::Server(const Options& options, std::vector<Channel> channels, Events eve
 }
 
 bool Server::wants(std::size_t channel) const {
-  return std::any_of(open_.begin(), open_.end(),
-                     [channel](const auto& each) { return each.second.client.wants(channel); });
+  return std::ranges::any_of(
+      open_, [channel](const auto& each) { return each.second.client.wants(channel); });
 }
 
 void Server::offer(std::size_t channel, std::int64_t time_ns, const std::string& json) {

@@ -97,8 +97,8 @@ std::optional<std::vector<std::size_t>> Client::take(const std::string& text) {
 }
 
 bool Client::wants(std::size_t channel) const {
-  return std::any_of(subscribed_.begin(), subscribed_.end(),
-                     [channel](const auto& each) { return each.second == channel; });
+  return std::ranges::any_of(subscribed_,
+                             [channel](const auto& each) { return each.second == channel; });
 }
 
 void Client::offer(std::size_t channel, std::int64_t time_ns, const std::string& json) {

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "contract.hpp"
-
 namespace saphira::viewer {
 
 namespace {

@@ -57,14 +57,11 @@ json content(const Scene::Messages& messages, const std::string& topic) {
 
 TEST(Scene, RobotIsOnTheMapWhileItsPositionIsKnown) {
   Scene scene(0.0);
-  v1::RobotState state;
-  state.odom = 3;
-  state.pose_in_odom = {1.0, 0.0, 0.0};
+  v1::RobotState state{.odom = 3, .pose_in_odom = {1.0, 0.0, 0.0}};
   EXPECT_EQ(content(scene.take(state, kNow), "viewer/pose")["frame_id"], "odom");
-  v1::Registration registration;
-  registration.state = v1::REGISTRATION_TRACKING;
-  registration.odom = 3;
-  registration.odom_in_map = {10.0, 20.0, std::acos(-1.0) / 2};
+  v1::Registration registration{.state = v1::REGISTRATION_TRACKING,
+                                .odom = 3,
+                                .odom_in_map = {10.0, 20.0, std::acos(-1.0) / 2}};
   scene.take(registration);
   const Scene::Messages messages = scene.take(state, kNow);
   const json pose = content(messages, "viewer/pose");
@@ -98,20 +95,14 @@ TEST(Scene, EchoesArePoints) {
 }
 
 TEST(Scene, APictureIsACompressedImage) {
-  v1::CameraPicture picture;
-  picture.jpeg = {'f', 'o', 'o'};
+  v1::CameraPicture picture{.jpeg = {'f', 'o', 'o'}};
   const json image = content(Scene::take(picture, kNow), "viewer/camera");
   EXPECT_EQ(image["data"], "Zm9v");
   EXPECT_EQ(image["format"], "jpeg");
 }
 
 v1::GridTile tile(std::int32_t column, std::int32_t row, std::uint8_t value) {
-  v1::GridTile made;
-  made.column = column;
-  made.row = row;
-  made.odom = 1;
-  made.resolution = 0.5;
-  made.side = 2;
+  v1::GridTile made{.column = column, .row = row, .odom = 1, .resolution = 0.5, .side = 2};
   made.cells.assign(4, value);
   return made;
 }
@@ -142,17 +133,12 @@ TEST(Scene, TilesAreOneGrid) {
 
 TEST(Scene, MapHasLinesAndNames) {
   v1::FloorMap map;
-  v1::MapArtifact corridor;
-  corridor.id = 1;
-  corridor.type = v1::ARTIFACT_CORRIDOR;
-  corridor.length = 10.0;
-  corridor.width = 2.0;
-  corridor.name = "hall";
-  v1::MapArtifact door;
-  door.id = 2;
-  door.type = v1::ARTIFACT_DOOR;
-  door.pose_in_map = {0.0, 1.0, -std::acos(-1.0) / 2};
-  door.width = 1.0;
+  v1::MapArtifact corridor{
+      .id = 1, .type = v1::ARTIFACT_CORRIDOR, .length = 10.0, .width = 2.0, .name = "hall"};
+  v1::MapArtifact door{.id = 2,
+                       .type = v1::ARTIFACT_DOOR,
+                       .pose_in_map = {0.0, 1.0, -std::acos(-1.0) / 2},
+                       .width = 1.0};
   map.artifacts = {corridor, door};
   const json entity = content(Scene::take(map, kNow), "viewer/scene")["entities"][0];
   EXPECT_EQ(entity["frame_id"], "map");
@@ -163,10 +149,7 @@ TEST(Scene, MapHasLinesAndNames) {
 }
 
 TEST(Scene, LogKeepsLevelAndTime) {
-  v1::LogRecord record;
-  record.level = v1::LOG_WARNING;
-  record.time_ns = kNow;
-  record.text = "a broken \xFF byte";
+  v1::LogRecord record{.level = v1::LOG_WARNING, .time_ns = kNow, .text = "a broken \xFF byte"};
   const json log = content(Scene::take(record), "viewer/log");
   EXPECT_EQ(log["level"], 3);
   EXPECT_EQ(log["timestamp"]["nsec"], 250'000'000);

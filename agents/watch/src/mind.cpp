@@ -107,8 +107,8 @@ const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cy
         past.newest()->source == source)
       if (const v1::ProgramMind* const then = past.at(cycle);
           then != nullptr && then->behaviors.control &&
-          std::any_of(then->behaviors.behaviors.begin(), then->behaviors.behaviors.end(),
-                      [](const v1::BehaviorState& each) { return each.running; }))
+          std::ranges::any_of(then->behaviors.behaviors,
+                              [](const v1::BehaviorState& each) { return each.running; }))
         return then;
   return nullptr;
 }

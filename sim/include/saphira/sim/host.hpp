@@ -50,8 +50,8 @@ struct HostOptions {
   /// The second robot, the third, ... Number n listens on the next port but n - 2, or on the socket
   /// with "-n" behind it, and its trace is written likewise: run-2.csv.
   std::vector<RobotOptions> more;
-  /// File for violations of the protocol's tables, which are appended; none: default_check();
-  /// empty: no check. See line_check.hpp.
+  /// File for violations of the protocol's tables, which are appended; none:
+  /// that of $SAPHIRA_CHECK; empty: no check.
   std::optional<std::string> check;
   /// Folder for the pictures of the robot's stereo cameras, one each cycle; empty: none. Of further
   /// robots as with the trace: numbered().

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -37,56 +34,29 @@ std::string describe_scene(const Simulation& simulation, const Pacing& pacing);
 /// The reason why a request failed.
 std::string complaint(const std::string& text);
 
-// Requests.
-struct PlaceRobot {
-  RobotNumber robot = 0;
-  Pose pose_in_world;
-};
-struct PlacePerson {
-  std::string name;
-  Vec2 at{0.0, 0.0};
-};
-struct RaiseArm {
-  std::string name;
-  std::optional<double> direction_in_world;  ///< [rad] [none: lowers it]
-};
-struct PlaceBox {
-  std::string name;
-  Pose pose_in_world;
-};
-struct SetDoor {
-  std::string name;
-  bool open = false;
-};
-/// A person at the robot's inputs.
-struct SetInput {
-  RobotNumber robot = 0;
-  std::optional<std::uint8_t> digital;  ///< a bit for each pin
-  std::size_t port = 0;                 ///< of `analog`
-  std::optional<std::uint8_t> analog;   ///< [5 V / 255]
-};
-struct Pause {
-  bool on = false;
-};
-struct StepOnce {};  ///< one information packet, while time is paused
-struct SetRate {
-  double rate = 1.0;  ///< times real time
-};
-struct Disconnect {
-  RobotNumber robot = 0;
-};
+/// Other files for the simulator.
 struct Load {
   std::string world;  ///< a name from Choice [empty: the same]
   std::string robot;  ///< likewise
 };
-struct ListFiles {};  ///< those that may be loaded, anew
-using Wish = std::variant<PlaceRobot, PlacePerson, RaiseArm, PlaceBox, SetDoor, SetInput, Pause,
-                          StepOnce, SetRate, Disconnect, Load, ListFiles>;
 
-/// std::invalid_argument gives the expected form.
-Wish parse_wish(std::string_view text);
-/// Carries out a wish for the scene. Empty: done; otherwise the reason. The other wishes are the
-/// host's.
-std::string change_scene(Simulation& simulation, const Wish& wish);
+/// What a request may ask of the simulator's host. Each returns the reason why it is not done;
+/// empty: done.
+class ViewedHost {
+ public:
+  virtual std::string pause(bool on) = 0;
+  virtual std::string step_once() = 0;                    ///< one information packet, while paused
+  virtual std::string set_rate(double rate) = 0;          ///< times real time
+  virtual std::string disconnect(RobotNumber robot) = 0;  ///< of a robot that is there
+  virtual std::string load(Load wish) = 0;
+  virtual std::string list_files() = 0;  ///< those that may be loaded, anew
+
+ protected:
+  ~ViewedHost() = default;
+};
+
+/// Carries out a request. Empty: done; otherwise the reason. std::invalid_argument gives the
+/// expected form.
+std::string obey(std::string_view request, Simulation& simulation, ViewedHost& host);
 
 }  // namespace saphira::sim

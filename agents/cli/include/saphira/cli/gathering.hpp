@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 namespace saphira::cli {
 
@@ -13,7 +14,12 @@ class Gathering {
 
   /// The number of readers at the time `now` [s], which only rises. True where there are some, and
   /// none has come for a while; later ones are not waited for.
-  bool complete(std::size_t matched, double now);
+  bool complete(std::size_t matched, double now) {
+    if (std::exchange(matched_, matched) != matched)
+      since_ = now;
+    complete_ = complete_ || (matched > 0 && now - since_ >= kRest);
+    return complete_ && matched > 0;
+  }
 
  private:
   std::size_t matched_ = 0;

@@ -25,6 +25,9 @@ struct ChildSpec {
   std::string robot = {};  ///< the robot of its node; empty: it is not on the bus
 };
 
+/// The words as execv() takes them, with a null at the end.
+std::vector<char*> pointers(std::vector<std::string>& words);
+
 /// The identity of a file, which differs from that of a later file with the same path.
 std::string file_of(const std::string& path);
 

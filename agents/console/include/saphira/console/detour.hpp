@@ -11,10 +11,19 @@ namespace saphira::console {
 class Detour {
  public:
   /// A sample of the operator shows this cycle, at that newest one.
-  void shows(std::uint64_t cycle, std::uint64_t newest, double now);
-  bool wanted(double now) const;
+  void shows(std::uint64_t cycle, std::uint64_t newest, double now) {
+    const std::uint64_t behind = newest > cycle ? newest - cycle : 0;
+    cut_ = behind > kCutCycles;
+    if (behind >= kOldCycles)
+      late_ = now;
+  }
+  bool wanted(double now) const { return !cut_ && now < late_ + kDetour; }
 
  private:
+  static constexpr std::uint64_t kOldCycles = 4;   ///< there and back
+  static constexpr std::uint64_t kCutCycles = 30;  ///< what is sent now would only queue up
+  static constexpr double kDetour = 10.0;          ///< [s] after an old cycle
+
   double late_ = -1e9;  ///< [s] time of the newest sample that showed an old cycle
   bool cut_ = false;    ///< so old that nothing comes through
 };
