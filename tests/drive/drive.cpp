@@ -250,7 +250,8 @@ void Drive::guard(reflector::Setpoints& wanted) {
   body_.sees_ahead = echoes_.sees(seen_.cycle, true);
   body_.sees_behind = echoes_.sees(seen_.cycle, false);
   coverage_.update(seen_.cycle, seen_.pose_in_odom, readings);
-  body_.covered = coverage_.way(speed >= 0.0);
+  if (speed != 0.0)
+    body_.covered = coverage_.way(speed > 0.0);
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
                               by_hand_ ? 0.0 : commanded_.contact_speed, echoes_.edges());
   wanted.velocity = guarded_.velocity;

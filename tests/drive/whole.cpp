@@ -1,5 +1,6 @@
 #include "drive/whole.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -101,6 +102,12 @@ void Whole::note_transitions() {
     transitions_.push_back(std::to_string(cycle()) + " " + node.schema + " (" + node.name + ") " +
                            what);
   };
+  const auto same = [](const v1::IntentionNode& node, const auto& before) {
+    return node.id == before.first && node.label == before.second.label;
+  };
+  if (std::equal(intentions().nodes.begin(), intentions().nodes.end(), nodes_.begin(), nodes_.end(),
+                 same))
+    return;
   std::map<std::uint32_t, v1::IntentionNode> now;
   for (const v1::IntentionNode& node : intentions().nodes)
     now.emplace(node.id, node);

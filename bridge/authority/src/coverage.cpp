@@ -49,10 +49,12 @@ double Coverage::way(bool forward) const {
   auto lobe = lobes_.begin();
   for (int step = 0; step < steps; ++step) {
     const double free = kFrom + kStep * step;
+    const double along = side * (radius_ + free);
+    const double x = robot_in_odom_.x + ahead.x() * along;
+    const double y = robot_in_odom_.y + ahead.y() * along;
     for (int i = -across; i <= across; ++i) {
-      const Vec2 spot(side * (radius_ + free), radius_ * i / across);
-      const Vec2 in_odom(robot_in_odom_.x + ahead.x() * spot.x() - ahead.y() * spot.y(),
-                         robot_in_odom_.y + ahead.y() * spot.x() + ahead.x() * spot.y());
+      const double aside = radius_ * i / across;
+      const Vec2 in_odom(x - ahead.y() * aside, y + ahead.x() * aside);
       if (lobe != lobes_.end() && covers(*lobe, in_odom))
         continue;
       lobe = std::find_if(lobes_.begin(), lobes_.end(),

@@ -168,35 +168,44 @@ class Cut {
   void robot() {
     const double most = limit_of(settings_.max_velocity, body_.max_velocity);
     if (most > 0.0)
-      cut(most, GuardAction::limit, format("%.2f m/s cut to the limit of %.2f", wanted_, most));
+      cut(most, GuardAction::limit,
+          [&] { return format("%.2f m/s cut to the limit of %.2f", wanted_, most); });
     const double blind = settings_.max_blind_velocity;
     if (blind > 0.0 && !(forward() ? body_.sees_ahead : body_.sees_behind))
       cut(blind, GuardAction::limit,
-          format(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
-                           : "%.2f m/s cut to %.2f: no sonar looks behind",
-                 wanted_, blind));
+          [&] { return format("%.2f m/s cut to %.2f: no sonar looks ", wanted_, blind) + side(); });
     if (blind > 0.0) {
       const double covered = body_.covered - margin_;
       const double safe = stops_within(covered, blind);
       sweep_ = stops_within(covered - kSweeps * speed_, blind) < speed_;
-      cut(safe, GuardAction::limit,
-          format("%.2f m/s cut to %.2f: the sonars have covered no more than %.2f m ", wanted_,
-                 safe, body_.covered) +
-              side());
+      cut(safe, GuardAction::limit, [&] {
+        return format("%.2f m/s cut to %.2f: the sonars have covered no more than %.2f m ", wanted_,
+                      safe, body_.covered) +
+               side();
+      });
     }
     const double unheard = stops_within(reach_ - margin_, 0.0);
-    cut(unheard, GuardAction::limit,
-        format("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));
+    cut(unheard, GuardAction::limit, [&] {
+      return format("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_,
+                    unheard);
+    });
   }
 
   void beside(const Allowed& allowed) {
-    cut(allowed.speed, allowed.speed > 0.0 ? GuardAction::slow : GuardAction::stop,
-        format("something beside the path, %.2f m away: at most %.2f m/s", allowed.beside,
-               allowed.speed),
+    cut(
+        allowed.speed, allowed.speed > 0.0 ? GuardAction::slow : GuardAction::stop,
+        [&] {
+          return format("something beside the path, %.2f m away: at most %.2f m/s", allowed.beside,
+                        allowed.speed);
+        },
         &allowed.speed_at);
     const double past = stops_within(allowed.until_beside - margin_, settings_.beside_velocity);
-    cut(past, GuardAction::slow,
-        format("something near the path, %.2f m ", allowed.until_beside) + side() + at_most(past),
+    cut(
+        past, GuardAction::slow,
+        [&] {
+          return format("something near the path, %.2f m ", allowed.until_beside) + side() +
+                 at_most(past);
+        },
         &allowed.beside_at);
   }
 
@@ -204,17 +213,20 @@ class Cut {
     const double free = allowed.free;
     const Vec2* const at = &allowed.free_at;
     if (settings_.slow_distance > 0.0 && free < settings_.slow_distance)
-      cut(settings_.slow_velocity, GuardAction::slow,
-          something(free) + at_most(settings_.slow_velocity), at);
+      cut(
+          settings_.slow_velocity, GuardAction::slow,
+          [&] { return something(free) + at_most(settings_.slow_velocity); }, at);
     const double closing =
         std::min(settings_.closing_velocity, kShareOfWay * reach_ / body_.reaction);
     const double safe = std::min(stops_within(free - margin_, settings_.careful_velocity, closing),
                                  stops_within(free - margin_, 0.0));
     if (safe < kCreep)
-      cut(0.0, GuardAction::stop, something(free) + format("; it lets go beyond %.2f m", margin_),
-          at);
+      cut(
+          0.0, GuardAction::stop,
+          [&] { return something(free) + format("; it lets go beyond %.2f m", margin_); }, at);
     else
-      cut(safe, GuardAction::slow, something(free) + at_most(safe), at);
+      cut(
+          safe, GuardAction::slow, [&] { return something(free) + at_most(safe); }, at);
   }
 
   void contact(double meant, const Allowed& allowed) {
@@ -245,11 +257,12 @@ class Cut {
   const char* side() const { return forward() ? "ahead" : "behind"; }
   std::string something(double free) const { return format("something %.2f m ", free) + side(); }
   static std::string at_most(double speed) { return format(": at most %.2f m/s", speed); }
-  void cut(double speed, GuardAction action, std::string reason, const Vec2* at = nullptr) {
+  template <class Reason>
+  void cut(double speed, GuardAction action, const Reason& reason, const Vec2* at = nullptr) {
     if (speed_ <= speed)
       return;
     speed_ = speed;
-    act(action, std::move(reason), at);
+    act(action, reason(), at);
   }
   void act(GuardAction action, std::string reason, const Vec2* at = nullptr) {
     action_ = std::max(action_, action);

@@ -126,6 +126,7 @@ std::vector<Edge> Core::edges_near(const intentions::Inputs& now) {
     near_ = lines_->edges_near(robot_in_map, kMostEdges);
   }
   const ToFrame to_odom(*now.robot.odom_in_map);
+  edges.reserve(near_.size());
   for (const Edge& edge : near_)
     edges.push_back({to_odom(edge.from), to_odom(edge.to)});
   return edges;

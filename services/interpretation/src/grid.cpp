@@ -15,6 +15,7 @@ constexpr double kStep = 0.04;
 constexpr int kMost = 120;
 constexpr int kHalf = 128;
 constexpr int kFine = 256;  // of a probability
+constexpr int kLanes = 4;   // cells that are looked at at once
 
 double logit(double probability) {
   return std::log(probability / (1.0 - probability));
@@ -43,7 +44,9 @@ SAPHIRA_WIDE void look(const Beam& beam, double column, double size, double x, d
                        int count, Row& row) {
   const auto [heading, c, s, edge, range, far, detection, echo, spread] = beam;
   const double by_angle = bins / (2.0 * kPi);
-  for (int i = 0; i < count; ++i) {
+  // Some cells more, for whole steps: nobody reads them.
+  const int whole = (count + kLanes - 1) / kLanes * kLanes;
+  for (int i = 0; i < whole; ++i) {
     const double dx = (column + i + 0.5) * size - x;
     const double along = c * dx + s * dy;
     const double across = -s * dx + c * dy;
@@ -164,9 +167,11 @@ std::vector<std::uint8_t> Grid::cells(const TileKey& key) const {
   if (it == tiles_.end())
     return {};
   std::vector<std::uint8_t> cells(kCells, kNeverSeen);
+  const Tile& tile = it->second;
+  const std::uint8_t* const bytes = bytes_.data() + kMostTotal;
   for (std::size_t cell = 0; cell < kCells; ++cell)
-    if (it->second.seen[cell])
-      cells[cell] = bytes_[static_cast<std::size_t>(it->second.total[cell] + kMostTotal)];
+    if (tile.seen[cell])
+      cells[cell] = bytes[tile.total[cell]];
   return cells;
 }
 
@@ -223,14 +228,16 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
           continue;
         look(beam, static_cast<double>(begin), size, sonar.x, distance(row), kBins,
              static_cast<int>(count), seen);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-          if (seen.found[i] < 0.0)
-            continue;
-          if (!tile)
-            tile = &tiles_[{tile_column, tile_row}];
-          f(*tile, static_cast<std::size_t>((row - row0) * kTile + begin - column0) + i,
-            seen.behind[i], seen.found[i], seen.bin[i]);
-        }
+        const auto cells = static_cast<std::size_t>(count);
+        std::size_t first = 0;
+        while (first < cells && seen.found[first] <= 0.0)
+          ++first;
+        if (first == cells)
+          continue;
+        if (!tile)
+          tile = &tiles_[{tile_column, tile_row}];
+        f(*tile, static_cast<std::size_t>((row - row0) * kTile + begin - column0), seen, first,
+          cells);
       }
     }
 }
@@ -240,8 +247,6 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
   const auto before = static_cast<int>(said);  // NOLINT(bugprone-signed-char-misuse): a number
   const int after = std::clamp(before + steps, -kMost, kMost);
   tile.seen[cell] = true;
-  tile.changed = true;
-  ++updates_;
   if (after == before)
     return;
   said = static_cast<std::int8_t>(after);
@@ -258,22 +263,33 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
   arc_.clear();
   double sum = 0.0;
+  std::uint64_t updates = 0;
   const double echo = range.value_or(std::numeric_limits<double>::infinity());
-  const auto take = [&](Tile& tile, std::size_t cell, double behind, double found, int bin) {
-    if (found <= 0.0)
-      return;
-    if (behind > 3.0) {
-      evidence(tile, cell, bin, -free_steps(found));
-      return;
+  const auto take = [&](Tile& tile, std::size_t cell0, const Row& row, std::size_t i,
+                        std::size_t end) {
+    tile.changed = true;
+    for (; i < end; ++i) {
+      const double found = row.found[i];
+      if (found <= 0.0)
+        continue;
+      ++updates;
+      const std::size_t cell = cell0 + i;
+      const int bin = row.bin[i];
+      const double behind = row.behind[i];
+      if (behind > 3.0) {
+        evidence(tile, cell, bin, -free_steps(found));
+        continue;
+      }
+      Arc arc{&tile, cell, bin, 0.0, 1.0, 0.0};
+      arc.density = found / (std::sqrt(2.0 * kPi) * spread) * std::exp(-behind * behind / 2.0);
+      arc.before = 1.0 - found / (1.0 + std::exp(-1.7 * behind));
+      arc.odds = probability(tile, cell);
+      sum += arc.odds * arc.density;
+      arc_.push_back(arc);
     }
-    Arc arc{&tile, cell, bin, 0.0, 1.0, 0.0};
-    arc.density = found / (std::sqrt(2.0 * kPi) * spread) * std::exp(-behind * behind / 2.0);
-    arc.before = 1.0 - found / (1.0 + std::exp(-1.7 * behind));
-    arc.odds = probability(tile, cell);
-    sum += arc.odds * arc.density;
-    arc_.push_back(arc);
   };
   for_cone(sonar, reach, echo, spread, take);
+  updates_ += updates;
   // The echo came from somewhere on the arc: the beliefs in the rest of it explain it as well.
   for (const Arc& arc : arc_) {
     const double rest =

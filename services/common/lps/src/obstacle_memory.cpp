@@ -79,6 +79,7 @@ void ObstacleMemory::clear() {
   placed_ = false;
   std::fill(beliefs_.begin(), beliefs_.end(), 0.0);
   std::fill(held_.begin(), held_.end(), Part{});
+  used_ = {};
   std::fill(marks_.begin(), marks_.end(), 0);
   points_.clear();
 }
@@ -107,9 +108,12 @@ void ObstacleMemory::shift(long columns, long rows) {
   const long n = settings_.cells;
   const long first = std::max(0L, columns);
   const long last = std::min(n, n + columns);
-  if (first >= last)
+  const Part kept{std::max(used_.begin, rows), std::min(used_.end, n + rows)};
+  used_ = {};
+  if (first >= last || kept.begin >= kept.end)
     return;
-  for (long row = std::max(0L, rows); row < std::min(n, n + rows); ++row) {
+  used_ = {kept.begin - rows, kept.end - rows};
+  for (long row = kept.begin; row < kept.end; ++row) {
     const auto from = beliefs.begin() + row * n;
     std::copy(from + first, from + last, beliefs_.begin() + (row - rows) * n + first - columns);
     const Part& part = held[static_cast<std::size_t>(row)];
@@ -121,9 +125,11 @@ void ObstacleMemory::shift(long columns, long rows) {
 
 SAPHIRA_WIDE void ObstacleMemory::fade() {
   const double fading = settings_.fading;
+  double* const beliefs = beliefs_.data() + used_.begin * settings_.cells;
+  const long count = (used_.end - used_.begin) * settings_.cells;
 #pragma GCC unroll 8
-  for (double& belief : beliefs_)
-    belief *= fading;
+  for (long i = 0; i < count; ++i)
+    beliefs[i] *= fading;
 }
 
 void ObstacleMemory::put(std::size_t cell, double belief) {
@@ -132,8 +138,7 @@ void ObstacleMemory::put(std::size_t cell, double belief) {
   const std::size_t column = cell % held_.size();
   const auto at = static_cast<long>(column);
   Part& held = held_[row];
-  held = held.begin == held.end ? Part{at, at + 1}
-                                : Part{std::min(held.begin, at), std::max(held.end, at + 1)};
+  held.widen(at, at + 1);
   if (belief >= settings_.obstacle)
     marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
 }
@@ -190,6 +195,9 @@ void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held)
 }
 
 void ObstacleMemory::pass(double range, double doubt) {
+  if (cone_.empty())
+    return;
+  used_.widen(cone_.front().number, cone_.back().number + 1);
   if (settings_.least >= 0.0)  // no belief falls below 0
     for (ConeRow& row : cone_) {
       const Part& held = held_[static_cast<std::size_t>(row.number)];
@@ -233,8 +241,7 @@ void ObstacleMemory::find_arc(double range) {
       if (along <= 0.0 || across > rim)
         continue;
       const double distance = std::sqrt(along * along + across * across);
-      if (distance <= range - 2.0 * settings_.thickness || distance > range + settings_.thickness ||
-          std::abs(distance - range) > settings_.thickness)
+      if (std::abs(distance - range) > settings_.thickness)
         continue;
       const std::size_t index = static_cast<std::size_t>(row.number) * held_.size() + at;
       arc_.push_back({index, std::exp(beliefs_[index]) * (1.0 - 0.5 * (across / rim))});
@@ -266,6 +273,7 @@ void ObstacleMemory::silence(const Pose& sonar_in_odom) {
 void ObstacleMemory::touch(const Vec2& at_in_odom) {
   const double cell = settings_.cell;
   const long n = settings_.cells;
+  used_ = {0, n};
   for (long row = 0; row < n; ++row)
     for (long column = 0; column < n; ++column) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
@@ -280,11 +288,10 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
   const double c = std::cos(robot_in_odom.th);
   const double s = std::sin(robot_in_odom.th);
   see_columns(robot_in_odom, c, s, 0, settings_.cells);
-  std::size_t word = 0;
-  for (std::uint64_t& marks : marks_) {
-    const std::size_t number = word++;
-    if (marks == 0)
-      continue;
+  const auto marked = [](std::uint64_t marks) { return marks != 0; };
+  for (auto at = marks_.begin(); (at = std::find_if(at, marks_.end(), marked)) != marks_.end();
+       ++at) {
+    const auto number = static_cast<std::size_t>(at - marks_.begin());
     const std::size_t row = number / words_;
     const std::size_t column0 = number % words_ * kBits;
     const double dy = (static_cast<double>(static_cast<long>(row) + row0_) + 0.5) * settings_.cell -
@@ -294,10 +301,10 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
     const double* const beliefs = &beliefs_[row * held_.size() + column0];
     const double* const x = &columns_.x[column0];
     const double* const y = &columns_.y[column0];
-    for (std::uint64_t left = marks; left != 0; left &= left - 1) {
+    for (std::uint64_t left = *at; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       if (beliefs[i] < settings_.obstacle)
-        marks ^= left & ~(left - 1);
+        *at ^= left & ~(left - 1);
       else
         points_.emplace_back(x[i] + row_x, y[i] + row_y);
     }

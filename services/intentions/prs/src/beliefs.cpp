@@ -20,10 +20,12 @@ void Beliefs::look(const World& world) {
   auto at = conditions_.begin();  // it has the same order of names
   for (const auto& [name, condition] : functions_->conditions()) {
     Value value = condition.value(world);
-    while (at != conditions_.end() && at->first < name)
+    if (at != conditions_.end() && at->first != name)
+      at = conditions_.lower_bound(name);
+    if (at != conditions_.end() && at->first == name && at->second.value == value) {
       ++at;
-    if (at != conditions_.end() && at->first == name && at->second.value == value)
       continue;
+    }
     Belief belief{condition.name, std::move(value), "perception", world.now};
     at = conditions_.insert_or_assign(at, name, std::move(belief));
     ++revision_;

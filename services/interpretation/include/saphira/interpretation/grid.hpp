@@ -94,8 +94,8 @@ class Grid {
     bool before = false;
     Pose pose;
   };
-  /// Calls f(tile, index, errors from the cell to the echo, detection, bin) for each cell within a
-  /// cone. `spread`: [m] error of the echo.
+  /// Calls f(tile, cell of the row's first, row, first index within, end) for each row of a tile
+  /// that a cone meets. `spread`: [m] error of the echo.
   template <class F>
   void for_cone(const Pose& sonar, double range, double echo, double spread, F&& f);
   void weigh(const Pose& sonar, std::optional<double> range);

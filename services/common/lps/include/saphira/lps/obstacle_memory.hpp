@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -85,8 +86,11 @@ class ObstacleMemory {
     double likely;
   };
 
-  /// Columns of a row.
+  /// Columns of a row, or rows.
   struct Part {
+    void widen(long from, long to) {
+      *this = begin == end ? Part{from, to} : Part{std::min(begin, from), std::max(end, to)};
+    }
     long begin = 0;
     long end = 0;
   };
@@ -114,6 +118,7 @@ class ObstacleMemory {
   long row0_ = 0;
   std::vector<double> beliefs_;       ///< by rows
   std::vector<Part> held_;            ///< by row: no other belief is above 0
+  Part used_;                         ///< rows: no other belief is not 0
   std::size_t words_;                 ///< of marks, in a row
   std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
   ColumnParts columns_;               ///< seen from the sonar or the robot
