@@ -656,7 +656,7 @@ TEST(People, WhoIsNotFoundIsReportedToo) {
   const GoalStatus status = among(whole, people, goal, 9000);
   EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason,
-            "john was not asked: find-person: john is not to be found, neither at EJ-247");
+            "john was not asked: find-person: john is not to be found, not at EJ-247");
   EXPECT_TRUE(is_in(whole, "EJ-245"));
 }
 
@@ -739,7 +739,7 @@ TEST(People, AReplyThatIsNoAnswerIsAskedOnceMoreAndTold) {
   const GoalStatus status = among(whole, people, goal, 6000);
   EXPECT_EQ(status.state, v1::GOAL_FAILED);
   EXPECT_EQ(status.reason,
-            "bob is not to be found, neither at EJ-247; not understood: karen: pardon me?");
+            "bob is not to be found, not at EJ-247; not understood: karen: pardon me?");
   EXPECT_EQ(std::count(whole.said().begin(), whole.said().end(), "I do not understand that"), 1);
   EXPECT_EQ(std::count(whole.said().begin(), whole.said().end(), "Is bob here?"), 3);
 }
@@ -783,7 +783,7 @@ TEST(People, APlaceThatWasNotReachedWasNotVisited) {
   };
   EXPECT_TRUE(search("N3").starts_with("bob was not looked for: N3: ")) << search("N3");
   EXPECT_TRUE(search("EJ-247, N3")
-                  .starts_with("bob is not to be found, neither at EJ-247; not reached: N3: "));
+                  .starts_with("bob is not to be found, not at EJ-247; not reached: N3: "));
 }
 
 /// The result of a search among people who give these answers.
