@@ -673,6 +673,17 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   EXPECT_TRUE(people.all_answered());
 }
 
+TEST(People, WhatIsAboardIsBroughtStraight) {
+  Whole whole(office());
+  whole.claim("carries-the key", "EJ-247");
+  People people({{"Here is the key from alice, please take it", "taken", "yes"}});
+  const auto goal = whole.ask(
+      "deliver", {text("object", "the key"), text("to", "EJ-250"), text("sender", "alice")});
+  const GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
+  EXPECT_TRUE(people.all_answered());
+}
+
 /// The end of a delivery to Alice in EJ-247, of something that is given to the robot here; somebody
 /// takes it, and others say whether she has it.
 GoalStatus delivered_to_alice(const intentions::Value& taker, const std::string& she_has_it,
@@ -782,8 +793,8 @@ TEST(People, APlaceThatWasNotReachedWasNotVisited) {
     return among(whole, people, goal, 6000).reason;
   };
   EXPECT_TRUE(search("N3").starts_with("bob was not looked for: N3: ")) << search("N3");
-  EXPECT_TRUE(search("EJ-247, N3")
-                  .starts_with("bob is not to be found, not at EJ-247; not reached: N3: "));
+  EXPECT_TRUE(
+      search("EJ-247, N3").starts_with("bob is not to be found, not at EJ-247; not reached: N3: "));
 }
 
 /// The result of a search among people who give these answers.
