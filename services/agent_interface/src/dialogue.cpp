@@ -190,8 +190,8 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     const std::string object = thing(slot(meaning, "object"), situation);
     const bool aboard = is_aboard(object, situation);
     const Advice* const known = knowledge_.find(Advice::Kind::has, object);
-    const std::string from =
-        slot(meaning, owner).empty() && known != nullptr ? known->value : whom(owner);
+    const bool told = known != nullptr && known->value != named_person("");
+    const std::string from = slot(meaning, owner).empty() && told ? known->value : whom(owner);
     const std::string to = here ? bring_to(utterance, situation) : whom("to");
     if (to.empty()) {
       refuse(utterance, "I do not know where to bring it: where I am has no name", out);

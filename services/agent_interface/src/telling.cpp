@@ -237,7 +237,9 @@ void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
                            const Situation& situation, Outputs& out) const {
   if (situation.asked_about.empty() || lowered(situation.asked_for) != advice.about)
     return;
-  const bool holder = advice.kind == Advice::Kind::has && situation.asked_about != "given";
+  const bool holder = advice.kind == Advice::Kind::has &&
+                      (situation.asked_about == "taken" ||
+                       (situation.asked_about == "who-has" && findable(advice.value, situation)));
   if (advice.kind == Advice::Kind::person_at || holder ||
       (advice.kind == Advice::Kind::knows_where && knowledge_.findable(advice.value)))
     out.claims.push_back({situation.asked_about, advice.value, claim_source(utterance)});

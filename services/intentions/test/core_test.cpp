@@ -648,7 +648,9 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
 }
 
 TEST_F(CoreTest, APlaceThatTheMapDoesNotHaveIsRefusedAtOnce) {
-  Parameter parameter{"place", ArgumentKind::text};
+  Parameter parameter;
+  parameter.name = "place";
+  parameter.kind = ArgumentKind::text;
   parameter.place = true;
   Schema schema;
   schema.name = "go-to-place";
