@@ -232,7 +232,8 @@ void DialogueShell::take_beliefs() {
   for (const v1::Belief& one : set->beliefs) {
     Belief& belief = beliefs.emplace_back(Belief{one.name, one.value, one.said_by});
     if (one.since > 0)
-      belief.age = kCycle * static_cast<double>(set->stamp.cycle - one.since);
+      belief.age =
+          kCycle * (static_cast<double>(set->stamp.cycle) - static_cast<double>(one.since));
   }
   perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
 }
