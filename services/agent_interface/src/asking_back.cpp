@@ -171,6 +171,8 @@ void Dialogue::note_name(Grammar::Understood understood, const Utterance& uttera
   }
   question.sentence = std::move(understood);
   ask(std::move(question), utterance);
+  if (tasks_.task() != nullptr && tasks_.task()->answers == utterance.id)
+    order_ = questions_.back();
 }
 
 std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question& question,

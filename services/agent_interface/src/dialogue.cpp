@@ -425,22 +425,29 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool corrects = question != nullptr && !question->asked &&
                         (!asked || (understood.meanings.size() == 1 &&
                                     !slot(understood.meanings.front(), "meant").empty()));
+  const auto as_correction = [&](const Question& of) {
+    Grammar::Understood again = grammar_.understand(utterance.text, true);
+    if (again.answer)
+      again.meanings = {*again.answer};
+    return again.meanings.size() == 1 && again.meanings.front().functor == kInstead &&
+           answered(of, again, utterance, situation, out);
+  };
   // "No, right" after "turn left 30 degrees" is no turn of its own.
   const std::vector<std::string> words = words_of(utterance.text);
   const bool denies = std::find(words.begin(), words.end(), "no") != words.end();
   if (corrects && certain && understood.addressed &&
       (understood.meanings.empty() ||
        (denies && understood.meanings.front().functor == "to_place") ||
-       understood.meanings.front().functor == question->sentence.meanings.front().functor)) {
-    Grammar::Understood again = grammar_.understand(utterance.text, true);
-    if (again.answer)
-      again.meanings = {*again.answer};
-    if (again.meanings.size() == 1 && again.meanings.front().functor == kInstead &&
-        answered(*question, again, utterance, situation, out))
-      return out;
-  }
+       understood.meanings.front().functor == question->sentence.meanings.front().functor) &&
+      as_correction(*question))
+    return out;
   if ((answers || corrects) && certain &&
       answered(*question, understood, utterance, situation, out))
+    return out;
+  // The task under way may be corrected after other sentences, too.
+  if (certain && !answers && understood.addressed && understood.meanings.empty() && order_ &&
+      tasks_.task() != nullptr && tasks_.task()->answers == order_->raised_by.id &&
+      same_person(utterance.speaker, order_->raised_by.speaker) && as_correction(*order_))
     return out;
   leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question. What was not understood may be said

@@ -299,6 +299,7 @@ class Dialogue {
   Grammar grammar_;
   Knowledge knowledge_;
   std::vector<Question> questions_;  ///< the newest of each speaker
+  std::optional<Question> order_;    ///< for the open task
   struct Spot {
     std::string place;
     Pose pose_in_map;
