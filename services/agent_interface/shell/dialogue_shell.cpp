@@ -225,15 +225,19 @@ void DialogueShell::take_goals(double seconds) {
 }
 
 void DialogueShell::take_beliefs() {
-  const auto set = beliefs_.take_newest();
-  if (!set)
+  auto sets = beliefs_.take();
+  std::erase_if(sets, [](const auto& sample) { return sample.info.disposed; });
+  if (sets.empty())
     return;
+  const v1::BeliefSet& set = sets.back().data;
+  // The sample itself may be of before a restart.
+  const double old = node_.options().lockstep ? 0.0 : sets.back().info.age;
   std::vector<Belief> beliefs;
-  for (const v1::Belief& one : set->beliefs) {
+  for (const v1::Belief& one : set.beliefs) {
     Belief& belief = beliefs.emplace_back(Belief{one.name, one.value, one.said_by});
     if (one.since > 0)
       belief.age =
-          kCycle * (static_cast<double>(set->stamp.cycle) - static_cast<double>(one.since));
+          old + kCycle * (static_cast<double>(set.stamp.cycle) - static_cast<double>(one.since));
   }
   perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
 }
