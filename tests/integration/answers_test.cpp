@@ -201,6 +201,10 @@ TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   std::filesystem::create_directory(folder_.path("my"));
   write("my/wrong.beh", "BeginBehavior\n");
   expect({"check", "demo", "--set", "behaviors=" + folder_.path("my")}, 2, {"wrong.beh:"});
+  std::filesystem::create_directory(folder_.path("plans"));
+  write("plans/wrong.act", "(defintention :it :goals '((INTEND :GoToPoss ((goal . 1)))))\n");
+  expect({"check", "office", "--set", "activities=" + folder_.path("plans")}, 2,
+         {"wrong.act:1:", "unknown schema \"GoToPoss\"", "1 of its programs would not run"});
 
   // Of a program that lacks something the supervisor tries again; the others run on.
   std::filesystem::permissions(write("saphira-lacking", "#!/bin/sh\necho no model\nexit 3\n"),

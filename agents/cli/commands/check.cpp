@@ -4,18 +4,27 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 
+#include "behaviors/shell/convert.hpp"
 #include "commands.hpp"
 #include "environment.hpp"
+#include "intentions/shell/convert.hpp"
 #include "run_folder.hpp"
+#include "saphira/behaviors/folder.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/intentions/activity_folders.hpp"
+#include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/navigation.hpp"
 
 namespace saphira::cli {
 
 namespace {
+
+constexpr const char* kIntentions = "saphira-intentions";
 
 std::string quoted(const std::string& word) {
   std::string text = "'";
@@ -53,6 +62,43 @@ bool can_be_asked(const ChildSpec& child) {
   return program_of(child).starts_with("saphira-");
 }
 
+/// The values of an option of a program of the deployment.
+std::vector<std::string> values(const std::vector<ChildSpec>& children, const std::string& program,
+                                const std::string& option) {
+  std::vector<std::string> all;
+  for (const ChildSpec& child : children)
+    for (std::size_t i = 1; program_of(child) == program && i + 1 < child.argv.size(); ++i)
+      if (child.argv[i] == option && !child.argv[i + 1].empty())
+        all.push_back(child.argv[i + 1]);
+  return all;
+}
+
+/// Activities that name a behavior which the behaviors of the deployment do not have. No program
+/// can tell by itself: one has the activities, and another the behaviors.
+std::string unknown_behaviors(const std::vector<ChildSpec>& children) {
+  const std::string behaviors = "saphira-behaviors";
+  const auto folders = values(children, kIntentions, "--activities");
+  if (folders.empty() || !values(children, behaviors, "--plugin").empty() ||
+      std::none_of(children.begin(), children.end(),
+                   [&](const ChildSpec& child) { return program_of(child) == behaviors; }))
+    return {};
+  behaviors::Sources sources;
+  sources.add(behaviors::Folder(behaviors::behaviors_folder()));
+  for (const std::string& folder : values(children, behaviors, "--behaviors"))
+    sources.add(behaviors::Folder(folder));
+  behaviors::Registry registry;
+  sources.look(registry);
+  std::vector<std::string> paths{intentions::activities_folder()};
+  paths.insert(paths.end(), folders.begin(), folders.end());
+  intentions::ActivityFolders activities(paths, intentions::all_functions(),
+                                         intentions::built_in());
+  activities.know_behaviors(intentions::from_bus(behaviors::to_bus(registry, "")));
+  std::string text;
+  for (const std::string& error : activities.look().errors)
+    text += error + "\n";
+  return text;
+}
+
 int check(const std::string& name, const std::vector<std::string>& set,
           const bus::NodeOptions& options) {
   const Places places = find_places();
@@ -61,13 +107,17 @@ int check(const std::string& name, const std::vector<std::string>& set,
   std::size_t wrong = 0;
   std::size_t misused = 0;
   std::vector<std::string> left_out;
-  for (const ChildSpec& child : dry_lines(deployment, places, folder, set, options, left_out)) {
+  const auto children = dry_lines(deployment, places, folder, set, options, left_out);
+  for (const ChildSpec& child : children) {
     if (!can_be_asked(child)) {
       print("%-15s not asked: %s is no program of saphira\n", child.name.c_str(),
             program_of(child).c_str());
       continue;
     }
-    const Said said = ask(child);
+    Said said = ask(child);
+    if (said.well && program_of(child) == kIntentions)
+      if (const std::string wrong_names = unknown_behaviors(children); !wrong_names.empty())
+        said = {false, false, said.text + wrong_names};
     print("%-15s %s\n%s", child.name.c_str(),
           !said.well          ? "WRONG"
           : said.text.empty() ? "ok"

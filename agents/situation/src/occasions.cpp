@@ -8,6 +8,7 @@ constexpr double kApart = 10.0;    // [s] between two of a kind
 constexpr double kNoState = 1.0;   // [s] without the robot's state
 constexpr double kNotHeard = 3.0;  // [s] without a program's status
 constexpr double kHeld = 1.0;      // [s] that the guard holds the robot
+constexpr std::size_t kMostFailed = 1024;
 
 }  // namespace
 
@@ -31,7 +32,6 @@ std::optional<Occasion> Occasions::find(const Situation& situation, double now) 
   const bool begins = !before_;
   const Seen before = before_.value_or(Seen());
   Seen seen = before;
-  seen.failed.clear();
   seen.programs.clear();
   if (const auto& grant = situation.grant) {
     seen.estopped = grant->estopped;
@@ -46,6 +46,9 @@ std::optional<Occasion> Occasions::find(const Situation& situation, double now) 
     held_ = !holds ? -1.0 : is_long ? now + 1e9 : held_ < 0.0 ? now : held_;
   }
   seen.knows_goals = situation.statuses_known;
+  // Intentions that begin anew tell the ends of before once more.
+  if (seen.failed.size() > kMostFailed)
+    seen.failed.clear();
   for (const v1::GoalStatus& status : situation.statuses)
     if (status.state == v1::GOAL_FAILED) {
       const Key id{status.id.writer, status.id.number};

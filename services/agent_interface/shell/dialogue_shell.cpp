@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
+constexpr double kCycle = 0.1;            // [s]
 constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
@@ -155,7 +156,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
   }
   for (const std::uint64_t tag : out.canceled)
     if (const auto goal = asked_.find(tag); goal != asked_.end()) {
-      goals_.cancel(goal->second);
+      goals_.cancel(goal->second, out.why);
       asked_.erase(goal);
     }
   for (const WantedGoal& goal : out.goals)
@@ -224,12 +225,20 @@ void DialogueShell::take_goals(double seconds) {
 }
 
 void DialogueShell::take_beliefs() {
-  const auto set = beliefs_.take_newest();
-  if (!set)
+  auto sets = beliefs_.take();
+  std::erase_if(sets, [](const auto& sample) { return sample.info.disposed; });
+  if (sets.empty())
     return;
+  const v1::BeliefSet& set = sets.back().data;
+  // The sample itself may be of before a restart.
+  const double old = node_.options().lockstep ? 0.0 : sets.back().info.age;
   std::vector<Belief> beliefs;
-  for (const v1::Belief& one : set->beliefs)
-    beliefs.push_back({one.name, one.value, one.said_by, one.since});
+  for (const v1::Belief& one : set.beliefs) {
+    Belief& belief = beliefs.emplace_back(Belief{one.name, one.value, one.said_by});
+    if (one.since > 0)
+      belief.age =
+          old + kCycle * (static_cast<double>(set.stamp.cycle) - static_cast<double>(one.since));
+  }
   perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
 }
 
@@ -319,6 +328,7 @@ void DialogueShell::step(double seconds, double now) {
     if (!sample.info.disposed)
       perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
+  perform(dialogue_.come_due(situation_));
   stops_.poll(seconds);
   take_utterances();
   agent_.poll();

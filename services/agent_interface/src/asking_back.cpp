@@ -43,7 +43,7 @@ void rename(Grammar::Understood& understood, const std::string& from, const std:
 /// "I meant the mail", "no, the mail"; "no problem" is no other name.
 bool names_something(const Meaning& instead, const Utterance& utterance) {
   const std::vector<std::string> words = words_of(utterance.text);
-  return !slot(instead, "meant").empty() ||
+  return !slot(instead, "meant").empty() || !slot(instead, "was").empty() ||
          std::find(words.begin(), words.end(), "the") != words.end();
 }
 
@@ -109,7 +109,8 @@ void Dialogue::prefer_answer(Grammar::Understood& understood, const Question* qu
                              const Situation& situation) const {
   std::vector<Meaning>& meanings = understood.meanings;
   if (understood.answer && meanings.size() == 1 && meanings.front().functor != "stop" &&
-      (is_yes_or_no(*understood.answer) || meanings.front().functor == "to_place")) {
+      (is_yes_or_no(*understood.answer) || meanings.front().functor == "to_place" ||
+       slot(meanings.front(), "object") == "it")) {
     meanings = {*understood.answer};
     understood.then.clear();
     understood.apart.clear();
@@ -170,13 +171,17 @@ void Dialogue::note_name(Grammar::Understood understood, const Utterance& uttera
   }
   question.sentence = std::move(understood);
   ask(std::move(question), utterance);
+  if (tasks_.task() != nullptr && tasks_.task()->answers == utterance.id)
+    order_ = questions_.back();
 }
 
 std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question& question,
-                                                                 const std::string& words,
-                                                                 bool names,
+                                                                 const Meaning& instead, bool names,
                                                                  const Situation& situation) const {
   std::vector<std::pair<Meaning, std::string>> found;
+  const std::string words = slot(instead, "name");
+  const std::string wrong = slot(instead, "was");
+  const std::string wrong_place = place(wrong, situation);
   const Meaning& was = question.sentence.meanings.front();
   const std::string& text = question.raised_by.text;
   if (is_known(words, situation)) {
@@ -186,7 +191,9 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
       for (const std::string_view name : kNamed) {
         const std::string value = slot(was, std::string(name));
         const bool any = name == "from" || name == "to" || !fits;
-        if (!value.empty() && value != "this" && (any || (name == "place") == is_place))
+        const bool meant = wrong.empty() || value == wrong ||
+                           (!wrong_place.empty() && place(value, situation) == wrong_place);
+        if (!value.empty() && value != "this" && meant && (any || (name == "place") == is_place))
           found.emplace_back(with(was, std::string(name), words), with_words(text, value, words));
       }
       if (!found.empty())
@@ -280,8 +287,8 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
     return false;
   } else if (const auto other =
                  !question.asked && heard.front().functor == kInstead
-                     ? corrected(question, slot(heard.front(), "name"),
-                                 names_something(heard.front(), utterance), situation)
+                     ? corrected(question, heard.front(), names_something(heard.front(), utterance),
+                                 situation)
                      : std::vector<std::pair<Meaning, std::string>>{};
              !other.empty()) {
     next = question.sentence;

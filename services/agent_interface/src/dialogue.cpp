@@ -28,8 +28,9 @@ constexpr std::array kLasting{"go-to-place", "find-person", "deliver", "tell",
 
 /// A sentence that changes the knowledge of the robot.
 bool is_fact(const Meaning& meaning) {
-  constexpr std::array kFacts{"office_of", "person_at",     "knows_where", "hazard", "no_hazard",
-                              "not_at",    "not_office_of", "not_knows",   "forget", "name_of"};
+  constexpr std::array kFacts{"office_of",     "person_at", "knows_where", "hazard",
+                              "no_hazard",     "has",       "not_has",     "not_at",
+                              "not_office_of", "not_knows", "forget",      "name_of"};
   return std::find(kFacts.begin(), kFacts.end(), meaning.functor) != kFacts.end();
 }
 
@@ -183,18 +184,28 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
       out.unknown = {};
       want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     }
-  } else if (functor == "deliver") {
-    want(meaning, utterance, "deliver",
-         {text("object", "the " + slot(meaning, "object")), text("from", whom("from")),
-          text("to", whom("to"))});
-  } else if (functor == "fetch") {
-    const std::string to = bring_to(utterance, situation);
-    if (to.empty())
+  } else if (functor == "deliver" || functor == "fetch") {
+    const bool here = functor == "fetch";
+    const char* const owner = here ? "person" : "from";
+    const std::string object = thing(slot(meaning, "object"), situation);
+    const bool aboard = is_aboard(object, situation);
+    const Advice* const known = knowledge_.find(Advice::Kind::has, object);
+    const bool told = known != nullptr && known->value != named_person("");
+    const std::string from = slot(meaning, owner).empty() && told ? known->value : whom(owner);
+    const std::string to = here ? bring_to(utterance, situation) : whom("to");
+    if (to.empty()) {
       refuse(utterance, "I do not know where to bring it: where I am has no name", out);
-    else
-      want(meaning, utterance, "deliver",
-           {text("object", "the " + slot(meaning, "object")), text("from", whom("person")),
-            text("to", to), text("receiver", lowered(utterance.speaker))});
+    } else if (from.empty() && !aboard) {
+      refuse(utterance, "nobody has told me who has " + object, out);
+    } else {
+      Arguments arguments{text("object", object), text(aboard ? "sender" : "from", from),
+                          text("to", to)};
+      if (here)
+        arguments.push_back(text("receiver", lowered(utterance.speaker)));
+      want(aboard ? Meaning{"deliver_here", {{"object", slot(meaning, "object")}, {"to", to}}}
+                  : with(with(meaning, owner, from), "to", to),
+           utterance, "deliver", std::move(arguments));
+    }
   } else {
     return false;
   }
@@ -219,7 +230,9 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
   std::string value;
   const std::string asked_for = lowered(situation.asked_for);
   Advice told;  // about nobody: nothing
-  told.kind = Advice::Kind::person_at;
+  const bool holder = situation.asked_about == "who-has";
+  const bool thing = holder || is_handover(situation.asked_about);
+  told.kind = thing ? Advice::Kind::has : Advice::Kind::person_at;
   told.about = asked_for;
   told.speaker = utterance.speaker;
   told.said = utterance.text;
@@ -237,7 +250,6 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
       return true;
   }
   const bool takes = situation.asked_about == "taken";
-  const bool holder = situation.asked_about == "who-has";
   if (holder && meaning.functor == "other_has") {
     refuse(utterance, "who is that? Say the name", out);
     return true;
@@ -245,10 +257,10 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
   if (meaning.functor == "yes" || meaning.functor == "handed" || meaning.functor == "other_has") {
     const bool own = takes ? meaning.functor != "other_has" : holder && meaning.functor == "handed";
     value = own && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
-    told.about.clear();
+    if (value == "yes")
+      told.about.clear();
   } else if (takes && meaning.functor == "somebody") {
     value = called;
-    told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
     const bool knows = meaning.functor == "no" || situation.asked_about != "answer";
     value = knows ? "no" : "does not know";
@@ -264,7 +276,9 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
       refuse(utterance, "nobody has told me where " + name + " is", out);
       return true;
     }
-    if (person)
+    if (!person && thing)
+      told.about.clear();
+    else if (person && !thing)
       told.kind = Advice::Kind::knows_where;
   } else if (meaning.functor == "at") {
     std::uint32_t artifact = 0;
@@ -274,7 +288,8 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
       refuse(utterance, wrong, out);
       return true;
     }
-    if (const std::string who = slot(meaning, "who"); !who.empty())
+    told.kind = Advice::Kind::person_at;
+    if (const std::string who = slot(meaning, "who"); !who.empty() || thing)
       told.about = who;
   } else {
     return false;
@@ -282,7 +297,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
   if (!open)
     return true;  // no question is open
   told.value = value;
-  const bool answers = asked_for.empty() || told.about.empty() || told.about == asked_for;
+  const bool answers = thing || asked_for.empty() || told.about.empty() || told.about == asked_for;
   say(utterance,
       answers ? "thank you"
               : "I know now that " + describe(told) + ", and still ask for " + asked_for,
@@ -310,6 +325,8 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
 void Dialogue::add(Tasks::Outputs more, Outputs& out) {
   out.said.insert(out.said.end(), more.said.begin(), more.said.end());
   out.canceled.insert(out.canceled.end(), more.canceled.begin(), more.canceled.end());
+  if (!more.canceled.empty())
+    out.why = std::move(more.why);
   out.goals.insert(out.goals.end(), more.goals.begin(), more.goals.end());
   if (!more.denied.text.empty())
     out.denied = more.denied;
@@ -333,7 +350,29 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
       refuse(utterance, why, out);
       return;
     }
-  begin(std::exchange(wanted_, {}), false, utterance, situation, out);
+  if (understood.timed && situation.now > 0.0) {
+    const double seconds = wanted_.front().goal.arguments.front().number;
+    wanted_.erase(wanted_.begin());
+    add(tasks_.later(situation.now + seconds, std::exchange(wanted_, {}), utterance), out);
+  } else {
+    begin(std::exchange(wanted_, {}), false, utterance, situation, out);
+  }
+}
+
+Dialogue::Outputs Dialogue::come_due(const Situation& situation) {
+  Outputs out;
+  for (Tasks::Later& one : tasks_.take_due(situation.now)) {
+    one.order.time = situation.now;
+    std::string why;
+    for (const Task& step : one.steps)
+      if (why.empty())
+        why = hindrance(step.goal, situation, out);
+    if (why.empty())
+      begin(std::move(one.steps), false, one.order, situation, out);
+    else
+      refuse(one.order, why, out);
+  }
+  return out;
 }
 
 void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utterance,
@@ -386,19 +425,29 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool corrects = question != nullptr && !question->asked &&
                         (!asked || (understood.meanings.size() == 1 &&
                                     !slot(understood.meanings.front(), "meant").empty()));
-  // "No, right" after "turn left 30 degrees" is no turn of its own.
-  if (corrects && certain && understood.addressed &&
-      (understood.meanings.empty() ||
-       understood.meanings.front().functor == question->sentence.meanings.front().functor)) {
+  const auto as_correction = [&](const Question& of) {
     Grammar::Understood again = grammar_.understand(utterance.text, true);
     if (again.answer)
       again.meanings = {*again.answer};
-    if (again.meanings.size() == 1 && again.meanings.front().functor == kInstead &&
-        answered(*question, again, utterance, situation, out))
-      return out;
-  }
+    return again.meanings.size() == 1 && again.meanings.front().functor == kInstead &&
+           answered(of, again, utterance, situation, out);
+  };
+  // "No, right" after "turn left 30 degrees" is no turn of its own.
+  const std::vector<std::string> words = words_of(utterance.text);
+  const bool denies = std::find(words.begin(), words.end(), "no") != words.end();
+  if (corrects && certain && understood.addressed &&
+      (understood.meanings.empty() ||
+       (denies && understood.meanings.front().functor == "to_place") ||
+       understood.meanings.front().functor == question->sentence.meanings.front().functor) &&
+      as_correction(*question))
+    return out;
   if ((answers || corrects) && certain &&
       answered(*question, understood, utterance, situation, out))
+    return out;
+  // The task under way may be corrected after other sentences, too.
+  if (certain && !answers && understood.addressed && understood.meanings.empty() && order_ &&
+      tasks_.task() != nullptr && tasks_.task()->answers == order_->raised_by.id &&
+      same_person(utterance.speaker, order_->raised_by.speaker) && as_correction(*order_))
     return out;
   leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question. What was not understood may be said
@@ -423,7 +472,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   const bool stops =
-      understood.meanings.size() == 1 && understood.meanings.front().functor == "stop";
+      understood.meanings.size() == 1 && (understood.meanings.front().functor == "stop" ||
+                                          understood.meanings.front().functor == kHold);
   // A stop too many costs less than one that was missed.
   if (understood.meanings.empty() || (utterance.confidence < kSure && !stops))
     refuse(utterance, "what?", out);
@@ -490,6 +540,7 @@ Dialogue::Outputs Dialogue::without_status(const std::vector<std::uint64_t>& tag
       continue;
     }
     out.canceled.push_back(tag);
+    out.why = kNotTakenUp;
     end({tag, false, kNotTakenUp}, out);
   }
   return out;

@@ -9,6 +9,7 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr double kLongestWait = 3600.0;  // [s]
+constexpr double kLongHold = 36000.0;    // [s] of the activity, or until it is told to go on
 constexpr double kWaitThere = 600.0;     // [s] until the robot is free for others
 
 /// The last part of an utterance that has these words, as its speaker wrote it.
@@ -120,9 +121,14 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
   } else if (functor == "deliver_here") {
     const bool office = !slot(meaning, "owner").empty();
     const std::string to = office ? where("to") : place_or_person(slot(meaning, "to"), situation);
-    if (!to.empty())
-      want(with(meaning, "to", to), utterance, "deliver",
-           {text("object", "the " + slot(meaning, "object")), text("to", to),
+    const std::string object = thing(slot(meaning, "object"), situation);
+    if (object.empty())
+      refuse(utterance, kWhichThing, out);
+    else if (!to.empty())
+      want(with(with(meaning, "to", to), "object",
+                object.starts_with("the ") ? object.substr(4) : object),
+           utterance, "deliver",
+           {text("object", object), text("to", to),
             text("sender", named_person(utterance.speaker))});
   } else if (functor == "tell") {
     const std::string message = part_as_said(slot(meaning, "message"), utterance.text);
@@ -154,6 +160,11 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     wait_until(meaning, utterance, out);
   } else if (functor == "cannot") {
     refuse(utterance, grammar_.paraphrase(meaning), out);
+  } else if (functor == kHold) {
+    if (tasks_.task() != nullptr)
+      want(meaning, utterance, "pause", {number("seconds", kLongHold)});
+    else
+      want({"stop", {}}, utterance, "stop", {});
   } else if (functor == "go_on") {
     add(tasks_.go_on(utterance), out);
   } else if (functor == "pace") {

@@ -324,7 +324,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
   Understood result;
   const Urgent urgent = this->urgent(text);
   if (urgent.meaning && urgent.alone)
-    return {true, false, {*urgent.meaning}};
+    return {true, false, false, {*urgent.meaning}};
   std::vector<std::string> said = words_and_commas_of(text);
   std::vector<std::string> words = without_commas(said);
   const auto is_among = [](const std::vector<std::string>& some) {
@@ -342,7 +342,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     if (!said.empty() && said.front() == kComma)
       said.erase(said.begin());
   } else if (urgent.meaning) {
-    return {true, false, {*urgent.meaning}};  // "stop, Flakey!"
+    return {true, false, false, {*urgent.meaning}};  // "stop, Flakey!"
   } else if (words.size() > 1 && is_keyword(words.back())) {
     words.pop_back();  // the words before the keyword at most answer the robot
     said = words;
@@ -389,6 +389,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
         if (result.meanings.size() == 1 && is_step(result.meanings.front())) {
           result.then.insert(result.then.begin(), result.meanings.front());
           result.meanings = when;
+          result.timed = true;
           result.apart.clear();
           return;
         }

@@ -18,7 +18,7 @@ bool several(Advice::Kind kind) {
 }  // namespace
 
 const char* describe(Advice::Kind kind) {
-  return word_of(kind, {"office_of", "person_at", "knows_where", "hazard"});
+  return word_of(kind, {"office_of", "person_at", "knows_where", "hazard", "has"});
 }
 
 std::string describe(const Advice& advice) {
@@ -32,6 +32,8 @@ std::string describe(const Advice& advice) {
       return advice.about + " is at " + advice.value;
     case Advice::Kind::knows_where:
       return advice.value + " knows where " + advice.about + " is";
+    case Advice::Kind::has:
+      return advice.value + " has " + advice.about;
     case Advice::Kind::hazard:
       break;
   }
@@ -89,7 +91,7 @@ bool Knowledge::findable(std::string_view person) const {
 
 bool Knowledge::knows(std::string_view person) const {
   return std::any_of(all_.begin(), all_.end(), [&](const Advice& one) {
-    return one.kind != Advice::Kind::hazard &&
+    return one.kind != Advice::Kind::hazard && one.kind != Advice::Kind::has &&
            (one.about == person || (one.kind == Advice::Kind::knows_where && one.value == person));
   });
 }

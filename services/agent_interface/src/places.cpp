@@ -327,6 +327,12 @@ std::string Dialogue::hindrance(const WantedGoal& goal, const Situation& situati
   return {};
 }
 
+std::string Dialogue::thing(const std::string& name, const Situation& situation) {
+  if (name == "it")
+    return situation.carried.size() == 1 ? situation.carried.front().first : std::string();
+  return is_aboard(name, situation) ? name : "the " + name;
+}
+
 std::string Dialogue::place_or_person(const std::string& name, const Situation& situation) const {
   const std::string known = place(name, situation);
   return known.empty() ? name : known;

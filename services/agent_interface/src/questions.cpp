@@ -176,12 +176,15 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
     if (!owner.empty())
       return question_about_world(with({"where_office", {}}, "person", owner), utterance, situation,
                                   out);
+    const std::string item = thing(person, situation);
     std::string text;
     for (const auto& [object, to] : situation.carried)
-      if (object == person || object == "the " + person)
+      if (object == item)
         text = "I have it: I was to bring it to " + to;
     if (text.empty())
       text = told_of(person);
+    if (text.empty())
+      text = told_of(item);
     if (text.empty())
       text = way_to(place(person, situation), situation);
     for (const maps::Feature& thing : situation.map.features)

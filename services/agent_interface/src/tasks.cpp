@@ -7,6 +7,7 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr double kLongestHold = 600.0;  // [s]
+constexpr std::size_t kMostLater = 16;
 
 bool is_stop(const Task& task) {
   return task.goal.functor == "stop";
@@ -16,6 +17,14 @@ std::string whole_text(const Task& task) {
   std::string text = task.what;
   for (const Task& step : task.then)
     text += ", and then " + step.what;
+  return text;
+}
+
+/// "at 05:00 I go home, and then I wait there"
+std::string whole_text(const Tasks::Later& later) {
+  std::string text = time_text(later.time);
+  for (const Task& step : later.steps)
+    text += (&step == &later.steps.front() ? "" : ", and then ") + step.what;
   return text;
 }
 
@@ -77,6 +86,7 @@ void Tasks::drop(bool brief, const std::string& by, const std::string& text, Out
 
 Tasks::Outputs Tasks::left(const ProgramId& program) {
   Outputs out;
+  out.why = "the program that wanted it has left or taken it back";
   for (auto one = open_.begin(); one != open_.end();) {
     if (one->program != program || is_stop(*one)) {
       ++one;
@@ -84,10 +94,41 @@ Tasks::Outputs Tasks::left(const ProgramId& program) {
     }
     if (one->brief)
       release(out);
-    cancel(*one, one->goal.speaker, ": the program that wanted it has left or taken it back", out);
+    cancel(*one, one->goal.speaker, ": " + out.why, out);
     one = open_.erase(one);
   }
+  drop_later(
+      ": " + out.why, [&](const Later& one) { return one.order.program == program; }, out);
   return out;
+}
+
+Tasks::Outputs Tasks::later(double time, std::vector<Task> steps, const Utterance& order) {
+  Outputs out;
+  const bool many = later_.size() >= kMostLater;
+  if (!many)
+    later_.push_back({time, order, std::move(steps)});
+  out.said.push_back({order.id, order.speaker,
+                      many ? "I have too much to do later already" : whole_text(later_.back()),
+                      many, many});
+  return out;
+}
+
+std::vector<Tasks::Later> Tasks::take_due(double now) {
+  std::vector<Later> due;
+  for (Later& one : later_)
+    if (one.time <= now)
+      due.push_back(std::move(one));
+  std::erase_if(later_, [&](const Later& one) { return one.time <= now; });
+  return due;
+}
+
+void Tasks::drop_later(const std::string& why, const std::function<bool(const Later&)>& meant,
+                       Outputs& out) {
+  for (const Later& one : later_)
+    if (meant(one))
+      out.said.push_back({one.order.id, one.order.speaker,
+                          "I drop what was to be later: " + whole_text(one) + why, true});
+  std::erase_if(later_, meant);
 }
 
 Tasks::Outputs Tasks::deny(const Task& task, const Utterance& utterance) const {
@@ -115,6 +156,7 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
     step.brief = all_brief;
     step.goal.person = utterance.person;
   }
+  out.why = claim_source(utterance);
   const bool stop = is_stop(steps.front());
   const bool brief = !stop && all_brief;
   for (const Task& one : open_)
@@ -147,8 +189,11 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
   } else if (!stop && !brief) {
     stopped_.clear();
   }
-  if (stop)
+  if (stop) {
     out.said.push_back(announced);
+    drop_later(
+        ": " + out.why, [](const Later&) { return true; }, out);
+  }
   if (!brief)
     drop(false, utterance.speaker, utterance.text, out);
   drop(true, utterance.speaker, utterance.text, out);
@@ -167,6 +212,7 @@ Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
     const std::uint64_t tag = wait->goal.tag;
     Outputs out = ended({tag, true, "I was told to go on"});
     out.canceled.push_back(tag);
+    out.why = claim_source(utterance);
     out.said.push_back(
         {utterance.id, utterance.speaker,
          task() == nullptr ? "I go on" : "I go on with " + named_task(*task(), utterance.speaker),
@@ -245,6 +291,8 @@ std::string Tasks::doing() const {
   std::string text;
   for (auto one = open_.rbegin(); one != open_.rend(); ++one)
     text += (text.empty() ? "" : "; ") + whole_text(*one);
+  for (const Later& one : later_)
+    text += (text.empty() ? "" : "; ") + whole_text(one);
   return text;
 }
 

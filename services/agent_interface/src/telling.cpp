@@ -21,6 +21,7 @@ constexpr std::string_view kPlaceOf = "place-of-";
 constexpr std::string_view kKnowers = "knows-where-";
 constexpr std::string_view kCarries = "carries-";
 constexpr const char* kFinder = "find-person";
+constexpr double kFresh = 1.0;  // [s] age of a find that was not heard before
 
 /// A text in the language of activities: "karen's office".
 std::string literal(const std::string& text) {
@@ -73,13 +74,16 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
       situation.asked_for = value;
     else if (belief.name == kPace)
       situation.is_slow = value == "slow";
-    else if (belief.name.starts_with(kCarries) && !value.empty())
+    else if (belief.name.starts_with(kCarries) && !value.empty()) {
       situation.carried.emplace_back(belief.name.substr(kCarries.size()), value);
+      finds.push_back({Advice::Kind::has, situation.carried.back().first, kRobot, belief.age});
+    }
     for (const std::string_view about : {kPlaceOf, kKnowers})
       if (belief.name.starts_with(about) && !value.empty())
         situation.findable.push_back(lowered(belief.name.substr(about.size())));
     if (belief.said_by == kFinder && belief.name.starts_with(kPlaceOf) && !value.empty())
-      finds.push_back({belief.name.substr(kPlaceOf.size()), value, belief.since});
+      finds.push_back({Advice::Kind::person_at, lowered(belief.name.substr(kPlaceOf.size())), value,
+                       belief.age});
   }
   return finds;
 }
@@ -87,8 +91,9 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
 /// First where a person is, then who knows it.
 std::string Dialogue::told_of(const std::string& about) const {
   std::string text;
-  for (const Advice::Kind kind : {Advice::Kind::person_at, Advice::Kind::office_of,
-                                  Advice::Kind::hazard, Advice::Kind::knows_where})
+  for (const Advice::Kind kind :
+       {Advice::Kind::person_at, Advice::Kind::office_of, Advice::Kind::hazard,
+        Advice::Kind::knows_where, Advice::Kind::has})
     for (const Advice& one : knowledge_.all())
       if (one.kind == kind && one.about == about)
         text += (text.empty() ? "" : "; ") + as_told(one);
@@ -129,6 +134,8 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, const Situ
     change = "; so " + named_task(*task, utterance.speaker) + " ends";
   else if (before.around != now.around)
     change = "; so I look for another way";
+  if (advice.kind == Advice::Kind::has && is_aboard(advice.about, situation))
+    change = "; so I no longer carry it";
   say(utterance, "I know now that " + describe(advice) + change, true, out);
 }
 
@@ -196,6 +203,16 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     if (advice.kind == Advice::Kind::hazard)
       advice.about = slot(meaning, "kind");
     advice.value = referred(meaning, situation, out, advice.artifact, wrong);
+  } else if (meaning.functor == "has") {
+    advice.kind = Advice::Kind::has;
+    advice.about = thing(slot(meaning, "object"), situation);
+    advice.value = slot(meaning, "person");
+    if (advice.about.empty())
+      wrong = kWhichThing;
+    else if (advice.value == named_person("") && !is_aboard(advice.about, situation))
+      wrong = "I do not carry " + advice.about;
+    else if (meaning.slots.contains("off"))
+      say(utterance, "I have no arm: please take " + advice.about + " off", false, out);
   } else {
     return false;
   }
@@ -220,7 +237,10 @@ void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
                            const Situation& situation, Outputs& out) const {
   if (situation.asked_about.empty() || lowered(situation.asked_for) != advice.about)
     return;
-  if (advice.kind == Advice::Kind::person_at ||
+  const bool holder = advice.kind == Advice::Kind::has &&
+                      (situation.asked_about == "taken" ||
+                       (situation.asked_about == "who-has" && findable(advice.value, situation)));
+  if (advice.kind == Advice::Kind::person_at || holder ||
       (advice.kind == Advice::Kind::knows_where && knowledge_.findable(advice.value)))
     out.claims.push_back({situation.asked_about, advice.value, claim_source(utterance)});
 }
@@ -229,7 +249,7 @@ void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
 bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
                           const Situation& situation, Outputs& out) {
   using Kind = Advice::Kind;
-  const std::string person = slot(meaning, "person");
+  std::string person = slot(meaning, "person");
   std::vector<Advice> wrong;
   std::string unknown;
   const auto doubt = [&](Kind kind, const std::string& value) {
@@ -257,6 +277,9 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
       return true;
     }
     doubt(office ? Kind::office_of : Kind::person_at, place);
+  } else if (meaning.functor == "not_has") {
+    const std::string holder = std::exchange(person, thing(slot(meaning, "object"), situation));
+    doubt(Kind::has, holder);
   } else if (meaning.functor == "not_knows") {
     doubt(Kind::knows_where, slot(meaning, "other"));
   } else if (meaning.functor == "forget") {
@@ -295,20 +318,30 @@ void Dialogue::learn(const Advice& advice, Outputs& out) {
 Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
   Outputs out;
   const std::vector<Find> known = std::exchange(found_, finds);
-  const bool before = !std::exchange(looked_, true);
   for (const Find& find : finds) {
-    if (std::find(known.begin(), known.end(), find) != known.end())
+    const bool repeated = std::any_of(known.begin(), known.end(), [&](const Find& one) {
+      return one.kind == find.kind && one.about == find.about && one.value == find.value &&
+             !(find.age && (!one.age || *find.age < *one.age));
+    });
+    const bool fresh = find.age && *find.age <= kFresh;
+    const Advice* const told = knowledge_.find(find.kind, find.about);
+    if (repeated || (!fresh && (told != nullptr ||
+                                std::any_of(gone_.begin(), gone_.end(), [&](const Gone& one) {
+                                  return one.person == find.about;
+                                }))))
       continue;
+    if (find.kind == Advice::Kind::has) {  // the belief says it by itself
+      if (told != nullptr)
+        withdraw(told->number, out);
+      continue;
+    }
     Advice advice;
-    advice.kind = Advice::Kind::person_at;
-    advice.about = lowered(find.person);
-    if (before && (knowledge_.find(advice.kind, advice.about) != nullptr ||
-                   std::any_of(gone_.begin(), gone_.end(),
-                               [&](const Gone& one) { return one.person == advice.about; })))
-      continue;
-    advice.value = find.place;
+    advice.kind = find.kind;
+    advice.about = find.about;
+    advice.value = find.value;
     advice.speaker = kRobot;
-    advice.time = now;
+    if (find.age && now > 0.0)
+      advice.time = now - *find.age;
     learn(advice, out);
   }
   return out;
@@ -348,10 +381,14 @@ void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* bec
   out.changed = true;
   const bool hazard = forgotten->kind == Advice::Kind::hazard;
   const bool knows = forgotten->kind == Advice::Kind::knows_where;
-  const std::string name =
-      hazard ? maps::kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
+  const bool has = forgotten->kind == Advice::Kind::has;
+  const std::string name = hazard ? maps::kHazards
+                                  : std::string(has     ? kCarries
+                                                : knows ? kKnowers
+                                                        : kPlaceOf) +
+                                        forgotten->about;
   // Claims about the person end, too.
-  if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
+  if (!hazard && !knows && !has && knowledge_.place_of(forgotten->about).empty()) {
     if (gone_.size() >= kMostGone)
       gone_.erase(gone_.begin());
     gone_.push_back({forgotten->about, because == nullptr ? "taken back" : claim_source(*because)});
@@ -377,11 +414,13 @@ std::vector<Claimed> Dialogue::claims() const {
   Claimed hazards{maps::kHazards, "", ""};
   for (const Advice& one : knowledge_.all()) {
     const std::string name =
-        (one.kind == Advice::Kind::knows_where ? "knows-where-" : "place-of-") + one.about;
+        std::string(one.kind == Advice::Kind::knows_where ? kKnowers : kPlaceOf) + one.about;
     const auto same = std::find_if(result.begin(), result.end(),
                                    [&](const Claimed& each) { return each.name == name; });
     if (one.kind == Advice::Kind::hazard) {
       join(hazards, one, one.about + " at " + one.value, "; ");
+    } else if (one.kind == Advice::Kind::has) {  // so the robot has it not
+      result.push_back({std::string(kCarries) + one.about, "nil", source_of(one), {}, true});
     } else if (one.kind == Advice::Kind::knows_where) {
       Claimed& all = same == result.end() ? result.emplace_back(Claimed{name, "", ""}) : *same;
       join(all, one, one.value, ", ");

@@ -195,7 +195,7 @@ class Grammar::UrgentFinder {
 
   bool is_order(const Meaning& meaning) const {
     return std::any_of(grammar_.rules_.begin(), grammar_.rules_.end(), [&](const Rule& rule) {
-      return rule.use == Use::alone && rule.meaning == meaning;
+      return meaning.functor == kHold || (rule.use == Use::alone && rule.meaning == meaning);
     });
   }
 

@@ -1,5 +1,6 @@
 #include "words.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 
@@ -7,16 +8,6 @@
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
-namespace {
-
-/// "at 10:02 ", in local time; empty for an unknown time.
-std::string time_text(double unix_time) {
-  const auto seconds = static_cast<std::int64_t>(unix_time);
-  return seconds > 0 ? local_text(seconds, "at %H:%M ") : std::string();
-}
-
-}  // namespace
-
 std::string slot(const Meaning& meaning, const std::string& name) {
   const auto found = meaning.slots.find(name);
   return found == meaning.slots.end() ? std::string() : found->second;
@@ -48,6 +39,16 @@ std::string named_task(const Task& task, const std::string& listener) {
   return (task.name.empty() ? "that" : task.name) +
          (same_person(task.goal.speaker, listener) ? ""
                                                    : " for " + named_person(task.goal.speaker));
+}
+
+std::string time_text(double unix_time) {
+  const auto seconds = static_cast<std::int64_t>(unix_time);
+  return seconds > 0 ? local_text(seconds, "at %H:%M ") : std::string();
+}
+
+bool is_aboard(const std::string& thing, const Situation& situation) {
+  return std::any_of(situation.carried.begin(), situation.carried.end(),
+                     [&](const auto& one) { return one.first == thing; });
 }
 
 bool is_handover(std::string_view asked_about) {

@@ -20,9 +20,14 @@ inline constexpr const char* kDanger = "danger";
 /// The claim about a reply that is no answer to the question of an activity.
 inline constexpr const char* kNotUnderstood = "not-understood";
 
+/// The meaning of "wait": a task goes on afterwards.
+inline constexpr const char* kHold = "hold";
+
 /// The claim that the robot is to go slowly.
 inline constexpr const char* kPace = "pace";
 
+/// True for a thing on the robot's back.
+bool is_aboard(const std::string& thing, const Situation& situation);
 /// True for a question of an activity whether something is handed over.
 bool is_handover(std::string_view asked_about);
 
@@ -43,6 +48,8 @@ bool is_question(std::string_view text);
 /// The meaning with another value of a slot.
 Meaning with(Meaning meaning, const std::string& name, const std::string& value);
 
+/// "at 10:02 ", in local time; empty for an unknown time.
+std::string time_text(double unix_time);
 /// "somebody" for an empty name.
 std::string named_person(const std::string& name);
 /// "the mail for alice"; for the listener's own task without that name.
@@ -59,6 +66,7 @@ std::string source_of(const Advice& advice);
 /// The origin of a claim that follows from an utterance.
 std::string claim_source(const Utterance& utterance);
 
+inline constexpr const char* kWhichThing = "which thing? Say its name";
 inline constexpr const char* kLost = "I do not know where I am on the map";
 /// The robot's place in the map's words; empty: unknown, or nameless.
 std::string here(const Situation& situation);

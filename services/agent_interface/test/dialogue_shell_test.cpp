@@ -170,7 +170,7 @@ TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
   dialogue->step(kTakenUp);
   EXPECT_EQ(answers(), std::string("I could not: ") + kNotTakenUp);
   const auto withdrawn = test::only(goals.take());
-  EXPECT_TRUE(withdrawn.info.disposed);
+  EXPECT_EQ(withdrawn.data.withdrawn, kNotTakenUp);
 }
 
 TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
@@ -233,7 +233,8 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   say("Flakey, stop");
   const auto then = goals.take();
   EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
-    return sample.info.disposed && sample.data.id == first.data.id;
+    return sample.data.withdrawn == "Alice said \"Flakey, stop\"" &&
+           sample.data.id == first.data.id;
   }));
 }
 
@@ -263,7 +264,7 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   dialogue->step();
   EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
   const auto ended = test::only(goals.take());
-  EXPECT_TRUE(ended.info.disposed);
+  EXPECT_EQ(ended.data.withdrawn, "the program that wanted it has left or taken it back");
   EXPECT_EQ(ended.data.id, asked[1].data.id);
 }
 
@@ -278,7 +279,7 @@ TEST_F(DialogueOnTheBus, WordsOfAProgramThatHasEndedBeginNothingThatStays) {
   }
   dialogue->step();
   const auto seen = goals.take();
-  EXPECT_TRUE(seen.empty() || seen.back().info.disposed);
+  EXPECT_TRUE(seen.empty() || !seen.back().data.withdrawn.empty());
 }
 
 TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBeforeADrop) {
@@ -291,7 +292,7 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
             "I turn 90 degrees to the left, and then I go on with the mail for Alice");
   asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_FALSE(asked[0].info.disposed);
+  EXPECT_EQ(asked[0].data.withdrawn, "");
   EXPECT_EQ(asked[0].data.priority, 1);
   EXPECT_EQ(say("Flakey, explore", "Bob"), "I am bringing the mail for Alice. Shall I drop that?");
   EXPECT_TRUE(goals.take().empty());
@@ -299,7 +300,7 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
   EXPECT_EQ(std::count(dropped.begin(), dropped.end(), '/'), 2) << dropped;
   asked = goals.take();
   ASSERT_EQ(asked.size(), 3u);
-  EXPECT_TRUE(asked[0].info.disposed);
+  EXPECT_EQ(asked[0].data.withdrawn, "Bob said \"Flakey, explore\"");
   EXPECT_EQ(asked[0].data.id, first);
   EXPECT_EQ(asked[2].data.functor, "explore");
 }
@@ -337,6 +338,7 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   found.beliefs[2].value = "\"EJ-231\"";
   found.beliefs[2].said_by = "find-person";
   found.beliefs[2].since = 70;
+  found.stamp.cycle = 170;
   beliefs.write(found);
   dialogue->step();
   beliefs.write(found);

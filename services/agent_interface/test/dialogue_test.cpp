@@ -186,8 +186,8 @@ TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   hear("no, sorry");
   EXPECT_EQ(last.claims.size(), 1u);
   // A finding of an activity replaces the sentence of a person.
-  dialogue.found({}, now);
-  const Dialogue::Outputs out = dialogue.found({{"karen", "EJ-231", 70}}, now);
+  const Dialogue::Outputs out =
+      dialogue.found({{Advice::Kind::person_at, "karen", "EJ-231", 0.2}}, now);
   ASSERT_EQ(out.claims.size(), 1u);
   EXPECT_EQ(out.claims[0].value, "EJ-231");
   EXPECT_EQ(said("Flakey, where is Karen?"),
@@ -239,16 +239,51 @@ TEST_F(DialogueTest, OnlyAWholeNumberForgetsAdvice) {
   EXPECT_EQ(dialogue.forget(1.0).answer, (Answer{AnswerCode::done, "forgotten"}));
 }
 
-TEST_F(DialogueTest, AFindIsLearnedOnceAndNotWhereItIsOlderThanTheDialogue) {
+TEST_F(DialogueTest, AFindIsLearnedOnceAndNotAgainAfterARestart) {
+  constexpr auto kAt = Advice::Kind::person_at;
+  const auto finds = [](std::optional<double> karen, std::optional<double> john) {
+    return std::vector<Find>{{kAt, "karen", "EJ-231", karen}, {kAt, "john", "EJ-231", john}};
+  };
+  const auto newest = [&] { return dialogue.knowledge().all().back(); };
   hear("Flakey, Karen is in EJ-233");
-  dialogue.found({{"Karen", "EJ-231", 70}, {"John", "EJ-231", 71}}, now);
+  // The first finds of a service are as old as its memory.
+  dialogue.found(finds(30.0, 40.0), now);
   EXPECT_EQ(dialogue.knowledge().place_of("karen"), "EJ-233");
-  EXPECT_EQ(dialogue.knowledge().place_of("john"), "EJ-231");
-  EXPECT_FALSE(dialogue.found({{"Karen", "EJ-231", 70}, {"John", "EJ-231", 71}}, now).changed);
-  EXPECT_TRUE(dialogue.found({{"Karen", "EJ-231", 80}, {"John", "EJ-231", 71}}, now).changed);
-  EXPECT_EQ(dialogue.knowledge().all().back().value, "EJ-231");
-  EXPECT_EQ(dialogue.knowledge().all().back().about, "karen");
-  EXPECT_EQ(dialogue.knowledge().all().back().time, now);
+  EXPECT_EQ(newest().about, "john");
+  EXPECT_EQ(newest().time, now - 40.0);
+  EXPECT_FALSE(dialogue.found(finds(31.0, 41.0), now).changed);
+  EXPECT_TRUE(dialogue.found(finds(0.3, 42.0), now).changed);
+  EXPECT_EQ(newest().value, "EJ-231");
+  EXPECT_EQ(newest().about, "karen");
+  EXPECT_EQ(newest().time, now - 0.3);
+  // The claim that follows covers it, until intentions begins anew and has not heard the claim yet.
+  EXPECT_FALSE(dialogue.found({}, now).changed);
+  EXPECT_FALSE(dialogue.found(finds(60.0, 100.0), now + 60.0).changed);
+  EXPECT_FALSE(dialogue.found({}, now).changed);
+  EXPECT_FALSE(dialogue.found(finds(std::nullopt, std::nullopt), now + 60.0).changed);
+  // It was found there again.
+  EXPECT_TRUE(dialogue.found(finds(0.1, std::nullopt), now + 90.0).changed);
+  EXPECT_EQ(newest().time, now + 90.0 - 0.1);
+  hear("Flakey, Karen left");
+  EXPECT_FALSE(dialogue.found({}, now).changed);
+  EXPECT_FALSE(dialogue.found(finds(20.0, 100.0), now).changed);
+}
+
+TEST_F(DialogueTest, ALoadThatIsTakenOffIsGoneUntilTheRobotGetsItAnew) {
+  const std::string thing = "the report";
+  situation.carried = {{thing, "EJ-231"}};
+  const std::vector<Find> aboard{{Advice::Kind::has, thing, kRobot, 50.0}};
+  EXPECT_FALSE(dialogue.found(aboard, now).changed);
+  EXPECT_EQ(said("Flakey, I took the report"),
+            "I know now that alice has the report; so I no longer carry it");
+  EXPECT_EQ(claims(last.claims), "carries-the report=nil");
+  // The belief is heard again before the claim.
+  EXPECT_FALSE(dialogue.found({}, now).changed);
+  EXPECT_FALSE(dialogue.found(aboard, now).changed);
+  EXPECT_EQ(claims(dialogue.claims()), "carries-the report=nil");
+  const Dialogue::Outputs out = dialogue.found({{Advice::Kind::has, thing, kRobot, 0.1}}, now);
+  EXPECT_EQ(claims(out.claims), "carries-the report=");
+  EXPECT_EQ(claims(dialogue.claims()), "");
 }
 
 // Whose task it is, errands, and ways of several steps.
@@ -267,7 +302,8 @@ TEST(Beliefs, TheOpenQuestionAndTheFindsAreHeeded) {
                                        situation);
   EXPECT_EQ(situation.asked_about, "given");
   EXPECT_EQ(situation.asked_for, "");
-  EXPECT_EQ(finds, (std::vector<Find>{{"karen", "EJ-231", 70}}));
+  EXPECT_EQ(finds, (std::vector<Find>{{Advice::Kind::person_at, "karen", "EJ-231", 70},
+                                      {Advice::Kind::has, "the report", kRobot, 72}}));
   ASSERT_EQ(situation.carried.size(), 1U);
   EXPECT_EQ(situation.carried[0].first, "the report");
   EXPECT_EQ(situation.carried[0].second, "EJ-233");

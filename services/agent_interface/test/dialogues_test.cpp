@@ -55,7 +55,7 @@ class Conversation : public DialogueTest {
     Utterance utterance{{7, ++number}, speaker.substr(0, confidence), text};
     if (confidence != std::string::npos)
       utterance.confidence = std::stod(speaker.substr(confidence + 2));
-    utterance.time = now;
+    utterance.time = situation.now = now;
     last = dialogue.hear(utterance, situation);
   }
   void use(Dialogue next) { std::swap(dialogue, next); }
@@ -89,6 +89,7 @@ class Conversation : public DialogueTest {
       {"priority", [this] { return std::to_string(last.goals.at(0).priority); }},
       {"lasting", [this] { return yes(last.goals.at(0).lasting); }},
       {"canceled", [this] { return canceled(); }},
+      {"why", [this] { return last.why; }},
       {"claims", [this] { return claims(last.claims); }},
       {"all claims", [this] { return claims(dialogue.claims()); }},
       {"source", [this] { return last.claims.at(0).source; }},
@@ -108,7 +109,11 @@ class Conversation : public DialogueTest {
        [this](const auto& text) {
          last = dialogue.ended({wanted_, false, text});
        }},
-      {"seconds pass", [this](const auto& text) { now += std::stod(text); }},
+      {"seconds pass",
+       [this](const auto& text) {
+         situation.now = now += std::stod(text);
+         last = dialogue.come_due(situation);
+       }},
       {"restart", [this](const auto&) { restart(); }},
       {"anew", [this](const auto&) { use(Dialogue{grammar()}); }},
       {"asks about", [this](const auto& text) { situation.asked_about = text; }},

@@ -319,9 +319,9 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
       continue;
     if (const auto asked = requesters_.find(event.goal.id);
         event.kind == GoalEvent::Kind::kDisposed && event.by.empty() && asked != requesters_.end())
-      event.by = asked->second == goal.writer ? "the program that asked for it"
-                 : goal.person                ? goal.person->name
-                                              : "another program";
+      event.by = asked->second != goal.writer ? goal.person ? goal.person->name : "another program"
+                 : event.why.empty()          ? "the program that asked for it"
+                                              : "";
     // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;

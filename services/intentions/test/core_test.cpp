@@ -647,6 +647,25 @@ TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
   EXPECT_EQ(refusal(4, "EJ-241").find(unknown), 0U) << "no activity goes there";
 }
 
+TEST_F(CoreTest, APlaceThatTheMapDoesNotHaveIsRefusedAtOnce) {
+  Parameter parameter;
+  parameter.name = "place";
+  parameter.kind = ArgumentKind::text;
+  parameter.place = true;
+  Schema schema;
+  schema.name = "go-to-place";
+  schema.parameters = {parameter};
+  look({true, {schema}, {}, {}, {}});
+  know(1, maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000 \"hall\"\n", "a.map"));
+  step();
+  Core::Heard::Goal goal = written(1, kKaren);
+  goal.event.goal.functor = "go-to-place";
+  goal.event.goal.arguments = {text("place", "nowhere")};
+  ask({goal});
+  EXPECT_EQ(state(1), v1::GOAL_REFUSED);
+  EXPECT_EQ(statuses_.at({5, 1}).reason, "the map has no place \"nowhere\": it has hall");
+}
+
 TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) {
   know(1, maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\n"
                           "ZONE (2) 8000, 0, 0, 2000, 2000 keep-out \"wet floor\"\n",

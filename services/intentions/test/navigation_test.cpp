@@ -46,6 +46,16 @@ class Navigation : public testing::Test {
     robot.odom_in_map = Pose{};
     around.registration.pose_in_map = pose;
   }
+  /// Nothing but these echoes [m] of three sonars ahead.
+  void hear(const std::array<double, 3>& echoes) {
+    lps::LpsSettings settings;
+    settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
+    heard = std::make_unique<lps::LocalPerceptualSpace>(settings);
+    around.lps = heard.get();
+    for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
+      heard->update(robot.pose_in_odom,
+                    {{0, echoes[0], true}, {1, echoes[1], true}, {2, echoes[2], true}}, cycle);
+  }
   World world() { return {robot, around, beliefs, now}; }
   Value call(const std::string& name, const std::vector<Value>& arguments) {
     const Function* const function = functions.function(name);
@@ -56,6 +66,7 @@ class Navigation : public testing::Test {
   Value condition(const std::string& name) { return functions.condition(name)->value(world()); }
   std::string words(const Value& path) { return spoken(call("path-text", {path})); }
 
+  std::unique_ptr<lps::LocalPerceptualSpace> heard;
   Functions functions = core_functions();
   Beliefs beliefs{&functions};
   Robot robot;
@@ -278,16 +289,9 @@ TEST_F(Navigation, ADoorIsClosedWhereTheSonarsHaveSomethingAllAcross) {
   const Value door = path("north").list()[1];
   EXPECT_EQ(call("door-state", {door}), Value("unknown"));
   be_at({3.0, 0.0, kPi / 2});
-  lps::LpsSettings settings;
-  settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
-  lps::LocalPerceptualSpace lps(settings);
-  around.lps = &lps;
-  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
-    lps.update(robot.pose_in_odom, {{0, 0.92, true}, {1, 0.9, true}, {2, 0.92, true}}, cycle);
+  hear({0.92, 0.9, 0.92});
   EXPECT_EQ(call("door-state", {door}), Value("closed"));
-  lps.reset();
-  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
-    lps.update(robot.pose_in_odom, {{0, 3.0, true}, {1, 3.0, true}, {2, 3.0, true}}, cycle);
+  hear({3.0, 3.0, 3.0});
   EXPECT_EQ(call("door-state", {door}), Value("open"));
 }
 
@@ -295,12 +299,7 @@ TEST_F(Navigation, ADoorIsClosedWhereTheSonarsHaveSomethingAllAcross) {
 TEST_F(Navigation, SomebodyInADoorwayIsNotItsLeaf) {
   const Value door = path("north").list()[1];
   be_at({3.0, 0.0, kPi / 2});
-  lps::LpsSettings settings;
-  settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
-  lps::LocalPerceptualSpace lps(settings);
-  around.lps = &lps;
-  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
-    lps.update(robot.pose_in_odom, {{0, 3.0, true}, {1, 0.9, true}, {2, 3.0, true}}, cycle);
+  hear({3.0, 0.9, 3.0});
   EXPECT_EQ(call("door-state", {door}), Value("barred"));
   std::vector<lps::SeenThing> things(1);
   things[0].pose_in_odom = {3.2, 1.1, 0.0};

@@ -113,8 +113,7 @@ TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
   goals.cancel(own, "the meeting is off");
   cycle();
   EXPECT_EQ(state(own), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(own)->reason,
-            "withdrawn by the program that asked for it: the meeting is off");
+  EXPECT_EQ(goals.status(own)->reason, "withdrawn: the meeting is off");
   bus::Node somebody(test::memory_options("somebody", true), bus);
   bus::GoalClient others(somebody, "somebody");
   others.cancel(other, "the floor is wet");

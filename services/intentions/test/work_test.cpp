@@ -194,13 +194,19 @@ TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
   }
 }
 
-TEST(Work, GoesOnWhenThePlaceOfTheRobotIsHeardAgain) {
+/// Killed during its turn, and since then it is unknown where the robot is.
+Site killed_without_its_place() {
   Site site(kAboutTurn, "about-turn");
   site.world.robot.odom_in_map = Pose{};
   for (int i = 0; i < 10; ++i)
     site.step();
   site.kill(1);
   site.world.robot.odom_in_map.reset();
+  return site;
+}
+
+TEST(Work, GoesOnWhenThePlaceOfTheRobotIsHeardAgain) {
+  Site site = killed_without_its_place();
   const double turned = site.turned;
   for (int i = 0; i < 20; ++i)
     site.step();
@@ -215,15 +221,24 @@ TEST(Work, GoesOnWhenThePlaceOfTheRobotIsHeardAgain) {
 }
 
 TEST(Work, WaitsForThePlaceOfTheRobotForFiveSeconds) {
-  Site site(kAboutTurn, "about-turn");
-  site.world.robot.odom_in_map = Pose{};
-  for (int i = 0; i < 10; ++i)
-    site.step();
-  site.kill(1);
-  site.world.robot.odom_in_map.reset();
+  Site site = killed_without_its_place();
   for (int i = 0; !site.over() && i < 300; ++i)
     site.step();
   EXPECT_EQ(site.status.state, v1::GOAL_SUCCEEDED) << site.status.reason;
+}
+
+TEST(Work, ATextThatIsBelievedOutlivesAnotherOdomFrameAndAPlaceDoesNot) {
+  Site site(
+      "(defintention :it :goals '((IF (belief 'load) (SUCCEED \"~a, ~a\" (belief 'load) (belief "
+      "'spot))) (EXECUTE (believe 'load \"EJ-231\")) (EXECUTE (believe 'spot (robot))) (WAIT 60)))",
+      "it");
+  for (int i = 0; i < 5; ++i)
+    site.step();
+  site.world.robot.odom = 2;
+  site.kill(0);
+  for (int i = 0; i < 3; ++i)
+    site.step();
+  EXPECT_EQ(site.status.reason, "EJ-231, nil");
 }
 
 // The bridge was restarted as well, and keeps its odom frame.

@@ -228,7 +228,9 @@ void Executor::take_in(const GoalEvent& event) {
   Entry& entry = found->second;
   if (event.kind == GoalEvent::Kind::kDisposed) {
     end(entry, v1::GOAL_CANCELED, v1::CODE_DISPOSED,
-        "withdrawn by " + (event.by.empty() ? "its requester" : event.by) +
+        (event.by.empty() && !event.why.empty()
+             ? std::string("withdrawn")
+             : "withdrawn by " + (event.by.empty() ? "its requester" : event.by)) +
             (event.why.empty() ? "" : ": " + event.why));
   } else if (entry.goal.writer_lost == v1::WRITER_LOST_CANCEL) {
     end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST, "the program that asked for it is gone");
@@ -381,6 +383,12 @@ std::string Executor::complaint(const GoalEvent& event, GoalCode& code, Argument
   std::string wrong = check_arguments(*schema, goal.arguments, complete);
   if (!wrong.empty())
     return wrong;
+  code = v1::CODE_NO_ROUTE;
+  for (const Parameter& parameter : schema->parameters)
+    if (const Argument* const place = find(complete, parameter.name);
+        parameter.place && places_ && place != nullptr && place->kind == ArgumentKind::text &&
+        !place->text.empty() && !places_->place(place->text))
+      return places_->no_place(place->text);
   code = event.forbidden.empty() ? v1::CODE_NONE : v1::CODE_NO_ROUTE;
   return event.forbidden;
 }
@@ -737,8 +745,9 @@ void Executor::recall(const Inputs& inputs) {
     entry.ended += now_;
     entry.published_at += now_;
   }
-  if (work.odom == inputs.robot.odom)
-    for (const Belief& belief : work.beliefs)
+  // A text is no place in an earlier odom frame.
+  for (const Belief& belief : work.beliefs)
+    if (work.odom == inputs.robot.odom || belief.value.text() != nullptr)
       beliefs_->set(belief.name, belief.value, belief.said_by, belief.since);
 }
 

@@ -37,16 +37,18 @@ std::string literal(const Claimed& claim);
 /// A belief of activities.
 struct Belief {
   std::string name;
-  std::string value;        ///< in the language of activities
-  std::string said_by;      ///< an activity, or the writer of a claim
-  std::uint64_t since = 0;  ///< cycle of the newest change
+  std::string value;            ///< in the language of activities
+  std::string said_by;          ///< an activity, or the writer of a claim
+  std::optional<double> age{};  ///< [s] of its newest change; none: of before this epoch
 };
 
-/// A place where an activity believes to have found a person.
+/// What an activity believes to have found out: the place of a person, or that the robot has a
+/// thing.
 struct Find {
-  std::string person;
-  std::string place;
-  std::uint64_t since = 0;  ///< cycle of the newest change
+  Advice::Kind kind = Advice::Kind::person_at;
+  std::string about;
+  std::string value;
+  std::optional<double> age{};  ///< [s]; none: of before this epoch
 
   friend bool operator==(const Find&, const Find&) = default;
 };
@@ -103,6 +105,7 @@ class Dialogue {
   struct Outputs {
     std::vector<Said> said;
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
+    std::string why{};                    ///< they are canceled, in words; empty: no reason
     std::vector<WantedGoal> goals;
     std::vector<Claimed> claims;
     std::vector<maps::Feature> namings;  ///< artifacts of the map with their new names
@@ -116,6 +119,8 @@ class Dialogue {
   /// A program that has spoken has ended or has withdrawn its words: its tasks end.
   Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
+  /// Orders for a later time begin, or ask whether to drop the task of somebody else.
+  Outputs come_due(const Situation& situation);
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
   /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.
   Outputs without_status(const std::vector<std::uint64_t>& tags, double seconds);
@@ -130,8 +135,8 @@ class Dialogue {
   Outputs says(const std::string& text, const CycleRef& when);
   /// Withdraws advice by its number. Its `answer` refuses one that is not whole and positive.
   Outputs forget(double number);
-  /// All present finds of activities; those that are new are learned. The first ones may be from
-  /// before this dialogue began: what it knows of those people already counts instead.
+  /// All present finds of activities; those that are new are learned. An old one, which is heard
+  /// again after a restart, counts where nothing is known of that person.
   Outputs found(const std::vector<Find>& finds, double now);
 
   /// The answer to a program that looks for a person.
@@ -188,10 +193,10 @@ class Dialogue {
   /// The number of the sentence that is chosen of several; none: no choice.
   std::optional<std::size_t> chosen(const Question& question, const Grammar::Understood& understood,
                                     const Utterance& utterance) const;
-  /// The meanings of the sentence with other words in the place of some of its own, and its text
-  /// then. names: an unknown name counts, too.
+  /// The meanings of the sentence with other words in the place of some of its own, or of those
+  /// that are named as wrong, and its text then. names: an unknown name counts, too.
   std::vector<std::pair<Meaning, std::string>> corrected(const Question& question,
-                                                         const std::string& words, bool names,
+                                                         const Meaning& instead, bool names,
                                                          const Situation& situation) const;
   bool names_unknown(const Meaning& meaning, const Situation& situation) const;
   /// The place or person that a reply names; empty: none.
@@ -283,7 +288,9 @@ class Dialogue {
   maps::RouteResult allowed_way(const std::string& place, const Situation& situation) const;
   /// The reason why the robot is not to go to that place of the map; empty: none.
   std::string kept_out(const std::string& place, const Situation& situation) const;
-  /// The same, or the name of a person.
+  /// A thing as activities name it; "it" is the only one that the robot carries. Empty: unclear.
+  static std::string thing(const std::string& name, const Situation& situation);
+  /// The same as place(), or the name of a person.
   std::string place_or_person(const std::string& name, const Situation& situation) const;
   /// The place that slots stand for: "this", a side, a name, or a person's office. Reports errors.
   std::string referred(const Meaning& meaning, const Situation& situation, Outputs& out,
@@ -292,6 +299,7 @@ class Dialogue {
   Grammar grammar_;
   Knowledge knowledge_;
   std::vector<Question> questions_;  ///< the newest of each speaker
+  std::optional<Question> order_;    ///< for the open task
   struct Spot {
     std::string place;
     Pose pose_in_map;
@@ -308,7 +316,6 @@ class Dialogue {
   CycleRef before_{};               ///< the same, before a restart
   std::vector<UtteranceId> heard_;  ///< the newest, so that none is carried out twice
   std::vector<Find> found_;         ///< the newest
-  bool looked_ = false;             ///< at finds
 };
 
 /// The robot's place in the map's words: a room, otherwise a corridor; empty: neither.

@@ -55,6 +55,7 @@ class Grammar {
   struct Understood {
     bool addressed = false;         ///< it began with the keyword
     bool polite = false;            ///< an order in the form of a question: "can you ..."
+    bool timed = false;             ///< the first step is a time, and the others are for then
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
     std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
     /// All steps, where the end of a free text may as well be an order of its own: "tell Karen that

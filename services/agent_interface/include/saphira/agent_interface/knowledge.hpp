@@ -10,11 +10,11 @@ namespace saphira::agent_interface {
 
 /// A fact that somebody told the robot (paper 4.5).
 struct Advice {
-  enum class Kind { office_of, person_at, knows_where, hazard };
+  enum class Kind { office_of, person_at, knows_where, hazard, has };
   std::uint64_t number = 0;
   Kind kind = Kind::office_of;
-  std::string about;  ///< the person, or the kind of hazard: a thing, or the rule of a zone
-  std::string value;  ///< a place, or the person that knows
+  std::string about;  ///< the person, the thing, or the kind of hazard or rule of a zone
+  std::string value;  ///< a place, or the person that knows or has it
   std::string speaker;
   std::string said;            ///< in the speaker's words
   double time = 0.0;           ///< [s] since 1970; 0: unknown

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,6 +112,7 @@ class Tasks {
   struct Outputs {
     std::vector<Said> said;
     std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
+    std::string why{};                    ///< they are canceled, in words; empty: no reason
     std::vector<WantedGoal> goals;
     std::vector<Task> asks;   ///< the steps for which it asks "Shall I drop that?"
     v1::AuditEntry denied{};  ///< this person may not do it; without a text: they may
@@ -120,6 +122,15 @@ class Tasks {
   /// drops: also ends the task of somebody else, without a question.
   Outputs want(std::vector<Task> steps, const Utterance& utterance, bool drops = false);
   Outputs ended(const Outcome& outcome);
+  /// Steps for a later time [s] since 1970, which end nothing before then. A stop ends them.
+  struct Later {
+    double time = 0.0;
+    Utterance order;
+    std::vector<Task> steps;
+  };
+  Outputs later(double time, std::vector<Task> steps, const Utterance& order);
+  /// Those whose time has come.
+  std::vector<Later> take_due(double now);
   /// After a wait: the wait ends, and the task goes on. After a stop: the dropped task begins anew.
   Outputs go_on(const Utterance& utterance);
   /// A program has ended or has withdrawn its words: its tasks end. A stop of it goes on.
@@ -149,9 +160,12 @@ class Tasks {
   void begin(Task task, Outputs& out);
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
   void release(Outputs& out);
+  void drop_later(const std::string& why, const std::function<bool(const Later&)>& meant,
+                  Outputs& out);
   Outputs deny(const Task& task, const Utterance& utterance) const;
 
-  std::vector<Task> open_;     ///< at most one brief goal and one task
+  std::vector<Task> open_;  ///< at most one brief goal and one task
+  std::vector<Later> later_;
   std::vector<Task> stopped_;  ///< the steps of the task that the newest stop has ended
   std::uint64_t tag_ = 0;
   /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
