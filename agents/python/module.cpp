@@ -38,7 +38,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{100};  ///< how often a wait looks for signals
+constexpr milliseconds kPollPeriod{100};  ///< how often a wait looks for signals
 
 /// The parts that live with the node.
 struct Parts {
@@ -134,11 +134,11 @@ class Bus {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     for (;;) {
       const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
-      const bool came =
-          unlocked([&] { return own.wait(std::max(milliseconds(0), std::min(left, kLook))); });
+      const bool came = unlocked(
+          [&] { return own.wait(std::max(milliseconds(0), std::min(left, kPollPeriod))); });
       if (PyErr_CheckSignals() != 0)
         throw py::error_already_set();
-      if (came || left <= kLook)
+      if (came || left <= kPollPeriod)
         return came;
     }
   }

@@ -125,8 +125,9 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
   return out;
 }
 
-v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
-                 const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
+v1::Grant to_bus(const authority::Grant& grant, const DriverSetpoints& told,
+                 const authority::Guarded& guarded, const std::vector<authority::Refusal>& refused,
+                 const v1::Stamp& stamp) {
   v1::Grant out{
       .stamp = stamp,
       .role = kRoles.theirs(grant.role),

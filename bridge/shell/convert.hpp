@@ -30,8 +30,9 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 
 /// A grant, the driver's setpoints, the guard's result, the refused drivers.
-v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
-                 const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp);
+v1::Grant to_bus(const authority::Grant& grant, const DriverSetpoints& told,
+                 const authority::Guarded& guarded, const std::vector<authority::Refusal>& refused,
+                 const v1::Stamp& stamp);
 
 /// The error in a motor command; empty: none. Anybody may write one: NaN, infinity, or an unknown
 /// enumerator is refused here.

@@ -7,7 +7,7 @@
 
 namespace saphira::bridge {
 
-void Audience::hear(const bus::WriterId& writer, const v1::ServiceStatus& status, double now) {
+void Audience::update(const bus::WriterId& writer, const v1::ServiceStatus& status, double now) {
   const auto [known, is_new] = programs_.try_emplace(writer);
   Program& program = known->second;
   const bool waits = bus::waits_for_robot(status);
@@ -44,7 +44,7 @@ void OtherPrograms::take() {
     else if (sample.info.disposed)
       audience_.lose(sample.info.writer);
     else
-      audience_.hear(sample.info.writer, sample.data, now);
+      audience_.update(sample.info.writer, sample.data, now);
   }
   for (const bus::WriterId& writer : statuses_.take_lost()) {
     others_.erase(writer);

@@ -18,7 +18,7 @@ class Audience {
   /// [s] between two new beginnings of a bridge.
   static constexpr double kAgain = 60.0;
 
-  void hear(const bus::WriterId& writer, const v1::ServiceStatus& status, double now);
+  void update(const bus::WriterId& writer, const v1::ServiceStatus& status, double now);
   void lose(const bus::WriterId& writer) { programs_.erase(writer); }
 
   /// True where to begin anew now: some program waits for the robot, none hears it, and that for

@@ -68,12 +68,12 @@ class AudienceTest : public testing::Test {
   void waits(std::uint8_t program, const std::string& what = "state of cycle 7") {
     v1::ServiceStatus status{
         .state = v1::SERVICE_WAITING, .reason = "waits for robot/" + what, .stamp = {.cycle = 6}};
-    audience_.hear({program}, status, now_);
+    audience_.update({program}, status, now_);
   }
   void steps(std::uint8_t program) {
     v1::ServiceStatus status{.stamp = {.cycle = ++cycle_}};
     status.state = v1::SERVICE_RUNNING;
-    audience_.hear({program}, status, now_);
+    audience_.update({program}, status, now_);
   }
   bool after(double seconds) {
     now_ += seconds;
@@ -122,7 +122,7 @@ TEST_F(AudienceTest, WhatIsGoneOrStandsStillSaysNothing) {
   waits(1);
   // No more status of the second one: it hangs, or waits for another cause.
   v1::ServiceStatus status{.stamp = {.cycle = cycle_}};
-  audience_.hear({2}, status, now_);
+  audience_.update({2}, status, now_);
   EXPECT_TRUE(after(Audience::kMute));
 }
 

@@ -56,7 +56,7 @@ constexpr double kGivenUp = 2.0;  // [s]
 constexpr int kMostSteps = 100;
 
 // Between two checks for a client at a terminal.
-constexpr int kLook = 50;  // [ms]
+constexpr int kPollPeriod = 50;  // [ms]
 
 // Bytes that may wait for a client that does not read. Beyond that it loses whole packets, the
 // newest: they would be stale when it wakes.
@@ -443,7 +443,7 @@ class Serving : ViewedHost {
     for (const auto& station : stations_) {
       station->look_at_terminal();
       if (station->waits_for_terminal())
-        at_most(kLook);
+        at_most(kPollPeriod);
     }
     if (most_ms >= 0)
       at_most(most_ms);

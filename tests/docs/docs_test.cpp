@@ -96,9 +96,9 @@ std::string taken(const std::string& text) {
   std::ofstream(folder.path("one.act")) << text;
   intentions::ActivityFolders folders({folder.path()}, intentions::all_functions(),
                                       intentions::built_in());
-  const intentions::ActivityFolders::News news = folders.look();
-  EXPECT_TRUE(news.errors.empty()) << news.errors.front();
-  return news.taken.size() == 1 ? news.taken[0].name : "";
+  const intentions::ActivityFolders::Reload reload = folders.reload();
+  EXPECT_TRUE(reload.errors.empty()) << reload.errors.front();
+  return reload.taken.size() == 1 ? reload.taken[0].name : "";
 }
 
 TEST(Docs, TheActivitiesOfTheDocumentsAreTaken) {

@@ -103,8 +103,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     bridges.poll();
     for (const auto& sample : answers.take()) {
       const v1::Answer& answer = sample.data;
-      if (sample.info.disposed || answer.asker != request.asker ||
-          answer.number != request.number)
+      if (sample.info.disposed || answer.asker != request.asker || answer.number != request.number)
         continue;
       if (heard.insert(sample.info.writer).second && heard.size() == 1)
         print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
@@ -142,7 +141,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
 /// Tells once when the program that carries out goals is silent, and when it is back.
 class Silence {
  public:
-  void look(const std::vector<SeenProcess>& processes) {
+  void update(const std::vector<SeenProcess>& processes) {
     if (std::ranges::any_of(processes, [](const SeenProcess& one) {
           return (one.status.name == "intentions" || one.status.name == "all") &&
                  one.age <= kSilent;
@@ -202,7 +201,7 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
     }
     const bool empty = processes.all().empty();
     if (status)
-      silence.look(processes.all());
+      silence.update(processes.all());
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
       complain("saphira: no answer yet: %s\n", who_is_there(processes).c_str());

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> in_quality(const std::vector<std::uint8_t>& jpeg, int 
 
 }  // namespace
 
-void Cameras::look(bool any) {
+void Cameras::set_watched(bool any) {
   if (any == reader_.has_value())
     return;
   picture_.reset();

@@ -16,7 +16,7 @@ class Cameras {
   explicit Cameras(bus::Node& node) : node_(node) {}
 
   /// Pictures are read while some page looks; otherwise the cameras are off.
-  void look(bool any);
+  void set_watched(bool any);
   /// A robot state came.
   void heard(std::uint64_t cycle, double now);
   /// True where a picture has come.

@@ -233,7 +233,7 @@ void Gateway::look_at_simulator() {
 }
 
 void Gateway::look_at_cameras() {
-  cameras_.look(std::ranges::any_of(pages_, [](const auto& each) {
+  cameras_.set_watched(std::ranges::any_of(pages_, [](const auto& each) {
     return each.second.channel == Channel::pictures && each.second.greeted;
   }));
 }
@@ -294,7 +294,7 @@ std::vector<RobotSeen> Gateway::robots_seen() const {
 
 void Gateway::show_robots() {
   if (viewers_ > 0)
-    robots_.look(std::ranges::any_of(pages_, [](const auto& each) { return each.second.robots; }),
+    robots_.find(std::ranges::any_of(pages_, [](const auto& each) { return each.second.robots; }),
                  now());
   robots_.poll(now());
   if (now() - robots_shown_ < kExplain)
@@ -316,7 +316,7 @@ void Gateway::look_for_occasions() {
   if ((!box_ && pages_.empty()) || now() - looked_ < kExplain || !mind_.heard())
     return;
   looked_ = now();
-  const auto occasion = occasions_.look(mind_.situation(), looked_);
+  const auto occasion = occasions_.next(mind_.situation(), looked_);
   if (!occasion)
     return;
   if (box_)

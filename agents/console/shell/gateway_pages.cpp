@@ -216,7 +216,7 @@ void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
 
 /// A page whose key was revoked, or holds no longer, is closed.
 void Gateway::look_at_keys() {
-  if (const std::string trouble = keys_.look(unix_seconds()); !trouble.empty())
+  if (const std::string trouble = keys_.reload(unix_seconds()); !trouble.empty())
     node_.error(trouble);
   for (const auto& [connection, page] : pages_)
     if (page.visitor.person && !keys_.keys().holds(*page.visitor.person, unix_seconds()))

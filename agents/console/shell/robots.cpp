@@ -26,7 +26,7 @@ bus::NodeOptions of_robot(bus::NodeOptions options, const std::string& robot) {
 Robots::Member::Member(bus::NodeOptions options, const std::string& robot)
     : node(of_robot(std::move(options), robot)) {}
 
-void Robots::look(bool shown, double now) {
+void Robots::find(bool shown, double now) {
   if (shown)
     shown_ = now;
   shown = now < shown_ + kLinger;

@@ -23,7 +23,7 @@ class Robots {
 
   /// Looks for robots: each two seconds, and twice a second while the list is shown and 5 s longer,
   /// so that a stop of that time is repeated until the bridge has taken it.
-  void look(bool shown, double now);
+  void find(bool shown, double now);
   /// Reads the new samples, and repeats stops that the bridge has not taken yet.
   void poll(double now);
   /// The robots but for the own one. While nobody looks, their names alone.

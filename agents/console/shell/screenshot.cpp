@@ -30,7 +30,7 @@ using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kPatience{20};
-constexpr std::chrono::milliseconds kLook{100};
+constexpr std::chrono::milliseconds kPollPeriod{100};
 constexpr std::chrono::milliseconds kSettle{1500};  // echoes and grid come
 
 std::string find_browser() {
@@ -183,7 +183,7 @@ void make_screenshot(const std::string& address, const ScreenshotOptions& option
   while (browser.value("!!document.querySelector('.link.live')") != true) {
     if (Clock::now() > end)
       throw std::runtime_error("the page shows no robot: is one on the bus? (saphira status)");
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPollPeriod);
   }
   browser.value("document.getElementById('tab-" + options.tab + "').click()");
   std::this_thread::sleep_for(kSettle);

@@ -238,7 +238,7 @@ void HttpDoor::see(const std::string& id, Client& client) {
 void HttpDoor::tick() {
   turn();
   audit_.tend(now());
-  if (const std::string trouble = keys_.look(unix_seconds()); !trouble.empty())
+  if (const std::string trouble = keys_.reload(unix_seconds()); !trouble.empty())
     node_.error(trouble);
   for (auto each = clients_.begin(); each != clients_.end();) {
     const auto& [id, client] = *each;

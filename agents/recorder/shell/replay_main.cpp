@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kTurn = std::chrono::milliseconds(20);
 // Longer turns are pauses: the program was stopped (Ctrl-Z).
 constexpr double kLongestTurn = 0.5;
-constexpr auto kLook = std::chrono::seconds(1);  // for a robot of that name, and for readers
+constexpr auto kPollPeriod = std::chrono::seconds(1);  // for a robot of that name, and for readers
 
 struct Options {
   std::string file;
@@ -43,7 +43,7 @@ int list(const recorder::Contents& contents) {
 bool has_robot(bus::Node& node, const bus::Stop& stop) {
   const auto states = node.reader(bus::topics::kRobotState);
   const auto began = Clock::now();
-  while (!stop.requested() && Clock::now() - began < kLook && states.matched() == 0)
+  while (!stop.requested() && Clock::now() - began < kPollPeriod && states.matched() == 0)
     node.wait(kTurn, &stop);
   return states.matched() > 0;
 }
@@ -84,7 +84,7 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
                "it\n",
                std::max(0.0, contents.seconds - options.from), node_options.robot.c_str(),
                node_options.robot.c_str());
-  for (const auto look = Clock::now(); !stop.requested() && Clock::now() - look < kLook;)
+  for (const auto look = Clock::now(); !stop.requested() && Clock::now() - look < kPollPeriod;)
     node.wait(kTurn, &stop);
   auto before = Clock::now();
   bool goes_on = true;

@@ -12,7 +12,7 @@ constexpr std::size_t kMostFailed = 1024;
 
 }  // namespace
 
-std::optional<Occasion> Occasions::look(const Situation& situation, double now) {
+std::optional<Occasion> Occasions::next(const Situation& situation, double now) {
   const auto found = find(situation, now);
   if (!found)
     return std::nullopt;

@@ -14,7 +14,7 @@ class Watch {
     const std::size_t arrow = line.find(" => ");
     now_ += std::stod(line);
     json_.merge_patch(test::Json::parse(line.substr(change, arrow - change)));
-    const auto found = occasions_.look(test::situation_of(json_), now_);
+    const auto found = occasions_.next(test::situation_of(json_), now_);
     EXPECT_EQ(found ? found->kind + ": " + found->text : "none", line.substr(arrow + 4));
   }
 

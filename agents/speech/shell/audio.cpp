@@ -24,10 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBlock = kRate / 50;
-constexpr std::size_t kMost = 10 * kRate;          // samples in the queue
-constexpr unsigned kLatency = 100'000;             // [us] of a device
-constexpr std::chrono::milliseconds kAgain{5000};  // between two attempts with a device
-constexpr std::chrono::milliseconds kLook{200};    // within which a thread notices its end
+constexpr std::size_t kMost = 10 * kRate;              // samples in the queue
+constexpr unsigned kLatency = 100'000;                 // [us] of a device
+constexpr std::chrono::milliseconds kAgain{5000};      // between two attempts with a device
+constexpr std::chrono::milliseconds kPollPeriod{200};  // within which a thread notices its end
 
 struct ClosePcm {
   void operator()(snd_pcm_t* pcm) const { snd_pcm_close(pcm); }
@@ -110,15 +110,15 @@ bool Microphone::ended() const {
 void Microphone::put(const Sound& sound, bool waits) {
   std::unique_lock lock(mutex_);
   while (waits && waiting_.size() > kMost && !stop_)
-    taken_.wait_for(lock, kLook);
+    taken_.wait_for(lock, kPollPeriod);
   waiting_.insert(waiting_.end(), sound.begin(), sound.end());
   if (!waits && waiting_.size() > kMost)
     waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(kMost));
 }
 
 void Microphone::rest() {
-  for (auto left = kAgain; left.count() > 0 && !stop_; left -= kLook)
-    std::this_thread::sleep_for(kLook);
+  for (auto left = kAgain; left.count() > 0 && !stop_; left -= kPollPeriod)
+    std::this_thread::sleep_for(kPollPeriod);
 }
 
 void Microphone::run() {
@@ -158,12 +158,12 @@ void Microphone::read_pipe(int file) {
   bool begun = false;
   while (!stop_) {
     pollfd ready{file, POLLIN, 0};
-    if (poll(&ready, 1, static_cast<int>(kLook.count())) <= 0)
+    if (poll(&ready, 1, static_cast<int>(kPollPeriod.count())) <= 0)
       continue;
     std::array<char, 4096> block{};
     const ssize_t count = read(file, block.data(), block.size());
     if (count == 0 && !begun && file != STDIN_FILENO) {
-      std::this_thread::sleep_for(kLook);  // no writer yet
+      std::this_thread::sleep_for(kPollPeriod);  // no writer yet
       continue;
     }
     if (count <= 0)

@@ -35,7 +35,7 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
         const std::lock_guard lock(mutex_);
         speaker_trouble_ = text;
       }) {
-  folder_.look();
+  folder_.poll();
   // Its thread opens it only to speak.
   std::string trouble = speaker_trouble(options.speaker);
   const std::lock_guard lock(mutex_);
@@ -43,10 +43,10 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
 }
 
 void SpeechShell::run(const bus::Stop& stop) {
-  constexpr std::chrono::milliseconds kLook{20};
+  constexpr std::chrono::milliseconds kPollPeriod{20};
   auto looked = Clock::now();
   while (!stop.requested()) {
-    node_.wait(kLook, &stop);
+    node_.wait(kPollPeriod, &stop);
     step();
     if (Clock::now() - looked > std::chrono::seconds(1)) {
       reload();
@@ -81,7 +81,7 @@ void SpeechShell::step() {
 void SpeechShell::tell(const Conversation::Outputs& out) {
   if (out.um)
     speaker_.play(um_);
-  for (const Heard& heard : out.utterances) {
+  for (const Recognized& heard : out.utterances) {
     heard_.write({.id = {node_.instance(), ++number_},
                   .speaker = options_.person,
                   .text = heard.text,
@@ -93,7 +93,7 @@ void SpeechShell::tell(const Conversation::Outputs& out) {
 }
 
 void SpeechShell::reload() {
-  for (const std::string& name : folder_.look().changed) {
+  for (const std::string& name : folder_.poll().changed) {
     if (name != fs::path(options_.grammar).filename())
       continue;
     try {

@@ -59,7 +59,7 @@ void Conversation::listen() {
 
 /// A stop by itself needs no keyword. The words around it are often misheard, and may not turn its
 /// meaning: it would be a stop behind the keyword, too. Returns its word; empty: it is none.
-std::string Conversation::lone_stop(const Heard& heard) const {
+std::string Conversation::lone_stop(const Recognized& heard) const {
   if (heard.spotted.empty())
     return {};
   const auto word = std::find_first_of(heard.freely.begin(), heard.freely.end(),
@@ -80,7 +80,7 @@ std::string Conversation::lone_stop(const Heard& heard) const {
 Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
   Outputs out;
   for (const Event& event : events) {
-    Heard heard = event.heard;
+    Recognized heard = event.heard;
     if (const std::string stop = lone_stop(heard); !stop.empty())
       heard = {Outcome::command, stop, kCertain};
     if (event.kind != Event::Kind::heard || heard.outcome == Outcome::not_for_it)

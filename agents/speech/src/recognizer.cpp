@@ -103,12 +103,12 @@ struct Recognizer::Self {
   }
   void take(const agent_interface::WordGraph& graph, bool continued);
   void search(bool continued);
-  Heard result(ps_decoder_t* from) const;
+  Recognized result(ps_decoder_t* from) const;
   /// The second decoder hears the utterance once more.
   bool hears_again() const;
   /// The words that it hears with another of its searches.
   std::vector<std::string> heard_by(const char* search) const;
-  bool is_sure(const Heard& heard) const;
+  bool is_sure(const Recognized& heard) const;
   bool is_doubted(const std::string& command) const;
   void finish(std::vector<Event>& events);
   void give_up_attention(std::vector<Event>& events);
@@ -245,9 +245,9 @@ void Recognizer::listen_for(const agent_interface::WordGraph& graph) {
         ps_unset_search(one, name.c_str());
 }
 
-Heard Recognizer::Self::result(ps_decoder_t* from) const {
+Recognized Recognizer::Self::result(ps_decoder_t* from) const {
   const char* const hypothesis = ps_get_hyp(from, nullptr);
-  Heard heard;
+  Recognized heard;
   if (hypothesis == nullptr)
     return heard;
   std::istringstream parts(hypothesis);
@@ -286,10 +286,10 @@ bool Recognizer::Self::hears_again() const {
 }
 
 /// The second decoder hears the same command.
-bool Recognizer::Self::is_sure(const Heard& heard) const {
+bool Recognizer::Self::is_sure(const Recognized& heard) const {
   if (!hears_again())
     return false;
-  const Heard again = result(second.get());
+  const Recognized again = result(second.get());
   return again.outcome == heard.outcome && again.text == heard.text && !is_doubted(heard.text);
 }
 
@@ -333,7 +333,7 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   listens = false;
   if (!std::exchange(in_speech, false))
     return;
-  Heard heard = result(decoder.get());
+  Recognized heard = result(decoder.get());
   const std::vector<std::string> said = words_of(heard.text);
   const bool is_named = !keyword.empty() || (!said.empty() && keywords.contains(said.front()));
   if (!is_named && seconds(recent) < settings.longest_alone)

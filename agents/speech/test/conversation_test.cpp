@@ -22,7 +22,7 @@ class ConversationTest : public WithRecognizer {
           conversation->hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
                                    sound.begin() + static_cast<std::ptrdiff_t>(end)),
                              speaking);
-      for (const Heard& one : out.utterances)
+      for (const Recognized& one : out.utterances)
         all.push_back(one.text);
       ums += out.um ? 1 : 0;
     }

@@ -41,7 +41,7 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
   viewer::Live live(node);
   std::optional<viewer::Server> server;
   const auto look_at_keys = [&] {
-    if (const std::string trouble = persons.look(unix_seconds()); !trouble.empty())
+    if (const std::string trouble = persons.reload(unix_seconds()); !trouble.empty())
       node.error(trouble);
   };
   look_at_keys();

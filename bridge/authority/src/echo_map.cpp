@@ -84,14 +84,14 @@ void EchoMap::update(std::uint64_t cycle, const Pose& robot_in_odom,
   edges_.collect(robot_in_odom);
 }
 
-std::optional<EchoMap::Heard> EchoMap::heard(const Vec2& spot) const {
+std::optional<EchoMap::Firing> EchoMap::heard(const Vec2& spot) const {
   const Vec2 in_odom = compose(robot_in_odom_, {spot.x(), spot.y(), 0.0}).position();
   for (auto echo = echoes_.rbegin(); echo != echoes_.rend(); ++echo) {
     const Vec2 from_sonar = to_frame(echo->sonar_in_odom, in_odom);
     const double distance = from_sonar.norm();
     if (std::abs(distance - echo->range) <= kThickness &&
         std::abs(std::atan2(from_sonar.y(), from_sonar.x())) <= kCone)
-      return Heard{echo->sonar, cycle_ - std::min(cycle_, echo->cycle)};
+      return Firing{echo->sonar, cycle_ - std::min(cycle_, echo->cycle)};
   }
   return std::nullopt;
 }

@@ -103,7 +103,7 @@ struct Cycle::Impl {
       if (info.disposed)
         neighbours.lose(info.writer);
       else if (other.instance != status.instance)
-        neighbours.hear(info.writer, other, Clock::now());
+        neighbours.update(info.writer, other, Clock::now());
     });
   }
 
@@ -438,7 +438,7 @@ std::optional<Step> Cycle::poll() {
   return step;
 }
 
-bool Cycle::look(const std::function<void()>& idle) {
+bool Cycle::idle(const std::function<void()>& idle) {
   Impl& self = *impl_;
   if (Clock::now() - self.looked < kStepLook)
     return false;
@@ -462,7 +462,7 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       return step;
     if (self.lockstep && !self.yielding && self.node.spin(kStepSpin))
       self.node.clear_wake();
-    else if (look(idle))
+    else if (this->idle(idle))
       self.node.wait(kIdle, &stop);
     else
       self.node.wait(

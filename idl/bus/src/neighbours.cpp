@@ -25,7 +25,7 @@ bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
 
 }  // namespace
 
-void Neighbours::hear(const WriterId& writer, const v1::ServiceStatus& status, Time now) {
+void Neighbours::update(const WriterId& writer, const v1::ServiceStatus& status, Time now) {
   const auto [known, is_new] = all_.try_emplace(writer, Neighbour{status, now, now});
   Neighbour& neighbour = known->second;
   if (!is_new && neighbour.status.stamp != status.stamp) {

@@ -20,7 +20,7 @@ class Neighbours {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  void hear(const WriterId& writer, const v1::ServiceStatus& status, Time now);
+  void update(const WriterId& writer, const v1::ServiceStatus& status, Time now);
   void lose(const WriterId& writer);
 
   /// The program that serves in place of `own`, in words.

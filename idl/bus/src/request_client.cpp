@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kAgain = 0.3;  // [s] period of repetition
-constexpr std::chrono::milliseconds kLook{50};
+constexpr std::chrono::milliseconds kPollPeriod{50};
 constexpr std::chrono::microseconds kSpin{1000};  // most answers are there by then
 
 double seconds() {
@@ -164,7 +164,7 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
       return *std::move(end);
     if (stop != nullptr && stop->requested())
       return one.lost;
-    node_.wait(kLook, stop);
+    node_.wait(kPollPeriod, stop);
     if (meanwhile)
       meanwhile();
     if (auto answer = end ? std::nullopt : take_direct(one.request))

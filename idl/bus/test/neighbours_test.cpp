@@ -23,7 +23,7 @@ v1::ServiceStatus program(std::uint64_t instance, double uptime, v1::ServiceStat
 /// True where `own` yields, with that other one beside it.
 bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
   Neighbours neighbours;
-  neighbours.hear({1}, other, {});
+  neighbours.update({1}, other, {});
   return neighbours.serves_instead(own).has_value();
 }
 
@@ -55,7 +55,7 @@ TEST(Neighbours, NobodyYieldsToWhoDoesNotServe) {
 TEST(Neighbours, WhoYieldsTakesOverWhenTheOtherIsGone) {
   Neighbours neighbours;
   const auto own = program(1, 50.0, kWaits);
-  neighbours.hear({1}, program(9, 100.0, kRuns), {});
+  neighbours.update({1}, program(9, 100.0, kRuns), {});
   const auto words = neighbours.serves_instead(own);
   ASSERT_TRUE(words);
   EXPECT_EQ(*words,
@@ -75,14 +75,14 @@ TEST(Neighbours, OneThatStepsWithoutABreakHearsTheRobot) {
   const auto begin = now + seconds(1);
   for (int i = 0; i < 12; ++i) {
     status.stamp.cycle = static_cast<std::uint64_t>(i);
-    neighbours.hear({1}, status, now += seconds(1));
+    neighbours.update({1}, status, now += seconds(1));
   }
   EXPECT_TRUE(neighbours.stepping_since(begin, now));
   EXPECT_FALSE(neighbours.stepping_since(begin - seconds(1), now));
   EXPECT_FALSE(neighbours.stepping_since(begin, now + seconds(4)));
   // The program stood still for a while: earlier steps do not count.
   status.stamp.cycle = 100;
-  neighbours.hear({1}, status, now += seconds(5));
+  neighbours.update({1}, status, now += seconds(5));
   EXPECT_FALSE(neighbours.stepping_since(begin, now));
   EXPECT_TRUE(neighbours.stepping_since(now, now));
 }

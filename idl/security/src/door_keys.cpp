@@ -146,7 +146,7 @@ std::vector<std::string> door_key_files() {
   return files;
 }
 
-std::string DoorKeysFile::look(std::int64_t now) {
+std::string DoorKeysFile::reload(std::int64_t now) {
   if (now == looked_)
     return {};
   looked_ = now;

@@ -92,7 +92,7 @@ TEST(DoorKeysFile, AChangedFileCountsAndABadOneDoesNot) {
   saphira::test::TempDir folder;
   const std::string path = folder.path("door-keys");
   DoorKeysFile file({folder.path("none"), path});
-  EXPECT_EQ(file.look(1), "");
+  EXPECT_EQ(file.reload(1), "");
   DoorKeys keys;
   const std::string anna = keys.add("anna", DoorRight::drive, 30, kNow);
   const auto write = [&](const std::string& text) {
@@ -100,20 +100,20 @@ TEST(DoorKeysFile, AChangedFileCountsAndABadOneDoesNot) {
     chmod(path.c_str(), 0644);
   };
   write(keys.text());
-  EXPECT_EQ(file.look(1), "") << "once in a second";
+  EXPECT_EQ(file.reload(1), "") << "once in a second";
   EXPECT_EQ(file.keys().find(anna, kNow), nullptr);
-  EXPECT_EQ(file.look(2), "");
+  EXPECT_EQ(file.reload(2), "");
   EXPECT_NE(file.keys().find(anna, kNow), nullptr);
   write("anna\n");
-  EXPECT_NE(file.look(3), "");
-  EXPECT_EQ(file.look(4), "") << "said once";
+  EXPECT_NE(file.reload(3), "");
+  EXPECT_EQ(file.reload(4), "") << "said once";
   EXPECT_NE(file.keys().find(anna, kNow), nullptr);
   write(DoorKeys().text());
-  EXPECT_EQ(file.look(5), "");
+  EXPECT_EQ(file.reload(5), "");
   EXPECT_EQ(file.keys().find(anna, kNow), nullptr);
   write(keys.text());
   chmod(path.c_str(), 0666);
-  EXPECT_NE(file.look(6), "") << "anybody may have written it";
+  EXPECT_NE(file.reload(6), "") << "anybody may have written it";
   EXPECT_EQ(file.keys().find(anna, kNow), nullptr);
 }
 

@@ -41,7 +41,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       registration_(node, bus::topics::kRegistrationRequest, kName),
       stops_(node, bus::topics::kDriveStop, kName),
       audit_(node) {
-  folder_.look();
+  folder_.poll();
   if (!options_.memory.empty()) {
     const std::string trouble = read_or_set_aside(
         options_.memory,
@@ -80,7 +80,7 @@ void DialogueShell::announce() {
 }
 
 void DialogueShell::reload() {
-  for (const std::string& name : folder_.look().changed) {
+  for (const std::string& name : folder_.poll().changed) {
     if (name != fs::path(options_.grammar).filename())
       continue;
     try {
@@ -336,7 +336,7 @@ void DialogueShell::step(double seconds, double now) {
 
 void DialogueShell::run(const bus::Stop& stop) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kLook{450};
+  constexpr std::chrono::milliseconds kPollPeriod{450};
   const auto seconds = [] {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   };
@@ -344,7 +344,7 @@ void DialogueShell::run(const bus::Stop& stop) {
   node_.status().reason = "no map has come: places have no names yet";
   double looked = seconds();
   while (!stop.requested()) {
-    node_.wait(kLook, &stop);
+    node_.wait(kPollPeriod, &stop);
     step(seconds(), unix_time());
     if (seconds() - looked > 1.0) {
       reload();

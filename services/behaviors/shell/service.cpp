@@ -31,7 +31,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
   ports_.say(notes.lines());
   if (!options.folder.empty())
     sources_.add(Folder(options.folder));
-  look();
+  check_files();
 }
 
 void Service::step(const runtime::Turn& turn) {
@@ -74,22 +74,22 @@ std::optional<double> Service::command_age(const runtime::Turn& turn) {
   return grant->command_age;
 }
 
-void Service::look() {
+void Service::check_files() {
   const bool first = !std::exchange(looked_, true);
-  const Folder::News news = sources_.look(registry_);
+  const Folder::Reload reload = sources_.reload(registry_);
   Notes notes;
-  for (const std::string& fault : news.faults)
+  for (const std::string& fault : reload.faults)
     notes.error(fault + (first ? "" : "\nWhat this file gave before stays in use."));
   // At the start, warnings about the shipped files are not logged.
-  for (const std::string& warning : news.warnings)
+  for (const std::string& warning : reload.warnings)
     if (!first || !warning.starts_with(behaviors_folder()))
       notes.warn(warning);
   if (!first)
-    for (const std::string& file : news.taken)
+    for (const std::string& file : reload.taken)
       notes.info("took " + file);
   ports_.say(notes.lines());
-  changed_ = changed_ || news.changed;
-  if (news.changed)
+  changed_ = changed_ || reload.changed;
+  if (reload.changed)
     schemas_.write(to_bus(registry_, sources_.trouble()));
 }
 

@@ -26,7 +26,7 @@ class Service final : public runtime::Service {
 
   ProcessTable& processes() override { return core_.processes(); }
   void step(const runtime::Turn& turn) override;
-  void look() override;
+  void check_files() override;
 
  private:
   std::optional<double> command_age(const runtime::Turn& turn);

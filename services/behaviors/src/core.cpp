@@ -29,7 +29,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   if (!execution_.works())
     outputs.output.inactive_reason = execution_.name() + " is suspended";
   outputs.number = ++number_;
-  tell(outputs.output, outputs);
+  report(outputs.output, outputs);
   return outputs;
 }
 
@@ -46,7 +46,7 @@ void Core::begin(const Inputs& inputs) {
   }
 }
 
-void Core::tell(const Output& output, Outputs& outputs) {
+void Core::report(const Output& output, Outputs& outputs) {
   if (output.trouble != trouble_ && !output.trouble.empty())
     outputs.notes.warn("behaviors that cannot be had: " + output.trouble);
   trouble_ = output.trouble;

@@ -10,12 +10,12 @@
 
 namespace saphira::behaviors {
 
-Folder::News Folder::look(Registry& registry) {
-  News news;
-  const WatchedFolder::Changes changes = folder_.look();
-  news.changed = changes.any() || changes.missing != missing_;
+Folder::Reload Folder::reload(Registry& registry) {
+  Reload reload;
+  const WatchedFolder::Changes changes = folder_.poll();
+  reload.changed = changes.any() || changes.missing != missing_;
   if (changes.missing && !missing_)
-    news.faults.push_back(path() + ": expected a folder of behavior files");
+    reload.faults.push_back(path() + ": expected a folder of behavior files");
   missing_ = changes.missing;
   for (const std::string& name : changes.gone) {
     for (const std::string& schema : files_[name].schemas)
@@ -23,13 +23,14 @@ Folder::News Folder::look(Registry& registry) {
     files_.erase(name);
   }
   if (changes.any())
-    take_changed(changes.changed, registry, news);
-  return news;
+    take_changed(changes.changed, registry, reload);
+  return reload;
 }
 
 /// Includes files that had errors before, since they may be right by now. Repeats while a file is
 /// accepted, since another file may have waited for its names.
-void Folder::take_changed(const std::vector<std::string>& changed, Registry& registry, News& news) {
+void Folder::take_changed(const std::vector<std::string>& changed, Registry& registry,
+                          Reload& reload) {
   std::vector<std::string> open = changed;
   std::map<std::string, std::string> before;
   for (const auto& [name, file] : files_)
@@ -42,28 +43,28 @@ void Folder::take_changed(const std::vector<std::string>& changed, Registry& reg
   for (std::size_t left = open.size() + 1; open.size() < left;) {
     left = open.size();
     std::erase_if(open, [&](const std::string& name) {
-      News one;
+      Reload one;
       take(name, files_[name], registry, one);
       faults[name] = std::move(one.faults);
       if (!faults[name].empty())
         return false;
-      std::move(one.taken.begin(), one.taken.end(), std::back_inserter(news.taken));
-      std::move(one.warnings.begin(), one.warnings.end(), std::back_inserter(news.warnings));
+      std::move(one.taken.begin(), one.taken.end(), std::back_inserter(reload.taken));
+      std::move(one.warnings.begin(), one.warnings.end(), std::back_inserter(reload.warnings));
       return true;
     });
   }
   for (const std::string& name : open)
     if (const auto old = before.find(name);
         old == before.end() || old->second != files_[name].fault)
-      std::move(faults[name].begin(), faults[name].end(), std::back_inserter(news.faults));
+      std::move(faults[name].begin(), faults[name].end(), std::back_inserter(reload.faults));
 }
 
-void Folder::take(const std::string& name, File& file, Registry& registry, News& news) {
+void Folder::take(const std::string& name, File& file, Registry& registry, Reload& reload) {
   const std::string path = folder_.path_of(name);
   const auto fault = [&](const std::string& what) {
     if (file.fault.empty())
       file.fault = what;
-    news.faults.push_back(what);
+    reload.faults.push_back(what);
   };
   file.fault.clear();
   Compiled compiled;
@@ -74,7 +75,7 @@ void Folder::take(const std::string& name, File& file, Registry& registry, News&
     return;
   }
   for (const FileError& warning : compiled.warnings)
-    news.warnings.emplace_back(warning.what());
+    reload.warnings.emplace_back(warning.what());
   for (const FileError& one : compiled.errors)
     fault(one.what());
   for (const Schema& schema : compiled.schemas)
@@ -94,7 +95,7 @@ void Folder::take(const std::string& name, File& file, Registry& registry, News&
     if (std::find(names.begin(), names.end(), old) == names.end())
       registry.remove(old);
   file.schemas = std::move(names);
-  news.taken.push_back(path);
+  reload.taken.push_back(path);
 }
 
 std::string Folder::owner(const std::string& schema, const std::string& but) const {
@@ -121,16 +122,16 @@ void Sources::add(Folder folder) {
   layers_.push_back({{}, std::move(folder)});
 }
 
-Folder::News Sources::look(Registry& registry) {
-  Folder::News all;
+Folder::Reload Sources::reload(Registry& registry) {
+  Folder::Reload all;
   for (Layer& layer : layers_) {
     if (!layer.folder)
       continue;
-    Folder::News news = layer.folder->look(layer.schemas);
-    all.changed = all.changed || news.changed;
-    all.taken.insert(all.taken.end(), news.taken.begin(), news.taken.end());
-    all.faults.insert(all.faults.end(), news.faults.begin(), news.faults.end());
-    all.warnings.insert(all.warnings.end(), news.warnings.begin(), news.warnings.end());
+    Folder::Reload reload = layer.folder->reload(layer.schemas);
+    all.changed = all.changed || reload.changed;
+    all.taken.insert(all.taken.end(), reload.taken.begin(), reload.taken.end());
+    all.faults.insert(all.faults.end(), reload.faults.begin(), reload.faults.end());
+    all.warnings.insert(all.warnings.end(), reload.warnings.begin(), reload.warnings.end());
   }
   std::map<std::string, Origin> now;
   for (std::size_t i = 0; i < layers_.size(); ++i)
@@ -158,9 +159,9 @@ std::string Sources::trouble() const {
 
 Registry load_behaviors(const std::string& folder) {
   Registry registry;
-  const Folder::News news = Folder(folder).look(registry);
-  if (!news.faults.empty()) {
-    throw std::runtime_error(joined(news.faults, "\n"));
+  const Folder::Reload reload = Folder(folder).reload(registry);
+  if (!reload.faults.empty()) {
+    throw std::runtime_error(joined(reload.faults, "\n"));
   }
   return registry;
 }

@@ -53,32 +53,32 @@ class FolderTest : public ::testing::Test {
 TEST_F(FolderTest, ARunningBehaviorTakesTheNewCodeAndKeepsItsVariables) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  EXPECT_TRUE(folder.look(executive_.registry()).changed);
-  EXPECT_FALSE(folder.look(executive_.registry()).changed);
+  EXPECT_TRUE(folder.reload(executive_.registry()).changed);
+  EXPECT_FALSE(folder.reload(executive_.registry()).changed);
   EXPECT_DOUBLE_EQ(step(), 1);
   EXPECT_DOUBLE_EQ(step(), 2);
   write("c.beh", counter("100 + n"));
-  const Folder::News news = folder.look(executive_.registry());
-  EXPECT_TRUE(news.changed);
-  EXPECT_EQ(news.taken.size(), 1U);
+  const Folder::Reload reload = folder.reload(executive_.registry());
+  EXPECT_TRUE(reload.changed);
+  EXPECT_EQ(reload.taken.size(), 1U);
   EXPECT_DOUBLE_EQ(step(), 103);
 }
 
 TEST_F(FolderTest, ABrokenFileLeavesWhatRunsUntouchedAndIsTold) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  folder.look(executive_.registry());
+  folder.reload(executive_.registry());
   step();
   write("c.beh", counter("n +"));
-  const Folder::News news = folder.look(executive_.registry());
-  EXPECT_TRUE(news.changed);
-  ASSERT_EQ(news.faults.size(), 1U);
-  EXPECT_NE(news.faults[0].find("c.beh:10:16: expected a number, a variable"), std::string::npos)
-      << news.faults[0];
-  EXPECT_EQ(folder.trouble(), news.faults[0]);
+  const Folder::Reload reload = folder.reload(executive_.registry());
+  EXPECT_TRUE(reload.changed);
+  ASSERT_EQ(reload.faults.size(), 1U);
+  EXPECT_NE(reload.faults[0].find("c.beh:10:16: expected a number, a variable"), std::string::npos)
+      << reload.faults[0];
+  EXPECT_EQ(folder.trouble(), reload.faults[0]);
   EXPECT_DOUBLE_EQ(step(), 2);
   write("c.beh", counter("n"));
-  EXPECT_TRUE(folder.look(executive_.registry()).changed);
+  EXPECT_TRUE(folder.reload(executive_.registry()).changed);
   EXPECT_EQ(folder.trouble(), "");
   EXPECT_DOUBLE_EQ(step(), 3);
 }
@@ -86,10 +86,10 @@ TEST_F(FolderTest, ABrokenFileLeavesWhatRunsUntouchedAndIsTold) {
 TEST_F(FolderTest, AVersionThatWantsOtherParametersWaitsUntilItGetsThem) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  folder.look(executive_.registry());
+  folder.reload(executive_.registry());
   step();
   write("c.beh", counter("500", "  sfPTR goal\n"));
-  folder.look(executive_.registry());
+  folder.reload(executive_.registry());
   std::string trouble;
   EXPECT_DOUBLE_EQ(step(&trouble), 2);
   EXPECT_NE(trouble.find("the old version runs on: parameter \"goal\" is missing"),
@@ -100,10 +100,10 @@ TEST_F(FolderTest, AVersionThatWantsOtherParametersWaitsUntilItGetsThem) {
 TEST_F(FolderTest, WhatIsGoneCannotBeIntendedAnewButRunsOn) {
   write("c.beh", counter("n"));
   Folder folder(path_.string());
-  folder.look(executive_.registry());
+  folder.reload(executive_.registry());
   step();
   fs::remove(path_ / "c.beh");
-  EXPECT_TRUE(folder.look(executive_.registry()).changed);
+  EXPECT_TRUE(folder.reload(executive_.registry()).changed);
   EXPECT_DOUBLE_EQ(step(), 2);
   executive_.reset();
   std::string trouble;
@@ -116,9 +116,9 @@ TEST_F(FolderTest, OneNameInTwoFilesIsAFault) {
   write("b.beh", counter("2"));
   Folder folder(path_.string());
   Registry registry;
-  const Folder::News news = folder.look(registry);
-  ASSERT_EQ(news.faults.size(), 1U);
-  EXPECT_NE(news.faults[0].find("b.beh: the behavior \"Counter\" is in a.beh already"),
+  const Folder::Reload reload = folder.reload(registry);
+  ASSERT_EQ(reload.faults.size(), 1U);
+  EXPECT_NE(reload.faults[0].find("b.beh: the behavior \"Counter\" is in a.beh already"),
             std::string::npos);
 }
 
@@ -129,25 +129,25 @@ TEST_F(FolderTest, ABehaviorMayMoveFromOneFileToAnother) {
   write("z.beh", counter("n"));
   Folder folder(path_.string());
   Registry registry;
-  folder.look(registry);
+  folder.reload(registry);
   write("a.beh", counter("2 * n"));
   write("z.beh", another(counter("n")));
-  Folder::News news = folder.look(registry);
-  EXPECT_TRUE(news.faults.empty()) << news.faults.front();
-  EXPECT_EQ(news.taken.size(), 2U);
+  Folder::Reload reload = folder.reload(registry);
+  EXPECT_TRUE(reload.faults.empty()) << reload.faults.front();
+  EXPECT_EQ(reload.taken.size(), 2U);
   ASSERT_NE(registry.find("Counter"), nullptr);
   ASSERT_NE(registry.find("Another"), nullptr);
   // Also in two looks.
   write("b.beh", another(counter("3 * n")));
-  EXPECT_EQ(folder.look(registry).faults.size(), 1U);
+  EXPECT_EQ(folder.reload(registry).faults.size(), 1U);
   write("c.beh", another(counter("4 * n")));
-  news = folder.look(registry);
-  ASSERT_EQ(news.faults.size(), 1U) << "what was told of b.beh is not told again";
-  EXPECT_NE(news.faults[0].find("c.beh"), std::string::npos);
+  reload = folder.reload(registry);
+  ASSERT_EQ(reload.faults.size(), 1U) << "what was told of b.beh is not told again";
+  EXPECT_NE(reload.faults[0].find("c.beh"), std::string::npos);
   fs::remove(path_ / "c.beh");
   fs::remove(path_ / "z.beh");
-  news = folder.look(registry);
-  EXPECT_TRUE(news.faults.empty());
+  reload = folder.reload(registry);
+  EXPECT_TRUE(reload.faults.empty());
   EXPECT_EQ(folder.trouble(), "");
   EXPECT_NE(registry.find("Another"), nullptr);
 }
@@ -161,14 +161,14 @@ TEST_F(FolderTest, ALaterSourceCoversAnEarlierOneUntilItIsGone) {
   Sources sources;
   sources.add(std::move(fixed));
   sources.add(Folder(path_.string()));
-  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_TRUE(sources.reload(executive_.registry()).changed);
   EXPECT_DOUBLE_EQ(step(), 11);
   write("mine.beh", counter("20 + n"));
-  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_TRUE(sources.reload(executive_.registry()).changed);
   EXPECT_DOUBLE_EQ(step(), 22);
-  EXPECT_FALSE(sources.look(executive_.registry()).changed);
+  EXPECT_FALSE(sources.reload(executive_.registry()).changed);
   fs::remove(path_ / "mine.beh");
-  EXPECT_TRUE(sources.look(executive_.registry()).changed);
+  EXPECT_TRUE(sources.reload(executive_.registry()).changed);
   EXPECT_DOUBLE_EQ(step(), 13);
   EXPECT_EQ(sources.trouble(), "");
 }
@@ -177,9 +177,9 @@ TEST_F(FolderTest, AFolderThatIsNotThereIsAFaultAndTakesNothingAway) {
   write("a.beh", counter("1"));
   Folder folder(path_.string());
   Registry registry;
-  folder.look(registry);
+  folder.reload(registry);
   fs::remove_all(path_);
-  EXPECT_EQ(folder.look(registry).faults.size(), 1U);
+  EXPECT_EQ(folder.reload(registry).faults.size(), 1U);
   EXPECT_NE(registry.find("Counter"), nullptr);
   EXPECT_NE(folder.trouble().find("expected a folder"), std::string::npos);
   EXPECT_THROW(load_behaviors(path_.string()), std::runtime_error);

@@ -90,8 +90,8 @@ Robot from_bus(const v1::RobotState& robot) {
   return result;
 }
 
-Core::Heard::Grant from_bus(const v1::Grant& grant) {
-  Core::Heard::Grant result{grant.estopped, grant.estop_source};
+Core::Received::Grant from_bus(const v1::Grant& grant) {
+  Core::Received::Grant result{grant.estopped, grant.estop_source};
   if (grant.role != v1::ROLE_BEHAVIORS)
     for (const v1::Refusal& refusal : grant.refused)
       if (refusal.role == v1::ROLE_BEHAVIORS && result.refusal.empty())

@@ -25,7 +25,7 @@ v1::IntendedBehavior to_bus(const IntendedBehavior& behavior);
 v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
-Core::Heard::Grant from_bus(const v1::Grant& grant);
+Core::Received::Grant from_bus(const v1::Grant& grant);
 std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors);
 /// [cycles] of the intentions that they evaluated.
 std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors);

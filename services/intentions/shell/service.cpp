@@ -85,7 +85,7 @@ Service::Service(runtime::Ports& ports, const Options& options)
   if (!options.vision && !ports.lockstep())
     unasked_vision_.emplace(ports.newest(bus::topics::kVision));
   ports.gate([this](const v1::RobotState&) { return missing(); });
-  look();
+  check_files();
 }
 
 /// In lockstep every run has, from the first cycle on, the same schemas of behaviors, the same map
@@ -118,11 +118,11 @@ void Service::say(const Notes& notes, const std::vector<v1::AuditEntry>& audit) 
 
 void Service::step(const runtime::Turn& turn) {
   const Core::Outputs outputs = core_.step(inputs_of(turn));
-  remember(outputs.intended.news);
+  remember(outputs.intended.updates);
   if (const auto& by = outputs.intended.stop)
     stops_.ask({"stop", {{"by", *by}}}, std::exchange(next_stop_, bus::next_request_number()));
   publish(outputs);
-  publish(outputs.intended.news);
+  publish(outputs.intended.updates);
   if (outputs.beliefs)
     publish(*outputs.beliefs);
   if (outputs.way)
@@ -133,15 +133,15 @@ void Service::step(const runtime::Turn& turn) {
 }
 
 void Service::between(double silence) {
-  Core::Heard heard;
-  take_goals(heard);
-  tell(heard, silence);
+  Core::Received received;
+  take_goals(received);
+  step_between(received, silence);
 }
 
-void Service::tell(const Core::Heard& heard, double silence) {
-  const Core::Told told = core_.between(heard, silence);
-  remember(told.news);
-  publish(told.news);
+void Service::step_between(const Core::Received& received, double silence) {
+  const Core::BetweenOutputs told = core_.between(received, silence);
+  remember(told.updates);
+  publish(told.updates);
   say(told.notes, told.audit);
 }
 
@@ -178,11 +178,11 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   inputs.vision = vision();
   take_maps();
   inputs.maps = std::exchange(new_maps_, {});
-  take_goals(inputs.heard);
-  take_claims(inputs.heard);
-  take_grants(inputs.heard);
+  take_goals(inputs.received);
+  take_claims(inputs.received);
+  take_grants(inputs.received);
   agents_.poll(0.1 * static_cast<double>(++steps_));
-  inputs.heard.answers = std::exchange(answers_, {});
+  inputs.received.answers = std::exchange(answers_, {});
   inputs.own_stop = {ports_.instance(), next_stop_};
   return inputs;
 }
@@ -218,18 +218,18 @@ void Service::take_behavior_schemas() {
   knows_behaviors_ = true;
   if (sample->schemas.empty())
     return;  // no evaluator of behaviors has none
-  Core::Heard heard;
-  heard.behaviors = from_bus(*sample);
-  folders_.know_behaviors(*heard.behaviors);
-  tell(heard);
+  Core::Received received;
+  received.behaviors = from_bus(*sample);
+  folders_.know_behaviors(*received.behaviors);
+  step_between(received);
 }
 
-void Service::take_goals(Core::Heard& heard) {
-  heard.lost_requesters = goals_.take_lost();
-  heard.running =
+void Service::take_goals(Core::Received& received) {
+  received.lost_requesters = goals_.take_lost();
+  received.running =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   for (const auto& sample : goals_.take()) {
-    Core::Heard::Goal goal;
+    Core::Received::Goal goal;
     goal.event.goal = from_bus(sample.data);
     goal.event.why = sample.data.withdrawn;
     goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
@@ -237,23 +237,23 @@ void Service::take_goals(Core::Heard& heard) {
     goal.person = bus::asker_of(sample.info, sample.data.person);
     goal.writer = sample.info.writer;
     goal.age = sample.info.age;
-    heard.goals.push_back(std::move(goal));
+    received.goals.push_back(std::move(goal));
   }
 }
 
-void Service::take_claims(Core::Heard& heard) {
-  heard.lost_claimants = claims_.take_lost();
+void Service::take_claims(Core::Received& received) {
+  received.lost_claimants = claims_.take_lost();
   Notes notes;
   for (auto& sample : claims_.take()) {
     sample.data.source = named(sample.data.source, bus::asker_of(sample.info));
     try {
-      heard.claims.push_back(
+      received.claims.push_back(
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
            sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL});
       // After a restart the claims of before come again, and answer no question that is asked anew.
       if (steps_ < kNewStart && sample.info.age > kFresh && !ports_.lockstep())
-        heard.claims.back().event.age = static_cast<Ticks>(sample.info.age / kTick);
+        received.claims.back().event.age = static_cast<Ticks>(sample.info.age / kTick);
     } catch (const FileError& error) {
       notes.warn("a claim of " + saphira::quoted(sample.data.source) + ": " + error.what());
     }
@@ -261,56 +261,56 @@ void Service::take_claims(Core::Heard& heard) {
   ports_.say(notes.lines());
 }
 
-void Service::take_grants(Core::Heard& heard) {
+void Service::take_grants(Core::Received& received) {
   for (const auto& sample : grants_.take())
     if (!sample.info.disposed)
-      heard.grants.push_back(from_bus(sample.data));
+      received.grants.push_back(from_bus(sample.data));
 }
 
-void Service::look() {
+void Service::check_files() {
   if (knows_behaviors_ || !ports_.lockstep())
     take_behavior_schemas();
-  ActivityFolders::News news = folders_.look();
-  if (!news.changed)
+  ActivityFolders::Reload reload = folders_.reload();
+  if (!reload.changed)
     return;
-  Core::Heard heard;
-  heard.activities = std::move(news);
-  tell(heard);
+  Core::Received received;
+  received.activities = std::move(reload);
+  step_between(received);
   schemas_.write({.schemas = converted(core_.executor().registry().all(),
                                        [](const Schema* schema) { return to_bus(*schema); }),
                   .trouble = folders_.trouble()});
 }
 
-void Service::remember(const News& news) {
+void Service::remember(const GoalUpdates& updates) {
   std::string lines;
-  for (const Placement& placement : news.placed)
+  for (const Placement& placement : updates.placed)
     lines += write_line(placement);
-  for (const Ending& ending : news.endings)
+  for (const Ending& ending : updates.endings)
     lines += write_line(ending);
   Notes notes;
   if (!lines.empty() && !memory_.append(lines))
     notes.warn(cannot_be("the memory file", "written") +
                "; a restart may do a finished goal again");
-  if (news.work && !memory_.keep(*news.work))
+  if (updates.work && !memory_.keep(*updates.work))
     notes.warn(cannot_be("the memory file", "written") +
                "; a restart may do again what has been done");
   ports_.say(notes.lines());
 }
 
-void Service::publish(const News& news) {
+void Service::publish(const GoalUpdates& updates) {
   Notes notes;
-  for (const GoalStatus& status : news.changed) {
+  for (const GoalStatus& status : updates.changed) {
     v1::GoalStatus sample = status;
     sample.stamp = ports_.stamp();
     if (!statuses_.write(sample))
       notes.warn("the status of goal " + describe(status.id) + " did not get onto the bus");
     told_[status.id] = sample;
   }
-  for (const GoalId& id : news.withdrawn) {
+  for (const GoalId& id : updates.withdrawn) {
     statuses_.dispose({.id = id, .stamp = ports_.stamp()});
     told_.erase(id);
   }
-  if (!news.changed.empty() || !news.withdrawn.empty()) {
+  if (!updates.changed.empty() || !updates.withdrawn.empty()) {
     goal_recall_.write({.goals = converted(
                             told_, [](const auto& told) { return told.second; }, kMostGoals)});
   }
@@ -343,7 +343,7 @@ void Service::publish(const Core::Outputs& said) {
   });
   intentions_.write(sample);
   recall_.write(sample);
-  for (const Said& one : outputs.said) {
+  for (const SpokenText& one : outputs.said) {
     messages_.write({.source = ports_.name() + ": " + one.schema, .text = one.text});
   }
 }

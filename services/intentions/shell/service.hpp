@@ -43,21 +43,21 @@ class Service final : public runtime::Service {
   }
   void step(const runtime::Turn& turn) override;
   void between(double silence) override;
-  void look() override;
+  void check_files() override;
 
  private:
   std::string missing();
-  void tell(const Core::Heard& heard, double silence = 0.0);
+  void step_between(const Core::Received& received, double silence = 0.0);
   void take_behavior_schemas();
   void take_maps();
-  void take_goals(Core::Heard& heard);
-  void take_claims(Core::Heard& heard);
-  void take_grants(Core::Heard& heard);
+  void take_goals(Core::Received& received);
+  void take_claims(Core::Received& received);
+  void take_grants(Core::Received& received);
   Core::Inputs inputs_of(const runtime::Turn& turn);
   std::optional<Core::Vision> vision();
   /// To the disk, before it is published: nothing reported or done is done again.
-  void remember(const News& news);
-  void publish(const News& news);
+  void remember(const GoalUpdates& updates);
+  void publish(const GoalUpdates& updates);
   void say(const Notes& notes, const std::vector<v1::AuditEntry>& audit);
   void publish(const Core::Outputs& said);
   void publish(const std::vector<Belief>& beliefs);
@@ -99,7 +99,7 @@ class Service final : public runtime::Service {
   ActivityFolders folders_;
   Core core_;
   bool knows_behaviors_ = false;
-  std::vector<Core::MapNews> new_maps_;        ///< since the last step
+  std::vector<Core::NewMap> new_maps_;         ///< since the last step
   std::optional<std::uint64_t> map_revision_;  ///< of the newest map
   lps::LpsSettings robot_;                     ///< of this epoch
 };

@@ -25,7 +25,7 @@ constexpr std::size_t kMostEdges = 32;      // of the contract
 constexpr std::uint64_t kVisionLease = 10;  // [cycles] an older result counts as missing
 
 /// Why goals that drive wait: a person drives, or has not handed the robot back.
-std::string why_to_wait(const Core::Heard::Grant& grant) {
+std::string why_to_wait(const Core::Received::Grant& grant) {
   if (!grant.person.empty())
     return grant.person + " drives: goes on when the robot is handed back";
   if (grant.waits_for_hand_back && !grant.pressed)
@@ -47,7 +47,7 @@ Core::Core(Settings settings)
 
 Core::Outputs Core::step(Inputs inputs) {
   Outputs outputs;
-  learn(inputs.heard, outputs.notes);
+  learn(inputs.received, outputs.notes);
   robot_here_ = true;
   intentions::Inputs now;
   now.epoch = inputs.stamp.epoch;
@@ -58,9 +58,9 @@ Core::Outputs Core::step(Inputs inputs) {
   now.troubles = std::move(inputs.troubles);
   now.behaviors_cycle = inputs.behaviors_cycle;
   now.intent_age = inputs.intent_age;
-  now.claims = claims_of(inputs.heard);
+  now.claims = claims_of(inputs.received);
   const bool first_grant = !newest_grant_;
-  note_grants(inputs.heard.grants);
+  note_grants(inputs.received.grants);
   now.estop = estop_;
   if (newest_grant_) {
     now.stop = newest_grant_->stop;
@@ -73,7 +73,7 @@ Core::Outputs Core::step(Inputs inputs) {
   if (!lockstep_)
     now.person = newest_grant_ ? why_to_wait(*newest_grant_) : std::string();
 
-  now.events = events_of(inputs.heard, outputs);
+  now.events = events_of(inputs.received, outputs);
   std::string gone = who_is_gone(inputs);
   if (gone.empty() && !lockstep_)
     gone = newest_grant_ ? newest_grant_->refusal : std::string();
@@ -81,7 +81,7 @@ Core::Outputs Core::step(Inputs inputs) {
   if (outputs.intended.stop)
     executor_.heed(inputs.own_stop);
   if (!gone.empty())
-    for (GoalStatus& status : outputs.intended.news.changed)
+    for (GoalStatus& status : outputs.intended.updates.changed)
       if (status.state == v1::GOAL_FAILED)
         status.reason += "; " + gone;
   outputs.limit = limit_of(now, outputs.intended);
@@ -90,8 +90,8 @@ Core::Outputs Core::step(Inputs inputs) {
     outputs.look = gaze_.step({now.robot, now.around, executor_.beliefs(), 0});
   nodes_ = outputs.intended.nodes;
   outputs.way = look_for_way(now);
-  tell(outputs.intended.news, outputs.notes);
-  for (const Said& said : outputs.intended.said)
+  report(outputs.intended.updates, outputs.notes);
+  for (const SpokenText& said : outputs.intended.said)
     outputs.notes.info("says: " + said.text);
   if (const std::uint64_t revision = executor_.beliefs().revision();
       revision != beliefs_revision_) {
@@ -167,26 +167,26 @@ std::string Core::who_is_gone(const Inputs& inputs) {
   return text;
 }
 
-Core::Told Core::between(const Heard& heard, double silence) {
-  Told told;
-  learn(heard, told.notes);
-  told.news = executor_.hear(events_of(heard, told));
+Core::BetweenOutputs Core::between(const Received& received, double silence) {
+  BetweenOutputs told;
+  learn(received, told.notes);
+  told.updates = executor_.take_events(events_of(received, told));
   // A single-stepped simulator may stand still for any time.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
     robot_here_ = false;
-    News gone = executor_.robot_gone();
+    GoalUpdates gone = executor_.robot_gone();
     const auto append = [](auto& to, auto& from) {
       to.insert(to.end(), std::make_move_iterator(from.begin()),
                 std::make_move_iterator(from.end()));
     };
-    append(told.news.changed, gone.changed);
-    append(told.news.withdrawn, gone.withdrawn);
-    append(told.news.placed, gone.placed);
-    append(told.news.endings, gone.endings);
+    append(told.updates.changed, gone.changed);
+    append(told.updates.withdrawn, gone.withdrawn);
+    append(told.updates.placed, gone.placed);
+    append(told.updates.endings, gone.endings);
     if (gone.work)
-      told.news.work = std::move(gone.work);
+      told.updates.work = std::move(gone.work);
   }
-  tell(told.news, told.notes);
+  report(told.updates, told.notes);
   return told;
 }
 
@@ -223,7 +223,7 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   around.deceleration = inputs.deceleration;
   around.head_reach = inputs.head_reach;
   around.map_revision = places_revision_;
-  for (const auto& [question, answer] : inputs.heard.answers)
+  for (const auto& [question, answer] : inputs.received.answers)
     answers_[question] = answer;
   while (answers_.size() > kMostAnswers)
     answers_.erase(answers_.begin());
@@ -238,41 +238,41 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
   const bool exact = lockstep_ && revision;
   while (!newer_maps_.empty() &&
          (!exact || newer_maps_.front().revision <= *revision || topology_ == nullptr)) {
-    MapNews& news = newer_maps_.front();
+    NewMap& next = newer_maps_.front();
     // An added or removed object leaves plans as they are.
-    if (topology_ == nullptr || !maps::same_places(*map_, *news.map)) {
-      topology_ = std::make_shared<const maps::Topology>(*news.map);
-      places_revision_ = news.revision;
+    if (topology_ == nullptr || !maps::same_places(*map_, *next.map)) {
+      topology_ = std::make_shared<const maps::Topology>(*next.map);
+      places_revision_ = next.revision;
       executor_.know_places(topology_);
     }
-    map_ = std::move(news.map);
+    map_ = std::move(next.map);
     lines_ = std::make_shared<const maps::LineMap>(*map_);
     near_.clear();
     newer_maps_.pop_front();
   }
 }
 
-void Core::learn(const Heard& heard, Notes& notes) {
-  if (heard.behaviors) {
-    executor_.know_behaviors(*heard.behaviors);
+void Core::learn(const Received& received, Notes& notes) {
+  if (received.behaviors) {
+    executor_.know_behaviors(*received.behaviors);
     for (const Diagnostic& trouble : check_references(executor_.registry()))
       notes.warn(trouble.text());
   }
-  if (heard.activities)
-    know(*heard.activities, notes);
+  if (received.activities)
+    know(*received.activities, notes);
 }
 
-void Core::know(const ActivityFolders::News& news, Notes& notes) {
+void Core::know(const ActivityFolders::Reload& reload, Notes& notes) {
   const bool first = !std::exchange(knows_activities_, true);
-  for (const std::string& error : news.errors)
+  for (const std::string& error : reload.errors)
     notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
   // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
   if (!first)
-    for (const std::string& warning : news.warnings)
+    for (const std::string& warning : reload.warnings)
       notes.warn(warning);
-  for (const std::string& name : news.removed)
+  for (const std::string& name : reload.removed)
     executor_.remove(name);
-  for (const Schema& schema : news.taken) {
+  for (const Schema& schema : reload.taken) {
     executor_.add(schema);
     if (!first)
       notes.info("took " + schema.name + " of " + schema.source);
@@ -310,18 +310,21 @@ std::optional<std::string> Core::ask(const std::string& name, ProcessAction acti
 }
 
 template <class Out>
-std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
+std::vector<GoalEvent> Core::events_of(const Received& received, Out& out) {
   std::vector<GoalEvent> events;
-  for (const Heard::Goal& goal : heard.goals) {
+  for (const Received::Goal& goal : received.goals) {
     GoalEvent event = goal.event;
-    const double before_start = heard.running < kStarting ? goal.age - heard.running : 0.0;
+    const double before_start = received.running < kStarting ? goal.age - received.running : 0.0;
     if (!take_person(goal, before_start > 0.0, event, out))
       continue;
-    if (const auto asked = requesters_.find(event.goal.id);
-        event.kind == GoalEvent::Kind::kDisposed && event.by.empty() && asked != requesters_.end())
-      event.by = asked->second != goal.writer ? goal.person ? goal.person->name : "another program"
-                 : event.why.empty()          ? "the program that asked for it"
-                                              : "";
+    if (event.kind == GoalEvent::Kind::kDisposed && event.by.empty()) {
+      const auto asked = requesters_.find(event.goal.id);
+      const bool is_known = asked != requesters_.end();
+      if (!is_known || asked->second != goal.writer)
+        event.by = goal.person ? goal.person->name : is_known ? "another program" : "a program";
+      else if (event.why.empty())
+        event.by = "the program that asked for it";
+    }
     // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
@@ -339,7 +342,7 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
     }
     events.push_back(std::move(event));
   }
-  for (const Writer& lost : heard.lost_requesters) {
+  for (const Writer& lost : received.lost_requesters) {
     for (const auto& [id, writer] : requesters_) {
       if (writer != lost)
         continue;
@@ -357,7 +360,7 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Out& out) {
 /// True where the person may do that to the goal: the owner, who asked for it first, and operators.
 /// Names the person in the event, where it is not the owner. is_old: written before this start.
 template <class Out>
-bool Core::take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Out& out) {
+bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event, Out& out) {
   const GoalId& id = event.goal.id;
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
   const std::string says = event.goal.requester;
@@ -413,16 +416,16 @@ bool Core::needs_approval(const std::string& says, const Checked& who) const {
   });
 }
 
-std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
+std::vector<ClaimEvent> Core::claims_of(const Received& received) {
   std::vector<ClaimEvent> events;
-  for (const Heard::Claim& claim : heard.claims) {
+  for (const Received::Claim& claim : received.claims) {
     events.push_back(claim.event);
     if (claim.event.kind == ClaimEvent::Kind::kSaid && claim.ends_with_writer)
       claimants_[claim.event.id] = claim.writer;
     else
       claimants_.erase(claim.event.id);
   }
-  for (const Writer& lost : heard.lost_claimants) {
+  for (const Writer& lost : received.lost_claimants) {
     for (auto claim = claimants_.begin(); claim != claimants_.end();) {
       if (claim->second != lost) {
         ++claim;
@@ -440,9 +443,9 @@ std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
 
 /// From any grant since the last time: a stop that was pressed and reset meanwhile counts as well.
 /// In lockstep only stops are used, so that the time of arrival of a grant does not matter.
-void Core::note_grants(const std::vector<Heard::Grant>& grants) {
+void Core::note_grants(const std::vector<Received::Grant>& grants) {
   bool pressed = false;
-  for (const Heard::Grant& grant : grants) {
+  for (const Received::Grant& grant : grants) {
     if (grant.pressed)
       estop_ = grant.source.empty() ? "a program without a name" : grant.source;
     else if (!pressed)
@@ -452,8 +455,8 @@ void Core::note_grants(const std::vector<Heard::Grant>& grants) {
   }
 }
 
-void Core::tell(const News& news, Notes& notes) {
-  for (const GoalStatus& status : news.changed) {
+void Core::report(const GoalUpdates& updates, Notes& notes) {
+  for (const GoalStatus& status : updates.changed) {
     const auto logged = logged_.find(status.id);
     if (logged != logged_.end() && logged->second == status.state)
       continue;
@@ -462,7 +465,7 @@ void Core::tell(const News& news, Notes& notes) {
                quoted(status.requester) + ": " + word_of(status.state) +
                (status.reason.empty() ? "" : ": " + status.reason));
   }
-  for (const GoalId& id : news.withdrawn) {
+  for (const GoalId& id : updates.withdrawn) {
     requesters_.erase(id);
     owners_.erase(id);
     logged_.erase(id);

@@ -32,9 +32,9 @@ class ActivityFoldersTest : public ::testing::Test {
     return "(defintention :" + name + "\n  :goals '(" + goals + "))\n";
   }
   std::vector<std::string> look() {
-    news = folders->look();
+    reload = folders->reload();
     std::vector<std::string> names;
-    for (const Schema& schema : news.taken)
+    for (const Schema& schema : reload.taken)
       names.push_back(schema.name);
     return names;
   }
@@ -47,19 +47,19 @@ class ActivityFoldersTest : public ::testing::Test {
   std::optional<ActivityFolders> folders{std::in_place, Names{shipped.string(), own.string()},
                                          std::make_shared<const Functions>(core_functions()),
                                          built_in()};
-  ActivityFolders::News news;
+  ActivityFolders::Reload reload;
 };
 
 TEST_F(ActivityFoldersTest, AChangedFileIsTakenAndNothingElse) {
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
   write(shipped / "b.act", activity("two", "(INTEND :one ())"));
   EXPECT_EQ(look(), (Names{"one", "two"}));
-  EXPECT_FALSE(folders->look().changed);
+  EXPECT_FALSE(folders->reload().changed);
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 2s)"));
   EXPECT_EQ(look(), Names{"one"});
   fs::remove(shipped / "b.act");
   EXPECT_EQ(look(), Names{});
-  EXPECT_EQ(news.removed, Names{"two"});
+  EXPECT_EQ(reload.removed, Names{"two"});
 }
 
 TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
@@ -68,9 +68,9 @@ TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
   look();
   write(shipped / "a.act", activity("one", "(WAIT-FOR (nonsense) :timeout 1s"));
   EXPECT_EQ(look(), Names{});
-  EXPECT_EQ(news.removed, Names{});
-  ASSERT_FALSE(news.errors.empty());
-  EXPECT_NE(news.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
+  EXPECT_EQ(reload.removed, Names{});
+  ASSERT_FALSE(reload.errors.empty());
+  EXPECT_NE(reload.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
   EXPECT_NE(folders->trouble().find("a.act"), std::string::npos);
   // A file that uses definitions of the broken one is not wrong for that.
   EXPECT_EQ(folders->trouble().find("b.act"), std::string::npos);
@@ -85,8 +85,8 @@ TEST_F(ActivityFoldersTest, AFileThatIsEmptiedKeepsWhatItGave) {
   look();
   write(shipped / "a.act", "");
   EXPECT_EQ(look(), Names{});
-  EXPECT_TRUE(news.removed.empty());
-  ASSERT_EQ(news.errors.size(), 1U);
+  EXPECT_TRUE(reload.removed.empty());
+  ASSERT_EQ(reload.errors.size(), 1U);
   EXPECT_NE(folders->trouble().find("there is no activity in this file"), std::string::npos);
   write(shipped / "a.act", activity("one", "(FAIL)"));
   EXPECT_EQ(look(), Names{"one"});
@@ -97,17 +97,17 @@ TEST_F(ActivityFoldersTest, ALaterFolderCoversAnEarlierOne) {
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
   write(own / "mine.act", activity("one", "(WAIT-FOR nil :timeout 9s)"));
   EXPECT_EQ(look(), Names{"one"});
-  EXPECT_EQ(news.taken[0].source, (own / "mine.act").string());
+  EXPECT_EQ(reload.taken[0].source, (own / "mine.act").string());
   fs::remove(own / "mine.act");
   EXPECT_EQ(look(), Names{"one"});
-  EXPECT_EQ(news.taken[0].source, (shipped / "a.act").string());
+  EXPECT_EQ(reload.taken[0].source, (shipped / "a.act").string());
 }
 
 TEST_F(ActivityFoldersTest, WhatIsBuiltInIsNotCovered) {
   write(own / "mine.act", activity("go_to", "(WAIT-FOR nil :timeout 9s)"));
   EXPECT_EQ(look(), Names{});
-  ASSERT_EQ(news.errors.size(), 1U);
-  EXPECT_NE(news.errors[0].find("built in"), std::string::npos);
+  ASSERT_EQ(reload.errors.size(), 1U);
+  EXPECT_NE(reload.errors[0].find("built in"), std::string::npos);
 }
 
 TEST_F(ActivityFoldersTest, AFolderThatIsNotThereIsSaid) {

@@ -65,19 +65,19 @@ class Bench {
     inputs.around.cycle = cycle;
     inputs.around.things = &things;
     out = executor.step(inputs);
-    note(out.news);
+    note(out.updates);
   }
-  void hear() { note(executor.hear(std::exchange(events, {}))); }
-  void note(const News& news) {
-    for (const GoalStatus& each : news.changed) {
+  void hear() { note(executor.take_events(std::exchange(events, {}))); }
+  void note(const GoalUpdates& updates) {
+    for (const GoalStatus& each : updates.changed) {
       statuses[each.id.number] = each;
       ++published;
     }
-    for (const GoalId& id : news.withdrawn)
+    for (const GoalId& id : updates.withdrawn)
       statuses.erase(id.number);
-    for (const Placement& each : news.placed)
+    for (const Placement& each : updates.placed)
       journal += write_line(each);
-    for (const Ending& each : news.endings)
+    for (const Ending& each : updates.endings)
       journal += write_line(each);
   }
 

@@ -31,19 +31,19 @@ class CoreTest : public testing::Test {
     return settings;
   }
 
-  static Core::Heard::Goal written(std::uint64_t number, const Core::Writer& writer) {
-    Core::Heard::Goal heard;
-    heard.writer = writer;
-    heard.event.goal.id = {5, number};
-    heard.event.goal.functor = "go_to";
-    heard.event.goal.requester = "a test";
+  static Core::Received::Goal written(std::uint64_t number, const Core::Writer& writer) {
+    Core::Received::Goal received;
+    received.writer = writer;
+    received.event.goal.id = {5, number};
+    received.event.goal.functor = "go_to";
+    received.event.goal.requester = "a test";
     Argument place;
     place.name = "position";
     place.kind = ArgumentKind::point;
     place.point = {5.0, 0.0, 0.0};
     place.frame = Frame::odom;
-    heard.event.goal.arguments = {place};
-    return heard;
+    received.event.goal.arguments = {place};
+    return received;
   }
 
   static Core::Settings remembering(Memory memory) {
@@ -62,27 +62,27 @@ class CoreTest : public testing::Test {
     is_new_ = false;
     core.processes().step(inputs_.stamp.cycle);
     Core::Outputs outputs = core.step(inputs_);
-    inputs_.heard = {};
+    inputs_.received = {};
     inputs_.maps.clear();
     inputs_.new_frame = false;
-    note(outputs.intended.news);
+    note(outputs.intended.updates);
     return outputs;
   }
-  Core::Outputs ask(std::vector<Core::Heard::Goal> goals) {
-    inputs_.heard.goals = std::move(goals);
+  Core::Outputs ask(std::vector<Core::Received::Goal> goals) {
+    inputs_.received.goals = std::move(goals);
     return step();
   }
   void know(std::uint64_t revision, maps::Map map) {
     inputs_.maps.push_back({revision, std::make_shared<const maps::Map>(std::move(map))});
   }
   /// Between two cycles.
-  std::vector<Note> look(const ActivityFolders::News& news) {
-    Core::Heard heard;
-    heard.activities = news;
-    return core_.between(heard, 0.0).notes.lines();
+  std::vector<Note> look(const ActivityFolders::Reload& reload) {
+    Core::Received received;
+    received.activities = reload;
+    return core_.between(received, 0.0).notes.lines();
   }
-  void note(const News& news) {
-    for (const GoalStatus& status : news.changed)
+  void note(const GoalUpdates& updates) {
+    for (const GoalStatus& status : updates.changed)
       statuses_[status.id] = status;
   }
   GoalState state(std::uint64_t number) { return statuses_.at({5, number}).state; }
@@ -114,8 +114,8 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
     ++inputs_.stamp.cycle;
     inputs_.behaviors_cycle = heard;
     inputs_.new_robot = nullptr;
-    note(core_.step(inputs_).intended.news);
-    inputs_.heard = {};
+    note(core_.step(inputs_).intended.updates);
+    inputs_.received = {};
   }
   EXPECT_EQ(state(1), v1::GOAL_FAILED);
   EXPECT_NE(statuses_.at({5, 1}).reason.find("behaviors has not been heard for"), std::string::npos)
@@ -125,38 +125,38 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
 // A minute at the stick is no minute without progress: the goal's patience (20 s) does not run.
 TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
   ask({written(1, kKaren)});
-  inputs_.heard.grants = {{false, "", "", "karen"}};
+  inputs_.received.grants = {{false, "", "", "karen"}};
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(statuses_.at({5, 1}).reason, "karen drives: goes on when the robot is handed back");
-  inputs_.heard.goals = {written(2, kJohn)};
+  inputs_.received.goals = {written(2, kJohn)};
   for (int i = 0; i < 600; ++i)
     step();
   EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
   EXPECT_EQ(state(2), v1::GOAL_WAITING);
-  inputs_.heard.grants = {{false, "", "", "", true}};
+  inputs_.received.grants = {{false, "", "", "", true}};
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(statuses_.at({5, 1}).reason,
             "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)");
-  inputs_.heard.grants = {{false, ""}};
+  inputs_.received.grants = {{false, ""}};
   EXPECT_FALSE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
 }
 
 TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  inputs_.heard.grants = {{false, "", "", "karen"}};
+  inputs_.received.goals = {written(1, kKaren)};
+  inputs_.received.grants = {{false, "", "", "karen"}};
   step();
   EXPECT_EQ(state(1), v1::GOAL_WAITING);
-  Core::Heard::Goal stop = written(2, kJohn);
+  Core::Received::Goal stop = written(2, kJohn);
   stop.event.goal.functor = "stop";
   stop.event.goal.arguments.clear();
-  inputs_.heard.goals = {stop};
+  inputs_.received.goals = {stop};
   inputs_.own_stop = {7, 1};
   EXPECT_EQ(step().intended.stop, stop.event.goal.requester);
   EXPECT_EQ(core_.executor().heeds(), (v1::StopId{7, 1}));
-  inputs_.heard.grants.resize(1);
-  inputs_.heard.grants[0].stop = {7, 1};
+  inputs_.received.grants.resize(1);
+  inputs_.received.grants[0].stop = {7, 1};
   for (int i = 0; i < 5; ++i)
     step();
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
@@ -165,13 +165,13 @@ TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
 
 TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   ask({written(1, kKaren), written(2, kJohn)});
-  inputs_.heard.lost_requesters = {kKaren};
+  inputs_.received.lost_requesters = {kKaren};
   step();
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_FALSE(ended(state(2)));
   // Another writer has written it anew, and owns it from then on.
   ask({written(2, kKaren)});
-  inputs_.heard.lost_requesters = {kJohn};
+  inputs_.received.lost_requesters = {kJohn};
   step();
   EXPECT_FALSE(ended(state(2)));
 }
@@ -180,11 +180,11 @@ TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
 TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
   const auto withdrawn = [&](const Core::Writer& asks, const Core::Writer& withdraws, bool gone) {
     static std::uint64_t number = 0;
-    Core::Heard::Goal goal = written(++number, asks);
+    Core::Received::Goal goal = written(++number, asks);
     goal.event.goal.writer_lost = v1::WRITER_LOST_KEEP;
     ask({goal});
     if (gone)
-      inputs_.heard.lost_requesters = {asks};
+      inputs_.received.lost_requesters = {asks};
     step();
     goal.event.kind = GoalEvent::Kind::kDisposed;
     goal.writer = withdraws;
@@ -194,7 +194,7 @@ TEST_F(CoreTest, TheStatusOfAWithdrawnGoalSaysWhetherItsOwnProgramWithdrewIt) {
   };
   EXPECT_EQ(withdrawn(kKaren, kKaren, false), "withdrawn by the program that asked for it");
   EXPECT_EQ(withdrawn(kKaren, kJohn, false), "withdrawn by another program");
-  EXPECT_EQ(withdrawn(kKaren, kJohn, true), "withdrawn by its requester")
+  EXPECT_EQ(withdrawn(kKaren, kJohn, true), "withdrawn by a program")
       << "it may be the same program, which has slept";
 }
 
@@ -208,16 +208,16 @@ class OwnedGoal : public CoreTest {
   const Identity kOperator{"john", "operator"};
   const Identity kStranger{"", "agent"};
 
-  static Core::Heard::Goal by(const Identity& person, GoalEvent::Kind kind, int priority = 0) {
-    Core::Heard::Goal heard = written(1, person.name == "karen" ? kKaren : kJohn);
-    heard.event.kind = kind;
-    heard.event.goal.priority = priority;
-    heard.event.goal.requester = "a test";
-    heard.person = person;
-    return heard;
+  static Core::Received::Goal by(const Identity& person, GoalEvent::Kind kind, int priority = 0) {
+    Core::Received::Goal received = written(1, person.name == "karen" ? kKaren : kJohn);
+    received.event.kind = kind;
+    received.event.goal.priority = priority;
+    received.event.goal.requester = "a test";
+    received.person = person;
+    return received;
   }
-  Core::Outputs hear(const Core::Heard::Goal& goal) {
-    inputs_.heard.goals = {goal};
+  Core::Outputs hear(const Core::Received::Goal& goal) {
+    inputs_.received.goals = {goal};
     return step();
   }
   const GoalStatus& status() { return statuses_.at({5, 1}); }
@@ -245,7 +245,7 @@ TEST_F(OwnedGoal, ItsOwnerMay) {
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
   EXPECT_EQ(status().reason, "withdrawn by the program that asked for it");
   // Another program of hers.
-  Core::Heard::Goal second = by(kKarenHerself, kWritten);
+  Core::Received::Goal second = by(kKarenHerself, kWritten);
   second.event.goal.id.number = 2;
   hear(second);
   second.event.kind = kDisposed;
@@ -260,7 +260,7 @@ TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
   EXPECT_EQ(status().reason, "changed by john");
   EXPECT_EQ(status().requester, "karen (agent), a test");
   // The goal is still hers: it does not end with the other person's program.
-  inputs_.heard.lost_requesters = {kJohn};
+  inputs_.received.lost_requesters = {kJohn};
   step();
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   hear(by(kOperator, kDisposed));
@@ -277,10 +277,10 @@ class ApprovedGoal : public CoreTest {
     made.approval = {"", "language model", "guest"};
     return made;
   }
-  static Core::Heard::Goal of(const std::string& asker, std::uint64_t number) {
-    Core::Heard::Goal heard = written(number, kKaren);
-    heard.event.goal.requester = asker;
-    return heard;
+  static Core::Received::Goal of(const std::string& asker, std::uint64_t number) {
+    Core::Received::Goal received = written(number, kKaren);
+    received.event.goal.requester = asker;
+    return received;
   }
   const GoalStatus& status(std::uint64_t number) { return statuses_.at({5, number}); }
   std::optional<std::string> approve(const std::string& goal) {
@@ -297,7 +297,7 @@ TEST_F(ApprovedGoal, WaitsForItsApprovalAndOthersDoNotWaitForIt) {
   EXPECT_EQ(approve("5:2"), "5:2 was not interrupted") << "its intention has its name";
   EXPECT_EQ(approve("5:3"), std::nullopt);
   EXPECT_EQ(approve("5:1"), "");
-  Core::Heard::Goal second = of("a program", 2);
+  Core::Received::Goal second = of("a program", 2);
   second.event.kind = GoalEvent::Kind::kDisposed;
   ask({second});
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
@@ -310,7 +310,7 @@ TEST_F(ApprovedGoal, NeedsAnotherApprovalForAnotherPlace) {
   ASSERT_EQ(state(1), v1::GOAL_UNDERWAY);
   ask({of("language model", 1)});
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY) << "the same once more";
-  Core::Heard::Goal farther = of("language model", 1);
+  Core::Received::Goal farther = of("language model", 1);
   farther.event.goal.arguments[0].point.x = 9.0;
   ask({farther});
   EXPECT_EQ(state(1), v1::GOAL_SUSPENDED);
@@ -322,11 +322,11 @@ TEST_F(ApprovedGoal, NeedsAnotherApprovalForAnotherPlace) {
 }
 
 TEST_F(ApprovedGoal, ByRoleAndNeverAStop) {
-  Core::Heard::Goal guest = of("a program", 1);
+  Core::Received::Goal guest = of("a program", 1);
   guest.person = Identity{"ann", "guest"};
   ask({guest});
   EXPECT_EQ(status(1).code, v1::CODE_APPROVAL);
-  Core::Heard::Goal stop = of("language model", 2);
+  Core::Received::Goal stop = of("language model", 2);
   stop.event.goal.functor = "stop";
   stop.event.goal.arguments.clear();
   ask({stop});
@@ -336,10 +336,10 @@ TEST_F(ApprovedGoal, ByRoleAndNeverAStop) {
 
 // The dialogue asks for those whose words it has heard, and knows when their goals end.
 TEST_F(OwnedGoal, TheProgramThatAskedForAnotherWithdrawsItAndASiblingDoesNot) {
-  Core::Heard::Goal goal = by(kKarenHerself, kWritten);
+  Core::Received::Goal goal = by(kKarenHerself, kWritten);
   goal.writer = kJohn;
   hear(goal);
-  Core::Heard::Goal end = by({"flakey", "services"}, kDisposed);
+  Core::Received::Goal end = by({"flakey", "services"}, kDisposed);
   end.writer = kKaren;
   hear(end);
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
@@ -350,9 +350,9 @@ TEST_F(OwnedGoal, TheProgramThatAskedForAnotherWithdrawsItAndASiblingDoesNot) {
 
 // A door is one program for several persons: it names who cancels.
 TEST_F(OwnedGoal, APersonAtADoorDoesNotCancelThoseOfAnother) {
-  Core::Heard::Goal goal = by({"anna at flakey", "agent"}, kWritten);
+  Core::Received::Goal goal = by({"anna at flakey", "agent"}, kWritten);
   hear(goal);
-  Core::Heard::Goal end = by({"bob at flakey", "agent"}, kDisposed);
+  Core::Received::Goal end = by({"bob at flakey", "agent"}, kDisposed);
   end.event.why = "by bob";
   hear(end);
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
@@ -362,7 +362,7 @@ TEST_F(OwnedGoal, APersonAtADoorDoesNotCancelThoseOfAnother) {
 }
 
 TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {
-  const auto acts = [&](const Core::Heard::Goal& goal) {
+  const auto acts = [&](const Core::Received::Goal& goal) {
     std::vector<v1::AuditAct> all;
     const Core::Outputs outputs = hear(goal);
     for (const v1::AuditEntry& entry : outputs.audit) {
@@ -381,20 +381,20 @@ TEST_F(OwnedGoal, EachActIsInTheAuditOnce) {
 
 TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {
   step();
-  Core::Heard heard;
-  heard.goals = {written(1, kKaren)};
-  heard.goals[0].event.goal.functor = "fly";
-  const Core::Told told = core_.between(heard, 0.01);
-  note(told.news);
+  Core::Received received;
+  received.goals = {written(1, kKaren)};
+  received.goals[0].event.goal.functor = "fly";
+  const Core::BetweenOutputs told = core_.between(received, 0.01);
+  note(told.updates);
   EXPECT_EQ(state(1), v1::GOAL_REFUSED);
   EXPECT_TRUE(says(told.notes, "refused"));
 }
 
 TEST_F(CoreTest, AGoalThatFailsWhileTheBridgeRefusesSaysWhy) {
-  inputs_.heard.goals = {written(1, kKaren)};
-  inputs_.heard.goals[0].event.goal.deadline = 1.0;
+  inputs_.received.goals = {written(1, kKaren)};
+  inputs_.received.goals[0].event.goal.deadline = 1.0;
   for (int i = 0; i < 20; ++i) {
-    inputs_.heard.grants = {{false, "", "a person drove last: autonomy waits"}};
+    inputs_.received.grants = {{false, "", "a person drove last: autonomy waits"}};
     step();
   }
   ASSERT_EQ(state(1), v1::GOAL_FAILED);
@@ -411,9 +411,9 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     memory.endings = {{{5, 3}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"}};
     Core core(remembering(memory));
     for (const std::uint64_t number : {1U, 2U, 3U}) {
-      inputs_.heard.goals.push_back(written(number, kKaren));
-      inputs_.heard.running = 1.0;
-      inputs_.heard.goals.back().age = number == 2 ? 3.0 : 61.0;
+      inputs_.received.goals.push_back(written(number, kKaren));
+      inputs_.received.running = 1.0;
+      inputs_.received.goals.back().age = number == 2 ? 3.0 : 61.0;
     }
     statuses_.clear();
     inputs_.stamp.cycle = 0;
@@ -433,7 +433,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
     EXPECT_EQ(refused.reason.find("damaged") != std::string::npos,
               condition == Condition::kDamaged);
     // A repeated request is another goal.
-    inputs_.heard.goals = {written(4, kKaren)};
+    inputs_.received.goals = {written(4, kKaren)};
     step(core);
     EXPECT_EQ(state(4), v1::GOAL_WAITING);
   }
@@ -441,9 +441,9 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
 
 TEST_F(CoreTest, TheAgeOfAGoalCountsOnlyInTheFirstSecondsAfterTheStart) {
   for (const auto& [number, running] : {std::pair(1U, 9.9), {2U, 10.0}}) {
-    inputs_.heard.running = running;
-    inputs_.heard.goals = {written(number, kKaren)};
-    inputs_.heard.goals[0].age = 60.0;
+    inputs_.received.running = running;
+    inputs_.received.goals = {written(number, kKaren)};
+    inputs_.received.goals[0].age = 60.0;
     step();
   }
   EXPECT_EQ(state(1), v1::GOAL_REFUSED);
@@ -451,33 +451,33 @@ TEST_F(CoreTest, TheAgeOfAGoalCountsOnlyInTheFirstSecondsAfterTheStart) {
 }
 
 TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
-  ActivityFolders::News news;
+  ActivityFolders::Reload updates;
   Schema wave = *built_in().find("stop");
   wave.name = "wave";
   wave.source = "wave.act";
-  news.taken = {wave};
-  news.errors = {"other.act:1:2: expected a name"};
-  news.warnings = {"wave.act:3: it is odd"};
+  updates.taken = {wave};
+  updates.errors = {"other.act:1:2: expected a name"};
+  updates.warnings = {"wave.act:3: it is odd"};
   using Lines = std::vector<Note>;
-  EXPECT_EQ(look(news), (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
+  EXPECT_EQ(look(updates), (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
   EXPECT_NE(core_.executor().registry().find("wave"), nullptr);
-  EXPECT_EQ(look(news),
+  EXPECT_EQ(look(updates),
             (Lines{{Note::Level::error,
                     "other.act:1:2: expected a name\nWhat this file gave before stays in use."},
                    {Note::Level::warning, "wave.act:3: it is odd"},
                    {Note::Level::info, "took wave of wave.act"}}));
-  news = {};
-  news.removed = {"wave"};
-  EXPECT_TRUE(look(news).empty());
+  updates = {};
+  updates.removed = {"wave"};
+  EXPECT_TRUE(look(updates).empty());
   EXPECT_EQ(core_.executor().registry().find("wave"), nullptr);
 }
 
 TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
   ask({written(1, kKaren)});
-  EXPECT_TRUE(core_.between({}, 0.9).news.changed.empty());
-  note(core_.between({}, 1.1).news);
+  EXPECT_TRUE(core_.between({}, 0.9).updates.changed.empty());
+  note(core_.between({}, 1.1).updates);
   EXPECT_EQ(statuses_.at({5, 1}).code, v1::CODE_NO_ROBOT);
-  EXPECT_TRUE(core_.between({}, 5.0).news.changed.empty()) << "it is told once";
+  EXPECT_TRUE(core_.between({}, 5.0).updates.changed.empty()) << "it is told once";
   step();
   step();
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
@@ -485,10 +485,10 @@ TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
 
 TEST_F(CoreTest, AnEmergencyStopThatWasResetMeanwhileEndsGoalsAsWell) {
   ask({written(1, kKaren)});
-  inputs_.heard.grants = {{true, "button"}, {false, ""}};
+  inputs_.received.grants = {{true, "button"}, {false, ""}};
   step();
   EXPECT_EQ(state(1), v1::GOAL_CANCELED);
-  inputs_.heard.grants = {{false, ""}};
+  inputs_.received.grants = {{false, ""}};
   ask({written(2, kKaren)});
   EXPECT_EQ(state(2), v1::GOAL_UNDERWAY);
 }
@@ -520,25 +520,25 @@ TEST_F(CoreTest, AnIntentionIsInterruptedByItsNameNumberOrSchema) {
 
 TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
   const auto claim = [](std::uint64_t number, const char* name, bool ends) {
-    Core::Heard::Claim heard;
-    heard.event.id = {9, number};
-    heard.event.source = "a person";
-    heard.event.name = name;
-    heard.event.value = Value(1.0);
-    heard.writer = kJohn;
-    heard.ends_with_writer = ends;
-    return heard;
+    Core::Received::Claim received;
+    received.event.id = {9, number};
+    received.event.source = "a person";
+    received.event.name = name;
+    received.event.value = Value(1.0);
+    received.writer = kJohn;
+    received.ends_with_writer = ends;
+    return received;
   };
   const auto believes = [](const Core::Outputs& outputs, const std::string& name) {
     return outputs.beliefs &&
            std::any_of(outputs.beliefs->begin(), outputs.beliefs->end(),
                        [&](const Belief& belief) { return belief.name == name; });
   };
-  inputs_.heard.claims = {claim(1, "stays", false), claim(2, "goes", true)};
+  inputs_.received.claims = {claim(1, "stays", false), claim(2, "goes", true)};
   Core::Outputs outputs = step();
   EXPECT_TRUE(believes(outputs, "stays"));
   EXPECT_TRUE(believes(outputs, "goes"));
-  inputs_.heard.lost_claimants = {kJohn};
+  inputs_.received.lost_claimants = {kJohn};
   outputs = step();
   EXPECT_TRUE(believes(outputs, "stays"));
   EXPECT_FALSE(believes(outputs, "goes"));
@@ -546,42 +546,42 @@ TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
 
 TEST_F(CoreTest, AnEmergencyStopSaysWhichProgramPressedIt) {
   ask({written(1, kKaren)});
-  inputs_.heard.grants = {{true, "button"}};
+  inputs_.received.grants = {{true, "button"}};
   step();
   EXPECT_NE(statuses_.at({5, 1}).reason.find("button"), std::string::npos);
-  inputs_.heard.grants = {{false, ""}};
+  inputs_.received.grants = {{false, ""}};
   ask({written(2, kKaren)});
-  inputs_.heard.grants = {{true, ""}};
+  inputs_.received.grants = {{true, ""}};
   step();
   EXPECT_NE(statuses_.at({5, 2}).reason.find("a program without a name"), std::string::npos);
 }
 
 TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
   Memory memory;
-  const auto remember = [&](const News& news) {
-    memory.placements.insert(memory.placements.end(), news.placed.begin(), news.placed.end());
-    memory.endings.insert(memory.endings.end(), news.endings.begin(), news.endings.end());
-    if (news.work)
-      memory.work = *news.work;
+  const auto remember = [&](const GoalUpdates& updates) {
+    memory.placements.insert(memory.placements.end(), updates.placed.begin(), updates.placed.end());
+    memory.endings.insert(memory.endings.end(), updates.endings.begin(), updates.endings.end());
+    if (updates.work)
+      memory.work = *updates.work;
   };
   Core before(remembering({}));
-  inputs_.heard.goals = {written(1, kKaren), written(2, kKaren)};
-  remember(step(before).intended.news);
-  inputs_.heard.goals = {written(1, kKaren)};
-  inputs_.heard.goals[0].event.kind = GoalEvent::Kind::kDisposed;
-  remember(step(before).intended.news);
+  inputs_.received.goals = {written(1, kKaren), written(2, kKaren)};
+  remember(step(before).intended.updates);
+  inputs_.received.goals = {written(1, kKaren)};
+  inputs_.received.goals[0].event.kind = GoalEvent::Kind::kDisposed;
+  remember(step(before).intended.updates);
   ASSERT_TRUE(ended(state(1)));
   for (int i = 0; i < 3; ++i)
-    remember(step(before).intended.news);
+    remember(step(before).intended.updates);
   const Core::Outputs newest = step(before);
-  remember(newest.intended.news);
+  remember(newest.intended.updates);
   ASSERT_FALSE(newest.intended.behaviors.empty());
 
   // The requesters' goals are latched: both come again. The link continues as well.
   Core next(remembering(memory));
   statuses_.clear();
   is_new_ = true;
-  inputs_.heard.goals = {written(1, kKaren), written(2, kKaren)};
+  inputs_.received.goals = {written(1, kKaren), written(2, kKaren)};
   Core::Outputs outputs = step(next);
   for (int i = 0; i < 3 && outputs.intended.behaviors.empty(); ++i)
     outputs = step(next);
@@ -597,11 +597,12 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
   for (int i = 1; i < 60; ++i) {
     inputs_.robot.pose_in_odom.x = 0.03 * i;
     if (i % 7 == 1)
-      inputs_.heard.goals = {written(static_cast<std::uint64_t>(i), i % 2 == 0 ? kKaren : kJohn)};
+      inputs_.received.goals = {
+          written(static_cast<std::uint64_t>(i), i % 2 == 0 ? kKaren : kJohn)};
     if (i == 20)
-      inputs_.heard.lost_requesters = {kKaren};
+      inputs_.received.lost_requesters = {kKaren};
     if (i == 30)
-      inputs_.heard.grants = {{true, "button"}, {false, ""}};
+      inputs_.received.grants = {{true, "button"}, {false, ""}};
     if (i == 40) {
       ++inputs_.robot.odom;
       inputs_.new_frame = true;
@@ -611,9 +612,9 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
     inputs_ = same;
     const Core::Outputs b = step(other);
     EXPECT_EQ(a.intended.behaviors, b.intended.behaviors) << i;
-    EXPECT_EQ(a.intended.news.changed, b.intended.news.changed) << i;
-    EXPECT_EQ(a.intended.news.placed, b.intended.news.placed) << i;
-    EXPECT_EQ(a.intended.news.endings, b.intended.news.endings) << i;
+    EXPECT_EQ(a.intended.updates.changed, b.intended.updates.changed) << i;
+    EXPECT_EQ(a.intended.updates.placed, b.intended.updates.placed) << i;
+    EXPECT_EQ(a.intended.updates.endings, b.intended.updates.endings) << i;
     EXPECT_EQ(a.notes.lines(), b.notes.lines()) << i;
   }
   EXPECT_FALSE(statuses_.empty());
@@ -621,7 +622,7 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
 
 TEST_F(CoreTest, APlaceInPlaceOfAnActivityIsRefusedWithTheWayToGoThere) {
   const auto refusal = [&](std::uint64_t number, const std::string& functor) {
-    Core::Heard::Goal goal = written(number, kKaren);
+    Core::Received::Goal goal = written(number, kKaren);
     goal.event.goal.functor = functor;
     goal.event.goal.arguments.clear();
     ask({goal});
@@ -658,7 +659,7 @@ TEST_F(CoreTest, APlaceThatTheMapDoesNotHaveIsRefusedAtOnce) {
   look({true, {schema}, {}, {}, {}});
   know(1, maps::parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000 \"hall\"\n", "a.map"));
   step();
-  Core::Heard::Goal goal = written(1, kKaren);
+  Core::Received::Goal goal = written(1, kKaren);
   goal.event.goal.functor = "go-to-place";
   goal.event.goal.arguments = {text("place", "nowhere")};
   ask({goal});
@@ -672,7 +673,7 @@ TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) 
                           "a.map"));
   inputs_.robot.odom_in_map = Pose{};
   const auto to = [](std::uint64_t number, double x, double y) {
-    Core::Heard::Goal goal = written(number, kKaren);
+    Core::Received::Goal goal = written(number, kKaren);
     goal.event.goal.arguments[0].point = {x, y, 0.0};
     goal.event.goal.arguments[0].frame = Frame::map;
     return goal;
@@ -680,9 +681,9 @@ TEST_F(CoreTest, AGoalForAPointWhereNoGoalMayLeadIsRefusedAtOnceAndEndsNoOther) 
   ask({to(1, 3.0, 0.0)});
   EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
   // Also between two cycles.
-  Core::Heard heard;
-  heard.goals = {to(2, 8.0, 0.5), to(3, 5.0, 20.0)};
-  note(core_.between(heard, 0.0).news);
+  Core::Received received;
+  received.goals = {to(2, 8.0, 0.5), to(3, 5.0, 20.0)};
+  note(core_.between(received, 0.0).updates);
   for (const std::uint64_t number : {2U, 3U}) {
     EXPECT_EQ(state(number), v1::GOAL_REFUSED);
     EXPECT_EQ(statuses_.at({5, number}).code, v1::CODE_NO_ROUTE);
@@ -735,7 +736,7 @@ TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
 
 TEST_F(InLockstep, ASimulatorMayStandStillForAsLongAsItLikes) {
   ask({written(1, kKaren)});
-  EXPECT_TRUE(core_.between({}, 100.0).news.changed.empty());
+  EXPECT_TRUE(core_.between({}, 100.0).updates.changed.empty());
 }
 
 }  // namespace

@@ -95,9 +95,9 @@ class Stage {
       inputs.events.clear();
       inputs.claims.clear();
       inputs.troubles.clear();
-      for (const GoalStatus& status : out.news.changed)
+      for (const GoalStatus& status : out.updates.changed)
         statuses[status.id.number] = status;
-      for (const Said& said : out.said)
+      for (const SpokenText& said : out.said)
         messages.push_back(said.text);
     }
   }

@@ -301,8 +301,8 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
   auto beliefs = requester.reader(bus::topics::kBeliefs);
   std::optional<v1::BeliefSet> newest;
   const auto find = [&](const std::string& name) -> std::optional<v1::Belief> {
-    if (auto news = beliefs.take_newest())
-      newest = std::move(news);
+    if (auto updates = beliefs.take_newest())
+      newest = std::move(updates);
     if (newest)
       for (const v1::Belief& belief : newest->beliefs)
         if (belief.name == name)
@@ -383,21 +383,21 @@ TEST(Convert, AGrantSaysWhyTheBehaviorsDoNotDriveAndWhichPersonDoes) {
   grant.refused[1].reason = "a person drives";
   grant.role = v1::ROLE_TELEOP;
   grant.waits_for_hand_back = true;
-  Core::Heard::Grant heard = from_bus(grant);
-  EXPECT_FALSE(heard.pressed);
-  EXPECT_EQ(heard.refusal, "a person drives");
-  EXPECT_EQ(heard.person, "a person");
-  EXPECT_TRUE(heard.waits_for_hand_back);
+  Core::Received::Grant received = from_bus(grant);
+  EXPECT_FALSE(received.pressed);
+  EXPECT_EQ(received.refusal, "a person drives");
+  EXPECT_EQ(received.person, "a person");
+  EXPECT_TRUE(received.waits_for_hand_back);
   grant.source = "Ann";
   EXPECT_EQ(from_bus(grant).person, "Ann");
   grant.role = v1::ROLE_BEHAVIORS;
   grant.estopped = true;
   grant.estop_source = "a button";
-  heard = from_bus(grant);
-  EXPECT_TRUE(heard.pressed);
-  EXPECT_EQ(heard.source, "a button");
-  EXPECT_EQ(heard.refusal, "");
-  EXPECT_EQ(heard.person, "");
+  received = from_bus(grant);
+  EXPECT_TRUE(received.pressed);
+  EXPECT_EQ(received.source, "a button");
+  EXPECT_EQ(received.refusal, "");
+  EXPECT_EQ(received.person, "");
 }
 
 TEST(Convert, WhichMotorsHavePowerAndWhichRobotIsConnected) {

@@ -76,15 +76,15 @@ class Site {
     inputs.behaviors_cycle = cycle - 1;
     inputs.events = std::exchange(events_, {});
     const Outputs out = executor_->step(inputs);
-    for (const GoalStatus& each : out.news.changed)
+    for (const GoalStatus& each : out.updates.changed)
       status = each;
-    for (const Placement& each : out.news.placed)
+    for (const Placement& each : out.updates.placed)
       journal += write_line(each);
-    for (const Ending& each : out.news.endings)
+    for (const Ending& each : out.updates.endings)
       journal += write_line(each);
-    if (out.news.work)
-      work = saved(*out.news.work);
-    for (const Said& each : out.said)
+    if (out.updates.work)
+      work = saved(*out.updates.work);
+    for (const SpokenText& each : out.said)
       said += each.text + "\n";
     const Pose before = world.robot.pose_in_odom;
     world.move(out.behaviors);

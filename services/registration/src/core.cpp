@@ -264,7 +264,7 @@ Core::Outputs Core::built(const Inputs& inputs) {
 }
 
 /// Removes missing artifacts from the map and adds new ones; true where the map has changed.
-bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& objects,
+bool Core::amend(const Presence::Changes& news, const std::vector<maps::Feature>& objects,
                  Notes& notes) {
   const auto say = [&](std::uint32_t id, const char* what) {
     if (const maps::Feature* const feature = maps::find(now_.editor.map(), id))
@@ -363,8 +363,8 @@ Registration& Core::placed() {
   return *registration_;
 }
 
-/// Carries out the request, or throws the message for the asker. Agents give goals and advice; the map
-/// is an operator's, here as at the doors (docs/security.md).
+/// Carries out the request, or throws the message for the asker. Agents give goals and advice; the
+/// map is an operator's, here as at the doors (docs/security.md).
 Arguments Core::obey(const Request& request) {
   if (request.person && request.person->role == "agent")
     throw std::runtime_error("the map and the robot's place on it are for operators, not for " +

@@ -128,10 +128,10 @@ void Presence::look_at_door(Watched& watched, const Look& look, std::uint64_t cy
   }
 }
 
-Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const Vec2& robot_in_map,
-                              const std::vector<Look>& looks,
-                              const std::vector<std::uint32_t>& seen) {
-  News news;
+Presence::Changes Presence::step(const maps::Map& map, std::uint64_t cycle,
+                                 const Vec2& robot_in_map, const std::vector<Look>& looks,
+                                 const std::vector<std::uint32_t>& seen) {
+  Changes changes;
   for (const Feature& feature : map.features) {
     const Kind kind = kind_of(feature);
     if (kind == Kind::none)
@@ -156,18 +156,18 @@ Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const V
     if (kind == Kind::thing
             ? passed(watched)
             : feature.type == PointType::breach && watched.score == -settings_.door_looks) {
-      news.gone.push_back(feature.id);
+      changes.gone.push_back(feature.id);
       watched_.erase(feature.id);
     } else if (watched.score == -settings_.door_looks && closed_.insert(feature.id).second) {
-      news.closed.push_back(feature.id);
+      changes.closed.push_back(feature.id);
     } else if (watched.score == settings_.door_looks && closed_.erase(feature.id) != 0) {
-      news.opened.push_back(feature.id);
+      changes.opened.push_back(feature.id);
     }
   }
-  // An artifact that is not on the map any more is no news.
+  // An artifact that is not on the map any more is no changes.
   if (!closed_.empty())
     std::erase_if(closed_, [&](std::uint32_t id) { return maps::find(map, id) == nullptr; });
-  return news;
+  return changes;
 }
 
 }  // namespace saphira::registration

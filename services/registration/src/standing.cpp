@@ -30,7 +30,7 @@ bool Standing::step(const Pose& moved, const std::vector<PlacedReading>& reading
     return false;
   }
   for (const PlacedReading& reading : readings) {
-    Heard& heard = sonars_[reading.sonar];
+    Sonar& heard = sonars_[reading.sonar];
     heard.direction = norm2_angle(reading.sensor_in_odom.th);
     const double range =
         reading.echo ? std::min(reading.range, settings_.silence) : settings_.silence;

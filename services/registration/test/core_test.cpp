@@ -179,6 +179,7 @@ class Hall : public test::LinePlayer {
                {"suspend", [this](auto& in) { ask_process(rest(in), ProcessAction::suspend); }},
                {"resume", [this](auto& in) { ask_process(rest(in), ProcessAction::resume); }},
                {"ask", [this](auto& in) { ask(in); }},
+               {"asker", [this](auto& in) { asker_ = {"planner", rest(in)}; }},
                {"load", [this](auto& in) { load_map(in); }},
                {"put", [this](auto& in) { put_artifact(in); }},
                {"answers", [this](auto& in) { answers(rest(in)); }},
@@ -228,7 +229,8 @@ class Hall : public test::LinePlayer {
   void ask_process(const std::string& process, ProcessAction action) {
     EXPECT_EQ(core().processes().request(process, action), "");
   }
-  void act(const Request& request) {
+  void act(Request request) {
+    request.person = asker_;
     answer_ = registration::act(core(), request);
     if (answer_.code == AnswerCode::done && answer_.results.size() == 1)
       id_ = id_of(answer_);
@@ -328,6 +330,7 @@ class Hall : public test::LinePlayer {
   std::optional<Core> core_;
   Robot robot_;
   Core::Outputs now_;
+  Checked asker_;
   Answer answer_;
   std::uint32_t id_ = 0;  ///< of the newest answer with one
   Pose kept_;

@@ -33,8 +33,8 @@ maps::Map a_map() {
 class PresenceTest : public testing::Test {
  protected:
   /// Passes `x` once with three sonars to the left, with echoes at that distance from the way.
-  Presence::News pass(double x, double distance, bool echo = true) {
-    Presence::News all;
+  Presence::Changes pass(double x, double distance, bool echo = true) {
+    Presence::Changes all;
     for (double at = x - 2.0; at < x + 2.0; at += 0.03) {
       std::vector<Look> looks;
       for (const double bearing : {70.0, 90.0, 110.0})
@@ -43,8 +43,8 @@ class PresenceTest : public testing::Test {
     }
     return all;
   }
-  Presence::News stand(double x, double distance, int cycles) {
-    Presence::News all;
+  Presence::Changes stand(double x, double distance, int cycles) {
+    Presence::Changes all;
     for (int i = 0; i < cycles; ++i)
       take(presence.step(map, ++cycle, {x, 0.0}, {{{x, 0.0, kPi / 2}, distance, true}}, {}), all);
     return all;
@@ -55,12 +55,12 @@ class PresenceTest : public testing::Test {
   std::uint64_t cycle = 0;
 
  private:
-  void take(const Presence::News& news, Presence::News& all) {
-    for (const std::uint32_t id : news.gone)
+  void take(const Presence::Changes& changes, Presence::Changes& all) {
+    for (const std::uint32_t id : changes.gone)
       std::erase_if(map.features, [id](const maps::Feature& each) { return each.id == id; });
-    all.gone.insert(all.gone.end(), news.gone.begin(), news.gone.end());
-    all.closed.insert(all.closed.end(), news.closed.begin(), news.closed.end());
-    all.opened.insert(all.opened.end(), news.opened.begin(), news.opened.end());
+    all.gone.insert(all.gone.end(), changes.gone.begin(), changes.gone.end());
+    all.closed.insert(all.closed.end(), changes.closed.begin(), changes.closed.end());
+    all.opened.insert(all.opened.end(), changes.opened.begin(), changes.opened.end());
   }
 };
 
@@ -96,9 +96,9 @@ TEST_F(PresenceTest, ADoorIsClosedWhereItIsHeardAndOpenWhereWhatIsBehindItIs) {
   EXPECT_EQ(pass(10.0, 1.0).closed, Ids{9});
   EXPECT_EQ(presence.closed(), std::set<std::uint32_t>{9});
   EXPECT_TRUE(pass(10.0, 1.0).empty());
-  const Presence::News news = pass(10.0, 3.0);
-  EXPECT_EQ(news.opened, Ids{9});
-  EXPECT_TRUE(news.gone.empty());
+  const Presence::Changes changes = pass(10.0, 3.0);
+  EXPECT_EQ(changes.opened, Ids{9});
+  EXPECT_TRUE(changes.gone.empty());
   EXPECT_TRUE(presence.closed().empty());
 }
 
@@ -109,8 +109,8 @@ TEST_F(PresenceTest, WhoStandsBeforeADoorSeesItClosedAndOpen) {
 
 TEST_F(PresenceTest, ADoorThatIsSeenIsOpen) {
   pass(10.0, 1.0);
-  const Presence::News news = presence.step(map, ++cycle, {10.0, 0.0}, {}, {9});
-  EXPECT_EQ(news.opened, Ids{9});
+  const Presence::Changes changes = presence.step(map, ++cycle, {10.0, 0.0}, {}, {9});
+  EXPECT_EQ(changes.opened, Ids{9});
 }
 
 TEST_F(PresenceTest, ADoorPostIsNoClosedDoor) {

@@ -4,9 +4,9 @@ namespace saphira::runtime {
 namespace {
 
 /// Between two checks of files: in cycles, and without cycles in time.
-constexpr std::uint64_t kLook = 10;
-constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
-constexpr std::chrono::seconds kIdleLook{1};
+constexpr std::uint64_t kFilePollPeriod = 10;
+constexpr std::uint64_t kFilePollInLockstep = 100;  // there they are milliseconds
+constexpr std::chrono::seconds kIdleFilePoll{1};
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool Shell::advance() {
 }
 
 void Shell::idle() {
-  cycle_.look([this] { between(); });
+  cycle_.idle([this] { between(); });
 }
 
 void Shell::step_now(const bus::Step& step) {
@@ -50,21 +50,21 @@ void Shell::step_now(const bus::Step& step) {
                   odom_.has_value() && *odom_ != odom});
   odom_ = odom;
   // After the robot has its command.
-  if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
-    look();
+  if (++steps_ % (node_.options().lockstep ? kFilePollInLockstep : kFilePollPeriod) == 0)
+    check_files();
   cycle_.done();
 }
 
 void Shell::between() {
   processes_.idle();
   service_->between(std::chrono::duration<double>(Clock::now() - stepped_).count());
-  if (Clock::now() - looked_ >= kIdleLook)
-    look();
+  if (Clock::now() - checked_files_ >= kIdleFilePoll)
+    check_files();
 }
 
-void Shell::look() {
-  looked_ = Clock::now();
-  service_->look();
+void Shell::check_files() {
+  checked_files_ = Clock::now();
+  service_->check_files();
 }
 
 }  // namespace saphira::runtime

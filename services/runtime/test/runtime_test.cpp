@@ -44,7 +44,7 @@ class Repeater final : public Service {
       ports_.degrade("somebody spoke");
   }
   void between(double /*silence*/) override { ++seen_.between; }
-  void look() override { ++seen_.looks; }
+  void check_files() override { ++seen_.looks; }
 
  private:
   Ports& ports_;

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 WatchedFolder::WatchedFolder(std::string path, std::string extension)
     : path_(std::move(path)), extension_(std::move(extension)) {}
 
-WatchedFolder::Changes WatchedFolder::look() {
+WatchedFolder::Changes WatchedFolder::poll() {
   Changes changes;
   std::error_code error;
   fs::directory_iterator entries(path_, error);

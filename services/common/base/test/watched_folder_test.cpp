@@ -16,18 +16,18 @@ using Names = std::vector<std::string>;
 TEST(WatchedFolder, SaysWhatCameChangedAndWent) {
   const test::TempDir temporary;
   WatchedFolder folder(temporary.path(), ".act");
-  EXPECT_FALSE(folder.look().any());
+  EXPECT_FALSE(folder.poll().any());
   std::ofstream(temporary.path("a.act")) << "one";
   std::ofstream(temporary.path("b.txt")) << "other";
   std::ofstream(temporary.path("._a.act")) << "hidden";
-  EXPECT_EQ(folder.look().changed, Names{"a.act"});
-  EXPECT_FALSE(folder.look().any());
+  EXPECT_EQ(folder.poll().changed, Names{"a.act"});
+  EXPECT_FALSE(folder.poll().any());
   std::ofstream(temporary.path("a.act")) << "longer";
-  EXPECT_EQ(folder.look().changed, Names{"a.act"});
+  EXPECT_EQ(folder.poll().changed, Names{"a.act"});
   fs::remove(temporary.path("a.act"));
-  EXPECT_EQ(folder.look().gone, Names{"a.act"});
+  EXPECT_EQ(folder.poll().gone, Names{"a.act"});
   fs::remove_all(temporary.path());
-  EXPECT_TRUE(folder.look().missing);
+  EXPECT_TRUE(folder.poll().missing);
 }
 
 TEST(WatchedFolder, ABackupOfTheSameLengthAndTimeIsAnotherFile) {
@@ -38,9 +38,9 @@ TEST(WatchedFolder, ABackupOfTheSameLengthAndTimeIsAnotherFile) {
   std::ofstream(backup) << "old";
   fs::last_write_time(backup, fs::last_write_time(file));
   WatchedFolder folder(temporary.path(), ".act");
-  folder.look();
+  folder.poll();
   fs::rename(backup, file);
-  EXPECT_EQ(folder.look().changed, Names{"a.act"});
+  EXPECT_EQ(folder.poll().changed, Names{"a.act"});
 }
 
 }  // namespace

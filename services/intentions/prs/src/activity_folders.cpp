@@ -23,11 +23,11 @@ void ActivityFolders::know_behaviors(std::vector<BehaviorSignature> behaviors) {
 }
 
 /// Reads the changes in a folder; true where there are any.
-bool ActivityFolders::read(Layer& layer, News& news, std::vector<std::string>& changed) {
-  const WatchedFolder::Changes changes = layer.folder.look();
+bool ActivityFolders::read(Layer& layer, Reload& reload, std::vector<std::string>& changed) {
+  const WatchedFolder::Changes changes = layer.folder.poll();
   const bool other = changes.any() || changes.missing != layer.missing;
   if (changes.missing && !layer.missing)
-    news.errors.push_back(layer.folder.path() + ": expected a folder of activity files");
+    reload.errors.push_back(layer.folder.path() + ": expected a folder of activity files");
   layer.missing = changes.missing;
   for (const std::string& name : changes.gone)
     layer.files.erase(layer.folder.path_of(name));
@@ -48,7 +48,8 @@ bool ActivityFolders::read(Layer& layer, News& news, std::vector<std::string>& c
 
 /// The activities of a folder: of each file the newest content without errors.
 std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known,
-                                             const std::vector<std::string>& changed, News& news) {
+                                             const std::vector<std::string>& changed,
+                                             Reload& reload) {
   std::map<std::string, std::string> contents;
   for (const auto& [path, file] : layer.files)
     contents[path] = file.newest;
@@ -65,7 +66,7 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
       if (!trouble.error) {
         if (std::find(changed.begin(), changed.end(), trouble.file) != changed.end() &&
             warned.insert(text).second)
-          news.warnings.push_back(text);
+          reload.warnings.push_back(text);
         continue;
       }
       wrong.insert(trouble.file);
@@ -93,13 +94,13 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
   }
 }
 
-ActivityFolders::News ActivityFolders::look() {
-  News news;
+ActivityFolders::Reload ActivityFolders::reload() {
+  Reload reload;
   std::vector<std::string> changed;
   for (Layer& layer : layers_)
-    news.changed = read(layer, news, changed) || news.changed;
-  if (!news.changed)
-    return news;
+    reload.changed = read(layer, reload, changed) || reload.changed;
+  if (!reload.changed)
+    return reload;
   std::map<std::string, std::string> faults;
   for (Layer& layer : layers_)
     for (auto& [path, file] : layer.files)
@@ -108,7 +109,7 @@ ActivityFolders::News ActivityFolders::look() {
   Registry all = base_;
   std::map<std::string, std::pair<Schema, Origin>> wanted;
   for (Layer& layer : layers_) {
-    for (Schema& schema : compile(layer, all, changed, news)) {
+    for (Schema& schema : compile(layer, all, changed, reload)) {
       all.add(schema);
       const std::string name = normal(schema.name);
       Origin origin{schema.source, layer.files.at(schema.source).good};
@@ -118,19 +119,19 @@ ActivityFolders::News ActivityFolders::look() {
   for (const Layer& layer : layers_)
     for (const auto& [path, file] : layer.files)
       if (!file.fault.empty() && file.fault != faults[path])
-        news.errors.push_back(file.fault);
+        reload.errors.push_back(file.fault);
   for (const auto& [name, origin] : given_)
     if (!wanted.contains(name))
-      news.removed.push_back(name);
+      reload.removed.push_back(name);
   for (auto& [name, one] : wanted) {
     const auto before = given_.find(name);
     if (before == given_.end() || !(before->second == one.second))
-      news.taken.push_back(one.first);
+      reload.taken.push_back(one.first);
   }
   given_.clear();
   for (auto& [name, one] : wanted)
     given_[name] = std::move(one.second);
-  return news;
+  return reload;
 }
 
 std::string ActivityFolders::trouble() const {

@@ -13,7 +13,7 @@ constexpr std::size_t kMostSet = 4096;
 
 }  // namespace
 
-void Beliefs::look(const World& world) {
+void Beliefs::evaluate_conditions(const World& world) {
   if (functions_ == nullptr)
     return;
   looked_ = world.now;
@@ -35,7 +35,7 @@ void Beliefs::look(const World& world) {
 void Beliefs::set(std::string_view name, Value value, std::string_view who, Ticks now) {
   std::string key = normal(name);
   const auto found = set_.find(key);
-  // A repeated value is news where a claim has covered it meanwhile.
+  // A repeated value counts where a claim has covered it meanwhile.
   if (found != set_.end() && found->second.value == value && found->second.said_by == who &&
       stored(key) == &found->second)
     return;

@@ -110,11 +110,11 @@ void Executor::remember(const Ending& ending) {
   }
 }
 
-News Executor::hear(const std::vector<GoalEvent>& events) {
+GoalUpdates Executor::take_events(const std::vector<GoalEvent>& events) {
   for (const GoalEvent& event : events)
     take_in(event);
   forget_ended();
-  return take_news();
+  return take_updates();
 }
 
 /// Withdraws goals that ended long ago, and the oldest where there are too many: without a robot no
@@ -132,9 +132,9 @@ void Executor::forget_ended() {
   }
 }
 
-News Executor::robot_gone() {
+GoalUpdates Executor::robot_gone() {
   lose_robot();
-  return take_news();
+  return take_updates();
 }
 
 Outputs Executor::step(const Inputs& inputs) {
@@ -171,7 +171,7 @@ Outputs Executor::step(const Inputs& inputs) {
   Surroundings around = inputs.around;
   around.stop_confirmed = !stop_by_ || !inputs.confirms_stops;
   const World world{inputs.robot, around, *beliefs_, awake_};
-  beliefs_->look(world);
+  beliefs_->evaluate_conditions(world);
   if (inputs.behaviors_cycle > 0)
     forest_.hear(
         inputs.behaviors,
@@ -191,10 +191,10 @@ Outputs Executor::step(const Inputs& inputs) {
   forget_ended();
   for (auto& [id, entry] : entries_)
     measure(entry);
-  Outputs outputs{forest_.behaviors(),        forest_.nodes(),     take_news(),
+  Outputs outputs{forest_.behaviors(),        forest_.nodes(),     take_updates(),
                   forest_.behavior_control(), forest_.take_said(), forest_.take_requests(),
                   forest_.take_questions()};
-  outputs.news.work = take_work();
+  outputs.updates.work = take_work();
   const Ticks since = now_ - stop_asked_;
   if (stop_by_ && (since == 0 || (inputs.confirms_stops && since % kAskAgain == 0)))
     outputs.stop = stop_by_;
@@ -880,8 +880,8 @@ std::optional<GoalStatus> Executor::refused_change(const Entry& entry) {
   return status;
 }
 
-News Executor::take_news() {
-  News news;
+GoalUpdates Executor::take_updates() {
+  GoalUpdates updates;
   for (auto& [id, entry] : entries_) {
     const std::optional<GoalStatus> refused = refused_change(entry);
     const GoalStatus& status = refused ? *refused : entry.status;
@@ -890,12 +890,12 @@ News Executor::take_news() {
       continue;
     entry.published = status;
     entry.published_at = now_;
-    news.changed.push_back(status);
+    updates.changed.push_back(status);
   }
-  news.withdrawn = std::exchange(withdrawn_, {});
-  news.placed = std::exchange(placed_, {});
-  news.endings = std::exchange(endings_, {});
-  return news;
+  updates.withdrawn = std::exchange(withdrawn_, {});
+  updates.placed = std::exchange(placed_, {});
+  updates.endings = std::exchange(endings_, {});
+  return updates;
 }
 
 }  // namespace saphira::intentions

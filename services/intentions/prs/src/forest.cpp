@@ -514,7 +514,7 @@ std::uint64_t Forest::ask(Request request) {
   return questions_.back().number;
 }
 
-std::vector<Said> Forest::take_said() {
+std::vector<SpokenText> Forest::take_said() {
   return std::exchange(said_, {});
 }
 

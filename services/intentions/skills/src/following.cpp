@@ -13,11 +13,11 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kStride = 0.2;  // [m] between places of a trail
-constexpr double kLook = 0.8;    // [m] to the place of the trail that the robot heads for
-constexpr double kAtEnd = 0.3;   // [m]
-constexpr double kPlaced = 0.3;  // [s] since the person was seen: a place, not a guess
-constexpr double kKeeps = 0.8;   // of the distance to the person: there AttendAtPos stands
+constexpr double kStride = 0.2;     // [m] between places of a trail
+constexpr double kLookAhead = 0.8;  // [m] to the place of the trail that the robot heads for
+constexpr double kAtEnd = 0.3;      // [m]
+constexpr double kPlaced = 0.3;     // [s] since the person was seen: a place, not a guess
+constexpr double kKeeps = 0.8;      // of the distance to the person: there AttendAtPos stands
 
 class Follow : public Activity {
  public:
@@ -55,7 +55,7 @@ class Follow : public Activity {
     const bool there =
         left <= near ||
         (in_sight && (trail.at(left) - self.robot().pose_in_odom.position()).norm() <= near);
-    const Vec2 goal = trail.at(there ? left : std::min(left, kLook));
+    const Vec2 goal = trail.at(there ? left : std::min(left, kLookAhead));
     self.intend_behavior(
         "track", "AttendAtPos", kTask,
         {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
@@ -104,9 +104,9 @@ void Trail::reach(const Vec2& robot) {
       nearest = i;
     }
   if (places_.size() > 1)
-    places_.erase(places_.begin(),
-                  places_.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                        nearest + (least < kLook ? 1 : 0), places_.size() - 1)));
+    places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                         nearest + (least < kLookAhead ? 1 : 0),
+                                                         places_.size() - 1)));
 }
 
 double Trail::length() const {

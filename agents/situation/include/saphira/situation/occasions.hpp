@@ -23,7 +23,7 @@ struct Occasion {
 class Occasions {
  public:
   /// `now`: [s] of a steady clock. The most important event since the last call.
-  std::optional<Occasion> look(const Situation& situation, double now);
+  std::optional<Occasion> next(const Situation& situation, double now);
 
  private:
   std::optional<Occasion> find(const Situation& situation, double now);

@@ -23,8 +23,8 @@ class Conversation {
   void said(const std::string& text);
 
   struct Outputs {
-    bool um = false;                ///< to be said at once: it has heard, and processes
-    std::vector<Heard> utterances;  ///< for the topic; a keyword alone was not understood
+    bool um = false;                     ///< to be said at once: it has heard, and processes
+    std::vector<Recognized> utterances;  ///< for the topic; a keyword alone was not understood
   };
   /// speaking: the robot itself speaks, in this piece of the stream.
   Outputs hear(const Sound& sound, bool speaking);
@@ -33,7 +33,7 @@ class Conversation {
 
  private:
   void listen();
-  std::string lone_stop(const Heard& heard) const;
+  std::string lone_stop(const Recognized& heard) const;
   Outputs take(const std::vector<Event>& events);
 
   Recognizer& recognizer_;

@@ -21,7 +21,7 @@ const char* word(Outcome outcome);
 inline constexpr double kCertain = 1.0;
 inline constexpr double kUncertain = 0.6;  // the dialogue asks back before it acts
 
-struct Heard {
+struct Recognized {
   Outcome outcome = Outcome::not_for_it;
   std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
   double confidence = 0.0;  ///< [0..1] kCertain: a second hearing has the same text
@@ -39,7 +39,7 @@ struct Event {
     heard,   ///< the utterance
   };
   Kind kind = Kind::begins;
-  Heard heard{};
+  Recognized heard{};
 };
 
 struct RecognizerSettings {

@@ -44,11 +44,11 @@ class EchoMap {
   bool sees(std::uint64_t cycle, bool ahead) const;
 
   /// The newest firing whose arc passes through a spot.
-  struct Heard {
+  struct Firing {
     int sonar = 0;
     std::uint64_t ago = 0;  ///< [cycles] before the last update
   };
-  std::optional<Heard> heard(const Vec2& spot) const;
+  std::optional<Firing> heard(const Vec2& spot) const;
 
  private:
   struct Echo {

@@ -235,7 +235,7 @@ class Core {
 
   // The present decision.
   authority::Grant grant_;
-  Told told_;
+  DriverSetpoints told_;
   authority::Guarded guarded_;
   std::set<std::string> refused_drivers_;  ///< in the audit since the driver changed
   bool grant_changed_ = false;

@@ -90,7 +90,7 @@ struct CycleBegan {
   std::uint64_t bad_packets = 0;  ///< of this session
 };
 /// The driver's setpoints, before the guard.
-struct Told {
+struct DriverSetpoints {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position
 };
@@ -119,7 +119,7 @@ struct VisionSet {
 };
 struct GrantDecided {
   authority::Grant grant;
-  Told told;
+  DriverSetpoints told;
   authority::Guarded guarded;
   std::vector<authority::Refusal> refused;
   v1::Stamp stamp;

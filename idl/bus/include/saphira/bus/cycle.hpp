@@ -138,8 +138,8 @@ class Cycle {
   std::optional<Step> poll();
   /// Where no step is due: publishes the node's status (the missing input, counters) and calls
   /// `idle`, at most every 5 ms. False where it was too early to do so.
-  bool look(const std::function<void()>& idle = {});
-  /// Waits for the next step; nothing when stop was requested. Calls look() meanwhile: on each wake
+  bool idle(const std::function<void()>& idle = {});
+  /// Waits for the next step; nothing when stop was requested. Calls idle() meanwhile: on each wake
   /// without a due step, and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
   /// Ends the step that next() began and counts its time.

@@ -64,7 +64,7 @@ class DoorKeysFile {
 
   /// Looks for changes; at most once in a second of `now` [s] since 1970. Returns a new trouble in
   /// words; empty: none.
-  std::string look(std::int64_t now);
+  std::string reload(std::int64_t now);
   const DoorKeys& keys() const { return keys_; }
 
  private:

@@ -39,7 +39,7 @@ class Core {
 
  private:
   void begin(const Inputs& inputs);
-  void tell(const Output& output, Outputs& outputs);
+  void report(const Output& output, Outputs& outputs);
 
   ProcessTable processes_;
   // sfInitControlProcs. While suspended, it removes all behaviors, and releases the robot.

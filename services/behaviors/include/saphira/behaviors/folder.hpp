@@ -17,7 +17,7 @@ class Folder {
   explicit Folder(std::string path) : folder_(std::move(path), ".beh") {}
 
   /// The changes that a look has found.
-  struct News {
+  struct Reload {
     bool changed = false;             ///< schemas came, changed or went, or the errors changed
     std::vector<std::string> taken;   ///< files
     std::vector<std::string> faults;  ///< of changed files: as FileError has them
@@ -26,7 +26,7 @@ class Folder {
 
   /// Takes the changes in the folder since the last look into `registry`. A file with an error
   /// changes nothing: its earlier schemas stay. The schemas of a removed file are removed.
-  News look(Registry& registry);
+  Reload reload(Registry& registry);
 
   const std::string& path() const { return folder_.path(); }
   /// The files with errors, and the errors; empty: none.
@@ -37,8 +37,8 @@ class Folder {
     std::vector<std::string> schemas;  ///< given to the registry
     std::string fault;                 ///< the first one; empty: none
   };
-  void take_changed(const std::vector<std::string>& changed, Registry& registry, News& news);
-  void take(const std::string& name, File& file, Registry& registry, News& news);
+  void take_changed(const std::vector<std::string>& changed, Registry& registry, Reload& reload);
+  void take(const std::string& name, File& file, Registry& registry, Reload& reload);
   std::string owner(const std::string& schema, const std::string& but) const;
 
   WatchedFolder folder_;
@@ -55,7 +55,7 @@ class Sources {
   void add(Folder folder);
 
   /// Looks at the folders, and updates `registry` from the layers. The first look takes all.
-  Folder::News look(Registry& registry);
+  Folder::Reload reload(Registry& registry);
   std::string trouble() const;
 
  private:

@@ -44,7 +44,7 @@ class Core {
 
   /// The events of a cycle, or between two. Lost writers come before new samples, which include
   /// their earlier ones.
-  struct Heard {
+  struct Received {
     struct Goal {
       GoalEvent event;  ///< its requester: what that calls itself
       Writer writer{};
@@ -80,11 +80,11 @@ class Core {
     /// The schemas that the behaviors service can evaluate, where they have changed.
     std::optional<std::vector<BehaviorSignature>> behaviors;
     /// The activities of files that have changed.
-    std::optional<ActivityFolders::News> activities;
+    std::optional<ActivityFolders::Reload> activities;
   };
 
   /// A map of the registration service.
-  struct MapNews {
+  struct NewMap {
     std::uint64_t revision = 0;
     std::shared_ptr<const maps::Map> map;
   };
@@ -113,10 +113,10 @@ class Core {
     Registered registered;
     std::optional<std::uint64_t> map_revision;  ///< used by registration; none: it was not heard
     /// New ones. In lockstep a map counts from the step on for which registration used it.
-    std::vector<MapNews> maps;
+    std::vector<NewMap> maps;
     std::optional<std::vector<lps::Percept>> percepts;  ///< none: no interpretation
     std::optional<Vision> vision;
-    Heard heard;
+    Received received;
     v1::StopId own_stop;  ///< of the stop that this step may ask for
   };
   struct Outputs {
@@ -135,13 +135,13 @@ class Core {
   Outputs step(Inputs inputs);
 
   /// Outputs between cycles.
-  struct Told {
-    News news;
+  struct BetweenOutputs {
+    GoalUpdates updates;
     Notes notes;
     std::vector<v1::AuditEntry> audit;
   };
   /// Handles inputs that need no cycle; `silence` [s] since the newest one.
-  Told between(const Heard& heard, double silence);
+  BetweenOutputs between(const Received& received, double silence);
 
   const Executor& executor() const { return executor_; }
   ProcessTable& processes() { return processes_; }
@@ -152,21 +152,21 @@ class Core {
                                  std::uint32_t cycles);
 
  private:
-  void know(const ActivityFolders::News& news, Notes& notes);
-  void learn(const Heard& heard, Notes& notes);
-  /// Out: Outputs or Told.
+  void know(const ActivityFolders::Reload& reload, Notes& notes);
+  void learn(const Received& received, Notes& notes);
+  /// Out: Outputs or BetweenOutputs.
   template <class Out>
-  std::vector<GoalEvent> events_of(const Heard& heard, Out& out);
+  std::vector<GoalEvent> events_of(const Received& received, Out& out);
   template <class Out>
-  bool take_person(const Heard::Goal& goal, bool is_old, GoalEvent& event, Out& out);
-  std::vector<ClaimEvent> claims_of(const Heard& heard);
-  void note_grants(const std::vector<Heard::Grant>& estops);
+  bool take_person(const Received::Goal& goal, bool is_old, GoalEvent& event, Out& out);
+  std::vector<ClaimEvent> claims_of(const Received& received);
+  void note_grants(const std::vector<Received::Grant>& estops);
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
   std::vector<Edge> edges_near(const intentions::Inputs& now);
   SpeedLimit limit_of(const intentions::Inputs& now, const intentions::Outputs& intended) const;
-  void tell(const News& news, Notes& notes);
+  void report(const GoalUpdates& updates, Notes& notes);
   std::string who_is_gone(const Inputs& inputs);
 
   bool needs_approval(const std::string& says, const Checked& who) const;
@@ -185,7 +185,7 @@ class Core {
       "center-cameras", "keeps the cameras on the person or point of the belief gaze");
   Gaze gaze_;
   std::string estop_;  ///< the program that pressed the latched emergency stop
-  std::optional<Heard::Grant> newest_grant_;
+  std::optional<Received::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;
@@ -196,7 +196,7 @@ class Core {
   Vec2 near_of_{0.0, 0.0};                      ///< a place in the map...
   std::vector<Edge> near_;                      ///< ...and the edges near it
   std::uint64_t places_revision_ = 0;           ///< of the map when its topology changed last
-  std::deque<MapNews> newer_maps_;              ///< lockstep: newer than the present cycle
+  std::deque<NewMap> newer_maps_;               ///< lockstep: newer than the present cycle
   std::map<GoalId, Writer> requesters_;
   /// The first asker of a goal.
   struct Owner {

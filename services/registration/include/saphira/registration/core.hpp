@@ -130,7 +130,8 @@ class Core {
   void end_building();
   Outputs registered(const Inputs& inputs);
   Outputs built(const Inputs& inputs);
-  bool amend(const Presence::News& news, const std::vector<maps::Feature>& objects, Notes& notes);
+  bool amend(const Presence::Changes& news, const std::vector<maps::Feature>& objects,
+             Notes& notes);
   bool grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& notes);
   Arguments obey(const Request& request);
   Registration& placed();

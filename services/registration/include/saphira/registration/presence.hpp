@@ -42,17 +42,17 @@ class Presence {
  public:
   explicit Presence(PresenceSettings settings = {}) : settings_(settings) {}
 
-  struct News {
+  struct Changes {
     std::vector<std::uint32_t> gone;    ///< to be removed from the map
     std::vector<std::uint32_t> closed;  ///< doors that have been found closed now...
     std::vector<std::uint32_t> opened;  ///< ...or open
     bool empty() const { return gone.empty() && closed.empty() && opened.empty(); }
-    bool operator==(const News&) const = default;
+    bool operator==(const Changes&) const = default;
   };
 
   /// Readings from a certain pose; `seen` are the artifacts that percepts of open doors matched.
-  News step(const maps::Map& map, std::uint64_t cycle, const Vec2& robot_in_map,
-            const std::vector<Look>& looks, const std::vector<std::uint32_t>& seen);
+  Changes step(const maps::Map& map, std::uint64_t cycle, const Vec2& robot_in_map,
+               const std::vector<Look>& looks, const std::vector<std::uint32_t>& seen);
 
   /// Doors by id that were closed at their newest check.
   const std::set<std::uint32_t>& closed() const { return closed_; }

@@ -103,7 +103,7 @@ struct Output {
   /// current_environment of manual 8.1.2.
   std::optional<std::size_t> environment;
   /// Artifacts of the map that are gone, closed or open again, and new ones, for the map's owner.
-  Presence::News presence;
+  Presence::Changes presence;
   std::vector<maps::Feature> objects;
 
   bool operator==(const Output&) const = default;

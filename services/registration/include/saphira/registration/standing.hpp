@@ -33,7 +33,7 @@ class Standing {
   bool step(const Pose& moved, const std::vector<PlacedReading>& readings);
 
  private:
-  struct Heard {
+  struct Sonar {
     double direction = 0.0;      ///< [rad] in dead reckoning, of the newest reading
     std::vector<double> ranges;  ///< [m]
     int strange = 0;             ///< readings in a row unlike any of these
@@ -41,7 +41,7 @@ class Standing {
 
   StandingSettings settings_;
   Pose way_;  ///< since the ranges of the place are collected
-  std::map<int, Heard> sonars_;
+  std::map<int, Sonar> sonars_;
 };
 
 }  // namespace saphira::registration

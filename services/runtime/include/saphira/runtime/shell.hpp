@@ -45,7 +45,7 @@ class Service {
   virtual void between(double /*silence*/) {}
   /// Checks the files that people edit while the robot drives. Called once a second, after a step;
   /// in lockstep, where cycles are short, every hundred.
-  virtual void look() {}
+  virtual void check_files() {}
 };
 
 /// The one shell of all cyclic services: it chooses the next cycle and its inputs (bus::Cycle),
@@ -81,7 +81,7 @@ class Shell {
 
   void step_now(const bus::Step& step);
   void between();
-  void look();
+  void check_files();
 
   bus::Node& node_;
   bus::Cycle cycle_;
@@ -91,7 +91,7 @@ class Shell {
   std::optional<std::uint64_t> odom_;  ///< of the newest step of this epoch
   std::uint64_t steps_ = 0;
   Clock::time_point stepped_ = Clock::now();
-  Clock::time_point looked_ = Clock::now();
+  Clock::time_point checked_files_ = Clock::now();
 };
 
 }  // namespace saphira::runtime

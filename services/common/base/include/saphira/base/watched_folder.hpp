@@ -21,7 +21,7 @@ class WatchedFolder {
     bool any() const { return !changed.empty() || !gone.empty(); }
   };
   /// A few microseconds a file.
-  Changes look();
+  Changes poll();
 
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const;

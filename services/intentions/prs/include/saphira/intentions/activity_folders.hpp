@@ -20,14 +20,14 @@ class ActivityFolders {
                   Registry base);
 
   /// The changes that a look has found.
-  struct News {
+  struct Reload {
     bool changed = false;              ///< also where only the errors changed
     std::vector<Schema> taken;         ///< new, or another than before
     std::vector<std::string> removed;  ///< activities that are gone
     std::vector<std::string> errors;   ///< of files that changed: file, line, column, caret
     std::vector<std::string> warnings;
   };
-  News look();
+  Reload reload();
 
   /// From now on a file that names another behavior has an error.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
@@ -52,9 +52,9 @@ class ActivityFolders {
 
     bool operator==(const Origin&) const = default;
   };
-  bool read(Layer& layer, News& news, std::vector<std::string>& changed);
+  bool read(Layer& layer, Reload& reload, std::vector<std::string>& changed);
   std::vector<Schema> compile(Layer& layer, const Registry& known,
-                              const std::vector<std::string>& changed, News& news);
+                              const std::vector<std::string>& changed, Reload& reload);
 
   std::vector<Layer> layers_;
   std::shared_ptr<const Functions> functions_;

@@ -44,7 +44,7 @@ class Beliefs {
   explicit Beliefs(const Functions* functions = nullptr) : functions_(functions) {}
 
   /// Evaluates the conditions; one with a new value changes at `now`.
-  void look(const World& world);
+  void evaluate_conditions(const World& world);
   void set(std::string_view name, Value value, std::string_view who, Ticks now);
   void unset(std::string_view name);
   void take(const ClaimEvent& event, Ticks now);

@@ -59,7 +59,7 @@ struct Inputs {
 };
 
 /// The changes of goals since the last call.
-struct News {
+struct GoalUpdates {
   std::vector<GoalStatus> changed;  ///< to be published, in order
   std::vector<GoalId> withdrawn;    ///< ended long ago: withdraw their status
   std::vector<Placement> placed;    ///< to be saved
@@ -72,9 +72,9 @@ struct News {
 struct Outputs {
   std::vector<IntendedBehavior> behaviors;
   std::vector<IntentionNode> nodes;
-  News news;
+  GoalUpdates updates;
   bool behavior_control = true;      ///< sfBehaviorControl (manual 7.4)
-  std::vector<Said> said;            ///< to people, oldest first
+  std::vector<SpokenText> said;      ///< to people, oldest first
   std::vector<Request> requests{};   ///< to registration, oldest first
   std::vector<Request> questions{};  ///< to agents, oldest first; each has its number
   /// The requester of a stop for which the bridge is to be asked (Executor::heed); none: no stop.
@@ -86,7 +86,7 @@ struct ExecutorOptions {
   std::size_t max_shown = 1024;  ///< ended goals with a status; the oldest are withdrawn
   std::size_t max_open = 256;    ///< goals that may be open at once
   std::size_t max_ended = kMostEndings;
-  bool remembers_work = false;  ///< true: News::work is saved
+  bool remembers_work = false;  ///< true: GoalUpdates::work is saved
   /// The functions for activities; their conditions are beliefs. None: core_functions().
   std::shared_ptr<const Functions> functions{};
   ForestOptions forest{};
@@ -108,7 +108,7 @@ class Executor {
   /// Takes events between cycles, so that a requester hears of a refusal also while no robot is
   /// connected. Starts nothing: the next step is the same whether the events came before or with
   /// it.
-  News hear(const std::vector<GoalEvent>& events);
+  GoalUpdates take_events(const std::vector<GoalEvent>& events);
 
   /// The id of the stop that a step asked for: goals of afterwards may drive.
   void heed(const v1::StopId& own);
@@ -116,7 +116,7 @@ class Executor {
   const v1::StopId& heeds() const { return heeds_; }
 
   /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
-  News robot_gone();
+  GoalUpdates robot_gone();
 
   /// Adds a schema, or replaces an older one: begun goals and intentions keep theirs.
   void add(Schema schema);
@@ -207,7 +207,7 @@ class Executor {
   void measure(Entry& entry);
   bool collect();
   static std::optional<GoalStatus> refused_change(const Entry& entry);
-  News take_news();
+  GoalUpdates take_updates();
 
   ExecutorOptions options_;
   std::shared_ptr<Registry> registry_;

@@ -44,7 +44,7 @@ struct Outcome {
 };
 
 /// A message of an intention to people.
-struct Said {
+struct SpokenText {
   std::uint32_t intention = 0;
   std::string schema;
   std::string text;
@@ -117,7 +117,7 @@ class Forest {
   bool is_activity(std::uint32_t id) const;
   /// The outcomes of finished roots since the last call; the roots are gone.
   std::map<std::uint32_t, Outcome> take_ended();
-  std::vector<Said> take_said();
+  std::vector<SpokenText> take_said();
   std::vector<Request> take_requests();
   /// Questions to agents, with their numbers.
   std::vector<Request> take_questions();
@@ -188,7 +188,7 @@ class Forest {
   std::vector<std::uint32_t> doomed_;   ///< removed by itself or by its descendants
   std::size_t begun_ = 0;               ///< of to_begin_ in this cycle
   std::map<std::uint32_t, Outcome> ended_;
-  std::vector<Said> said_;
+  std::vector<SpokenText> said_;
   std::vector<Request> requests_;
   std::vector<Request> questions_;
   std::set<std::uint32_t> control_off_;  ///< roots that switched behavior control off
