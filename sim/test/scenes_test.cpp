@@ -23,16 +23,20 @@ using protocol::RobotParameters;
 
 /// What stands or moves in a world, tick by tick. Lengths in m, angles in degrees, except for those
 /// of a world file.
-/// `world TEXT`                a room of 10 m with these things; `bare TEXT`: the world file alone
-/// `parameter NAME VALUE`, `sonar DEGREES`    of the robots that are added next
-/// `robot X Y DEGREES`         adds a robot, and the next lines are of it; `of N`: of that one
-/// again `refused X Y DEGREES`       no robot can be there `VERB [NUMBER ...]`         a command of
-/// kVerbs `open DOOR`, `place X Y DEGREES` `always FACT`               holds after each later tick
-/// `run SECONDS`
-/// `NAME == | < | > | <= | >= VALUE`, `NAME ~ VALUE +- TOLERANCE`    a fact
-/// `contact BLAME KIND [NAME] [walks]`     the robot's first contact
-/// `ear X DEGREES`             a sonar without noise, on no robot; `model rough | weak`, `strict`
-/// `hears X Y DEGREES RANGE TOLERANCE`, `deaf X Y DEGREES`    it, in a frame that is there
+///
+/// Before the robots: `world TEXT`, a room of 10 m with these things; `bare TEXT`, the world file
+/// alone; `parameter NAME VALUE` and `sonar DEGREES`, of the robots that are added next.
+///
+/// `robot X Y DEGREES` adds a robot, and the next lines are of it; `of N`: of that one again;
+/// `refused X Y DEGREES`: no robot can be there. Its commands are `VERB [NUMBER]` with the kVerbs,
+/// `place X Y DEGREES` and, where there is no room, `displaced X Y DEGREES`. `open DOOR`.
+///
+/// `run SECONDS`; `always FACT` holds after each later tick. A fact is `NAME == VALUE`, likewise <,
+/// >, <= and >=, or `NAME ~ VALUE +- TOLERANCE`. `contact BLAME KIND [NAME] [walks]` is the robot's
+/// first contact.
+///
+/// `ear X DEGREES` is a sonar without noise, on no robot; `model rough | weak` and `strict` are its
+/// surfaces. `hears X Y DEGREES RANGE TOLERANCE` and `deaf X Y DEGREES`: in a frame that is there.
 class Play {
  public:
   void take(const std::string& line) {
