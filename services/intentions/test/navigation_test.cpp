@@ -51,7 +51,7 @@ class Navigation : public testing::Test {
     lps::LpsSettings settings;
     settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
     heard = std::make_unique<lps::LocalPerceptualSpace>(settings);
-    around.lps = received.get();
+    around.lps = heard.get();
     for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
       heard->update(robot.pose_in_odom,
                     {{0, echoes[0], true}, {1, echoes[1], true}, {2, echoes[2], true}}, cycle);
