@@ -87,14 +87,14 @@ std::string unknown_behaviors(const std::vector<ChildSpec>& children) {
   for (const std::string& folder : values(children, behaviors, "--behaviors"))
     sources.add(behaviors::Folder(folder));
   behaviors::Registry registry;
-  sources.look(registry);
+  sources.reload(registry);
   std::vector<std::string> paths{intentions::activities_folder()};
   paths.insert(paths.end(), folders.begin(), folders.end());
   intentions::ActivityFolders activities(paths, intentions::all_functions(),
                                          intentions::built_in());
   activities.know_behaviors(intentions::from_bus(behaviors::to_bus(registry, "")));
   std::string text;
-  for (const std::string& error : activities.look().errors)
+  for (const std::string& error : activities.reload().errors)
     text += error + "\n";
   return text;
 }
