@@ -68,6 +68,7 @@ TEST(Convert, Devices) {
   EXPECT_EQ(out.gripper_state, 0x12);
   EXPECT_EQ(out.unread_packets.at(0).count, 3U);
   EXPECT_TRUE(out.has_flags && out.motors_on && out.emergency_stop);
+  EXPECT_TRUE(out.has_io && out.has_gripper && out.has_encoders);
   EXPECT_EQ(out.charge, 0.5);
   EXPECT_EQ(out.temperature, -3.0);
   EXPECT_EQ(out.compass, 1.0);

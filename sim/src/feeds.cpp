@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostViewers = 16;       // of the view
 constexpr std::size_t kLongest = 4096;         // of an incoming line
 constexpr std::size_t kMostWaiting = 1 << 20;  // [bytes] that a viewer has not read
-constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();  // to send
 
 bool passes() {
   return errno == EAGAIN || errno == EINTR;
@@ -120,7 +120,7 @@ void PictureFeed::serve(const Scene& scene, RobotNumber robot, double head, std:
   }
   cycle_ = cycle;
   if (viewers_)  // bytes from viewers are ignored, but their end is not
-    viewers_->serve([](Viewers::Viewer& viewer) { viewer.said.clear(); }, kAny, kAny);
+    viewers_->serve([](Viewers::Viewer& viewer) { viewer.said.clear(); }, kLongest, kAny);
 }
 
 PictureFeed::Render stereo_pairs(std::uint64_t seed) {

@@ -101,7 +101,7 @@ TEST(Movable, OfASecondFileIsPutIntoTheWorldAndItsMistakesNameThatFile) {
 }
 
 TEST(Movable, MistakesAreNamedWithTheirPlaceAndWhatWasExpected) {
-  test::each_line("sim/test/mistakes.txt", '#', [](const std::string& line) {
+  const int cases = test::each_line("sim/test/mistakes.txt", '#', [](const std::string& line) {
     const std::size_t arrow = line.find(" => ");
     const std::string text = line.substr(0, arrow);
     const std::string wanted = line.substr(arrow + 4);
@@ -112,6 +112,7 @@ TEST(Movable, MistakesAreNamedWithTheirPlaceAndWhatWasExpected) {
     const std::size_t space = wanted.find(' ');
     test::expect_mistake({text.c_str(), 2, std::stoi(wanted), wanted.c_str() + space + 1}, room);
   });
+  EXPECT_EQ(cases, 41);
 }
 
 // Everything at once, ten minutes, twice.

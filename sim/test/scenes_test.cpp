@@ -244,19 +244,23 @@ class Play {
                : member == "open" ? (door.opens ? 1.0 : 0.0)
                : member == "wide" ? (leaf.to - leaf.from).norm()
                : member == "x"    ? leaf.to.x()
-                                  : leaf.to.y();
+               : member == "y"    ? leaf.to.y()
+                                  : throw std::invalid_argument("no " + member);
       }
     for (const Box& box : scene().boxes())
       if (box.plan->look.name == name)
         return member == "x"      ? box.pose_in_world.x
                : member == "y"    ? box.pose_in_world.y
                : member == "rear" ? box.pose_in_world.x - robot_->pose_in_world().x
-                                  : degrees(box.pose_in_world.th);
+               : member == "th"   ? degrees(box.pose_in_world.th)
+                                  : throw std::invalid_argument("no " + member);
     throw std::invalid_argument("no " + name);
   }
   /// Between a person and the nearest wall, robot or other person [m].
   double gap(const Person& person, const std::string& what) {
     double least = std::numeric_limits<double>::infinity();
+    if (what != "wall" && what != "robot" && what != "other")
+      throw std::invalid_argument("no " + what);
     if (what == "wall")
       least = distance(scene().world().segments, person.at);
     for (RobotNumber i = 0; what == "robot" && i < scene().robots(); ++i) {

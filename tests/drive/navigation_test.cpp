@@ -658,7 +658,8 @@ class Errand : public LinePlayer {
   void said_times(std::istringstream& in) {
     const int times = read<int>(in);
     const std::string words = rest(in);
-    EXPECT_EQ(std::ranges::count(whole().said(), words), times) << words;
+    const auto is_said = [&](const std::string& text) { return is_like(text, words); };
+    EXPECT_EQ(std::ranges::count_if(whole().said(), is_said), times) << words;
   }
   void believed(const std::string& line) {
     const std::size_t arrow = line.find(" => ");
@@ -685,7 +686,7 @@ class Errands : public ::testing::TestWithParam<int> {};
 
 TEST_P(Errands, AreAsWritten) {
   const auto wanted = [](int number, const std::string&) { return number % kParts == GetParam(); };
-  EXPECT_EQ(play<Errand>("tests/drive/errands.txt", '#', wanted), 25);
+  EXPECT_EQ(play<Errand>("tests/drive/errands.txt", '#', wanted), 26);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, Errands, ::testing::Range(0, kParts));
@@ -824,9 +825,13 @@ const char* const kScenarios[] = {"go-to-place",
 class Golden : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
-  const int cases = play<Errand>("tests/drive/golden.txt", '#',
-                                 [](int, const std::string& name) { return name == GetParam(); });
+  int played = 0;
+  const int cases = play<Errand>("tests/drive/golden.txt", '#', [&](int, const std::string& name) {
+    played += name == GetParam() ? 1 : 0;
+    return name == GetParam();
+  });
   EXPECT_EQ(cases, static_cast<int>(std::size(kScenarios)));
+  EXPECT_EQ(played, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, Golden, ::testing::ValuesIn(kScenarios), [](const auto& each) {

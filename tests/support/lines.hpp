@@ -18,16 +18,20 @@
 namespace saphira::test {
 
 /// Gives each line of a file of the source tree to `use`, without empty lines and comments. A
-/// failure in it tells file and line.
+/// failure in it tells file and line. Returns how many lines there are.
 template <class Use>
-void each_line(const std::string& file, char comment, const Use& use) {
+int each_line(const std::string& file, char comment, const Use& use) {
   std::istringstream lines(read_file(source(file)));
   int number = 0;
+  int used = 0;
   for (std::string line; std::getline(lines, line);) {
     SCOPED_TRACE(file + ":" + std::to_string(++number));
-    if (!line.empty() && line[0] != comment)
+    if (!line.empty() && line[0] != comment) {
+      ++used;
       use(line);
+    }
   }
+  return used;
 }
 
 /// Plays a file of cases, each with a player of its own: "== its name" begins one, and " ; " parts

@@ -296,12 +296,10 @@ std::string driver(const Situation& situation) {
   if (situation.silence > kListened && bridge.health >= Health::hung)
     return "which program drives is not known any more" + why;
   v1::Grant grant = *situation.grant;
-  // The bridge does not know who would drive.
-  if (grant.role == v1::ROLE_NONE)
-    for (const char* const name : {"behaviors", "intentions"})
-      if (const Condition how = condition(situation, name);
-          how.health == Health::hung || how.health == Health::lost || how.health == Health::absent)
-        grant.reason = std::string(name) + " " + how.words;
+  // The bridge hears commands alone, and does not know who would give some.
+  if (grant.role == v1::ROLE_NONE && grant.reason == "nothing asks the robot to move")
+    if (const std::string missing = trouble(situation); !missing.empty())
+      grant.reason = missing;
   return describe(grant);
 }
 

@@ -230,8 +230,9 @@ void DialogueShell::take_beliefs() {
   if (sets.empty())
     return;
   const v1::BeliefSet& set = sets.back().data;
-  // The sample itself may be of before a restart.
-  const double old = node_.options().lockstep ? 0.0 : sets.back().info.age;
+  // The first sample may be of before a restart. The age is by the clocks of two machines.
+  const double old =
+      std::exchange(knows_beliefs_, true) || node_.options().lockstep ? 0.0 : sets.back().info.age;
   std::vector<Belief> beliefs;
   for (const v1::Belief& one : set.beliefs) {
     Belief& belief = beliefs.emplace_back(Belief{one.name, one.value, one.said_by});
@@ -308,6 +309,16 @@ void DialogueShell::take_utterances() {
     perform(dialogue_.left(writer));
 }
 
+void DialogueShell::heed(const v1::Grant& grant) {
+  situation_.estop = !grant.estopped              ? ""
+                     : grant.estop_source.empty() ? "a program without a name"
+                                                  : grant.estop_source;
+  situation_.is_driven = grant.role == v1::ROLE_TELEOP || grant.role == v1::ROLE_DIRECT;
+  const std::optional<v1::StopId> before = std::exchange(stop_, grant.stop);
+  if (grant.estopped || (before && *before != grant.stop && grant.stop.asker != node_.instance()))
+    perform(dialogue_.stopped(grant.stop_source.empty() ? "somebody" : grant.stop_source));
+}
+
 void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
   if (const auto map = maps_.take_newest()) {
@@ -319,9 +330,7 @@ void DialogueShell::step(double seconds, double now) {
   if (!grants_.take_lost().empty())
     situation_.estop.clear();
   if (const auto grant = grants_.take_newest())
-    situation_.estop = !grant->estopped              ? ""
-                       : grant->estop_source.empty() ? "a program without a name"
-                                                     : grant->estop_source;
+    heed(*grant);
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())

@@ -359,6 +359,12 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
   }
 }
 
+Dialogue::Outputs Dialogue::stopped(const std::string& who) {
+  Outputs out;
+  add(tasks_.stopped(who), out);
+  return out;
+}
+
 Dialogue::Outputs Dialogue::come_due(const Situation& situation) {
   Outputs out;
   for (Tasks::Later& one : tasks_.take_due(situation.now)) {

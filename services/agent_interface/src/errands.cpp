@@ -161,7 +161,13 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
   } else if (functor == "cannot") {
     refuse(utterance, grammar_.paraphrase(meaning), out);
   } else if (functor == kHold) {
-    if (tasks_.task() != nullptr)
+    // Only a stop ends what moves the robot for somebody else.
+    const bool moves_for_others =
+        situation.is_driven ||
+        std::any_of(situation.goals.begin(), situation.goals.end(), [](const KnownGoal& goal) {
+          return goal.state == v1::GOAL_UNDERWAY && !goal.asker.empty();
+        });
+    if (tasks_.task() != nullptr && !moves_for_others)
       want(meaning, utterance, "pause", {number("seconds", kLongHold)});
     else
       want({"stop", {}}, utterance, "stop", {});

@@ -113,6 +113,13 @@ Tasks::Outputs Tasks::later(double time, std::vector<Task> steps, const Utteranc
   return out;
 }
 
+Tasks::Outputs Tasks::stopped(const std::string& who) {
+  Outputs out;
+  drop_later(
+      ": stopped by " + who, [](const Later&) { return true; }, out);
+  return out;
+}
+
 std::vector<Tasks::Later> Tasks::take_due(double now) {
   std::vector<Later> due;
   for (Later& one : later_)
@@ -159,8 +166,9 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
   out.why = claim_source(utterance);
   const bool stop = is_stop(steps.front());
   const bool brief = !stop && all_brief;
+  const bool waits = brief && steps.front().goal.functor == "pause";  // anybody may say so
   for (const Task& one : open_)
-    if (!stop && !is_stop(one) && (one.brief || !brief) &&
+    if (!stop && !waits && !is_stop(one) && (one.brief || !brief) &&
         !may_end(utterance.person, one.goal.person))
       return deny(one, utterance);
   const Task* const other = task();

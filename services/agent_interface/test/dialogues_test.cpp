@@ -114,6 +114,8 @@ class Conversation : public DialogueTest {
          situation.now = now += std::stod(text);
          last = dialogue.come_due(situation);
        }},
+      {"stopped by", [this](const auto& text) { last = dialogue.stopped(text); }},
+      {"driven by another", [this](const auto& text) { situation.is_driven = text == "yes"; }},
       {"restart", [this](const auto&) { restart(); }},
       {"anew", [this](const auto&) { use(Dialogue{grammar()}); }},
       {"asks about", [this](const auto& text) { situation.asked_about = text; }},
@@ -139,7 +141,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_GT(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 50);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 77);
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ class Round {
 };
 
 TEST(Requests, AreAsWritten) {
-  EXPECT_GT(test::play<Round>("services/agent_interface/test/requests.txt"), 35);
+  EXPECT_EQ(test::play<Round>("services/agent_interface/test/requests.txt"), 43);
 }
 
 }  // namespace

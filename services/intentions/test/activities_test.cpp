@@ -126,7 +126,7 @@ class Script {
 };
 
 TEST(ActivitiesInWords, DoAsWritten) {
-  EXPECT_GT(test::play<Script>("services/intentions/test/activities.txt", ';'), 35);
+  EXPECT_EQ(test::play<Script>("services/intentions/test/activities.txt", ';'), 41);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct Beam {
   double echo;       // [m] infinite: none
   double spread;     // [m] error of the echo
 };
+static_assert(Grid::kTile % kLanes == 0, "look() fills whole steps of a row");
 struct Row {
   std::array<double, Grid::kTile> behind;  // errors from the cell to the echo
   std::array<double, Grid::kTile> found;   // probability of an echo of the cell; -1: outside

@@ -164,7 +164,7 @@ Presence::Changes Presence::step(const maps::Map& map, std::uint64_t cycle,
       changes.opened.push_back(feature.id);
     }
   }
-  // An artifact that is not on the map any more is no changes.
+  // An artifact that is not on the map any more is no change.
   if (!closed_.empty())
     std::erase_if(closed_, [&](std::uint32_t id) { return maps::find(map, id) == nullptr; });
   return changes;

@@ -179,7 +179,10 @@ class Hall : public test::LinePlayer {
                {"suspend", [this](auto& in) { ask_process(rest(in), ProcessAction::suspend); }},
                {"resume", [this](auto& in) { ask_process(rest(in), ProcessAction::resume); }},
                {"ask", [this](auto& in) { ask(in); }},
-               {"asker", [this](auto& in) { asker_ = {"planner", rest(in)}; }},
+               {"asker",
+                [this](auto& in) {
+                  asker_ = {"planner", rest(in)};
+                }},
                {"load", [this](auto& in) { load_map(in); }},
                {"put", [this](auto& in) { put_artifact(in); }},
                {"answers", [this](auto& in) { answers(rest(in)); }},
@@ -339,7 +342,7 @@ class Hall : public test::LinePlayer {
 };
 
 TEST(RegistrationCore, DoesAsWritten) {
-  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 27);
+  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 28);
 }
 
 TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {

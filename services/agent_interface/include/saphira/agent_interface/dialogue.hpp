@@ -81,6 +81,7 @@ struct Situation {
   double now = 0.0;            ///< [s] since 1970; 0: unknown, as in lockstep
   bool turns_cameras = false;  ///< the robot has a head
   bool is_slow = false;        ///< it was told to go slowly
+  bool is_driven = false;      ///< by a person or program in a stronger role than the tasks
   std::string estop{};         ///< the program that pressed the emergency stop; empty: none
 };
 
@@ -119,6 +120,8 @@ class Dialogue {
   /// A program that has spoken has ended or has withdrawn its words: its tasks end.
   Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
+  /// Somebody has stopped the robot other than by words: orders for a later time end.
+  Outputs stopped(const std::string& who);
   /// Orders for a later time begin, or ask whether to drop the task of somebody else.
   Outputs come_due(const Situation& situation);
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that

@@ -129,6 +129,8 @@ class Tasks {
     std::vector<Task> steps;
   };
   Outputs later(double time, std::vector<Task> steps, const Utterance& order);
+  /// The robot was stopped other than by words: the steps for later end.
+  Outputs stopped(const std::string& who);
   /// Those whose time has come.
   std::vector<Later> take_due(double now);
   /// After a wait: the wait ends, and the task goes on. After a stop: the dropped task begins anew.

@@ -94,8 +94,9 @@ class Grid {
     bool before = false;
     Pose pose;
   };
-  /// Calls f(tile, cell of the row's first, row, first index within, end) for each row of a tile
-  /// that a cone meets. `spread`: [m] error of the echo.
+  /// Calls f(tile, number of the row's first cell in it, values of the row, first cell with
+  /// evidence, number of cells) for each row of a tile that a cone meets. `spread`: [m] error of
+  /// the echo.
   template <class F>
   void for_cone(const Pose& sonar, double range, double echo, double spread, F&& f);
   void weigh(const Pose& sonar, std::optional<double> range);
