@@ -309,7 +309,7 @@ void DialogueShell::take_utterances() {
     perform(dialogue_.left(writer));
 }
 
-void DialogueShell::heed(const v1::Grant& grant) {
+void DialogueShell::take_grant(const v1::Grant& grant) {
   situation_.estop = !grant.estopped              ? ""
                      : grant.estop_source.empty() ? "a program without a name"
                                                   : grant.estop_source;
@@ -330,7 +330,7 @@ void DialogueShell::step(double seconds, double now) {
   if (!grants_.take_lost().empty())
     situation_.estop.clear();
   if (const auto grant = grants_.take_newest())
-    heed(*grant);
+    take_grant(*grant);
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())

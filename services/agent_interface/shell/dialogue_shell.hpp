@@ -36,7 +36,7 @@ class DialogueShell {
   void announce();
   void take_goals(double seconds);
   void adopt(std::uint64_t tag, const v1::GoalId& id);
-  void heed(const v1::Grant& grant);
+  void take_grant(const v1::Grant& grant);
   void take_beliefs();
   void take_places();
   void take_utterances();
