@@ -153,8 +153,9 @@ TEST_F(ExecutiveTest, AnOldIntentDoesNotDrive) {
   EXPECT_TRUE(executive_.step({102, robot_, {}, &intent}).active);
   const Output output = executive_.step({103, robot_, {}, &intent});
   EXPECT_FALSE(output.active);
-  EXPECT_EQ(output.inactive_reason,
-            "no newer intent has come for 2 cycles: intentions, or the network to it, is slow or gone");
+  EXPECT_EQ(
+      output.inactive_reason,
+      "no newer intent has come for 2 cycles: intentions, or the network to it, is slow or gone");
   EXPECT_FALSE(executive_.step({104, robot_, {}, nullptr}).active);
 }
 
