@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <iomanip>
 #include <map>
 #include <optional>
 #include <string>
@@ -596,7 +597,8 @@ class Errand : public LinePlayer {
     return intentions::Value(std::move(names));
   }
   void claim(std::istringstream& in) {
-    const auto name = read<std::string>(in);
+    std::string name;
+    in >> std::quoted(name);
     whole().claim(name, value_of(rest(in)));
   }
   void answers(const std::string& line) {
