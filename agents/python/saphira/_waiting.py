@@ -1,6 +1,7 @@
 """Waiting for the bus: with asyncio, or without it. The same coroutines serve both."""
 
 import asyncio
+import inspect
 import types
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from functools import cached_property
@@ -121,6 +122,8 @@ class Pending(Coroutine[Any, Any, T]):
         return self._work.send(value)
 
     def throw(self, typ: Any, val: Any = None, tb: Any = None) -> Any:
+        if inspect.getcoroutinestate(self._work) == inspect.CORO_CREATED:
+            self._work.send(None)  # so that it withdraws what was sent before it was waited for
         return self._work.throw(typ, val, tb)
 
     def close(self) -> None:

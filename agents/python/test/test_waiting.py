@@ -93,6 +93,26 @@ def test_with_asyncio_all_are_woken_by_one_arrival(bus: Any) -> None:
     assert bus.waits == []
 
 
+def test_a_task_that_is_cancelled_before_it_begins_cleans_up(bus: Any) -> None:
+    waiter = Waiter(bus)
+    said = []
+
+    async def work() -> None:
+        try:
+            await waiter.news(3600.0)
+        finally:
+            said.append("withdrawn")
+
+    async def main() -> None:
+        task = asyncio.create_task(Pending(waiter, work))
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+
+    asyncio.run(main())
+    assert said == ["withdrawn"]
+
+
 def test_with_asyncio_the_time_ends_a_wait(bus: Any) -> None:
     waiter = Waiter(bus)
     asyncio.run(waiter.news(0.0))
