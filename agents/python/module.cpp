@@ -8,13 +8,18 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -39,17 +44,87 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPollPeriod{100};  ///< how often a wait looks for signals
+constexpr milliseconds kRepeat{20};       ///< between looks at requests that are not heard
+constexpr milliseconds kLeave{1000};      ///< for these, until the bus is left
 
 /// The parts that live with the node.
 struct Parts {
   explicit Parts(const bus::NodeOptions& options) : node(options), processes(node) {}
   bus::Node node;
   watch::Processes processes;
-  std::optional<bus::GoalClient> goals;               ///< once one is asked for: not every role may
-  std::map<std::string, bus::RequestClient> clients;  ///< by topic
+  std::optional<bus::GoalClient> goals;  ///< once one is asked for: not every role may
   std::optional<bus::Agent> agent;
-  std::vector<v1::Answer> told;    ///< to its requests
   std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
+};
+
+/// The requests. A thread writes those that no program has answered again, also while Python is at
+/// something else: a stop must be heard. For one other thread; it never calls Python.
+class Requests {
+ public:
+  explicit Requests(bus::Node& node) : node_(node) {}
+
+  std::uint64_t send(const std::string& topic, const v1::Request& request, double patience) {
+    const std::scoped_lock lock(mutex_);
+    const auto hear = [this](const v1::Answer& answer) {
+      unheard_.erase(answer.number);
+      told_.push_back(answer);
+    };
+    const std::uint64_t number = client_of(topic).send(request, hear, patience, patience);
+    unheard_.insert(number);
+    changed_.notify_all();
+    if (!repeater_.joinable())
+      repeater_ = std::jthread([this](const std::stop_token& stop) { repeat(stop); });
+    return number;
+  }
+  void withdraw(const std::string& topic, std::uint64_t number) {
+    const std::scoped_lock lock(mutex_);
+    client_of(topic).withdraw(number);
+    unheard_.erase(number);
+  }
+  /// The answers since the last call. Repeats what has to be heard by a program anew.
+  std::vector<v1::Answer> take() {
+    const std::scoped_lock lock(mutex_);
+    poll();
+    return std::exchange(told_, {});
+  }
+  /// Waits for a moment until all that was sent is heard.
+  void deliver() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLeave, [this] { return unheard_.empty(); });
+  }
+
+ private:
+  void poll() {
+    for (auto& [topic, client] : clients_)
+      client.poll(BootClock::seconds());
+    changed_.notify_all();
+  }
+  void repeat(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (changed_.wait(lock, stop, [this] { return !unheard_.empty(); }) &&
+           !stop.stop_requested()) {
+      poll();
+      changed_.wait_for(lock, stop, kRepeat, [] { return false; });
+    }
+  }
+  bus::RequestClient& client_of(const std::string& topic) {
+    if (const auto found = clients_.find(topic); found != clients_.end())
+      return found->second;
+#define SAPHIRA_REQUESTS(constant, text, answers)                                          \
+  if (topic == text)                                                                       \
+    return clients_.try_emplace(topic, node_, bus::topics::constant, node_.options().name) \
+        .first->second;
+#include "saphira/bus/topics.def"
+    throw py::value_error("no topic of requests \"" + topic + "\": saphira.topics has them");
+  }
+
+  bus::Node& node_;
+  std::mutex mutex_;  ///< of all below
+  std::condition_variable_any changed_;
+  std::map<std::string, bus::RequestClient> clients_;  ///< by topic
+  std::set<std::uint64_t> unheard_;                    ///< no program has answered them yet
+  std::vector<v1::Answer> told_;
+  std::jthread repeater_;  ///< once something is asked
 };
 
 using Driver = Owned<Endpoint, cli::DirectDriver>;
@@ -101,6 +176,7 @@ class Bus {
     if (const auto meant = cli::bus_meant(cli::bus_of("", options), cli::running_buses(), given))
       options = cli::on_bus(*meant, options);
     parts_ = unlocked([&] { return std::make_unique<Parts>(options); });
+    requests_ = std::make_unique<Requests>(parts_->node);
   }
   ~Bus() { close(); }
   Bus(const Bus&) = delete;
@@ -109,6 +185,7 @@ class Bus {
   /// Leaves the bus, which ends the goals. In another thread or process than its own: nothing.
   void close() {
     if (!owner_.may_close()) {
+      static_cast<void>(requests_.release());
       static_cast<void>(parts_.release());
       return;
     }
@@ -117,6 +194,8 @@ class Bus {
         endpoint->close();
     if (parts_)
       unlocked([this] {
+        requests_->deliver();
+        requests_.reset();
         parts_.reset();
         return 0;
       });
@@ -182,24 +261,21 @@ class Bus {
 
   /// patience: [s] for the end; without a deadline in the request, after each answer.
   std::uint64_t send(const std::string& topic, py::handle request, double patience) {
-    bus::RequestClient& client = client_of(topic);
+    parts();
     const auto asked = sample_of<v1::Request>(request, "Request");
-    const auto hear = [&told = parts().told](const v1::Answer& answer) { told.push_back(answer); };
-    return unlocked([&] { return client.send(asked, hear, patience, patience); });
+    return unlocked([&] { return requests_->send(topic, asked, patience); });
   }
   void withdraw(const std::string& topic, std::uint64_t number) {
-    bus::RequestClient& client = client_of(topic);
+    parts();
     unlocked([&] {
-      client.withdraw(number);
+      requests_->withdraw(topic, number);
       return 0;
     });
   }
-  /// The answers since the last call. Repeats the requests that are not answered.
   py::list answers() {
-    for (auto& [topic, client] : parts().clients)
-      client.poll(BootClock::seconds());
+    parts();
     py::list list;
-    for (const v1::Answer& answer : std::exchange(parts().told, {}))
+    for (const v1::Answer& answer : requests_->take())
       list.append(to_python(answer, class_of("Answer")));
     return list;
   }
@@ -275,19 +351,6 @@ class Bus {
     }
     return *own.agent;
   }
-  bus::RequestClient& client_of(const std::string& topic) {
-    Parts& own = parts();
-    if (const auto found = own.clients.find(topic); found != own.clients.end())
-      return found->second;
-#define SAPHIRA_REQUESTS(constant, text, answers)                                     \
-  if (topic == text)                                                                  \
-    return own.clients                                                                \
-        .try_emplace(topic, own.node, bus::topics::constant, own.node.options().name) \
-        .first->second;
-#include "saphira/bus/topics.def"
-    throw py::value_error("no topic of requests \"" + topic + "\": saphira.topics has them");
-  }
-
   template <class Kind>
   std::shared_ptr<Kind> kept(std::shared_ptr<Kind> endpoint) {
     std::erase_if(endpoints_, [](const auto& weak) { return weak.expired(); });
@@ -298,6 +361,7 @@ class Bus {
   const Owner owner_;
   const std::string summary_;  ///< of the agent
   std::unique_ptr<Parts> parts_;
+  std::unique_ptr<Requests> requests_;  ///< on the node of the parts
   std::vector<std::weak_ptr<Endpoint>> endpoints_;
 };
 

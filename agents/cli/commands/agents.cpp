@@ -175,18 +175,23 @@ int list_one(const bus::NodeOptions& options, const bus::Stop& stop) {
     all.push_back(agent);
   std::fputs(describe(all).c_str(), stdout);
   std::optional<std::string> live;  // unknown without a facilitator
+  std::vector<v1::Argument> told;
   if (!set.empty()) {
     bus::RequestClient client(node, bus::topics::kSolve, "saphira agents");
     const v1::Answer answer =
         client.ask(bus::request(agent_interface::kLiveTriggers), kTold, &stop);
+    told = answer.results;
     if (answer.code == v1::ANSWER_DONE)
-      live = bus::text_of(answer.results, "live");
+      live = bus::text_of(told, "live");
   }
   for (const auto& [id, trigger] : set) {
     const std::string name = bus::describe(trigger.data.id);
     const std::string held_by = holder(census, trigger.info.writer);
-    std::printf("%s%s\n", describe(trigger.data, name, !live || is_among(name, *live)).c_str(),
-                held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
+    std::printf(
+        "%s%s\n",
+        describe(trigger.data, name, !live || is_among(name, *live), bus::text_of(told, name))
+            .c_str(),
+        held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
   if (!known.empty())
     return bus::kExitOk;

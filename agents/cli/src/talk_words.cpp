@@ -58,6 +58,16 @@ v1::Argument text_argument(const std::string& name, const std::string& text) {
   return {.name = name, .kind = v1::ARGUMENT_TEXT, .text = text};
 }
 
+/// Such as note(door="3"); without arguments the functor alone.
+std::string call_of(const std::string& functor, const std::vector<v1::Argument>& arguments) {
+  if (arguments.empty())
+    return functor;
+  return functor + "(" +
+         joined(from_bus(arguments), ", ",
+                [](const Argument& one) { return saphira::describe(Arguments{one}); }) +
+         ")";
+}
+
 std::string describe(const v1::Agent& agent) {
   std::string text = agent.name + "  " + agent.summary + "\n";
   for (const v1::Capability& capability : agent.capabilities) {
@@ -70,6 +80,10 @@ std::string describe(const v1::Agent& agent) {
       // An unbound one may be of any kind.
       std::string words =
           parameter.kind == v1::ARGUMENT_UNBOUND ? "" : saphira::describe(from_bus(parameter.kind));
+      if (parameter.low < parameter.high)
+        words += ", " + plain(parameter.low) + " to " + plain(parameter.high);
+      if (!parameter.choices.empty())
+        words += ", one of " + joined(parameter.choices);
       if (!parameter.meaning.empty())
         words += (words.empty() ? "" : ", ") + parameter.meaning;
       if (!words.empty())
@@ -186,15 +200,17 @@ bool is_among(const std::string& id, const std::string& ids) {
   return (" " + ids + " ").find(" " + id + " ") != std::string::npos;
 }
 
-std::string describe(const v1::Trigger& trigger, const std::string& id, bool live) {
+std::string describe(const v1::Trigger& trigger, const std::string& id, bool live,
+                     const std::string& missing) {
+  const std::string condition = call_of(trigger.condition, trigger.condition_arguments);
   std::string when = "every " + plain(trigger.period) + " s";
   if (trigger.kind == v1::TRIGGER_DATA)
-    when = "when the answer to " + trigger.condition + " changes";
+    when = "when the answer to " + condition + " changes";
   else if (trigger.kind == v1::TRIGGER_EVENT)
-    when = "when " + trigger.condition + " happens";
+    when = "when " + condition + " happens";
   return "trigger " + id + " of " + (trigger.source.empty() ? "somebody" : trigger.source) + ": " +
-         when + ": " + trigger.action +
-         (live ? ""
+         when + ": " + call_of(trigger.action, trigger.action_arguments) +
+         (live ? (missing.empty() ? "" : "; waits: ") + missing
                : "; it fires no more: it has fired its times, was withdrawn, or its period is "
                  "below 0.1 s");
 }

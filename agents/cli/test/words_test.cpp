@@ -139,6 +139,10 @@ const std::map<std::string, std::string (*)(In)>& answers() {
       {"agents", [](In s) { return describe(samples<v1::Agent>(Json::parse(s))); }},
       {"question", [](In s) { return question_of(parse_question(words_of(s))); }},
       {"trigger", [](In s) { return describe(of<v1::Trigger>(s), "1f3a:2", true); }},
+      {"waiting-trigger",
+       [](In s) {
+         return describe(of<v1::Trigger>(s), "1f3a:2", true, "no agent can do \"pong\"");
+       }},
       {"dead-trigger", [](In s) { return describe(of<v1::Trigger>(s), "1f3a:2", false); }},
       {"intentions", [](In s) { return intentions_of(Json::parse(s)); }},
       {"instance", [](In s) { return without_instance(s) + "; " + instance_words(s); }},

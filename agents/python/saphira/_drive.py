@@ -42,8 +42,10 @@ class Drive(Context):
             raise Canceled(reason, v1.GoalCode.CODE_STOPPED)
 
     def go(self, speed: float = 0.0, turn: float = 0.0, *, seconds: float) -> Pending[None]:
-        """Drives for so long, from when it is let. Refused: others drive, or nobody may."""
-        return Pending(self._waiter, self._go(speed, turn, seconds))
+        """Drives while it is waited for, so long from when it is let. Refused: others drive, or nobody
+        may.
+        """
+        return Pending(self._waiter, lambda: self._go(speed, turn, seconds))
 
     @property
     def drives(self) -> bool:

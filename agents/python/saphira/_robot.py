@@ -2,12 +2,12 @@
 
 import asyncio
 import atexit
+import math
 import sys
 import time
 import weakref
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast, overload
 
@@ -32,6 +32,8 @@ _SILENCE = 11.0  # [s] until a request is given up, after the newest word of an 
 _LOOK = 0.2  # [s]
 _PATIENCE = 5.0  # [s] until what a latched topic says is given up
 _QUIET = 0.3  # [s] after which no further tile of the grid is expected
+_FOUND = 1.0  # [s] until a dialogue that is there has been found
+_SHORTEST = 0.1  # [s] period of a trigger
 
 _robots: "weakref.WeakSet[Robot]" = weakref.WeakSet()
 
@@ -78,12 +80,23 @@ def call(functor: str, /, **slots: Values) -> Call:
 class Trigger:
     """It fires until it is withdrawn, or the program ends."""
 
-    def __init__(self, bus: _bus.Bus, id: v1.GoalId) -> None:
-        self._bus = bus
+    def __init__(self, robot: "Robot", id: v1.GoalId) -> None:
+        self._robot = robot
         self.id = id
 
     def withdraw(self) -> None:
-        self._bus.take_back(self.id)
+        self._robot._bus.take_back(self.id)
+
+    def trouble(self) -> Pending[str]:
+        """Why it can do nothing now, such as: no agent can do "pong" [empty: it can]."""
+        name = f"{self.id.writer:x}:{self.id.number}"
+
+        def of(told: list[v1.Answer]) -> str:
+            said = Answer(told[-1])
+            known = name in str(said["live"]).split()
+            return str(said.values.get(name, "")) if known else "the facilitator does not have it"
+
+        return self._robot._asked(topics.SOLVE, v1.Request(functor="live-triggers"), of)
 
 
 class Answer:
@@ -114,11 +127,7 @@ class Goal(Pending[v1.GoalStatus]):
         self._goal = goal
         self._began = time.monotonic()
         self.id = robot._bus.ask_goal(goal)
-        self._waiter = robot._waiter
-
-    @cached_property
-    def _work(self) -> Coroutine[Any, Any, v1.GoalStatus]:  # type: ignore[override]
-        return self._end()  # made when it is waited for
+        super().__init__(robot._waiter, self._end)
 
     @property
     def status(self) -> "v1.GoalStatus | None":
@@ -209,13 +218,29 @@ class Writer(Generic[T]):
         self._writer.dispose(sample)
 
 
+class _Told(list[v1.Answer]):
+    """The answers to a request, while somebody may wait for them."""
+
+
+def _request(functor: str, of: str, deadline: float, slots: "dict[str, Values]") -> v1.Request:
+    return v1.Request(functor=functor, service=of, deadline=deadline, arguments=arguments(slots))
+
+
+def _every_answer(told: list[v1.Answer]) -> list[Answer]:
+    return [Answer(each) for each in told[:-1] if each.results or each.text]
+
+
+def _end_of(told: list[v1.Answer]) -> Answer:
+    return Answer(told[-1])
+
+
 class Robot(Context):
     """A robot, for the thread that connected. Also a context, which ends its goals."""
 
     def __init__(self, bus: _bus.Bus) -> None:
         self._bus = bus
         self._waiter = Waiter(bus)
-        self._answers: dict[int, list[v1.Answer]] = {}
+        self._told: "weakref.WeakValueDictionary[int, _Told]" = weakref.WeakValueDictionary()
         self._writers: dict[str, _bus.Writer] = {}  # what a writer has declared ends with it
         self._served = Served(bus.answer)
         self._said = 0
@@ -223,10 +248,13 @@ class Robot(Context):
 
     def _poll(self) -> None:
         self._bus.poll()
-        for answer in self._bus.answers():
-            self._answers.get(answer.number, []).append(answer)
+        self._hear()
         for request in self._bus.requests():
             self._served.handle(request)
+
+    def _hear(self) -> None:
+        for answer in self._bus.answers():
+            self._told.get(answer.number, _Told()).append(answer)
 
     def close(self) -> None:
         """Leaves the bus, which ends all that this program has begun."""
@@ -273,7 +301,7 @@ class Robot(Context):
         return Goal(self, goal)
 
     def stop(self) -> Pending[Answer]:
-        """Ends whatever moves the robot, and is done once it is at rest."""
+        """Ends whatever moves the robot, with this call; waited for, it is done once it is at rest."""
         return self.request(topics.DRIVE_STOP, "stop")
 
     # Requests
@@ -282,43 +310,42 @@ class Robot(Context):
         self, functor: str, /, *, of: str = "", deadline: float = 0.0, **slots: Values
     ) -> Pending[Answer]:
         """Asks whichever agent can answer; of: the one that is meant. OPEN: the answer fills it."""
-        return Pending(self._waiter, self._ask_one(topics.SOLVE, functor, of, deadline, slots))
+        return self._asked(topics.SOLVE, _request(functor, of, deadline, slots), _end_of)
 
     def ask_all(
         self, functor: str, /, *, of: str = "", deadline: float = 0.0, **slots: Values
     ) -> Pending[list[Answer]]:
         """Asks each agent that can answer."""
-        return Pending(self._waiter, self._ask_all(functor, of, deadline, slots))
+        request = _request(functor, of, deadline, {**slots, "answers": 0.0})
+        return self._asked(topics.SOLVE, request, _every_answer)
 
     def request(
         self, topic: "Topic[v1.Request]", functor: str, /, *, of: str = "", **slots: Values
     ) -> Pending[Answer]:
         """Asks on a topic of requests, such as topics.SERVO (docs/requests.md)."""
-        return Pending(self._waiter, self._ask_one(topic, functor, of, 0.0, slots))
+        return self._asked(topic, _request(functor, of, 0.0, slots), _end_of)
 
-    async def _ask_one(
-        self, topic: "Topic[v1.Request]", functor: str, of: str, deadline: float, slots: Any
-    ) -> Answer:
-        request = v1.Request(
-            functor=functor, service=of, deadline=deadline, arguments=arguments(slots)
-        )
-        return Answer((await self._asked(topic, request))[-1])
-
-    async def _ask_all(self, functor: str, of: str, deadline: float, slots: Any) -> list[Answer]:
-        request = v1.Request(
-            functor=functor,
-            service=of,
-            deadline=deadline,
-            arguments=arguments({**slots, "answers": 0.0}),
-        )
-        told = await self._asked(topics.SOLVE, request)
-        return [Answer(each) for each in told[:-1] if each.results or each.text]
-
-    async def _asked(self, topic: "Topic[v1.Request]", request: v1.Request) -> list[v1.Answer]:
-        """All answers, the end last."""
+    def _asked(
+        self, topic: "Topic[v1.Request]", request: v1.Request, result: Callable[[_Told], T]
+    ) -> Pending[T]:
+        """Sends it now. The module repeats it until it is heard, whatever Python does meanwhile."""
         patience = request.deadline + 1.0 if request.deadline > 0.0 else _SILENCE
+        self._hear()
         number = self._bus.send(topic.name, request, patience)
-        self._answers[number] = told = cast("list[v1.Answer]", [])
+        told = self._told[number] = _Told()
+
+        async def end() -> T:
+            await self._end(topic, number, told)
+            if told[-1].code == v1.AnswerCode.ANSWER_TOO_LATE and not told[-1].service:
+                raise Nobody(f"{request.functor}: {told[-1].text}", v1.AnswerCode.ANSWER_NOBODY)
+            trouble = trouble_of_answer(told[-1])
+            if trouble is not None:
+                raise trouble
+            return result(told)
+
+        return Pending(self._waiter, end)
+
+    async def _end(self, topic: "Topic[v1.Request]", number: int, told: _Told) -> None:
         try:
             while True:
                 self._poll()
@@ -332,14 +359,6 @@ class Robot(Context):
             if self._bus.is_open():
                 self._bus.withdraw(topic.name, number)
             raise
-        finally:
-            del self._answers[number]
-        if told[-1].code == v1.AnswerCode.ANSWER_TOO_LATE and not told[-1].service:
-            raise Nobody(f"{request.functor}: {told[-1].text}", v1.AnswerCode.ANSWER_NOBODY)
-        trouble = trouble_of_answer(told[-1])
-        if trouble is not None:
-            raise trouble
-        return told
 
     def _absence(self, topic: "Topic[v1.Request]") -> str:
         return self._bus.absence("facilitator" if topic == topics.SOLVE else "bridge")
@@ -388,10 +407,10 @@ class Robot(Context):
 
     def read(self, topic: "Topic[T]") -> Pending[T]:
         """The next sample of a topic, or what a latched topic says now. Nobody: none in 5 s."""
-        return Pending(self._waiter, self._read(topic))
-
-    async def _read(self, topic: "Topic[T]") -> T:
         reader = self._bus.reader(topic.name)
+        return Pending(self._waiter, lambda: self._read(topic, reader))
+
+    async def _read(self, topic: "Topic[T]", reader: _bus.Reader) -> T:
         began = time.monotonic()
         while time.monotonic() < began + _PATIENCE:
             came = [sample for sample, withdrawn, _, _ in reader.take() if not withdrawn]
@@ -415,7 +434,7 @@ class Robot(Context):
     @property
     def grid(self) -> "Pending[arrays.Grid]":
         """The occupancy grid, as an array of numpy."""
-        return Pending(self._waiter, self._grid())
+        return Pending(self._waiter, self._grid)
 
     async def _grid(self) -> "arrays.Grid":
         from . import arrays
@@ -463,14 +482,14 @@ class Robot(Context):
 
     def why(self, cycle: int = 0) -> Pending[Explanation]:
         """Why it does what it does; cycle: in that one, or so many before now (below 0)."""
-        return Pending(self._waiter, self._why(cycle, ""))
+        return self.why_not("", cycle)
 
     def why_not(self, wish: str, cycle: int = 0) -> Pending[Explanation]:
         """Why it does not "turn left", "turn right", go "faster" or "slower"."""
-        return Pending(self._waiter, self._why(cycle, wish))
-
-    async def _why(self, cycle: int, wish: str) -> Explanation:
         inquiry = self._bus.inquiry(cycle)
+        return Pending(self._waiter, lambda: self._why(inquiry, wish))
+
+    async def _why(self, inquiry: _bus.Inquiry, wish: str) -> Explanation:
         try:
             while not inquiry.poll():
                 self._poll()
@@ -523,7 +542,7 @@ class Robot(Context):
 
     def serve(self) -> Pending[None]:
         """Answers until it is cancelled. Every other wait answers meanwhile, too."""
-        return Pending(self._waiter, self._serve())
+        return Pending(self._waiter, self._serve)
 
     async def _serve(self) -> None:
         while True:
@@ -540,7 +559,10 @@ class Robot(Context):
     # Triggers
 
     def every(self, period: float, action: Call, /, *, times: int = 0) -> Trigger:
-        """Asks for the action every so many seconds. times: at most so often [0: without end]."""
+        """Asks for the action every so many seconds. times: at most so often [0: without end].
+
+        ValueError: a period below 0.1 s.
+        """
         kind = v1.TriggerKind.TRIGGER_TIME
         return self._set(v1.Trigger(kind=kind, period=period), None, action, times)
 
@@ -564,10 +586,14 @@ class Robot(Context):
         if condition is not None:
             trigger.condition = condition.functor
             trigger.condition_arguments = arguments(condition.slots)
+        if trigger.kind != v1.TriggerKind.TRIGGER_EVENT and not (
+            _SHORTEST <= trigger.period < math.inf
+        ):
+            raise ValueError(f"period: expected {_SHORTEST} s or more, found {trigger.period}")
         trigger.action = action.functor
         trigger.action_arguments = arguments(action.slots)
         trigger.times = times
-        return Trigger(self._bus, self._bus.set(trigger))
+        return Trigger(self, self._bus.set(trigger))
 
     def tell(self, event: str, /, **slots: Values) -> None:
         """Reports an event, which triggers may wait for."""
@@ -576,15 +602,11 @@ class Robot(Context):
     # Words
 
     def say(self, text: str, *, speaker: str = "") -> Pending[str]:
-        """Says a sentence to the robot, such as advice, and ends with its reply.
+        """Says a sentence to the robot, such as advice; waited for, it ends with its reply.
 
         Refused: it does not act on it. What the sentence began ends with this program.
         """
-        return Pending(self._waiter, self._say(text, speaker))
-
-    async def _say(self, text: str, speaker: str) -> str:
         reader = self._bus.reader(topics.SAID.name)
-        writer = self._writer_of(topics.HEARD.name)
         self._said += 1
         utterance = v1.Utterance(
             id=v1.GoalId(self._bus.instance(), self._said),
@@ -594,9 +616,18 @@ class Robot(Context):
             confidence=1.0,
             time=time.time(),
         )
+        writer = self._writer_of(topics.HEARD.name)
+        until = time.monotonic() + _FOUND
+        while writer.matched() == 0 and time.monotonic() < until:
+            time.sleep(0.005)  # a dialogue that comes later must not act on it
+        written = writer.matched() > 0 and writer.write(utterance)
+        return Pending(self._waiter, lambda: self._replies(utterance, writer, written, reader))
+
+    async def _replies(
+        self, utterance: v1.Utterance, writer: _bus.Writer, written: bool, reader: _bus.Reader
+    ) -> str:
         replies: list[v1.Utterance] = []
         began = time.monotonic()
-        written = False
         while not (replies and replies[-1].end):
             if not written and writer.matched() > 0:
                 written = writer.write(utterance)

@@ -1,8 +1,10 @@
 """Waiting for the bus: with asyncio, or without it. The same coroutines serve both."""
 
 import asyncio
+import inspect
 import types
 from collections.abc import Awaitable, Callable, Coroutine, Generator
+from functools import cached_property
 from typing import Any, Generic, Self, TypeVar
 
 from ._bus import Bus
@@ -99,11 +101,18 @@ class Context:
 
 
 class Pending(Coroutine[Any, Any, T]):
-    """Work that is waited for: `await it`, a task of asyncio, or `it.wait()` without asyncio."""
+    """Work that is waited for: `await it`, a task of asyncio, or `it.wait()` without asyncio.
 
-    def __init__(self, waiter: Waiter, work: Coroutine[Any, Any, T]) -> None:
+    Its coroutine is made when it is waited for, so it may be dropped.
+    """
+
+    def __init__(self, waiter: Waiter, begin: Callable[[], Coroutine[Any, Any, T]]) -> None:
         self._waiter = waiter
-        self._work = work
+        self._begin = begin
+
+    @cached_property
+    def _work(self) -> Coroutine[Any, Any, T]:
+        return self._begin()
 
     def wait(self) -> T:
         """Waits in this thread. Ctrl-C ends it like a task that is cancelled."""
@@ -113,6 +122,8 @@ class Pending(Coroutine[Any, Any, T]):
         return self._work.send(value)
 
     def throw(self, typ: Any, val: Any = None, tb: Any = None) -> Any:
+        if inspect.getcoroutinestate(self._work) == inspect.CORO_CREATED:
+            self._work.send(None)  # so that it withdraws what was sent before it was waited for
         return self._work.throw(typ, val, tb)
 
     def close(self) -> None:

@@ -2,7 +2,9 @@
 
 import asyncio
 import contextlib
+import math
 import threading
+import time
 from collections.abc import Iterator
 from typing import TypedDict
 
@@ -103,6 +105,35 @@ def test_a_stop_ends_a_drive(robot: saphira.Robot) -> None:
     thread.join()
     assert error.value.code == v1.GoalCode.CODE_STOPPED
     assert "other" in error.value.reason
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_stop_that_nobody_waits_for_stops(robot: saphira.Robot, first: bool) -> None:
+    goal = robot.go("D")
+    for state in robot.state():
+        if state.velocity > 0.1:
+            break
+    if first:  # of its program, which ends at once
+        with saphira.connect("other") as other:
+            other.stop()
+    else:
+        robot.stop()
+    time.sleep(2.0)  # this program does nothing
+    assert next(robot.state()).velocity == 0.0
+    with pytest.raises(saphira.Canceled) as error:
+        goal.wait()
+    assert error.value.code == v1.GoalCode.CODE_STOPPED
+
+
+def test_a_trigger_says_what_it_waits_for(robot: saphira.Robot) -> None:
+    trigger = robot.every(60.0, saphira.call("pong"))
+    while (trouble := trigger.trouble().wait()) == "the facilitator does not have it":
+        pass
+    assert "pong" in trouble
+    trigger.withdraw()
+    for period in (0.01, 0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="0.1 s"):
+            robot.every(period, saphira.call("pong"))
 
 
 def test_a_short_drive_that_nobody_heeds_is_refused(robot: saphira.Robot) -> None:

@@ -1,6 +1,7 @@
 """Coroutines that wait for the bus: with asyncio and without it."""
 
 import asyncio
+import gc
 import os
 from typing import Any
 
@@ -41,8 +42,22 @@ def test_without_asyncio_the_bus_waits(bus: Any) -> None:
         await waiter.news(0.25)
         return "done"
 
-    assert Pending(waiter, work()).wait() == "done"
+    assert Pending(waiter, work).wait() == "done"
     assert bus.waits == [0.5, 0.25]
+
+
+@pytest.mark.filterwarnings("error")
+def test_work_that_nobody_waits_for_is_not_begun(bus: Any) -> None:
+    waiter = Waiter(bus)
+    begun = []
+
+    async def work() -> None:
+        begun.append("begun")
+
+    Pending(waiter, work)
+    Pending(waiter, work).close()
+    gc.collect()
+    assert begun == []
 
 
 def test_ctrl_c_lets_the_work_clean_up(bus: Any) -> None:
@@ -57,7 +72,7 @@ def test_ctrl_c_lets_the_work_clean_up(bus: Any) -> None:
             said.append("withdrawn")
 
     with pytest.raises(KeyboardInterrupt):
-        Pending(waiter, work()).wait()
+        Pending(waiter, work).wait()
     assert said == ["withdrawn"]
 
 
@@ -69,13 +84,33 @@ def test_with_asyncio_all_are_woken_by_one_arrival(bus: Any) -> None:
         return "woken"
 
     async def main() -> list[str]:
-        tasks = [asyncio.create_task(Pending(waiter, work())) for _ in range(3)]
+        tasks = [asyncio.create_task(Pending(waiter, work)) for _ in range(3)]
         await asyncio.sleep(0)
         os.write(bus.into, b"1")
         return list(await asyncio.gather(*tasks))
 
     assert asyncio.run(main()) == ["woken"] * 3
     assert bus.waits == []
+
+
+def test_a_task_that_is_cancelled_before_it_begins_cleans_up(bus: Any) -> None:
+    waiter = Waiter(bus)
+    said = []
+
+    async def work() -> None:
+        try:
+            await waiter.news(3600.0)
+        finally:
+            said.append("withdrawn")
+
+    async def main() -> None:
+        task = asyncio.create_task(Pending(waiter, work))
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+
+    asyncio.run(main())
+    assert said == ["withdrawn"]
 
 
 def test_with_asyncio_the_time_ends_a_wait(bus: Any) -> None:

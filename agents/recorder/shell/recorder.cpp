@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "draw.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/viewer/schema.hpp"
 
 namespace saphira::recorder {
@@ -85,6 +86,9 @@ Player::Player(bus::Node& node, Reader& reader, const Contents& contents, const 
     : reader_(reader),
       played_ns_(static_cast<std::int64_t>(options.from * 1e9)),
       from_ns_(played_ns_) {
+  if (options.from > contents.seconds)
+    throw std::invalid_argument(
+        format("it is %.1f s long: nothing is left from %g s on", contents.seconds, options.from));
   const std::vector<bus::TopicEntry> known = bus::known_topics();
   for (const auto& [topic, count] : contents.samples) {
     const auto entry =

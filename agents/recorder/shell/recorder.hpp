@@ -78,6 +78,7 @@ class Player {
   };
 
   /// `contents`: of the same recording. Topics that this contract does not know are left out.
+  /// std::invalid_argument: it ends before `from`.
   Player(bus::Node& node, Reader& reader, const Contents& contents, const Options& options);
 
   /// Writes the samples of the next `seconds`. False: it has ended. std::invalid_argument: as

@@ -178,6 +178,8 @@ TEST(Player, ClockThatStepsDelaysNothing) {
 TEST(Player, BeginsWhereItIsTold) {
   EXPECT_EQ(played({0.0, 1.0, 2.0, 3.0}, {{}, 1.5}, 0.6), std::vector<std::uint64_t>{3});
   EXPECT_EQ(played({0.0, 1.0}, {{"map"}, 0.0}, 5.0), std::vector<std::uint64_t>{});
+  EXPECT_EQ(played({0.0, 1.0}, {{}, 1.0}, 5.0), std::vector<std::uint64_t>{2});
+  EXPECT_THROW(played({0.0, 1.0}, {{}, 1.1}, 5.0), std::invalid_argument);
 }
 
 TEST_F(Recorded, HasTheTopicsThatOneNames) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "requests/shell/convert.hpp"
+#include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/sender.hpp"
@@ -55,7 +56,8 @@ Answer RobotAgent::begin(const Request& request, double now) {
   if (request.functor == kWithdraw) {
     for (const Begun& one : begun_)
       if (one.request.asker == request.asker && one.request.number == request.number) {
-        goals_.cancel(one.goal);
+        const Argument* const why = find(request.arguments, kWhy);
+        goals_.cancel(one.goal, why == nullptr ? "" : why->text);
         return {AnswerCode::underway, "withdrawn"};
       }
     return {AnswerCode::given_up, "withdrawn"};

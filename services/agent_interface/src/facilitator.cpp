@@ -19,6 +19,7 @@ constexpr std::size_t kEnded = 256;      // ends that are remembered
 constexpr std::size_t kBegun = 256;      // actions that are remembered, besides open ones
 constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
 constexpr std::size_t kParts = 8;        // of a conjunction
+constexpr std::size_t kMostTold = 64;    // results of an answer
 constexpr std::size_t kTries = 1000;     // requests for the parts of a conjunction
 constexpr std::size_t kStrangers = 64;   // that are warned of
 constexpr double kShortestPeriod = 0.1;  // [s] of a trigger
@@ -284,24 +285,43 @@ void Facilitator::deny(const std::string& who, const std::string& what) {
 }
 
 void Facilitator::list_triggers(const Request& request) {
-  std::ostringstream live;
-  for (const auto& [id, armed] : triggers_)
-    if (!is_spent(armed.trigger))
-      live << (live.tellp() > 0 ? " " : "") << std::hex << id.first << ':' << std::dec << id.second;
-  out_.solved.push_back(
-      {request.asker, request.number, kName, {AnswerCode::done, "", {text("live", live.str())}}});
+  Arguments told{text("live", "")};
+  for (const auto& [id, armed] : triggers_) {
+    if (is_spent(armed.trigger))
+      continue;
+    std::ostringstream name;
+    name << std::hex << id.first << ':' << std::dec << id.second;
+    told[0].text += (told[0].text.empty() ? "" : " ") + name.str();
+    if (const std::string missing = missing_for(armed.trigger);
+        !missing.empty() && told.size() < kMostTold)
+      told.push_back(text(name.str(), missing));
+  }
+  out_.solved.push_back({request.asker, request.number, kName, {AnswerCode::done, "", told}});
 }
 
-void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number) {
+/// No agent can do its action, or answer its condition: in words.
+std::string Facilitator::missing_for(const Trigger& trigger) const {
+  const bool looks = trigger.kind == TriggerKind::data;
+  for (const std::string& functor : {looks ? trigger.condition : trigger.action, trigger.action}) {
+    Open open;
+    open.request.functor = functor;
+    if (const auto none = candidates(open); none && none->code == AnswerCode::nobody)
+      return none->text;
+  }
+  return {};
+}
+
+void Facilitator::withdraw(std::uint64_t asker, std::uint64_t number, const std::string& why) {
   const Id id{asker, number};
   const auto found = open_.find(id);
   if (found == open_.end())
     return;
   Open& open = found->second;
   open.withdrawn = true;
+  open.why = why;
   if (!open.parts.empty()) {
     if (!open.reply)
-      withdraw(open.part.first, open.part.second);
+      withdraw(open.part.first, open.part.second, why);
     return;
   }
   open.left.clear();
@@ -521,6 +541,8 @@ void Facilitator::tell(const Open& open, std::uint64_t agent) {
   if (open.withdrawn) {
     request.functor = kWithdraw;
     request.arguments.clear();
+    if (!open.why.empty())
+      request.arguments.push_back(text(kWhy, open.why));
   }
   out_.requests.push_back(std::move(request));
 }
@@ -648,28 +670,29 @@ void Facilitator::set(const Trigger& trigger, double now) {
 }
 
 void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  miss(trigger);
+  triggers_.erase(trigger);
+  stop_action(trigger, "its trigger was withdrawn");
   out_.changed = fired_.erase(trigger) > 0 || out_.changed;
 }
 
 void Facilitator::miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
   triggers_.erase(trigger);
-  stop_action(trigger);
+  stop_action(trigger, "the program that set its trigger is gone");
 }
 
 void Facilitator::call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  stop_action(trigger);
+  stop_action(trigger, "its trigger was withdrawn");
   fired_[trigger] = kCalledOff;
   out_.changed = true;
 }
 
-void Facilitator::stop_action(const Id& trigger) {
+void Facilitator::stop_action(const Id& trigger, const std::string& why) {
   std::vector<Id> caused;
   for (const auto& [id, open] : open_)
     if (open.cause == trigger)
       caused.push_back(id);
   for (const Id& id : caused)
-    withdraw(id.first, id.second);
+    withdraw(id.first, id.second, why);
 }
 
 bool Facilitator::is_spent(const Trigger& trigger) const {

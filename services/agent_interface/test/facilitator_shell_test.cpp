@@ -338,5 +338,20 @@ TEST_F(TheRobotInMemory, AGoalOfTheRobotEndsWithItsAsker) {
   EXPECT_EQ(ended.data.id, asked.data.id);
 }
 
+TEST_F(TheRobotInMemory, AGoalOfATriggerSaysThatTheProgramOfTheTriggerIsGone) {
+  std::optional<bus::Writer<v1::Trigger>> triggers = other.writer(bus::topics::kTriggers);
+  v1::Trigger trigger{.id = {3, 1}, .kind = v1::TRIGGER_TIME, .period = 1.0, .action = "explore"};
+  triggers->write(trigger);
+  turn();
+  now += 1.0;
+  turn();
+  const auto asked = test::only(goals.take());
+  triggers.reset();
+  turn();
+  const auto ended = test::only(goals.take());
+  EXPECT_EQ(ended.data.id, asked.data.id);
+  EXPECT_EQ(ended.data.withdrawn, "the program that set its trigger is gone");
+}
+
 }  // namespace
 }  // namespace saphira::agent_interface

@@ -37,8 +37,9 @@ std::string to_json(const v1::Answer& answer, const std::string& robot = {});
 
 /// The agents, each with a line for each capability. The robot's activities are the last line.
 std::string describe(const std::vector<v1::Agent>& agents);
-/// Such as "trigger 1f3a:2 of ann: every 5 s: note".
-std::string describe(const v1::Trigger& trigger, const std::string& id, bool live = true);
+/// Such as "trigger 1f3a:2 of ann: every 5 s: note(door="3")". missing: what it waits for.
+std::string describe(const v1::Trigger& trigger, const std::string& id, bool live = true,
+                     const std::string& missing = {});
 /// ids: separated by blanks, as the facilitator tells its live triggers.
 bool is_among(const std::string& id, const std::string& ids);
 

@@ -46,8 +46,12 @@ struct Trigger {
 };
 
 /// The functor that the facilitator answers itself: the result `live` has the ids of the triggers
-/// that may fire yet, such as "1f3a:2 1f3a:5".
+/// that may fire yet, such as "1f3a:2 1f3a:5". A result of such a name says why that one waits: no
+/// agent can do its action, or answer its condition.
 inline constexpr const char* kLiveTriggers = "live-triggers";
+
+/// The argument of a withdrawal that says, in words, why.
+inline constexpr const char* kWhy = "why";
 
 /// The argument that begins the next part of a conjunction: its text is the functor, and the
 /// arguments after it are of that part. An unbound argument with a text is a variable of that name:
@@ -99,8 +103,8 @@ class Facilitator {
   /// for its asker and for operators.
   void ask(const Request& request, double now);
   /// The asker no longer wants a request: no further agent gets it, and an agent that is at work on
-  /// an action is told. That agent's answer is the end.
-  void withdraw(std::uint64_t asker, std::uint64_t number);
+  /// an action is told. That agent's answer is the end. why: for people.
+  void withdraw(std::uint64_t asker, std::uint64_t number, const std::string& why = {});
   /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
             const Answer& answer, double now);
@@ -165,6 +169,7 @@ class Facilitator {
     std::optional<Id> cause{};    ///< the trigger whose action it is
     bool unmatched = false;       ///< waits for an agent that can answer it
     bool withdrawn = false;
+    std::string why{};             ///< it was withdrawn [empty: by its asker]
     std::optional<Id> whole{};     ///< the conjunction whose part it is
     bool acts = false;             ///< an agent was asked for an action
     std::vector<Part> parts{};     ///< of a conjunction
@@ -185,7 +190,8 @@ class Facilitator {
   void begin(const Request& request, std::optional<Id> trigger, double now);
   void list_triggers(const Request& request);
   void deny(const std::string& who, const std::string& what);
-  void stop_action(const Id& trigger);
+  void stop_action(const Id& trigger, const std::string& why);
+  std::string missing_for(const Trigger& trigger) const;
   std::optional<Answer> take_apart(Open& open) const;
   void pose(const Id& id, double now);
   void go_on(const Id& id, double now);
