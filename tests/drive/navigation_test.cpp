@@ -271,6 +271,22 @@ TEST(Mapping, AFloorThatTheRobotDoesNotUnderstandIsNotBuilt) {
   }
 }
 
+TEST(Mapping, EndsWithItsGoal) {
+  WholeOptions options;
+  options.drive.world = "cluttered";
+  options.map = "none";
+  Whole whole(options);
+  const v1::GoalId goal = whole.ask("build-map");
+  whole.advance_until([] { return false; }, 800);
+  EXPECT_EQ(whole.registered().reason, "builds the map");
+  whole.ask("stop");
+  ASSERT_TRUE(whole.advance_until([&] { return whole.ended(goal); }, 3));
+  EXPECT_EQ(whole.status(goal).state, v1::GOAL_CANCELED);
+  EXPECT_TRUE(whole.advance_until([&] { return !whole.registered().adds_features; }, 3));
+  whole.advance();
+  EXPECT_NE(whole.registered().reason, "builds the map");
+}
+
 GoalStatus go_to(Whole& whole, double x, double y) {
   return whole.achieve("go_to", {saphira::point("position", {x, y, 0.0}, Frame::map)}, 1500);
 }

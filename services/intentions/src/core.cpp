@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saphira/base/text.hpp"
+#include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/language.hpp"
 #include "saphira/maps/edit.hpp"
 #include "saphira/maps/topology.hpp"
@@ -21,8 +22,10 @@ constexpr double kStarting = 10.0;
 /// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
 /// start together.
 constexpr double kStartsTogether = 3.0;
-constexpr std::size_t kMostEdges = 32;      // of the contract
-constexpr std::uint64_t kVisionLease = 10;  // [cycles] an older result counts as missing
+constexpr std::size_t kMostEdges = 32;       // of the contract
+constexpr std::uint64_t kAskFeatures = 200;  // [cycles] between requests to let the map grow...
+constexpr double kFeaturesLease = 60.0;      // [s] ...and their duration
+constexpr std::uint64_t kVisionLease = 10;   // [cycles] an older result counts as missing
 
 /// Why goals that drive wait: a person drives, or has not handed the robot back.
 std::string why_to_wait(const Core::Received::Grant& grant) {
@@ -85,6 +88,7 @@ Core::Outputs Core::step(Inputs inputs) {
       if (status.state == v1::GOAL_FAILED)
         status.reason += "; " + gone;
   outputs.limit = limit_of(now, outputs.intended);
+  ask_for_features(now, outputs.intended.requests);
   outputs.edges = edges_near(now);
   if (estop_.empty() && centering_.works())
     outputs.look = gaze_.step({now.robot, now.around, executor_.beliefs(), 0});
@@ -114,10 +118,24 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
   return speed_limit({now.robot, now.around, executor_.beliefs(), 0}, backwards);
 }
 
-/// The nearest edges of the map, for the guard beside the robot.
+/// Registration lets the map grow for as long as an intention wants it: the request ends by itself
+/// where this service is gone. Switched off by another, it stays off.
+void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests) {
+  const Belief* const belief = executor_.beliefs().stored(kGrowsMap);
+  const bool wanted = belief != nullptr && belief->value.truthy();
+  const bool again =
+      wanted && now.around.registration.adds_features && now.cycle % kAskFeatures == 0;
+  if (wanted != adds_features_ || again)
+    requests.push_back(
+        {"add_features", {truth("on", wanted), number("lease", wanted ? kFeaturesLease : 0.0)}});
+  adds_features_ = wanted;
+}
+
+/// The nearest edges of the map, for the guard beside the robot. A map that is being built does not
+/// tell people from walls that it lacks.
 std::vector<Edge> Core::edges_near(const intentions::Inputs& now) {
   std::vector<Edge> edges;
-  if (lines_ == nullptr || !now.robot.odom_in_map ||
+  if (lines_ == nullptr || adds_features_ || !now.robot.odom_in_map ||
       now.around.registration.state != v1::REGISTRATION_TRACKING)
     return edges;
   const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();

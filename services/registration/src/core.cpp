@@ -216,6 +216,11 @@ Core::Outputs Core::step(const Inputs& inputs) {
   if (!environment_.works())
     outputs.environment = 0;
   outputs.answers = std::move(answers);
+  if (now_.lease > 0 && --now_.lease == 0) {
+    now_.adds_features = false;
+    set_builder();
+    outputs.notes.info("adds nothing to the map any more: nobody asks for it now");
+  }
   return outputs;
 }
 
@@ -338,7 +343,10 @@ const std::vector<Functor>& Core::functors() {
       {"switch", "registration on or off (manual 6.9.2)", {truth_parameter("on", "on or off")}},
       {"add_features",
        "whether what is seen is added to the map (add_new_features)",
-       {truth_parameter("on", "on or off")}},
+       {truth_parameter("on", "on or off"),
+        optional(number_parameter("lease",
+                                  "ends it after that time [s], unless asked for again; 0: never",
+                                  0.0, 3600.0))}},
       {"snap",
        "whether what is added is put on right angles (snap_to_right_angle_grid)",
        {truth_parameter("on", "on or off")}}};
@@ -413,9 +421,19 @@ Arguments Core::obey(const Request& request) {
   } else if (what == "snap" && now_.building) {  // what was built so far is kept
     now_.snaps = truth_of(with, "on");
     now_.builder->snap(now_.snaps);
+  } else if (what == "snap") {
+    placed();
+    now_.snaps = truth_of(with, "on");
+    set_builder();
   } else {
     placed();
-    (what == "snap" ? now_.snaps : now_.adds_features) = truth_of(with, "on");
+    const bool on = truth_of(with, "on");
+    const auto lease = static_cast<std::uint64_t>(std::lround(10.0 * number_of(with, "lease")));
+    const bool prolongs = on && lease > 0 && now_.lease > 0;
+    now_.lease = on ? lease : 0;
+    if (prolongs)
+      return {};  // what was built so far goes on
+    now_.adds_features = on;
     set_builder();
   }
   return {};

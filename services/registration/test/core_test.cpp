@@ -419,5 +419,33 @@ TEST(RegistrationCore, TheSameInputsGiveTheSameOutputs) {
   }
 }
 
+TEST(RegistrationCore, BuildingThatNobodyAsksForAgainEnds) {
+  Core core(settings(""));
+  Core unlimited(settings(""));
+  Robot robot;
+  Robot other;
+  Request lease = request("add_features", true);
+  lease.arguments.push_back(saphira::number("lease", 1.0));
+  robot.step(core);
+  other.step(unlimited);
+  act(unlimited, request("add_features", true));
+  for (int i = 0; i < 300; ++i) {
+    if (i % 5 == 0) {
+      EXPECT_EQ(act(core, lease).text, "");
+    }
+    EXPECT_EQ(robot.step(core).reason, "builds the map");
+    other.step(unlimited);
+  }
+  EXPECT_FALSE(core.map().features.empty());
+  EXPECT_EQ(core.map(), unlimited.map()) << "it was built in one piece";
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(core.adds_features());
+    EXPECT_EQ(robot.step(core).reason, "builds the map");
+  }
+  EXPECT_FALSE(core.adds_features());
+  EXPECT_EQ(robot.step(core).reason.find("builds"), std::string::npos);
+  EXPECT_FALSE(maps::named(core.map(), lps::PointType::position, "start").empty());
+}
+
 }  // namespace
 }  // namespace saphira::registration

@@ -8,6 +8,7 @@
 #include "drive/building.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/explore/explorer.hpp"
 #include "saphira/explore/free_floor.hpp"
 #include "saphira/maps/topology.hpp"
 
@@ -88,6 +89,39 @@ TEST_P(HallEnds, DoorsBesideThemAreOnTheMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, HallEnds, ::testing::Values(1, 2, 5, 6));
+
+// A cupboard stands in the hall: the guard must not hold the robot there for good. Where it does,
+// the map is not called whole.
+TEST(Explore, TheGuardLetsTheRobotPassACupboard) {
+  const maps::Map reference = maps::load_map(config_folder() + "/maps/small-office.map");
+  int whole = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    DriveOptions options;
+    options.world = "small-office";
+    options.seed = seed;
+    options.guard = true;
+    Building built(options);
+    built.run(20000);
+    const test::MapScore score = test::score(built.aligned_map(), reference);
+    EXPECT_EQ(built.done(), score.doors_found == 4) << seed << ": " << built.reason();
+    EXPECT_EQ(score.doors_false, 0) << seed;
+    EXPECT_EQ(built.whole.drive().contacts(), 0) << seed;
+    whole += built.done() ? 1 : 0;
+  }
+  EXPECT_GE(whole, 6) << "of 8";
+}
+
+// No wall is heard, and the robot does not move.
+TEST(Explorer, AWayThatItCannotFollowIsLeft) {
+  Explorer explorer({});
+  const maps::Map map;
+  const std::vector<Vec2> way{{0.0, 0.0}};
+  const std::vector<lps::SonarReading> silent;
+  for (std::uint64_t cycle = 1; cycle < 20000 && !explorer.output().done; ++cycle)
+    explorer.step({cycle, {}, map, way, silent});
+  EXPECT_TRUE(explorer.output().done);
+  EXPECT_EQ(explorer.left(map), std::vector<std::string>{"straight on (closed)"});
+}
 
 TEST(FreeFloor, SaysThatItGoesOnBeyondItsCells) {
   FreeFloor floor({});

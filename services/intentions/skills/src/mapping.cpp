@@ -10,6 +10,7 @@
 #include "driving.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/explore/explorer.hpp"
+#include "saphira/intentions/functors.hpp"
 #include "saphira/maps/map.hpp"
 
 namespace saphira::intentions {
@@ -216,10 +217,11 @@ void add_mapping(Functions& functions) {
                        "(forget-map): registration begins with an empty map"});
   functions.add(Action{"add-features", 1, 1,
                        [](Effects& effects, Values arguments) {
-                         effects.request({"add_features", {truth("on", arguments[0].truthy())}});
+                         effects.believe_while(kGrowsMap, arguments[0]);
                          return arguments[0];
                        },
-                       "(add-features T): whether registration puts what is seen on the map"});
+                       "(add-features T): whether registration puts what is seen on the map, until "
+                       "this intention ends"});
   functions.add(
       "adds-features", "whether registration puts what is seen on the map",
       [](const World& world) { return Value::truth(world.around.registration.adds_features); });

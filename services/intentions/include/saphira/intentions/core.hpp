@@ -164,6 +164,7 @@ class Core {
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
+  void ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests);
   std::vector<Edge> edges_near(const intentions::Inputs& now);
   SpeedLimit limit_of(const intentions::Inputs& now, const intentions::Outputs& intended) const;
   void report(const GoalUpdates& updates, Notes& notes);
@@ -184,7 +185,8 @@ class Core {
   Process& centering_ = processes_.add(
       "center-cameras", "keeps the cameras on the person or point of the belief gaze");
   Gaze gaze_;
-  std::string estop_;  ///< the program that pressed the latched emergency stop
+  bool adds_features_ = false;  ///< an intention lets the map grow
+  std::string estop_;           ///< the program that pressed the latched emergency stop
   std::optional<Received::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;

@@ -112,6 +112,7 @@ class Core {
     std::vector<lps::SonarMount> sonars;
     bool on = true;  ///< false: switched off by a request
     bool adds_features = false;
+    std::uint64_t lease = 0;  ///< [cycles] until it adds none any more; 0: no limit
     bool snaps = true;
     std::optional<MapBuilder> builder;
     /// The map began empty: the builder finds the pose together with the map.

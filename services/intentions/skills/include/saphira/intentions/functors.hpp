@@ -4,6 +4,9 @@
 
 namespace saphira::intentions {
 
+/// The belief that the map is to grow: registration is asked for it while it holds.
+inline constexpr const char* kGrowsMap = "grows-map";
+
 /// The built-in functors:
 ///
 ///   go_to(position, [speed], [radius], [patience])   drives to a point, around obstacles
