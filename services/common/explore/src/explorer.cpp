@@ -409,13 +409,13 @@ void Explorer::probe(const Inputs& inputs) {
                                     : away ? ": turned away"
                                            : ": open, and nothing follows");
     open_ = !stuck && !away;
-    if (stuck) {  // no wall was heard ahead: the way goes on from here, for all that is known
+    if (!open_ && lead_->opening && !in_corridor_) {
+      leave(*lead_, stuck ? "closed" : "turned away");
+    } else if (stuck && !squeeze_) {  // before a wall was heard: the way may go on
       Lead rest = *lead_;
       rest.point = here;
       rest.heading = heading;
       leave(rest, "closed");
-    } else if (away && lead_->opening && !in_corridor_) {
-      leave(*lead_, "turned away");
     }
     // An end that the robot passed on the way into the open was tried too. One that turned it away
     // may be the wall of a corridor that lies aslant to the lead.
@@ -506,18 +506,10 @@ void Explorer::leave(const Lead& lead, const std::string& why) {
 }
 
 std::vector<std::string> Explorer::left(const maps::Map& map) const {
-  // A way aside that is a door leads into a room, which is not explored.
-  const auto at_door = [&](const Lead& lead) {
-    return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& f) {
-      return f.type == PointType::door &&
-             (f.pose_in_map.position() - lead.point).norm() < settings_.tried &&
-             std::abs(std::cos(f.pose_in_map.th - lead.heading)) > std::cos(kPi / 4);
-    });
-  };
   std::vector<std::string> out;
   for (const Lead& lead : left_)
     if (!lead.home && !lead.door && !mapped_along(map, lead.point, lead.heading) &&
-        !at_door(lead) && std::find(out.begin(), out.end(), lead.what) == out.end())
+        std::find(out.begin(), out.end(), lead.what) == out.end())
       out.push_back(lead.what);
   return out;
 }
