@@ -246,7 +246,7 @@ class Bench {
     std::string meaning;
     for (std::size_t at = 0; at < sound.size(); at += kBlock) {
       const std::size_t to = std::min(sound.size(), at + kBlock);
-      for (const Heard& heard : conversation
+      for (const Recognized& heard : conversation
                                     .hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
                                                 sound.begin() + static_cast<std::ptrdiff_t>(to)),
                                           false)
