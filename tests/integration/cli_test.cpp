@@ -652,7 +652,9 @@ TEST_F(CliTest, AnEmergencyStopNeedsNoRoomOnTheDisk) {
   EXPECT_TRUE(test::wait_until([&] {
     return has(ask({"status"}).text, "intentions      running");
   })) << up.output();
-  EXPECT_EQ(ask({"estop", "reset"}).code, 0);
+  const Outcome reset = ask({"estop", "reset"});
+  EXPECT_EQ(reset.code, 0);
+  EXPECT_TRUE(has(reset.text, "the emergency stop is reset")) << reset.text;
   const Outcome audit = ask({"audit"});
   EXPECT_EQ(audit.code, 0) << audit.text;
   EXPECT_TRUE(has(audit.text, "\tstopped\t") && has(audit.text, "\treset\t")) << audit.text;

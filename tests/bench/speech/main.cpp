@@ -246,11 +246,12 @@ class Bench {
     std::string meaning;
     for (std::size_t at = 0; at < sound.size(); at += kBlock) {
       const std::size_t to = std::min(sound.size(), at + kBlock);
-      for (const Recognized& heard : conversation
-                                    .hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
-                                                sound.begin() + static_cast<std::ptrdiff_t>(to)),
-                                          false)
-                                    .utterances) {
+      for (const Recognized& heard :
+           conversation
+               .hear(Sound(sound.begin() + static_cast<std::ptrdiff_t>(at),
+                           sound.begin() + static_cast<std::ptrdiff_t>(to)),
+                     false)
+               .utterances) {
         if (heard.outcome != Outcome::command || !meaning.empty())
           continue;
         const auto what = grammar_.understand(heard.text);
