@@ -22,6 +22,7 @@
 #include "agent_interface/shell/dialogue_shell.hpp"
 #include "bridge/shell/shell.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/log_line.hpp"
 #include "saphira/base/places.hpp"
@@ -133,7 +134,7 @@ class Talkers {
   bool step() {
     if (dialogue_) {
       if (const auto robot = robots_->take_newest())
-        seconds_ = 0.1 * static_cast<double>(robot->stamp.cycle);
+        seconds_ = seconds_of(robot->stamp.cycle);
       dialogue_->step(seconds_);
     }
     return story_ && story_->step();

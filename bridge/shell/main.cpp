@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
                        "has said for so long that it does not drive (usual: never, only when it is "
                        "handed back)")
             .in_range(0.0, 600000.0);
-        app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
+        app.add_flag("--no-guard", no_guard, "do not stop before obstacles");
         app.add_option("--guard-margin", options.guard_margin,
                        "m that the guard keeps before an obstacle ahead")
             .in_range(0.1, 1.0);

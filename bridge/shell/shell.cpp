@@ -384,7 +384,7 @@ void Shell::perform(const CloseLink& close, double now) {
 
 void Shell::perform(const KeepLatches& keep, double) {
   if (const std::string trouble = latch_file_.write(keep.latches); !trouble.empty())
-    node_.error("what is latched is not kept over a restart: " + trouble);
+    node_.error("the emergency stop is not kept over a restart: " + trouble);
 }
 
 void Shell::perform(const KeepOdometry& keep, double) {

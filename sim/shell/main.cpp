@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
                  "for each further robot")
       .one_value_each();
   bool dry_run = false;
-  app.add_flag("--dry-run", dry_run, "Read the files, say what is wrong with them, and end");
+  app.add_flag("--dry-run", dry_run, "Check the files, report errors, and end");
   app.add_option("--plot", plot_files, "Draw a trace into a picture (SVG), and end")
       .values(2)
       .placeholder("TRACE.csv OUT.svg");

@@ -21,8 +21,8 @@ namespace {
 
 using protocol::RobotParameters;
 
-/// What stands or moves in a world, tick by tick. Lengths in m, angles in degrees, except for those
-/// of a world file.
+/// The things of a world, tick by tick. Lengths in m, angles in degrees, except for those of a
+/// world file.
 ///
 /// Before the robots: `world TEXT`, a room of 10 m with these things; `bare TEXT`, the world file
 /// alone; `parameter NAME VALUE` and `sonar DEGREES`, of the robots that are added next.

@@ -15,6 +15,7 @@
 
 #include "../acceptance/system.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/teleop/pilot.hpp"
 
@@ -29,7 +30,6 @@ using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr milliseconds kPatience{15000};
-constexpr double kCycle = 0.1;
 constexpr std::uint64_t kWatched = 30;  // [cycles] after the stop
 constexpr double kMoved = 0.02;         // [m], [rad]
 constexpr double kSpeed = 0.2;          // [m/s] of a person
@@ -277,7 +277,7 @@ Result stop(Site& site, const Move& move, const Stop& way) {
   if (!result.stopped)
     return result;
   result.false_success = way.claims_rest && result.success && claimed < *stood;
-  result.still = kCycle * static_cast<double>(*stood - *site.arrived());
+  result.still = seconds_of(*stood - *site.arrived());
   const sim::TraceRow then = site.system().truth();
   site.until([&] { return site.system().truth().cycle >= then.cycle + kWatched; });
   const Pose moved = relative(then.pose_in_world, site.system().truth().pose_in_world);

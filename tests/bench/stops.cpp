@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "bench.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
@@ -26,7 +27,6 @@ namespace {
 
 constexpr const char* kDomain = "196";
 constexpr double kStill = 0.003;  // [m/s]
-constexpr double kCycle = 0.1;    // [s]
 constexpr std::chrono::seconds kLimit{60};
 
 enum class Loss { driver, bridge, line, estop };

@@ -314,7 +314,7 @@ TEST(HostileBytes, ThatEndTooEarlyAreNoSample) {
   }
 }
 
-// What another vendor reads we read, to the same sample.
+// A sample that another vendor reads is read, with the same values.
 TEST(HostileBytes, WithAnyValueAreReadAsByAnotherVendor) {
   int read = 0;
   int refused = 0;

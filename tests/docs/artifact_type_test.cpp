@@ -64,7 +64,7 @@ class Copy {
               "");
   }
 
-  /// What the compiler says of these lines; nothing where they are right.
+  /// The messages of the compiler about these lines; empty where they are right.
   std::string compile(const std::string& lines) {
     write("all.cpp", lines);
     std::string command =

@@ -129,7 +129,7 @@ TEST(ShownCommands, AreThere) {
   EXPECT_GT(checked, 50);
 }
 
-/// What a program, or a command of `saphira`, says of its options.
+/// The help of a program, or of a command of `saphira`.
 std::string help_of(const Shown& one) {
   static std::map<std::vector<std::string>, std::string> said;
   const std::regex plain("[a-z][a-z0-9-]*");

@@ -218,7 +218,7 @@ TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
-// What stands before the colour is not the colour.
+// An obstacle before the colour is not the colour.
 TEST(VisionEyes, SomethingOnTheWayToAColorIsPassed) {
   for (const double distance : {0.6, 1.0}) {
     WholeOptions options;

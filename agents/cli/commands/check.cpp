@@ -135,13 +135,13 @@ int check(const std::string& name, const std::vector<std::string>& set,
     print("%s\n", text.c_str());
   if (wrong == 0)
     print("%s would start%s\n", deployment.file.c_str(),
-          left_out.empty() ? "" : ", without what is left out");
+          left_out.empty() ? "" : ", without the programs left out above");
   else if (misused == 0)
     print("%s would start, but %zu of its programs would not run as %s should\n",
           deployment.file.c_str(), wrong, wrong == 1 ? "it" : "they");
   else
-    print("%s would not start: %zu of its programs %s given\n", deployment.file.c_str(), misused,
-          misused == 1 ? "does not take what it is" : "do not take what they are");
+    print("%s would not start: %zu of its programs %s\n", deployment.file.c_str(), misused,
+          misused == 1 ? "refuses its options" : "refuse their options");
   return wrong == 0 ? bus::kExitOk : bus::kExitUsage;
 }
 

@@ -13,6 +13,7 @@
 #include "environment.hpp"
 #include "lps/shell/convert.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -129,9 +130,7 @@ class Watcher {
   }
 
   bool connected() const { return robot_.has_value(); }
-  double robot_time() const {
-    return robot_ ? 0.1 * static_cast<double>(robot_->stamp.cycle) : 0.0;
-  }
+  double robot_time() const { return robot_ ? seconds_of(robot_->stamp.cycle) : 0.0; }
 
   std::string line(const std::optional<v1::GoalStatus>& status) const {
     if (!robot_)
@@ -432,7 +431,7 @@ class Demo {
       for (const std::string& line : kept_.lines())
         if (line.starts_with(*misused + " | "))
           std::fprintf(stderr, "%s\n", line.c_str());
-      std::fprintf(stderr, "saphira: %s does not take what it is given\n", misused->c_str());
+      std::fprintf(stderr, "saphira: %s refuses its options\n", misused->c_str());
       return bus::kExitUsage;
     }
     std::FILE* out = options_.json ? stderr : stdout;
@@ -495,7 +494,7 @@ void add_demo(CLI::App& app, Chosen& chosen) {
       ->transform(number_in_unit("m"))
       ->capture_default_str();
   command->add_option("--trace", options->trace, "keep the true trajectory in this file (CSV)");
-  command->add_flag("--verbose,-v", options->verbose, "show what the programs say");
+  command->add_flag("--verbose,-v", options->verbose, "show the output of the programs");
   command->footer("Exit code 0: the robot arrived; 1: it did not, in the time that was given.");
   chosen.when(command, [options](const bus::NodeOptions& node, const bus::Stop& stop) {
     return Demo(*options, node).run(stop);

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/device_words.hpp"
@@ -77,8 +78,8 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
     const std::set<std::vector<std::string>> now(rows.begin() + 1, rows.end());
     for (const auto& row : rows)
       if (now.contains(row) && !shown.contains(row))
-        std::printf("%8.1f s  %-14s  %s\n", 0.1 * static_cast<double>(watch.robot->stamp.cycle),
-                    row[0].c_str(), row[1].c_str());
+        std::printf("%8.1f s  %-14s  %s\n", seconds_of(watch.robot->stamp.cycle), row[0].c_str(),
+                    row[1].c_str());
     std::fflush(stdout);
     if (std::ferror(stdout) != 0)
       return bus::kExitOk;  // the reader of our output has left

@@ -320,7 +320,7 @@ class Teleop {
     v1::Goal goal{.functor = "drive", .arguments = {bus::number("speed", kConstantVelocity)}};
     constant_ = goals_.ask(goal);
     pilot_.hand_back();
-    note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";
+    note_ = "constant velocity on: the behaviors drive around obstacles";
   }
 
   void end_constant() {

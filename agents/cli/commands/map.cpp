@@ -11,6 +11,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
@@ -107,7 +108,7 @@ int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
   auto told = Clock::now() - std::chrono::seconds(1);
   do {
     if (view.registration && seconds_since(told) >= 1.0) {
-      std::printf("%8.1f s  %s%s%s\n", 0.1 * static_cast<double>(view.registration->stamp.cycle),
+      std::printf("%8.1f s  %s%s%s\n", seconds_of(view.registration->stamp.cycle),
                   describe(*view.registration, view.map).c_str(), view.holds().empty() ? "" : "; ",
                   view.holds().c_str());
       std::fflush(stdout);

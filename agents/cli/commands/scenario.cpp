@@ -135,7 +135,7 @@ Ending play_live(const ScenarioOptions& options, const Run& run,
     supervisor.step(milliseconds(200), {stop.fd(), node.wake_fd()});
     node.clear_wake();
     if (supervisor.misused())
-      trouble = *supervisor.misused() + " does not take what it is given";
+      trouble = *supervisor.misused() + " refuses its options";
     else if (!played.ready() && seconds_since(began) > kStart)
       trouble = "the programs were not all there within 60 s";
   }
@@ -196,7 +196,7 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
   const std::string speech = find_places().bin + "/saphira-speech";
   if (!std::filesystem::exists(speech))
     throw std::runtime_error("--audio: there is no saphira-speech beside this program; " + text +
-                             " has what was said. To hear it, " + kInstallSpeech);
+                             " has the text. To hear it, " + kInstallSpeech);
   Kept kept(kKeptLines);
   ChildSpec reader{"speech", {speech, "--read", text, "--speaker", folder}, {}, false};
   Supervisor supervisor(

@@ -163,8 +163,7 @@ void add_security(CLI::App& app, Chosen& chosen) {
 
   one = action("add", "Make a member: a machine, a person or a program", add);
   one->add_option("name", words->name, "its name")->required();
-  one->add_option("--role", words->roles,
-                  "what it may do; several for several programs of a machine")
+  one->add_option("--role", words->roles, "its role; several for several programs of a machine")
       ->required()
       ->delimiter(',');
   one->add_option("--robot", words->robot, "the only robot that it may have to do with");

@@ -226,7 +226,7 @@ int knows(const std::vector<std::string>& words, const bus::NodeOptions& options
     const auto knowledge = known(node, processes, stop);
     if (!knowledge) {
       const std::string absent = absence(node, processes, kDialogue);
-      return failed("nothing is said about what the robot knows; " +
+      return failed("no program tells the robot's knowledge; " +
                     (absent.empty() ? who_is_there(processes) : absent));
     }
     std::fputs(knowledge_table(*knowledge).c_str(), stdout);

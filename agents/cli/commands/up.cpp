@@ -200,7 +200,7 @@ class OwnVersion {
     const std::string text = keep_held() + "\n" + supervisor.hand_over();
     const int handed = memfd_create("saphira", 0);
     if (handed < 0 || ::write(handed, text.data(), text.size()) != std::ssize(text))
-      return "the supervisor stays as it is: no memory for what it hands over";
+      return "the supervisor stays as it is: no memory for the handover";
     flush_output();
     manager.restore();
     for (const auto& [name, value] : environment_)

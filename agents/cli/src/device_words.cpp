@@ -93,7 +93,7 @@ Request gripper(Words& words) {
   // The bridge's words where they are others.
   static const std::map<std::string, std::string> lift{
       {"up", "lift up"}, {"down", "lift down"}, {"lift-stop", "lift stop"}};
-  const std::string word = words.next("what the gripper is to do");
+  const std::string word = words.next("an action of the gripper");
   if (word == "pressure" || word == "carry")
     return {"gripper", {{"action", word}, words.number("value", 0xFFFF, "a value")}};
   if (const auto found = lift.find(word); found != lift.end())
@@ -156,7 +156,7 @@ Request serial(Words& words) {
   if (data.size() > 360)
     fail("at most 180 bytes", std::to_string(data.size() / 2));
   if (data.empty() && answer == 0)
-    fail("what is to be sent", "");
+    fail("the bytes to send", "");
   return {"serial",
           {{"port", static_cast<double>(port)},
            {"data", data},

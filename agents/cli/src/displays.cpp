@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/guess.hpp"
@@ -20,7 +21,6 @@ namespace {
 constexpr int kBar = 8;                      // characters each side of the middle line
 constexpr double kFullTurn = radians(30.0);  // the length of the bar
 constexpr double kFullSpeed = 0.4;           // [m/s]
-constexpr double kCycle = 0.1;               // [s] manual 2.1.1
 
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width)
@@ -79,7 +79,7 @@ const char* sign_of(v1::ControlAction action) {
 
 /// Such as "2.5 s", for people.
 std::string ago(std::uint64_t since, std::uint64_t now) {
-  return since > now ? "-" : format("%.1f s", kCycle * static_cast<double>(now - since));
+  return since > now ? "-" : format("%.1f s", seconds_of(now - since));
 }
 
 struct TreeLine {

@@ -228,7 +228,7 @@ void Supervisor::take_over(const std::string& children) {
   std::istringstream in(children);
   std::string line;
   if (!std::getline(in, line) || line != kHandedOver)
-    throw std::invalid_argument("what the version before has handed over is of another form");
+    throw std::invalid_argument("the previous version has handed over another format");
   std::string name;
   Slot taken;
   int output = -1;

@@ -588,7 +588,7 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       if (!late && !happened)
         return false;
       session_.answer(number, {"the belief " + waiting.name + " is " + value +
-                                   (happened ? "" : ": what was awaited has not happened"),
+                                   (happened ? "" : ": the awaited value has not come"),
                                {{"happened", happened}, {"belief", waiting.name}, {"value", value}},
                                false});
       return true;

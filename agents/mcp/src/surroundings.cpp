@@ -228,8 +228,7 @@ Result view_of(const Surroundings& around) {
 
 Result facts_of(const v1::Knowledge* knowledge) {
   if (knowledge == nullptr)
-    return {"nothing is heard about what the robot knows: saphira-dialogue may not run", nullptr,
-            true};
+    return {"no program tells the robot's knowledge: saphira-dialogue may not run", nullptr, true};
   const auto& all = knowledge->known;
   Json value{{"known", Json::array()}};
   if (all.empty())

@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
         app.add_option("--topic", own.topics, "this one alone; may be repeated").one_value_each();
         app.add_option("--from", own.from, "[s] into the recording; begin there")
             .in_range(0.0, 1e9);
-        app.add_flag("--list", own.list, "say what it holds, and end");
+        app.add_flag("--list", own.list, "list its contents, and end");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         try {

@@ -167,8 +167,8 @@ struct Client {
 
 class BaseTest : public ::testing::Test, protected Client {};
 
-/// The cases of base.txt. "cmd" is cmd_vel, forward [m/s] and turning [deg/s]; what is counted is
-/// counted from "mark" on.
+/// The cases of base.txt. "cmd" is cmd_vel, forward [m/s] and turning [deg/s]; counts begin at
+/// "mark".
 class Play : public test::LinePlayer, private Client {
  public:
   Play() {

@@ -594,7 +594,7 @@ class BusRobot final : public Robot {
     if (!call) {
       say_("command " + std::to_string(packet.size() > 3 ? packet[3] : 0) +
                " is not for the bus: its bridge keeps the packets of the robot (docs/requests.md "
-               "has what can be asked of it)",
+               "lists its requests)",
            true);
       return;
     }

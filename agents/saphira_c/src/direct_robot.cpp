@@ -204,7 +204,7 @@ class DirectRobot final : public Robot {
   }
   void perform(const bridge::SessionBegan& began) {
     say_("the guard stops the robot " + format("%.2f m", settings_.guard_margin) +
-             " before what its sonars hear (" + kMargin + ")",
+             " before an obstacle that its sonars hear (" + kMargin + ")",
          false);
     const std::lock_guard lock(mutex_);
     parameters_ = core_.parameters();

@@ -5,11 +5,11 @@
 
 #include "os.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/cycle.hpp"
 
 namespace saphira::c {
 namespace {
 
-constexpr double kCycle = 0.1;            // [s] for all micro-tasks together
 constexpr float kGoalReached = 0.9F;      // of a behavior in an intention
 constexpr std::size_t kMostTasks = 4096;  // with removed ones, whose pointers may be kept
 

@@ -359,8 +359,8 @@ std::optional<Cause> Reason::age_cause() const {
   const double command_age = scene_.grant ? scene_.grant->command_age : 0.0;
   if (std::max(all.input_age, command_age) < kOldInput)
     return std::nullopt;
-  return Cause{"age", kSlowWords + format(": what was intended was %.1f s old, ", all.input_age) +
-                          format("and the command answers what was %.1f s ago", command_age) +
+  return Cause{"age", kSlowWords + format(": intentions were %.1f s old, ", all.input_age) +
+                          format("and the command answers a state of %.1f s ago", command_age) +
                           slow_way()};
 }
 

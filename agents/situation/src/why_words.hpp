@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/idl/behavior.hpp"
@@ -20,10 +21,6 @@ inline constexpr double kFarFromTold = 0.05;      // [m/s] from the setpoint: me
 inline constexpr double kTurning = radians(3.0);  // [rad/s] a visible turn
 inline constexpr std::size_t kMostMentioned = 3;  // behaviors in the sentence
 
-/// [s]
-inline double seconds_of(std::uint64_t cycles) {
-  return 0.1 * static_cast<double>(cycles);
-}
 std::string speed_text(double speed);
 /// Such as "12 degrees"; invisibly small angles with a decimal.
 std::string angle_text(double angle);

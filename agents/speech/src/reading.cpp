@@ -29,7 +29,7 @@ std::vector<Passage> read_aloud(std::string_view dialogue, const std::string& ro
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos || colon == 0)
       throw std::invalid_argument("line " + std::to_string(number) +
-                                  ": expected \"speaker: what is said\"");
+                                  ": expected \"speaker: words\"");
     const std::string speaker(line.substr(0, colon));
     const Voice& voice =
         voices.try_emplace(speaker, kPeople[(voices.size() - 1) % kPeople.size()]).first->second;

@@ -5,6 +5,7 @@
 
 #include "maps/shell/convert.hpp"
 #include "saphira/agent_interface/dialogue.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/format.hpp"
 
 namespace saphira::story {
@@ -38,7 +39,7 @@ Story::Story(bus::Node& node, Cast cast, StoryOptions options)
 void Story::take() {
   if (const auto robot = robots_.take_newest()) {
     stamp_ = robot->stamp;
-    time_ = 0.1 * static_cast<double>(stamp_.cycle);
+    time_ = seconds_of(stamp_.cycle);
     if (std::abs(robot->velocity) > kStanding)
       stands_since_ = time_;
   }

@@ -84,9 +84,9 @@ Cast::Cast(std::string_view text, const std::string& file) : file_(file) {
       if (people_.empty())
         reader.fail("expected a PERSON above it");
       if (word == "HAS") {
-        people_.back().has.emplace(reader.word("what the person has"));
+        people_.back().has.emplace(reader.word("a thing that the person has"));
       } else if (word == "GETS") {
-        people_.back().gets.emplace(reader.word("what the person is to have at the end"));
+        people_.back().gets.emplace(reader.word("a thing that the person is to have at the end"));
       } else {
         const std::string whom(reader.word("a name"));
         people_.back().knows[whom] = place(2);

@@ -212,7 +212,7 @@ class Stick : public saphira::test::LinePlayer {
   double now_ = 1.0;
 };
 
-/// What ann orders and the bridge grants, and the commands from that.
+/// The orders of ann, the grants of the bridge, and the commands from both.
 class Piloted : public saphira::test::LinePlayer {
  public:
   Piloted() {

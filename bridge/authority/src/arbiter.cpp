@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
 
@@ -14,11 +15,10 @@ constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that unknown wri
 constexpr std::size_t kMaxPressed = 64;    // the same for emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
 constexpr double kNever = -1e300;          // [s]
-constexpr double kCycle = 0.1;             // [s]
 
 /// [s] since the cycle that a command answers.
 double age_of(const Command& command, std::uint64_t cycle) {
-  return kCycle * static_cast<double>(cycle - command.cycle);
+  return seconds_of(cycle - command.cycle);
 }
 
 constexpr std::array kDriving{Role::teleop, Role::direct, Role::behaviors};
@@ -300,7 +300,7 @@ std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) c
   if (now - p.moved_on > settings_.lease + kTick)
     return who + " repeats what it answered " + seconds(now - p.moved_on) +
            " ago: it hangs, or does not hear the robot";
-  return who + " answers what was " + seconds(age_of(p.newest, cycle)) + " ago, which is too old";
+  return who + " answers a state of " + seconds(age_of(p.newest, cycle)) + " ago, which is too old";
 }
 
 /// A stopped program that drives on does not keep weaker roles from driving. A person does, whose
@@ -333,8 +333,8 @@ std::string Arbiter::why_to_stand(Role role) const {
              kHandBack + ")";
     case Wait::reset:
       return std::string(
-                 "an emergency stop was reset, and what was meant before it does not go "
-                 "on by itself: autonomy waits until the robot is handed back (") +
+                 "an emergency stop was reset, and earlier goals do not go "
+                 "on by themselves: autonomy waits until the robot is handed back (") +
              kHandBack + ")";
     case Wait::none:
       break;

@@ -314,7 +314,7 @@ Guarded slow_for_age(Guarded guarded, double age, double fresh) {
   // The stronger limit gives the reason.
   if (guarded.action <= GuardAction::limit) {
     guarded.reason =
-        format("%.2f m/s cut to %.2f: the command answers what the robot said %.1f s ago",
+        format("%.2f m/s cut to %.2f: the command answers the robot's state of %.1f s ago",
                guarded.velocity, limit, age);
     guarded.action = GuardAction::limit;
   }

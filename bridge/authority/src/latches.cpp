@@ -15,7 +15,7 @@ Latches latches_from_text(const std::string& text) {
   try {
     return text.empty() ? Latches{} : restored<Latches>(unsealed(text, ""));
   } catch (const std::exception&) {
-    return {true, "nobody known: what was kept of it cannot be read", Wait::driven};
+    return {true, "unknown: the saved emergency stop cannot be read", Wait::driven};
   }
 }
 

@@ -293,7 +293,7 @@ TEST(SlowForAge, TheOlderTheSlowerAheadAndBack) {
 TEST(SlowForAge, SaysHowOldTheCommandIs) {
   const Guarded out = slow_for_age(wanted(0.4), 0.6, 0.1);
   EXPECT_EQ(out.action, GuardAction::limit);
-  EXPECT_EQ(out.reason, "0.40 m/s cut to 0.30: the command answers what the robot said 0.6 s ago");
+  EXPECT_EQ(out.reason, "0.40 m/s cut to 0.30: the command answers the robot's state of 0.6 s ago");
 }
 
 TEST(SlowForAge, WhatTheGuardSaysStands) {

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
+#include "saphira/base/cycle.hpp"
+
 namespace saphira::bridge {
 
-inline constexpr double kCycle = 0.1;  // [s] manual 2.1.1
 inline constexpr double kSilent =
     0.5;                              // [s] without a packet: the link is silent, the robot stands
 inline constexpr double kDead = 2.0;  // [s] then the link is closed

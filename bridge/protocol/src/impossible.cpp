@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/format.hpp"
 
 namespace saphira::protocol {
@@ -15,7 +16,6 @@ constexpr double kFaster = 2.0;
 constexpr double kPush = 1.0;               // [m/s]
 constexpr double kSpin = kPi;               // [rad/s]
 constexpr double kTurn = 2.0 * kPi * 1.05;  // no server counts headings beyond a full turn
-constexpr double kCycle = 0.1;              // [s] from one information packet to the next
 constexpr int kHighestVoltage = 600;        // [0.1 V] of any robot's battery
 constexpr int kColdest = -40;               // [deg C] of a controller that works
 constexpr int kUnknownTemperature = -127;   // and below

@@ -438,7 +438,7 @@ class Parser {
     };
     if (p.radius < 0.45 * p.width)
       doubt("RobotRadius", format(" of %.0f mm is less than half of RobotWidth, %.0f mm: the robot "
-                                  "would touch what it passes",
+                                  "would touch things that it passes",
                                   p.radius / kMillimetre, p.width / kMillimetre));
     // VEL2 has a signed byte for each wheel.
     if (127.0 * p.vel2_unit < 0.2 * p.max_velocity)

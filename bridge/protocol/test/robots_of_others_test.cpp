@@ -117,7 +117,7 @@ TEST(RobotsOfOthers, UnlikelyValuesAreTold) {
   };
   EXPECT_EQ(warning(saphira_form("RobotRadius 25\nRobotWidth 425\n")),
             "mine.p:14: RobotRadius of 25 mm is less than half of RobotWidth, 425 mm: the robot "
-            "would touch what it passes");
+            "would touch things that it passes");
   EXPECT_EQ(
       warning(saphira_form("Vel2Divisor 0.02\n")),
       "mine.p:14: Vel2Divisor of 0.02 mm/s gives wheels 3 mm/s at the most, where MaxVelocity "

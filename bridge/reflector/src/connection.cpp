@@ -103,7 +103,7 @@ bool Connection::is_hopeless(double now) const {
 
 std::string Connection::waiting_for() const {
   if (echoes_ && !open())
-    return "a robot: the line sends back what it is sent, so no robot is connected to it (an echo "
+    return "a robot: the line echoes every byte, so no robot is connected to it (an echo "
            "in a "
            "modem or terminal server, or a plug with its pins joined?)";
   switch (state_) {

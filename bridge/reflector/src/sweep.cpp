@@ -3,12 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/base/cycle.hpp"
+
 namespace saphira::reflector {
 
 namespace {
 
 constexpr std::uint64_t kCycles = 30;  // of a swing
-constexpr double kCycle = 0.1;         // [s]
 constexpr double kPhase = 2.0 * kPi / kCycles;
 // Behaviors set their heading from the present one. Their course is the mean.
 constexpr double kNewest = 0.1;

@@ -325,7 +325,7 @@ const std::vector<Row>& rows() {
        gripper,
        {"gripper",
         "moves the gripper (command 33); a Pioneer 1 takes numbers alone: 0, 1, 4, 5",
-        {text_parameter("action", "what it is to do", gripper_actions()),
+        {text_parameter("action", "the action", gripper_actions()),
          optional(whole_parameter(
              "value", "of pressure, carry and number, in the robot's own units", 0.0, 65535.0))}}},
       {Device::output,
@@ -377,7 +377,7 @@ const std::vector<Row>& rows() {
       {Device::server,
        report,
        {"report",
-        "what the robot sends besides its information packets (commands 18, 19, 37, 40)",
+        "the packets that the robot sends beside its information packets (commands 18, 19, 37, 40)",
         {text_parameter("packet", "which", {kReports.begin(), kReports.end()}),
          optional(text_parameter("often", "how often; not given: once",
                                  {kOften.begin(), kOften.end()}))}}},

@@ -120,7 +120,7 @@ void Guard::look(const std::string& program) {
     if (list.number > number_) {
       take(list);
       write_log(v1::LOG_WARNING, program,
-                "takes list " + std::to_string(list.number) + " of what was revoked");
+                "takes list " + std::to_string(list.number) + " of revoked members");
       if (list.members.contains(security::common_name(credentials_.subject))) {
         write_log(v1::LOG_ERROR, program,
                   "the certificate of " + own_.text() + " was revoked; this program ends");
@@ -131,9 +131,9 @@ void Guard::look(const std::string& program) {
     trouble = error.what();
   }
   if (!trouble.empty() && trouble != trouble_)
-    write_log(v1::LOG_ERROR, program,
-              "the list of what was revoked cannot be taken, and the last one goes on to hold: " +
-                  trouble);
+    write_log(
+        v1::LOG_ERROR, program,
+        "the list of revoked members cannot be read; the previous one stays in force: " + trouble);
   trouble_ = trouble;
 }
 

@@ -60,7 +60,7 @@ class Wake {
   std::atomic<bool> asleep_{true};
 };
 
-/// What was refused since the last call.
+/// The refusals since the last call.
 struct Refusals {
   std::uint64_t samples = 0;  ///< that were not of their topic's type
   /// Of these, each topic and writer once; each program that was not let in, each topic that a

@@ -60,8 +60,7 @@ void add_node_options(CommandLine& app, NodeOptions& options) {
                  "Folder of credentials (saphira security add); none: a bus that is open to all")
       .environment("SAPHIRA_SECURITY")
       .shows(options.security.empty() ? kOpenBus : options.security);
-  app.add_flag("--dry-run", options.dry_run,
-               "Read what is given here, say what is wrong with it, and end");
+  app.add_flag("--dry-run", options.dry_run, "Check the options and files, report errors, and end");
   app.add_flag("--lockstep", options.lockstep,
                "Lose no sample of a cycle and wait for every input (simulator in single step)");
   app.add_action(

@@ -45,7 +45,7 @@ RequestClient::Pending& RequestClient::begin(v1::Request request, Hear hear, dou
   const v1::Answer lost{.asker = request.asker,
                         .number = request.number,
                         .code = v1::ANSWER_NOBODY,
-                        .text = std::string("no program takes what is asked on ") + topic_.name};
+                        .text = std::string("no program serves requests on ") + topic_.name};
   const std::uint64_t number = request.number;
   return pending_[number] = {std::move(request), std::move(hear), first, next, lost};
 }

@@ -83,7 +83,7 @@ TEST(Program, ADryRunFailsForAMistakeThatARunningProgramOnlyReports) {
   EXPECT_EQ(code(1, "a.beh:1:1: expected a name"), kExitOk);
 }
 
-// What people type is answered by the name that they typed.
+// An error message begins with the name of the program that people typed.
 TEST(Program, AnErrorBeginsWithTheNameOfTheProgram) {
   std::string name = "saphira-test";
   char* argv[] = {name.data(), nullptr};

@@ -103,7 +103,7 @@ TEST_F(RequestClients, ARequestEndsWithoutAServer) {
   client_.poll(102.0);
   const v1::Answer end = only(told_);
   EXPECT_EQ(end.code, v1::ANSWER_NOBODY);
-  EXPECT_EQ(end.text, "no program takes what is asked on drive/stop");
+  EXPECT_EQ(end.text, "no program serves requests on drive/stop");
   EXPECT_EQ(end.asker, agent_.instance());
   EXPECT_EQ(end.service, "");
   Server late(bus_);

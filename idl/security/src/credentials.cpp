@@ -202,7 +202,7 @@ Revoked load_revoked(const std::string& folder, const std::string& authority_cer
         static_cast<std::uint64_t>(words.integer("the number of the list", 0, 1L << 40));
   }
   if (first)
-    throw std::runtime_error("expected a list of what was revoked");
+    throw std::runtime_error("expected a list of revoked members");
   return revoked;
 }
 

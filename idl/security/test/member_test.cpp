@@ -1,4 +1,4 @@
-// What says who a member is: the subject, the documents, the seal.
+// A member is known by its subject, its documents and its seal.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -35,7 +35,7 @@ std::string content(BIO* from) {
   return text;
 }
 
-/// What Fast DDS 2.9 makes of a document (Permissions.cpp); empty where it refuses it.
+/// The content of a document as Fast DDS 2.9 reads it (Permissions.cpp); empty where it refuses it.
 std::string taken(const std::string& document, const KeyPair& authority) {
   X509_STORE* const store = X509_STORE_new();
   X509* const trusted = certificate_of(authority);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       [&](CommandLine& app) {
         app.add_option("--grammar", dialogue.grammar,
                        "what people may say: a name of config/grammars, or a file");
-        app.add_option("--memory", dialogue.memory, "a file that keeps what the robot was told");
+        app.add_option("--memory", dialogue.memory, "a file that keeps the robot's knowledge");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         dialogue.grammar = find_file(config_folder() + "/grammars", dialogue.grammar, ".grammar");

@@ -25,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr double kCycle = 0.1;            // [s]
 constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
 constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
 
@@ -69,7 +68,7 @@ void DialogueShell::announce() {
              [this](const v1::Request& request) {
                return to_bus(dialogue_.place_of(bus::text_of(request.arguments, "person")));
              });
-  agent_.can(bus::action("forget", "takes back what the robot was told",
+  agent_.can(bus::action("forget", "forgets advice",
                          {bus::number_slot("number", "of the advice (saphira knows)", true)}),
              [this](const v1::Request& request) {
                const Dialogue::Outputs out =
@@ -178,7 +177,7 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
 void DialogueShell::remember() {
   if (node_.options().files() == Files::kChange && !options_.memory.empty() &&
       !replace_file(options_.memory, sealed(saved(dialogue_))))
-    node_.warn("what the robot was told cannot be kept: " + cannot_be(options_.memory, "written"));
+    node_.warn("the robot's knowledge cannot be saved: " + cannot_be(options_.memory, "written"));
 }
 
 void DialogueShell::publish() {
@@ -229,18 +228,10 @@ void DialogueShell::take_beliefs() {
   std::erase_if(sets, [](const auto& sample) { return sample.info.disposed; });
   if (sets.empty())
     return;
-  const v1::BeliefSet& set = sets.back().data;
   // The first sample may be of before a restart. The age is by the clocks of two machines.
-  const double old =
+  const double age =
       std::exchange(knows_beliefs_, true) || node_.options().lockstep ? 0.0 : sets.back().info.age;
-  std::vector<Belief> beliefs;
-  for (const v1::Belief& one : set.beliefs) {
-    Belief& belief = beliefs.emplace_back(Belief{one.name, one.value, one.said_by});
-    if (one.since > 0)
-      belief.age =
-          old + kCycle * (static_cast<double>(set.stamp.cycle) - static_cast<double>(one.since));
-  }
-  perform(dialogue_.found(heed(beliefs, situation_), situation_.now));
+  perform(dialogue_.found(heed(sets.back().data, age, situation_), situation_.now));
 }
 
 /// Of the robot, and of a person who points.
@@ -309,16 +300,6 @@ void DialogueShell::take_utterances() {
     perform(dialogue_.left(writer));
 }
 
-void DialogueShell::take_grant(const v1::Grant& grant) {
-  situation_.estop = !grant.estopped              ? ""
-                     : grant.estop_source.empty() ? "a program without a name"
-                                                  : grant.estop_source;
-  situation_.is_driven = grant.role == v1::ROLE_TELEOP || grant.role == v1::ROLE_DIRECT;
-  const std::optional<v1::StopId> before = std::exchange(stop_, grant.stop);
-  if (grant.estopped || (before && *before != grant.stop && grant.stop.asker != node_.instance()))
-    perform(dialogue_.stopped(grant.stop_source.empty() ? "somebody" : grant.stop_source));
-}
-
 void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
   if (const auto map = maps_.take_newest()) {
@@ -329,8 +310,10 @@ void DialogueShell::step(double seconds, double now) {
   take_places();
   if (!grants_.take_lost().empty())
     situation_.estop.clear();
-  if (const auto grant = grants_.take_newest())
-    take_grant(*grant);
+  if (const auto grant = grants_.take_newest()) {
+    heed(*grant, situation_);
+    perform(dialogue_.granted(*grant, node_.instance()));
+  }
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())

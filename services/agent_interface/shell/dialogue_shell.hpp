@@ -36,7 +36,6 @@ class DialogueShell {
   void announce();
   void take_goals(double seconds);
   void adopt(std::uint64_t tag, const v1::GoalId& id);
-  void take_grant(const v1::Grant& grant);
   void take_beliefs();
   void take_places();
   void take_utterances();
@@ -63,7 +62,6 @@ class DialogueShell {
   bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
   bus::Reader<v1::Vision> visions_ = node_.reader(bus::topics::kVision);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
-  std::optional<v1::StopId> stop_{};  ///< the newest
   bool knows_beliefs_ = false;
   bus::Reader<v1::RobotDescription> robots_ = node_.reader(bus::topics::kRobotDescription);
   bus::Writer<v1::Utterance> said_ = node_.writer(bus::topics::kSaid);

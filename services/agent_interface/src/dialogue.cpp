@@ -359,9 +359,11 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
   }
 }
 
-Dialogue::Outputs Dialogue::stopped(const std::string& who) {
+Dialogue::Outputs Dialogue::granted(const v1::Grant& grant, std::uint64_t self) {
   Outputs out;
-  add(tasks_.stopped(who), out);
+  const std::optional<v1::StopId> before = std::exchange(known_stop_, grant.stop);
+  if (grant.estopped || (before && *before != grant.stop && grant.stop.asker != self))
+    add(tasks_.stopped(grant.stop_source.empty() ? "somebody" : grant.stop_source), out);
   return out;
 }
 

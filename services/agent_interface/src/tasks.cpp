@@ -33,7 +33,7 @@ void cancel(const Task& task, const std::string& by, const std::string& why, Tas
   out.canceled.push_back(task.goal.tag);
   out.said.push_back({task.answers, task.goal.speaker,
                       "I drop " + named_task(task, by) +
-                          (task.then.empty() ? "" : ", and what was to follow") + why,
+                          (task.then.empty() ? "" : ", and the rest of the order") + why,
                       true});
 }
 
@@ -134,7 +134,7 @@ void Tasks::drop_later(const std::string& why, const std::function<bool(const La
   for (const Later& one : later_)
     if (meant(one))
       out.said.push_back({one.order.id, one.order.speaker,
-                          "I drop what was to be later: " + whole_text(one) + why, true});
+                          "I drop the order for later: " + whole_text(one) + why, true});
   std::erase_if(later_, meant);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/zones.hpp"
@@ -59,15 +60,18 @@ Request put_on_map(const maps::Feature& feature) {
            truth("learned", feature.learned)}};
 }
 
-std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation) {
+std::vector<Find> heed(const v1::BeliefSet& set, double age, Situation& situation) {
   situation.asked_about.clear();
   situation.asked_for.clear();
   situation.findable.clear();
   situation.carried.clear();
   situation.is_slow = false;
   std::vector<Find> finds;
-  for (const Belief& belief : beliefs) {
+  for (const v1::Belief& belief : set.beliefs) {
     const std::string value = text_of(belief.value);
+    std::optional<double> changed;
+    if (belief.since > 0)
+      changed = age + seconds_of(set.stamp.cycle) - seconds_of(belief.since);
     if (belief.name == kQuestion)
       situation.asked_about = value;
     else if (belief.name == kPerson)
@@ -76,16 +80,23 @@ std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation)
       situation.is_slow = value == "slow";
     else if (belief.name.starts_with(kCarries) && !value.empty()) {
       situation.carried.emplace_back(belief.name.substr(kCarries.size()), value);
-      finds.push_back({Advice::Kind::has, situation.carried.back().first, kRobot, belief.age});
+      finds.push_back({Advice::Kind::has, situation.carried.back().first, kRobot, changed});
     }
     for (const std::string_view about : {kPlaceOf, kKnowers})
       if (belief.name.starts_with(about) && !value.empty())
         situation.findable.push_back(lowered(belief.name.substr(about.size())));
     if (belief.said_by == kFinder && belief.name.starts_with(kPlaceOf) && !value.empty())
-      finds.push_back({Advice::Kind::person_at, lowered(belief.name.substr(kPlaceOf.size())), value,
-                       belief.age});
+      finds.push_back(
+          {Advice::Kind::person_at, lowered(belief.name.substr(kPlaceOf.size())), value, changed});
   }
   return finds;
+}
+
+void heed(const v1::Grant& grant, Situation& situation) {
+  situation.estop = !grant.estopped              ? ""
+                    : grant.estop_source.empty() ? "a program without a name"
+                                                 : grant.estop_source;
+  situation.is_driven = grant.role == v1::ROLE_TELEOP || grant.role == v1::ROLE_DIRECT;
 }
 
 /// First where a person is, then who knows it.
@@ -362,7 +373,7 @@ Dialogue::Outputs Dialogue::forget(double wanted) {
   out.answer =
       out.changed ? Answer{AnswerCode::done, "forgotten"}
                   : Answer{AnswerCode::refused, "nothing is known under " + std::to_string(number) +
-                                                    ": saphira knows lists what is"};
+                                                    " (saphira knows lists the facts)"};
   return out;
 }
 

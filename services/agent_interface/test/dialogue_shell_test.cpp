@@ -355,7 +355,7 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   for (const auto& sample : claims.take())
     values.push_back(sample.info.disposed ? "disposed" : sample.data.value);
   EXPECT_EQ(values, (std::vector<std::string>{"disposed", "nil"}));
-  // What is believed since before a restart is older than that.
+  // Beliefs from before a restart are older than that.
   start();
   dialogue->step();
   answers();
@@ -395,7 +395,7 @@ TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   };
   EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text, "forgotten");
   EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text,
-            "nothing is known under 1: saphira knows lists what is");
+            "nothing is known under 1 (saphira knows lists the facts)");
 }
 
 // A goal is asked for by its activity's name, as anything else that an agent can do.

@@ -221,8 +221,9 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   EXPECT_EQ(out.claims.at(0).name, "knows-where-karen");
   EXPECT_EQ(out.claims.at(0).value, "");
   EXPECT_FALSE(dialogue.forget(2).changed);
-  EXPECT_EQ(dialogue.forget(2).answer,
-            (Answer{AnswerCode::refused, "nothing is known under 2: saphira knows lists what is"}));
+  EXPECT_EQ(
+      dialogue.forget(2).answer,
+      (Answer{AnswerCode::refused, "nothing is known under 2 (saphira knows lists the facts)"}));
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
 }
 
@@ -291,23 +292,30 @@ TEST_F(DialogueTest, ALoadThatIsTakenOffIsGoneUntilTheRobotGetsItAnew) {
 TEST(Beliefs, TheOpenQuestionAndTheFindsAreHeeded) {
   Situation situation;
   situation.asked_about = "of before";
-  const std::vector<Find> finds = heed({{"asking-about", "\"given\"", "deliver", 3},
-                                        {"asking-for", "nil", "deliver", 3},
-                                        {"place-of-karen", "\"EJ-231\"", "find-person", 70},
-                                        {"place-of-john", "nil", "find-person", 71},
-                                        {"place-of-bob", "\"EJ-233\"", "dialogue", 72},
-                                        {"carries-the report", "\"EJ-233\"", "deliver", 72},
-                                        {"carries-the mail", "nil", "deliver", 72},
-                                        {"corridor-of-ann", "\"EJ-1\"", "find-person", 73}},
-                                       situation);
+  v1::BeliefSet set{};
+  set.stamp.cycle = 1000;
+  for (const auto& [name, value, said_by, since] :
+       std::vector<std::tuple<std::string, std::string, std::string, std::uint64_t>>{
+           {"asking-about", "\"given\"", "deliver", 970},
+           {"asking-for", "nil", "deliver", 970},
+           {"place-of-karen", "\"EJ-231\"", "find-person", 300},
+           {"place-of-john", "nil", "find-person", 290},
+           {"place-of-ann", "\"EJ-235\"", "find-person", 0},
+           {"place-of-bob", "\"EJ-233\"", "dialogue", 280},
+           {"carries-the report", "\"EJ-233\"", "deliver", 280},
+           {"carries-the mail", "nil", "deliver", 280},
+           {"corridor-of-ann", "\"EJ-1\"", "find-person", 270}})
+    set.beliefs.push_back({.name = name, .value = value, .said_by = said_by, .since = since});
+  const std::vector<Find> finds = heed(set, 2.0, situation);
   EXPECT_EQ(situation.asked_about, "given");
   EXPECT_EQ(situation.asked_for, "");
-  EXPECT_EQ(finds, (std::vector<Find>{{Advice::Kind::person_at, "karen", "EJ-231", 70},
-                                      {Advice::Kind::has, "the report", kRobot, 72}}));
+  EXPECT_EQ(finds, (std::vector<Find>{{Advice::Kind::person_at, "karen", "EJ-231", 72},
+                                      {Advice::Kind::person_at, "ann", "EJ-235", {}},
+                                      {Advice::Kind::has, "the report", kRobot, 74}}));
   ASSERT_EQ(situation.carried.size(), 1U);
   EXPECT_EQ(situation.carried[0].first, "the report");
   EXPECT_EQ(situation.carried[0].second, "EJ-233");
-  heed({}, situation);
+  heed(v1::BeliefSet{}, 0.0, situation);
   EXPECT_EQ(situation.asked_about, "");
 }
 

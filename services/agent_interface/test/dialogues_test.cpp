@@ -78,6 +78,14 @@ class Conversation : public DialogueTest {
       all += (all.empty() ? "" : "; ") + std::to_string(feature.id) + " " + feature.name;
     return all;
   }
+  /// The asker and the number of the newest stop, and its source. The dialogue is asker 9.
+  void granted(const std::string& text) {
+    std::istringstream in(text);
+    v1::Grant grant;
+    in >> grant.stop.asker >> grant.stop.number;
+    std::getline(in >> std::ws, grant.stop_source);
+    last = dialogue.granted(grant, 9);
+  }
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
   std::uint64_t wanted_ = 0;  ///< the newest goal
@@ -114,7 +122,7 @@ class Conversation : public DialogueTest {
          situation.now = now += std::stod(text);
          last = dialogue.come_due(situation);
        }},
-      {"stopped by", [this](const auto& text) { last = dialogue.stopped(text); }},
+      {"stop", [this](const auto& text) { granted(text); }},
       {"driven by another", [this](const auto& text) { situation.is_driven = text == "yes"; }},
       {"restart", [this](const auto&) { restart(); }},
       {"anew", [this](const auto&) { use(Dialogue{grammar()}); }},

@@ -148,7 +148,7 @@ TEST_F(TasksTest, AStopOfAnybodyEndsEverythingAndEachOwnerHearsIt) {
             "cancel 1\n"
             "cancel 2\n"
             "goal 3 stop 0\n");
-  // What comes next waits for the stop.
+  // The next task waits for the stop.
   EXPECT_EQ(want({errand("alice", "the mail")}, "alice"),
             "alice: I bring the mail\n"
             "goal 4 deliver 0\n");

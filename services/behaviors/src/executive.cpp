@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "free_path.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/foresight.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 
 /// The parameter by which a behavior wants contact: [m/s] at most.
 constexpr const char* kContact = "contact";
-constexpr double kCycle = 0.1;           // [s]
 constexpr double kFarEnough = 3.0;       // [m] of free way that counts
 constexpr double kMargin = 0.05;         // [m] by which a sonar's obstacle may be nearer,
 constexpr double kMarginOfRange = 0.03;  // and that per metre
@@ -232,7 +232,7 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
   output.speed_limit = speed_for_age(age);
   std::string why = inputs.delay <= 0.0
                         ? ""
-                        : "commands work " + seconds(inputs.delay) + " after what they answer";
+                        : "commands work " + seconds(inputs.delay) + " after the state they answer";
   if (old > 0.0)
     why = "intentions are " + seconds(old) + " old" + (why.empty() ? "" : ", " + why);
   if (output.speed_limit < std::max(std::abs(output.speed), model_.max_velocity))

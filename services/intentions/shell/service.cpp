@@ -8,6 +8,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/sender.hpp"
@@ -181,7 +182,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   take_goals(inputs.received);
   take_claims(inputs.received);
   take_grants(inputs.received);
-  agents_.poll(0.1 * static_cast<double>(++steps_));
+  agents_.poll(seconds_of(++steps_));
   inputs.received.answers = std::exchange(answers_, {});
   inputs.own_stop = {ports_.instance(), next_stop_};
   return inputs;
@@ -292,8 +293,7 @@ void Service::remember(const GoalUpdates& updates) {
     notes.warn(cannot_be("the memory file", "written") +
                "; a restart may do a finished goal again");
   if (updates.work && !memory_.keep(*updates.work))
-    notes.warn(cannot_be("the memory file", "written") +
-               "; a restart may do again what has been done");
+    notes.warn(cannot_be("the memory file", "written") + "; a restart may repeat finished work");
   ports_.say(notes.lines());
 }
 

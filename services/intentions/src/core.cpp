@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/language.hpp"
@@ -178,7 +179,7 @@ std::string Core::who_is_gone(const Inputs& inputs) {
   const auto add = [&](const char* name, std::uint64_t heard) {
     if (heard != 0 && heard + kGone <= now)
       text += (text.empty() ? "" : "; ") + std::string(name) + " has not been heard for " +
-              plain(0.1 * static_cast<double>(now - heard)) + " s";
+              plain(seconds_of(now - heard)) + " s";
   };
   add("behaviors", inputs.behaviors_cycle);
   add("registration", registration_heard_);

@@ -59,7 +59,7 @@ std::optional<double> apart(const Percept& a, const Percept& b) {
 
 Tasks::Tasks(ProcessTable& table)
     : grid_(&table.add("occgrid", "puts sonar readings into the occupancy grid")),
-      sides_(&table.add("side-segment", "puts together what the side sonars heard")),
+      sides_(&table.add("side-segment", "joins echoes of the side sonars to segments")),
       walls_(&table.add("test-wall", "finds walls")),
       breaks_(&table.add("test-wall-break", "finds the ends of walls, doors and junctions")),
       corridors_(&table.add("corridor", "finds corridors")) {}

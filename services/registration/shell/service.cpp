@@ -154,7 +154,8 @@ runtime::Component component() {
             app.add_option("--add-features", options->add_features,
                            "whether what is seen and not on the map is added to it; where it is "
                            "not said: only to an empty map");
-            app.add_flag("!--no-snap", options->snap, "what is added is not put on right angles");
+            app.add_flag("!--no-snap", options->snap,
+                         "do not align new features with right angles");
           },
           [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
 }

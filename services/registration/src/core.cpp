@@ -280,7 +280,7 @@ bool Core::amend(const Presence::Changes& news, const std::vector<maps::Feature>
   for (const std::uint32_t id : news.opened)
     say(id, " is open again");
   for (const std::uint32_t id : news.gone) {
-    say(id, " is taken from the map: what is behind it is heard through it");
+    say(id, " is taken from the map: the sonars hear through it");
     if (now_.builder)
       now_.builder->remove(id);
     now_.editor.remove(id);
@@ -308,7 +308,7 @@ bool Core::grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& no
     return false;
   if (const auto why = problem(LineMap(now_.builder->map()))) {
     if (!std::exchange(now_.too_large, true))
-      notes.warn("what is seen is not added to the map any more: " + *why);
+      notes.warn("no more features are added to the map: " + *why);
     return false;
   }
   now_.too_large = false;
@@ -342,13 +342,13 @@ const std::vector<Functor>& Core::functors() {
       {"find", "the robot may be anywhere: finds it"},
       {"switch", "registration on or off (manual 6.9.2)", {truth_parameter("on", "on or off")}},
       {"add_features",
-       "whether what is seen is added to the map (add_new_features)",
+       "adds new features to the map, or not (add_new_features)",
        {truth_parameter("on", "on or off"),
         optional(number_parameter("lease",
                                   "ends it after that time [s], unless asked for again; 0: never",
                                   0.0, 3600.0))}},
       {"snap",
-       "whether what is added is put on right angles (snap_to_right_angle_grid)",
+       "aligns new features with right angles, or not (snap_to_right_angle_grid)",
        {truth_parameter("on", "on or off")}}};
   return functors;
 }

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/cycle.hpp"
+
 namespace saphira::vision {
 namespace {
 
 using Kind = lps::SeenThing::Kind;
-constexpr double kCycle = 0.1;        // [s]
 constexpr double kRangeKnown = 0.35;  // of the range: a less certain place is a direction
 constexpr double kLearn = 0.35;       // share of the way to certainty for each sight
 constexpr double kSlow = 0.7;         // [s] in which a track out of sight loses its velocity

@@ -1,4 +1,4 @@
-// What is seen in one picture.
+// The things seen in one picture.
 #include "seen.hpp"
 
 #include <gtest/gtest.h>

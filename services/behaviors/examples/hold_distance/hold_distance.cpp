@@ -47,7 +47,7 @@ const int saphira_behaviors_plugin = kPluginVersion;
 void saphira_register_behaviors(Registry& registry) {
   Schema schema;
   schema.name = "HoldDistance";
-  schema.summary = "keeps a distance from what is ahead";
+  schema.summary = "keeps a distance from an obstacle ahead";
   schema.parameters = {number_parameter("distance", "m, from the hull", 0.2, 3.0, 0.8),
                        number_parameter("speed", "m/s, at most", 0.0, 1.0, 0.2)};
   schema.rules = {{"too far", "too_far", "Speed speed"},

@@ -1,4 +1,4 @@
-// What is read from words and written in words: numbers, bytes, units, lines of the log.
+// Numbers, bytes, units and lines of the log, as text and back.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -137,13 +137,13 @@ void Forest::restore(std::uint32_t root, const Saved& saved, const World& world)
   const auto tree = restored<SavedTree>(saved.text);
   const std::vector<SavedNode>& known = tree.nodes;
   if (known.empty())
-    throw ActivityError("what was remembered is not whole");
+    throw ActivityError("the saved state is incomplete");
   std::map<std::uint32_t, std::uint32_t> ids{{known[0].id, root}};
   try {
     for (std::size_t i = 1; i < known.size(); ++i) {
       const auto parent = ids.find(known[i].parent);
       if (parent == ids.end())
-        throw ActivityError("what was remembered is not whole");
+        throw ActivityError("the saved state is incomplete");
       ids[known[i].id] = restore_one(*at(parent->second), known[i], world).shown.id;
     }
     // The root last: after an earlier failure it is as it was planted.

@@ -147,7 +147,7 @@ void add_numbers(Functions& functions) {
   functions.add(unary("floor", "the whole number below", [](double x) { return std::floor(x); }));
   functions.add(unary("norm-angle", "the same angle in -pi..pi",
                       [](double x) { return std::isfinite(x) ? norm2_angle(x) : x; }));
-  functions.add("mod", 2, 2, "what is left of a division, of the sign of the divisor",
+  functions.add("mod", 2, 2, "the remainder of a division, of the sign of the divisor",
                 [](const World&, Values arguments) {
                   const double b = number_of(arguments, 1, "mod");
                   const double a = number_of(arguments, 0, "mod");

@@ -562,7 +562,7 @@ Registry built_in() {
 
   Schema go_to;
   go_to.name = "go_to";
-  go_to.summary = "drives to a position, around what is in the way";
+  go_to.summary = "drives to a position, around obstacles";
   Parameter facing =
       quantity("facing", "rad in the frame of the position", -2.0 * kPi, 2.0 * kPi, 0.0);
   facing.usual.reset();
@@ -573,8 +573,7 @@ Registry built_in() {
 
   Schema drive;
   drive.name = "drive";
-  drive.summary =
-      "drives on at a speed, for a distance or until the deadline, around what is in the way";
+  drive.summary = "drives on at a speed, for a distance or until the deadline, around obstacles";
   // Backwards, where few robots have sonars, at a walking pace.
   Parameter speed = quantity("speed", "m/s", -0.2, 2.0, 0.0);
   speed.usual.reset();

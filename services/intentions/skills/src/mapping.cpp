@@ -220,10 +220,10 @@ void add_mapping(Functions& functions) {
                          effects.believe_while(kGrowsMap, arguments[0]);
                          return arguments[0];
                        },
-                       "(add-features T): whether registration puts what is seen on the map, until "
+                       "(add-features T): true while registration adds features to the map, until "
                        "this intention ends"});
   functions.add(
-      "adds-features", "whether registration puts what is seen on the map",
+      "adds-features", "true while registration adds features to the map",
       [](const World& world) { return Value::truth(world.around.registration.adds_features); });
   functions.add(
       "map-has-lanes", "whether the map has ways over free floor", [](const World& world) {

@@ -440,7 +440,7 @@ void add_places(Functions& functions) {
                                        place_named(*world.around.topology, arguments[0])));
                 });
   functions.add("why-no-place", 1, 1,
-                "(why-no-place NAME): that the map does not have it, and what it has",
+                "(why-no-place NAME): that the map does not have it, and the names that it has",
                 [](const World& world, Values arguments) {
                   return Value(world.around.topology == nullptr
                                    ? "there is no map"

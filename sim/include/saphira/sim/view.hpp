@@ -40,8 +40,8 @@ struct Load {
   std::string robot;  ///< likewise
 };
 
-/// What a request may ask of the simulator's host. Each returns the reason why it is not done;
-/// empty: done.
+/// The acts of the simulator's host that a request may ask for. Each returns the reason why it is
+/// not done; empty: done.
 class ViewedHost {
  public:
   virtual std::string pause(bool on) = 0;

@@ -16,7 +16,7 @@ enum class Device { servo, gripper, output, analog, timer, sonar, sound, server,
 /// The sign that a request was heard. `packet`: one of the type of the wish's value comes.
 enum class Proof { once, thrice, output, servo, origin, motors, sonar, analog, packet };
 
-/// What a request means for a robot.
+/// The meaning of a request for a robot.
 struct Wish {
   std::string text{};                         ///< in words, such as "servo 1500 us"
   std::string refusal{};                      ///< why this robot cannot; empty: it can

@@ -34,16 +34,7 @@ struct Claimed {
 /// The value of a claim in the language of activities.
 std::string literal(const Claimed& claim);
 
-/// A belief of activities.
-struct Belief {
-  std::string name;
-  std::string value;            ///< in the language of activities
-  std::string said_by;          ///< an activity, or the writer of a claim
-  std::optional<double> age{};  ///< [s] of its newest change; none: of before this epoch
-};
-
-/// What an activity believes to have found out: the place of a person, or that the robot has a
-/// thing.
+/// The finding of an activity: the place of a person, or a thing that the robot has.
 struct Find {
   Advice::Kind kind = Advice::Kind::person_at;
   std::string about;
@@ -88,8 +79,11 @@ struct Situation {
 /// The request that puts an artifact with its name on the map.
 Request put_on_map(const maps::Feature& feature);
 
-/// Puts the question that activities ask people into the situation. Returns their finds.
-std::vector<Find> heed(const std::vector<Belief>& beliefs, Situation& situation);
+/// Puts the question that activities ask people into the situation. Returns their finds. `age`: of
+/// the set [s].
+std::vector<Find> heed(const v1::BeliefSet& set, double age, Situation& situation);
+/// Puts the emergency stop and the role that drives into the situation.
+void heed(const v1::Grant& grant, Situation& situation);
 
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
 /// States its interpretation before it acts. A value: no clock, bus or file.
@@ -120,8 +114,9 @@ class Dialogue {
   /// A program that has spoken has ended or has withdrawn its words: its tasks end.
   Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
-  /// Somebody has stopped the robot other than by words: orders for a later time end.
-  Outputs stopped(const std::string& who);
+  /// A stop that is not of this dialogue (`self`), or an emergency stop, ends orders for a later
+  /// time. The first grant shows an earlier stop.
+  Outputs granted(const v1::Grant& grant, std::uint64_t self);
   /// Orders for a later time begin, or ask whether to drop the task of somebody else.
   Outputs come_due(const Situation& situation);
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
@@ -310,7 +305,8 @@ class Dialogue {
 
   std::vector<Gone> gone_;
   std::optional<Ended> ended_;
-  std::uint64_t stop_ = 0;  ///< the tag of the newest stop
+  std::uint64_t stop_ = 0;                  ///< the tag of the newest stop
+  std::optional<v1::StopId> known_stop_{};  ///< the newest of anybody
   Tasks tasks_;
   std::map<std::uint64_t, double> without_status_;  ///< goals, since when [s]
   std::optional<Spot> began_;                       ///< the newest task, there

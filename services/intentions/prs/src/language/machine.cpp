@@ -728,7 +728,7 @@ void Machine::restore(const Saved& saved, const std::map<std::uint32_t, std::uin
   };
   for (Thread& thread : next.threads_) {
     if (thread.at >= program_->steps.size())
-      throw ActivityError("what was remembered of " + program_->name + " is not whole");
+      throw ActivityError("the saved state of " + program_->name + " is incomplete");
     now(thread.child);
     for (Child& child : thread.children)
       now(child.id);

@@ -142,7 +142,7 @@ class Core {
   ProcessTable processes_;
   // sfInitRegistrationProcs.
   Process& match_ = processes_.add(
-      "test-match", "matches what is seen with the map (not while the map is being built)");
+      "test-match", "matches features with the map (not while the map is being built)");
   Process& environment_ = processes_.add("test-environment", "says where on the map the robot is");
 
   State now_;

@@ -66,7 +66,7 @@ class Core {
 
   ProcessTable processes_;
   Process& stereo_ = processes_.add("find-people", "looks for people in the stereo pictures");
-  Process& colors_ = processes_.add("find-colors", "places what the camera's channels show");
+  Process& colors_ = processes_.add("find-colors", "places the blobs of the camera's channels");
   Vision vision_;
   std::deque<Place> places_;           ///< of the last cycles
   std::deque<Seen> newer_;             ///< of later cycles
