@@ -1,35 +1,27 @@
 #include "saphira/sim/host.hpp"
 
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
-#include <sys/socket.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "feeds.hpp"
-#include "listener.hpp"
+#include "pace.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/protocol/check.hpp"
 #include "saphira/sim/resume.hpp"
 #include "saphira/sim/simulation.hpp"
 #include "saphira/sim/view.hpp"
+#include "station.hpp"
 #include "world_check.hpp"
 
 namespace saphira::sim {
@@ -38,381 +30,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The lead of a client in single step over a viewer of its pictures.
-constexpr std::size_t kPicturesInStep = 4;
-
 // Silence after which a packet that has begun will not be completed.
 constexpr double kGap = 0.050;  // [s]
 
 // While time is paused a client hears this often that the simulator is there.
 constexpr std::chrono::milliseconds kTells{500};
 
-// Free running, time may be this far ahead of a client: less than the watchdog's two seconds. A
-// client that is silent for kGivenUp by the wall clock is not waited for any more.
-constexpr int kMostAhead = 10;    // [cycles]
-constexpr double kGivenUp = 2.0;  // [s]
-
 // Steps that wait for a client.
 constexpr int kMostSteps = 100;
 
 // Between two checks for a client at a terminal.
 constexpr int kPollPeriod = 50;  // [ms]
-
-// Bytes that may wait for a client that does not read. Beyond that it loses whole packets, the
-// newest: they would be stale when it wakes.
-constexpr std::size_t kMost = 65536;
-
-/// `number` of the robot, from 1. Nothing for a terminal.
-std::optional<Listener> listen(const HostOptions& options, std::size_t number) {
-  if (options.terminal)
-    return std::nullopt;
-  if (!options.tcp)
-    return Listener::local(numbered(options.socket.value_or(default_socket()), number));
-  const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
-  if (port > 65535)
-    throw std::invalid_argument("port " + std::to_string(port) + ": expected at most 65535");
-  return Listener::tcp(options.tcp_address, static_cast<std::uint16_t>(port));
-}
-
-class TraceFile {
- public:
-  explicit TraceFile(const std::string& path) : path_(path) {
-    if (path.empty())
-      return;
-    file_.reset(std::fopen(path.c_str(), "we"));
-    if (!file_)
-      fail_to_be("trace " + path, "written");
-  }
-  void write(const std::vector<TraceRow>& rows) {
-    if (!file_)
-      return;
-    for (const TraceRow& row : rows) {
-      const std::string text = (row.first ? trace_header() : "") + to_csv(row);
-      std::fwrite(text.data(), 1, text.size(), file_.get());
-    }
-  }
-  void flush() {
-    if (file_ && (std::fflush(file_.get()) != 0 || std::ferror(file_.get()) != 0))
-      fail("trace " + path_);
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;
-};
-
-// The strict checker on a robot's line: violations of the protocol's tables are appended to a file,
-// a line each, at once and in one write, so that several simulators may share the file and a killed
-// one has written all its findings.
-class LineCheck {
- public:
-  /// `prefix` begins each line.
-  LineCheck(const std::string& path, std::string prefix,
-            const protocol::RobotParameters& parameters)
-      : prefix_(std::move(prefix)),
-        file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)),
-        checker_([parameters](const protocol::RobotIdentity&) { return parameters; }) {
-    if (!file_)
-      throw UnusableFile(cannot_be(path, "written"));
-  }
-  /// The time [s] as for the checker: only where the robot's time is the client's.
-  void pass(protocol::Side side, protocol::ByteView bytes, std::optional<double> time) {
-    checker_.feed(side, bytes, time);
-    report();
-  }
-  /// The connection is closed: also writes the summary since the beginning.
-  void disconnect() {
-    checker_.disconnect();
-    report();
-    std::istringstream lines(checker_.summary());
-    for (std::string line; std::getline(lines, line);)
-      write(line);
-  }
-
- private:
-  void report() {
-    for (; reported_ < checker_.findings().size(); ++reported_)
-      write(to_string(checker_.findings()[reported_]));
-  }
-  void write(const std::string& text) const {
-    const std::string line = prefix_ + text + "\n";
-    [[maybe_unused]] const ssize_t size = ::write(file_.get(), line.data(), line.size());
-  }
-
-  std::string prefix_;
-  Fd file_;
-  protocol::Checker checker_;
-  std::size_t reported_ = 0;
-};
-
-std::string default_check() {
-  const char* path = std::getenv("SAPHIRA_CHECK");
-  return path != nullptr ? path : "";
-}
-
-// The ticks that are due by the wall clock. Time in which the whole process slept (stopped, or the
-// machine suspended) is skipped, not made up.
-class Pace {
- public:
-  explicit Pace(double rate) : tick_(kTick / rate) {}
-
-  void restart() {
-    origin_ = Clock::now();
-    done_ = 0;
-  }
-  int due() {
-    const double elapsed = std::chrono::duration<double>(Clock::now() - origin_).count();
-    const auto due = static_cast<std::int64_t>(elapsed / tick_) - done_;
-    const auto most = static_cast<std::int64_t>(std::max(2.0 * kTicksPerPacket, 0.3 / tick_));
-    if (due > most) {
-      restart();
-      return static_cast<int>(most);
-    }
-    done_ += std::max<std::int64_t>(due, 0);
-    return static_cast<int>(std::max<std::int64_t>(due, 0));
-  }
-  /// The time until so many further ticks are due.
-  double seconds_until(int ticks) const {
-    const double at = static_cast<double>(done_ + ticks) * tick_;
-    return at - std::chrono::duration<double>(Clock::now() - origin_).count();
-  }
-
- private:
-  double tick_;  // [s] of the wall clock
-  Clock::time_point origin_ = Clock::now();
-  std::int64_t done_ = 0;
-};
-
-// A timer that wakes poll(); between packets only clients' bytes need work.
-class Timer {
- public:
-  Timer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
-    if (!fd_)
-      fail("timer");
-  }
-  void set(double seconds) const {
-    const auto nanoseconds = static_cast<std::int64_t>(std::max(seconds, 1e-6) * 1e9);
-    itimerspec spec{};
-    spec.it_value.tv_sec = nanoseconds / 1'000'000'000;
-    spec.it_value.tv_nsec = nanoseconds % 1'000'000'000;
-    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
-  }
-  void clear() const {
-    const itimerspec spec{};
-    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
-  }
-  int fd() const { return fd_.get(); }
-
- private:
-  Fd fd_;
-};
-
-// One robot's line: its listener, its client, its output queue, its files.
-class Station {
- public:
-  Station(const HostOptions& options, Simulation& simulation, RobotNumber number)
-      : log_(options.log),
-        prefix_(options.more.empty() ? "" : "robot " + std::to_string(number + 1) + ": "),
-        patient_(options.rate == kMaxRate),
-        real_time_(options.rate == 1.0),
-        simulation_(simulation),
-        number_(number),
-        trace_(options.trace.empty() ? "" : numbered(options.trace, number + 1)),
-        listener_(listen(options, number + 1)) {
-    if (const std::string path = options.check.value_or(default_check()); !path.empty())
-      check_.emplace(path, prefix_, server().parameters());
-    const auto numbered_socket = [&](const std::optional<std::string>& socket) {
-      return socket ? std::optional(numbered(*socket, number + 1)) : std::nullopt;
-    };
-    if (!options.stereo.empty() || options.stereo_socket)
-      pictures_.emplace_back(stereo_pairs(options.seed + number),
-                             options.stereo.empty() ? "" : numbered(options.stereo, number + 1),
-                             numbered_socket(options.stereo_socket));
-    if (options.camera_socket)
-      pictures_.emplace_back(color_pictures(), "", numbered_socket(options.camera_socket));
-    if (options.terminal)
-      terminal_.emplace(numbered(*options.terminal, number + 1));
-    log("listening on " + (terminal_ ? terminal_->name() : listener_->name()) +
-        (options.step ? ", single-step" : ""));
-  }
-
-  void add_to(std::vector<pollfd>& fds) const {
-    const auto events = static_cast<short>(output_.empty() ? POLLIN : POLLIN | POLLOUT);
-    fds.push_back({line(), events, 0});  // poll skips those below zero
-    fds.push_back({listener_ ? listener_->fd() : -1, POLLIN, 0});
-  }
-  void add_viewers_to(std::vector<pollfd>& fds) const {
-    for (const PictureFeed& feed : pictures_)
-      feed.add_to(fds);
-  }
-  /// Waits for a client to open the terminal, which poll() does not report.
-  bool waits_for_terminal() const { return terminal_ && !terminal_open_; }
-  bool packet_pending() const { return server().packet_pending(); }
-
-  // For free running: true where the client may still work on its last packets. The wait for it has
-  // a limit.
-  bool is_behind() const { return server().is_open() && cycles_ >= kMostAhead; }
-  double seconds_until_given_up() const {
-    return kGivenUp - std::chrono::duration<double>(Clock::now() - heard_).count();
-  }
-  void count_cycle() { ++cycles_; }
-
-  bool sending() const { return !output_.empty(); }
-
-  void gap() { simulation_.gap(number_); }
-  void tell_status() { server().tell_status(); }
-
-  void accept() {
-    Fd fd = listener_->accept();
-    if (!fd)
-      return;
-    if (client_) {
-      log("a second client was refused: one at a time");
-      return;
-    }
-    const int yes = 1;  // fails on a local socket, where it is not needed
-    ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    // A larger buffer would let time run far ahead of a client.
-    const int size = 4096;
-    if (patient_)
-      ::setsockopt(fd.get(), SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
-    client_ = std::move(fd);
-    log("a client has connected");
-  }
-
-  /// Checks for a client at the terminal.
-  void look_at_terminal() {
-    if (!terminal_ || terminal_->is_open() == terminal_open_)
-      return;
-    terminal_open_ = !terminal_open_;
-    log(terminal_open_ ? "a client has opened the terminal" : "the client has closed the terminal");
-  }
-
-  void read_client() {
-    // The client's earlier bytes were taken before, in order.
-    if (line() >= 0)
-      send(server().take_output());
-    if (line() < 0)
-      return;
-    std::array<std::uint8_t, 4096> buffer{};
-    const ssize_t size = ::read(line(), buffer.data(), buffer.size());
-    if (size > 0) {
-      cycles_ = 0;
-      heard_ = Clock::now();
-      const protocol::ByteView bytes(buffer.data(), static_cast<std::size_t>(size));
-      watch(protocol::Side::kClient, bytes);
-      simulation_.receive(number_, bytes);
-    } else if (!terminal_ && (size == 0 || (errno != EAGAIN && errno != EINTR))) {
-      hang_up("the client has gone");
-    }
-  }
-
-  /// Sends pending output, and writes pending rows.
-  void write(bool live) {
-    const protocol::Bytes fresh = server().take_output();
-    if (line() >= 0)
-      send(fresh);
-    const auto rows = server().take_trace();
-    trace_.write(rows);
-    // Live, a person may be watching the file.
-    if (!rows.empty() && (live || !client_))
-      trace_.flush();
-    // After the packet, which must not wait for the picture.
-    for (PictureFeed& feed : pictures_)
-      feed.serve(simulation_.scene(), number_, server().devices().head(), server().cycle(),
-                 server().single_step() ? kPicturesInStep : 1);
-  }
-
-  /// Disconnects the client on request of the view.
-  void drop() { hang_up("disconnected by the view"); }
-
-  void end() {
-    hang_up("stopped");
-    trace_.write(server().take_trace());
-    trace_.flush();
-    const ServerCounters counters = server().counters();
-    log("stopped; " + std::to_string(server().robot().contacts()) + " contacts, " +
-        std::to_string(counters.bad_packets) + " bad packets, " +
-        std::to_string(counters.unknown_commands) + " unknown commands");
-  }
-
- private:
-  void log(const std::string& text) const {
-    if (log_)
-      log_("info", prefix_ + text);
-  }
-  Server& server() const { return simulation_.server(number_); }
-  /// The client's descriptor; below zero without one.
-  int line() const { return terminal_ ? (terminal_open_ ? terminal_->fd() : -1) : client_.get(); }
-
-  void watch(protocol::Side side, protocol::ByteView bytes) {
-    if (!check_ || bytes.empty())
-      return;
-    std::optional<double> time;
-    if (real_time_ && !server().single_step())
-      time = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-    check_->pass(side, bytes, time);
-  }
-
-  void send(const protocol::Bytes& fresh) {
-    if (output_.size() + fresh.size() <= kMost) {
-      watch(protocol::Side::kServer, fresh);
-      output_.insert(output_.end(), fresh.begin(), fresh.end());
-    }
-    while (!output_.empty()) {
-      const ssize_t size = terminal_ ? ::write(line(), output_.data(), output_.size())
-                                     : ::send(line(), output_.data(), output_.size(), MSG_NOSIGNAL);
-      if (size > 0) {
-        output_.erase(output_.begin(), output_.begin() + size);
-      } else if (errno == EINTR) {
-        continue;
-      } else {
-        if (terminal_)
-          lose_output();
-        else if (errno != EAGAIN)
-          hang_up("the client has gone");
-        return;
-      }
-    }
-  }
-
-  // Without a reader: as on a real line, old output is lost, and later output is fresh.
-  void lose_output() {
-    terminal_->forget();
-    output_.clear();
-  }
-
-  void hang_up(const std::string& why) {
-    output_.clear();
-    if (!client_)
-      return;
-    client_.reset();
-    simulation_.disconnect(number_);
-    if (check_)
-      check_->disconnect();
-    log(why);
-  }
-
-  decltype(HostOptions::log) log_;
-  std::string prefix_;
-  bool patient_;
-  bool real_time_;
-  Simulation& simulation_;
-  RobotNumber number_;
-  TraceFile trace_;
-  std::optional<Listener> listener_;
-  std::optional<Terminal> terminal_;
-  bool terminal_open_ = false;
-  Fd client_;
-  protocol::Bytes output_;
-  std::optional<LineCheck> check_;
-  std::vector<PictureFeed> pictures_;
-  int cycles_ = 0;  // since the client's last bytes
-  Clock::time_point heard_ = Clock::now();
-};
 
 class Serving : ViewedHost {
  public:

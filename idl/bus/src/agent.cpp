@@ -53,7 +53,7 @@ void Agent::can(const v1::Capability& capability, Answerer answerer) {
   else
     *same = capability;
   if (!announcements_.write(self_))
-    throw std::runtime_error("the bus refused the capabilities of agent " + self_.name");
+    throw std::runtime_error("the bus refused the capabilities of agent " + self_.name);
 }
 
 void Agent::poll() {

@@ -1,13 +1,13 @@
 #include "saphira/agent_interface/facilitator.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 #include <tuple>
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "slots.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -17,117 +17,16 @@ constexpr double kAgain = 0.3;           // [s] until a silent agent is asked ag
 constexpr std::size_t kOpenOfOne = 64;   // requests of one asker at a time
 constexpr std::size_t kEnded = 256;      // ends that are remembered
 constexpr std::size_t kBegun = 256;      // actions that are remembered, besides open ones
-constexpr std::size_t kFired = 1024;     // triggers whose firings are remembered
 constexpr std::size_t kParts = 8;        // of a conjunction
 constexpr std::size_t kMostTold = 64;    // results of an answer
 constexpr std::size_t kTries = 1000;     // requests for the parts of a conjunction
 constexpr std::size_t kStrangers = 64;   // that are warned of
-constexpr double kShortestPeriod = 0.1;  // [s] of a trigger
-constexpr std::uint64_t kCalledOff = std::numeric_limits<std::uint64_t>::max();  // firings: no more
 constexpr const char* kName = "facilitator";
 
 Arguments without(Arguments arguments, const std::string& name) {
   std::erase_if(arguments, [&](const Argument& one) { return one.name == name; });
   return arguments;
 }
-
-/// The error in the arguments, from complete(). An open slot fits where the answer may fill it.
-std::string misfit(const Functor& functor, const Arguments& arguments) {
-  Arguments bound;
-  for (const Argument& argument : arguments)
-    if (argument.kind != ArgumentKind::unbound ||
-        std::none_of(functor.parameters.begin(), functor.parameters.end(),
-                     [&](const Parameter& one) { return one.name == argument.name; }))
-      bound.push_back(argument);
-  return complete(functor, bound);
-}
-
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t size = letter_size(text);
-    if (size == 0)
-      return false;
-    text.remove_prefix(size);
-  }
-  return true;
-}
-
-/// Where an answer is not as the functor declares it, and what was expected; empty: nowhere.
-std::string contradiction(const Functor& functor, const Answer& answer) {
-  if (!is_utf8(answer.text))
-    return "its text is not in UTF-8";
-  for (const Argument& result : answer.results) {
-    if (!is_utf8(result.name) || !is_utf8(result.text))
-      return "a slot is not in UTF-8";
-    const auto declared =
-        std::find_if(functor.parameters.begin(), functor.parameters.end(),
-                     [&](const Parameter& one) { return one.name == result.name; });
-    if (declared == functor.parameters.end())
-      return functor.name + " has no slot " + quoted(result.name);
-    Arguments alone{result};
-    if (std::string wrong = complete({functor.name, "", {optional(*declared)}}, alone);
-        !wrong.empty())
-      return wrong;
-  }
-  return {};
-}
-
-bool is_variable(const Argument& argument) {
-  return argument.kind == ArgumentKind::unbound && !argument.text.empty();
-}
-
-/// The arguments of a part, with the values of its variables.
-Arguments with_values(Arguments arguments, const Arguments& bound) {
-  for (Argument& argument : arguments) {
-    if (!is_variable(argument))
-      continue;
-    const Argument* const value = find(bound, argument.text);
-    std::string name = std::move(argument.name);
-    argument = Argument{};
-    argument.kind = ArgumentKind::unbound;
-    if (value != nullptr)
-      argument = *value;
-    argument.name = std::move(name);
-  }
-  return arguments;
-}
-
-/// The values of all variables after an answer to a part: one row for each value of a slot.
-std::vector<Arguments> rows_of(const Arguments& part, const Arguments& bound,
-                               const Arguments& results) {
-  std::size_t count = 1;
-  std::vector<std::pair<std::string, Arguments>> values;  // of each new variable
-  for (const Argument& slot : part) {
-    if (!is_variable(slot) || find(bound, slot.text) != nullptr)
-      continue;
-    Arguments of_slot;
-    for (const Argument& result : results)
-      if (result.name == slot.name && result.kind != ArgumentKind::unbound) {
-        of_slot.push_back(result);
-        of_slot.back().name = slot.text;
-      }
-    count = std::max(count, of_slot.size());
-    if (!of_slot.empty())
-      values.emplace_back(slot.text, std::move(of_slot));
-  }
-  std::vector<Arguments> rows;
-  for (std::size_t i = 0; i < count; ++i) {
-    Arguments row = bound;
-    bool agrees = true;  // two slots of one variable have one value
-    for (const auto& [name, of_slot] : values) {
-      const Argument& value = of_slot[std::min(i, of_slot.size() - 1)];
-      if (const Argument* const known = find(row, name); known != nullptr)
-        agrees = agrees && *known == value;
-      else
-        row.push_back(value);
-    }
-    if (agrees)
-      rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-// In the memory.
 
 /// Nothing was done: another agent may get the same request.
 bool untouched(AnswerCode code) {
@@ -194,23 +93,18 @@ void Facilitator::leave(std::uint64_t agent) {
   }
 }
 
-std::optional<Answer> Facilitator::candidates(Open& open) const {
-  const Request& request = open.request;
+std::optional<Answer> Facilitator::candidates(const Request& request, bool may_act,
+                                              std::vector<std::uint64_t>& agents) const {
   if (const auto agent = begun({request.asker, request.number})) {
     if (!agents_.contains(*agent))
       return Answer{AnswerCode::lost,
                     "the agent that was asked is gone; whether it was done is not known"};
-    open.left.push_back(*agent);
+    agents.push_back(*agent);
     return std::nullopt;
   }
   std::string wrong;
   std::vector<std::string> known;
   bool named = request.service.empty();
-  bool may_act = true;
-  if (open.whole) {
-    const Open& whole = open_.at(*open.whole);
-    may_act = whole.at + 1 == whole.parts.size() && whole.wanted == 1;
-  }
   std::vector<std::tuple<double, std::string, std::uint64_t>> fit;
   for (const auto& [id, agent] : agents_) {
     if (!request.service.empty() && request.service != agent.name &&
@@ -241,8 +135,16 @@ std::optional<Answer> Facilitator::candidates(Open& open) const {
   }
   std::sort(fit.begin(), fit.end());
   for (const auto& one : fit)
-    open.left.push_back(std::get<std::uint64_t>(one));
+    agents.push_back(std::get<std::uint64_t>(one));
   return std::nullopt;
+}
+
+/// The same for an open request: into `left`.
+std::optional<Answer> Facilitator::candidates(Open& open) const {
+  const Open* const whole = open.whole ? &open_.at(*open.whole) : nullptr;
+  const bool may_act =
+      whole == nullptr || (whole->at + 1 == whole->parts.size() && whole->wanted == 1);
+  return candidates(open.request, may_act, open.left);
 }
 
 void Facilitator::ask(const Request& request, double now) {
@@ -272,10 +174,10 @@ void Facilitator::ask(const Request& request, double now) {
 }
 
 bool Facilitator::may_change(const Id& trigger, const Checked& who) {
-  const auto found = triggers_.find(trigger);
-  if (found == triggers_.end() || may_end(who, found->second.trigger.person))
+  const Trigger* const found = triggers_.find(trigger);
+  if (found == nullptr || may_end(who, found->person))
     return true;
-  deny(who->text(), "to change or take back a trigger of " + found->second.trigger.source);
+  deny(who->text(), "to change or take back a trigger of " + found->source);
   return false;
 }
 
@@ -286,13 +188,11 @@ void Facilitator::deny(const std::string& who, const std::string& what) {
 
 void Facilitator::list_triggers(const Request& request) {
   Arguments told{text("live", "")};
-  for (const auto& [id, armed] : triggers_) {
-    if (is_spent(armed.trigger))
-      continue;
+  for (const Trigger* const trigger : triggers_.live()) {
     std::ostringstream name;
-    name << std::hex << id.first << ':' << std::dec << id.second;
+    name << std::hex << trigger->id.first << ':' << std::dec << trigger->id.second;
     told[0].text += (told[0].text.empty() ? "" : " ") + name.str();
-    if (const std::string missing = missing_for(armed.trigger);
+    if (const std::string missing = missing_for(*trigger);
         !missing.empty() && told.size() < kMostTold)
       told.push_back(text(name.str(), missing));
   }
@@ -303,9 +203,11 @@ void Facilitator::list_triggers(const Request& request) {
 std::string Facilitator::missing_for(const Trigger& trigger) const {
   const bool looks = trigger.kind == TriggerKind::data;
   for (const std::string& functor : {looks ? trigger.condition : trigger.action, trigger.action}) {
-    Open open;
-    open.request.functor = functor;
-    if (const auto none = candidates(open); none && none->code == AnswerCode::nobody)
+    Request request;
+    request.functor = functor;
+    std::vector<std::uint64_t> agents;
+    if (const auto none = candidates(request, true, agents);
+        none && none->code == AnswerCode::nobody)
       return none->text;
   }
   return {};
@@ -639,8 +541,11 @@ void Facilitator::end(const Id& id, const std::string& service, const Answer& an
         Reply{service, answer, open.left, open.acts && !untouched(answer.code)};
     return;
   }
-  if (open.trigger)
-    return looked(*open.trigger, answer);
+  if (open.trigger) {
+    if (const auto firing = triggers_.looked(*open.trigger, answer))
+      fire(*firing);
+    return;
+  }
   if (id.first == self_) {
     if (!well(answer.code))
       out_.notes.push_back(open.request.source + " asked for " + describe(open.request) + ": " +
@@ -654,36 +559,35 @@ void Facilitator::end(const Id& id, const std::string& service, const Answer& an
 }
 
 void Facilitator::set(const Trigger& trigger, double now) {
-  if (const auto known = triggers_.find(trigger.id); known != triggers_.end()) {
-    if (known->second.trigger == trigger)
-      return;
-    take_back(trigger.id);
-  }
-  if (trigger.kind != TriggerKind::event && !(trigger.period >= kShortestPeriod)) {
-    out_.notes.push_back("a trigger of " + trigger.source + " for " + quoted(trigger.action) +
-                         " is not set: period: expected 0.1 s or more, found " +
-                         plain(trigger.period));
+  const Trigger* const known = triggers_.find(trigger.id);
+  if (known != nullptr && *known == trigger)
     return;
-  }
-  const double first = trigger.kind == TriggerKind::time ? trigger.period : 0.0;
-  triggers_[trigger.id] = {trigger, now + first};
+  if (known != nullptr)
+    take_back(trigger.id);
+  if (const std::string wrong = triggers_.set(trigger, now); !wrong.empty())
+    out_.notes.push_back("a trigger of " + trigger.source + " for " + quoted(trigger.action) +
+                         " is not set: " + wrong);
 }
 
-void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  triggers_.erase(trigger);
+void Facilitator::take_back(const Id& trigger) {
+  triggers_.take_back(trigger);
   stop_action(trigger, "its trigger was withdrawn");
-  out_.changed = fired_.erase(trigger) > 0 || out_.changed;
 }
 
-void Facilitator::miss(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
-  triggers_.erase(trigger);
+void Facilitator::miss(const Id& trigger) {
+  triggers_.miss(trigger);
   stop_action(trigger, "the program that set its trigger is gone");
 }
 
-void Facilitator::call_off(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+void Facilitator::call_off(const Id& trigger) {
   stop_action(trigger, "its trigger was withdrawn");
-  fired_[trigger] = kCalledOff;
-  out_.changed = true;
+  triggers_.call_off(trigger);
+}
+
+void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
+  now_ = now;
+  for (const Firing& firing : triggers_.happened(functor, arguments))
+    fire(firing);
 }
 
 void Facilitator::stop_action(const Id& trigger, const std::string& why) {
@@ -695,94 +599,39 @@ void Facilitator::stop_action(const Id& trigger, const std::string& why) {
     withdraw(id.first, id.second, why);
 }
 
-bool Facilitator::is_spent(const Trigger& trigger) const {
-  const auto fired = fired_.find(trigger.id);
-  return fired != fired_.end() &&
-         (fired->second == kCalledOff || (trigger.times != 0 && fired->second >= trigger.times));
+/// Asks for the condition of a data trigger.
+void Facilitator::look(const Trigger& trigger) {
+  Request condition = request_of(trigger, trigger.condition);
+  condition.arguments = trigger.condition_arguments;
+  begin(condition, trigger.id, now_);
 }
 
-void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
-  for (auto& [id, armed] : triggers_) {
-    const Trigger& trigger = armed.trigger;
-    if (trigger.kind != TriggerKind::event || trigger.condition != functor)
-      continue;
-    const bool fits = std::all_of(trigger.condition_arguments.begin(),
-                                  trigger.condition_arguments.end(), [&](const Argument& wanted) {
-                                    const Argument* const has = find(arguments, wanted.name);
-                                    return has != nullptr &&
-                                           (wanted.kind == ArgumentKind::unbound || *has == wanted);
-                                  });
-    if (fits)
-      fire(armed, arguments, now);
-  }
+/// Asks for the action of a trigger that has fired.
+void Facilitator::fire(const Firing& firing) {
+  Request action = request_of(*firing.trigger, firing.trigger->action);
+  action.arguments = firing.arguments;
+  begin(action, std::nullopt, now_);
+  if (const auto begun = open_.find({self_, action.number}); begun != open_.end())
+    begun->second.cause = firing.trigger->id;
 }
 
-void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
-  const Trigger& trigger = armed.trigger;
-  if (is_spent(trigger))
-    return;
-  if (trigger.times != 0) {
-    ++fired_[trigger.id];
-    out_.changed = true;
-    const auto gone = std::find_if(fired_.begin(), fired_.end(), [this](const auto& one) {
-      return !triggers_.contains(one.first);
-    });
-    if (fired_.size() > kFired && gone != fired_.end())
-      fired_.erase(gone);
-  }
+Request Facilitator::request_of(const Trigger& trigger, const std::string& functor) {
   Request request;
-  request.functor = trigger.action;
+  request.functor = functor;
   request.source = "a trigger of " + trigger.source;
   request.person = trigger.person;
   request.asker = self_;
   request.number = ++number_;
-  for (const Argument& argument : trigger.action_arguments) {
-    const Argument* const value =
-        argument.kind == ArgumentKind::unbound ? find(found, argument.name) : nullptr;
-    request.arguments.push_back(value == nullptr ? argument : *value);
-  }
-  begin(request, std::nullopt, now);
-  if (const auto begun = open_.find({self_, request.number}); begun != open_.end())
-    begun->second.cause = trigger.id;
-}
-
-/// The condition of a data trigger was answered.
-void Facilitator::looked(const Id& trigger, const Answer& answer) {
-  const auto found = triggers_.find(trigger);
-  // An agent that is missing or silent leaves the value unknown; one that refuses has none.
-  if (found == triggers_.end() || !(well(answer.code) || answer.code == AnswerCode::refused))
-    return;
-  Armed& armed = found->second;
-  std::optional<Arguments> value;
-  if (well(answer.code))
-    value = answer.results;
-  const bool changed = armed.looked && value && armed.found != value;
-  armed.looked = true;
-  armed.found = value;
-  if (changed)
-    fire(armed, answer.results, now_);
+  return request;
 }
 
 Facilitator::Outputs Facilitator::step(double now) {
   now_ = now;
-  for (auto& [id, armed] : triggers_) {
-    if (armed.trigger.kind == TriggerKind::event || now < armed.next || is_spent(armed.trigger))
-      continue;
-    // Times that this program slept through are skipped.
-    armed.next = now + armed.trigger.period;
-    if (armed.trigger.kind == TriggerKind::time) {
-      fire(armed, {}, now);
-      continue;
-    }
-    Request condition;
-    condition.functor = armed.trigger.condition;
-    condition.arguments = armed.trigger.condition_arguments;
-    condition.source = "a trigger of " + armed.trigger.source;
-    condition.person = armed.trigger.person;
-    condition.asker = self_;
-    condition.number = ++number_;
-    begin(condition, id, now);
-  }
+  for (const Trigger* const trigger : triggers_.take_due(now))
+    if (trigger->kind == TriggerKind::data)
+      look(*trigger);
+    else if (const auto firing = triggers_.fire(trigger->id, {}))
+      fire(*firing);
   std::vector<Id> late;
   std::vector<Id> waiting;
   for (auto& [id, open] : open_) {
@@ -824,6 +673,7 @@ Facilitator::Outputs Facilitator::step(double now) {
       break;
     go_on(Id(next->first), now);
   }
+  out_.changed = triggers_.take_changed() || out_.changed;
   return std::exchange(out_, {});
 }
 
@@ -841,9 +691,8 @@ std::optional<double> Facilitator::due() const {
       if (!asked.heard)
         consider(asked.again);
   }
-  for (const auto& [id, armed] : triggers_)
-    if (armed.trigger.kind != TriggerKind::event && !is_spent(armed.trigger))
-      consider(armed.next);
+  if (const auto next = triggers_.due())
+    consider(*next);
   return soonest;
 }
 

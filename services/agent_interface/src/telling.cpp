@@ -130,6 +130,17 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, const Situ
     ask(std::move(question), utterance);
     return;
   }
+  // Only the taker, or an answer to the robot's question, takes a load off without a question back.
+  const bool aboard = advice.kind == Advice::Kind::has && is_aboard(advice.about, situation);
+  if (aboard && !same_person(advice.value, utterance.speaker) && advice.value != named_person("") &&
+      situation.asked_about != "taken") {
+    refuse(utterance, "I carry " + advice.about + ": has " + advice.value + " taken it off?", out);
+    Question question;
+    question.fact = advice;
+    question.no = "then I go on carrying it";
+    ask(std::move(question), utterance);
+    return;
+  }
   // The activity that drives replans at once; the answer says so.
   const Task* const task = tasks_.task();
   std::string goal;
@@ -145,7 +156,7 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, const Situ
     change = "; so " + named_task(*task, utterance.speaker) + " ends";
   else if (before.around != now.around)
     change = "; so I look for another way";
-  if (advice.kind == Advice::Kind::has && is_aboard(advice.about, situation))
+  if (aboard)
     change = "; so I no longer carry it";
   say(utterance, "I know now that " + describe(advice) + change, true, out);
 }

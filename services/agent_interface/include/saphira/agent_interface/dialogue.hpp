@@ -11,6 +11,8 @@
 #include "saphira/agent_interface/knowledge.hpp"
 #include "saphira/agent_interface/tasks.hpp"
 #include "saphira/idl/goal_end.hpp"
+#include "saphira/idl/intention.hpp"
+#include "saphira/idl/motion.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/route.hpp"
 #include "saphira/requests/request.hpp"

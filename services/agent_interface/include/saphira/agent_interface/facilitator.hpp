@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/agent_interface/triggers.hpp"
 #include "saphira/idl/system.hpp"
 #include "saphira/requests/request.hpp"
 
@@ -25,24 +26,6 @@ struct AgentInfo {
   std::string name;
   std::string address;  ///< Request.service of this agent
   std::vector<Capability> capabilities;
-};
-
-enum class TriggerKind { time, data, event };
-
-/// An action that is requested when a condition holds (after OAA).
-struct Trigger {
-  std::pair<std::uint64_t, std::uint64_t> id;
-  std::string source;  ///< the requester
-  TriggerKind kind = TriggerKind::time;
-  double period = 1.0;  ///< [s] of time and data
-  std::string condition;
-  Arguments condition_arguments;
-  std::string action;
-  Arguments action_arguments;  ///< unbound ones are filled from the condition's result
-  std::uint64_t times = 0;     ///< firings at most; 0: without end
-  Checked person{};            ///< the requester, for whom its action is requested
-
-  bool operator==(const Trigger&) const = default;
 };
 
 /// The functor that the facilitator answers itself: the result `live` has the ids of the triggers
@@ -126,7 +109,8 @@ class Facilitator {
   /// Restored before all other calls.
   template <class Archive>
   void archive(Archive& a) {
-    a("fired", fired_)("begun", begun_)("askers", askers_);
+    triggers_.archive(a);
+    a("begun", begun_)("askers", askers_);
   }
 
   std::size_t open() const { return open_.size(); }
@@ -179,13 +163,8 @@ class Facilitator {
     std::size_t failed = 0;        ///< the part of `trouble`: the last one that was reached
     std::optional<Reply> reply{};  ///< of the part at work: step() goes on by it
   };
-  struct Armed {
-    Trigger trigger;
-    double next = 0.0;
-    bool looked = false;               ///< the condition was answered
-    std::optional<Arguments> found{};  ///< by the last answer; none: no value
-  };
-
+  std::optional<Answer> candidates(const Request& request, bool may_act,
+                                   std::vector<std::uint64_t>& agents) const;
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
   void list_triggers(const Request& request);
@@ -202,9 +181,9 @@ class Facilitator {
   void tell(const Open& open, std::uint64_t agent);
   void give(const Id& id, const std::string& service, const Answer& answer);
   void end(const Id& id, const std::string& service, const Answer& answer);
-  void looked(const Id& trigger, const Answer& answer);
-  void fire(Armed& armed, const Arguments& found, double now);
-  bool is_spent(const Trigger& trigger) const;
+  void look(const Trigger& trigger);
+  void fire(const Firing& firing);
+  Request request_of(const Trigger& trigger, const std::string& functor);
   std::optional<std::uint64_t> begun(const Id& id) const;
   Checked asker_of_begun(const Id& id) const;
   void note_begun(const Id& id, std::uint64_t agent);
@@ -218,8 +197,7 @@ class Facilitator {
   std::map<std::uint64_t, AgentInfo> agents_;
   std::map<Id, Open> open_;
   std::vector<std::pair<Id, Solved>> ended_;  ///< newest ends, repeated on a repeated request
-  std::map<Id, Armed> triggers_;
-  std::map<Id, std::uint64_t> fired_;  ///< how often, of triggers with `times`
+  Triggers triggers_{};
   std::set<std::string> strangers_{};  ///< in the address of answers that no agent has
   std::vector<std::pair<Id, std::uint64_t>> begun_{};  ///< actions and their agents, oldest first
   std::map<Id, Identity> askers_{};                    ///< of these, where the bus checks them
