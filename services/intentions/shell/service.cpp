@@ -21,8 +21,6 @@ namespace {
 
 constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
 constexpr double kReply = 3600.0;           // [s] for agents: an activity has a limit of its own
-constexpr std::uint64_t kNewStart = 50;     // [steps]
-constexpr double kFresh = 1.0;              // [s] age of a claim, by the clocks of two machines
 constexpr std::size_t kMostGoals = 1024;    // of GoalStatusSet.goals
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
 
@@ -251,10 +249,8 @@ void Service::take_claims(Core::Received& received) {
       received.claims.push_back(
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
-           sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL});
-      // After a restart the claims of before come again, and answer no question that is asked anew.
-      if (steps_ < kNewStart && sample.info.age > kFresh && !ports_.lockstep())
-        received.claims.back().event.age = static_cast<Ticks>(sample.info.age / kTick);
+           sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL,
+           sample.info.age});
     } catch (const FileError& error) {
       notes.warn("a claim of " + saphira::quoted(sample.data.source) + ": " + error.what());
     }

@@ -20,6 +20,7 @@ constexpr double kSilence = 1.0;
 /// [s] in which goals of before the start come. Later the clocks of other machines would decide
 /// about their age.
 constexpr double kStarting = 10.0;
+constexpr double kClockError = 1.0;  // [s] between two machines
 /// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
 /// start together.
 constexpr double kStartsTogether = 3.0;
@@ -439,6 +440,9 @@ std::vector<ClaimEvent> Core::claims_of(const Received& received) {
   std::vector<ClaimEvent> events;
   for (const Received::Claim& claim : received.claims) {
     events.push_back(claim.event);
+    // A claim of before a restart comes again, and answers no question that is asked anew.
+    if (!lockstep_ && received.running < kStarting && claim.age > received.running + kClockError)
+      events.back().age = static_cast<Ticks>(claim.age / kTick);
     if (claim.event.kind == ClaimEvent::Kind::kSaid && claim.ends_with_writer)
       claimants_[claim.event.id] = claim.writer;
     else

@@ -544,6 +544,30 @@ TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
   EXPECT_FALSE(believes(outputs, "goes"));
 }
 
+TEST_F(CoreTest, AClaimOfBeforeTheStartKeepsItsAge) {
+  struct Case {
+    double running;  // [s] since the start
+    double age;      // [s] of the claim
+    Ticks old;       // the age that it counts with
+  };
+  for (const Case& one : {Case{2.0, 1.5, 0}, {2.0, 2.9, 0}, {2.0, 60.0, 600}, {11.0, 60.0, 0}}) {
+    Core core(settings(false));
+    inputs_.stamp.cycle = 0;
+    Core::Received::Claim claim;
+    claim.age = one.age;
+    claim.event.id = {9, 1};
+    claim.event.name = "given";
+    claim.event.value = Value(1.0);
+    inputs_.received.running = one.running;
+    inputs_.received.claims = {claim};
+    const Core::Outputs outputs = step(core);
+    ASSERT_TRUE(outputs.beliefs);
+    const auto given = std::ranges::find(*outputs.beliefs, "given", &Belief::name);
+    ASSERT_NE(given, outputs.beliefs->end());
+    EXPECT_EQ(static_cast<Ticks>(inputs_.stamp.cycle) - given->since, one.old) << one.running;
+  }
+}
+
 TEST_F(CoreTest, AnEmergencyStopSaysWhichProgramPressedIt) {
   ask({written(1, kKaren)});
   inputs_.received.grants = {{true, "button"}};

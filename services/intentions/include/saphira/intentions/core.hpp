@@ -55,6 +55,7 @@ class Core {
       ClaimEvent event;
       Writer writer{};
       bool ends_with_writer = false;
+      double age = 0.0;  ///< [s] since it was written, by the clocks of two machines
     };
     struct Grant {
       bool pressed = false;
