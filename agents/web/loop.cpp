@@ -196,6 +196,15 @@ Loop::~Loop() {
   lws_context_destroy(context_);
 }
 
+std::string exposure(const Place& place) {
+  const bool here = place.address.starts_with("127.") || place.address == "::1" ||
+                    place.address == "lo" || !place.certificate.empty();
+  return here ? ""
+              : "--listen " + place.address +
+                    " without --certificate: the key crosses the network in the clear, and whoever "
+                    "reads it may do what its owner may";
+}
+
 lws_vhost* Loop::listen(lws_context_creation_info info, const Place& place) {
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
   const bool is_ipv4 = inet_pton(AF_INET, place.address.c_str(), bytes.data()) == 1;

@@ -54,6 +54,10 @@ std::string host_name();
 /// machine.
 std::string name_of(const Place& place);
 
+/// A warning where others read along on the network: no TLS, and not on this machine alone; empty:
+/// none.
+std::string exposure(const Place& place);
+
 /// An event loop of libwebsockets, in one thread, with the further needs of our programs:
 /// descriptors to wait for, a clock, an end.
 class Loop {

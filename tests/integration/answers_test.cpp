@@ -166,7 +166,7 @@ TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
             "  - {program: saphira-bridge, arguments: [--no-such-option]}\n");
   const Outcome outcome = run({"up", file});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(has(outcome.text, "saphira: bridge refuses its options")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "saphira: bridge refuses the options of")) << outcome.text;
   EXPECT_FALSE(has(outcome.text, "started")) << outcome.text;
 }
 

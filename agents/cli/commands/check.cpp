@@ -171,7 +171,7 @@ std::string refusal(const Deployment& deployment, const Places& places,
                       (!child.robot.empty() || program_of(child) == "saphira-sim");
     const Said said = ours && can_be_asked(child) ? ask(child) : Said{};
     if (said.misused)
-      return child.name + " does not take what " + deployment.file + " gives it\n" + said.text;
+      return child.name + " refuses the options of " + deployment.file + "\n" + said.text;
   }
   return {};
 }

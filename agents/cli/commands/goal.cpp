@@ -296,6 +296,9 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
                 status.requester.c_str(), bus::describe(status).c_str());
   if (!goals.empty())
     return bus::kExitOk;
+  if (const std::string absent = absence(node, processes, "intentions");
+      !processes.all().empty() && !absent.empty())
+    return failed("no goals are known; " + absent);
   return nothing_there("goals", processes, who_is_there(processes));
 }
 

@@ -367,7 +367,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   const auto misused = supervisor.misused();
   supervisor.stop();
   if (misused) {
-    print({}, *misused + " does not take what " + deployment.file + " gives it: see above");
+    print({}, *misused + " refuses the options of " + deployment.file + ": see above");
     return bus::kExitUsage;
   }
   print({}, "all stopped");

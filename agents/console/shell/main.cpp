@@ -109,6 +109,8 @@ int main(int argc, char** argv) {
           if (!trouble.empty())
             std::fprintf(stderr, "saphira-console: %s\n", trouble.c_str());
         }
+        if (const std::string exposed = web::exposure(options.server.place); !exposed.empty())
+          std::fprintf(stderr, "saphira-console: %s\n", exposed.c_str());
         if (node.dry_run)  // its files were checked
           return static_cast<int>(bus::kExitOk);
         if (!screenshot.file.empty())

@@ -351,7 +351,8 @@ class Robot(Context):
                 self._poll()
                 if told and told[-1].code != v1.AnswerCode.ANSWER_UNDERWAY:
                     break
-                nobody = "" if told else self._absence(topic)
+                # A stop is repeated to the end: a bridge that is not heard yet may be there.
+                nobody = "" if told or topic == topics.DRIVE_STOP else self._absence(topic)
                 if nobody:
                     raise Nobody(nobody, v1.AnswerCode.ANSWER_NOBODY)
                 await self._waiter.news(_LOOK)

@@ -17,7 +17,8 @@ int serve(const bus::NodeOptions& node_options, ros2::Options options, const bus
       letter = '_';  // ROS 2 has no others
   ros2::RosRobot robot(node, options);
   node.status().state = v1::SERVICE_RUNNING;
-  node.info("domain " + std::to_string(options.ros.domain) + " of ROS 2");
+  node.info("domain " + std::to_string(options.ros.domain) + " of ROS 2, on " +
+            (options.ros.interface.empty() ? "all interfaces" : options.ros.interface));
   if (options.reads_only)
     node.info("nothing that ROS 2 says reaches the robot");
   while (!stop.requested()) {
@@ -44,7 +45,8 @@ int main(int argc, char** argv) {
             .environment("ROS_DOMAIN_ID")
             .in_range(0, 231);
         app.add_option("--ros-interface", options.ros.interface,
-                       "address of the one interface for ROS 2")
+                       "address of the one interface for ROS 2; not given: this machine alone "
+                       "with the profile host, else all")
             .ipv4();
         app.add_option("--cmd-vel", cmd_vel, "type of cmd_vel").one_of({"twist", "stamped"});
         app.add_option("--role", role, "role in which cmd_vel drives").one_of({"direct", "teleop"});
@@ -63,6 +65,9 @@ int main(int argc, char** argv) {
             {"iron", ros2::Distribution::iron},
             {"jazzy", ros2::Distribution::jazzy}};
         options.ros.domain = domain;
+        // A robot whose bus stays on this machine is not driven from another one by default.
+        if (options.ros.interface.empty() && node.profile == bus::Profile::host)
+          options.ros.interface = "127.0.0.1";
         options.stamped = cmd_vel == "stamped";
         options.teleop = role == "teleop";
         options.with_map = !without_map;

@@ -184,12 +184,14 @@ std::string Reason::goal_name(const v1::GoalId& id) const {
   return text.substr(0, text.find('('));
 }
 
+/// As intentions has checked it; the goal's own words count where no status is known.
 std::string Reason::requester(const v1::GoalId& id) const {
+  if (const v1::GoalStatus* const known = status(id); known != nullptr && !known->requester.empty())
+    return known->requester;
   for (const v1::Goal& goal : scene_.goals)
     if (same(goal.id, id) && !goal.requester.empty())
       return goal.requester;
-  const v1::GoalStatus* const known = status(id);
-  return known == nullptr || known->requester.empty() ? "somebody" : known->requester;
+  return "somebody";
 }
 
 /// The intention and goal of these behaviors (or the program, for its own ones), where known.

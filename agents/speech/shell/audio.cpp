@@ -124,7 +124,11 @@ void Microphone::rest() {
 void Microphone::run() {
   if (source_ == "none")
     return;
-  while (!stop_ && !ended()) {
+  const auto at_end = [this] {
+    const std::lock_guard lock(mutex_);
+    return at_end_;
+  };
+  while (!stop_ && !at_end()) {
     try {
       read_once();
     } catch (const std::exception& error) {

@@ -1,6 +1,5 @@
 #include "speech/shell/speech_shell.hpp"
 
-#include <chrono>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -45,7 +44,12 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
 void SpeechShell::run(const bus::Stop& stop) {
   constexpr std::chrono::milliseconds kPollPeriod{20};
   auto looked = Clock::now();
-  while (!stop.requested()) {
+  // A program that only hears a file ends behind it, when the bus has had its words.
+  constexpr std::chrono::seconds kDelivery{3};
+  const auto is_done = [&] {
+    return ended_ && options_.speaker == "none" && Clock::now() - *ended_ > kDelivery;
+  };
+  while (!stop.requested() && !is_done()) {
     node_.wait(kPollPeriod, &stop);
     step();
     if (Clock::now() - looked > std::chrono::seconds(1)) {
@@ -74,8 +78,10 @@ void SpeechShell::step() {
   const Sound sound = microphone_.take();
   if (!sound.empty())
     tell(conversation_.hear(sound, speaker_.speaking()));
-  else if (microphone_.ended())
+  else if (!ended_ && microphone_.ended()) {
+    ended_ = Clock::now();
     tell(conversation_.end());
+  }
 }
 
 void SpeechShell::tell(const Conversation::Outputs& out) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "saphira/base/watched_folder.hpp"
@@ -50,6 +52,7 @@ class SpeechShell {
   std::string microphone_trouble_;  ///< of the threads; guarded, with the next
   std::string speaker_trouble_;
   std::string told_ = "?";
+  std::optional<std::chrono::steady_clock::time_point> ended_{};  ///< the sound of a file or pipe
   Microphone microphone_;
   Speaker speaker_;
 };

@@ -30,6 +30,17 @@ class SpeechOnTheBus : public WithModel {
   bus::Node service{test::memory_options("speech"), memory};
 };
 
+TEST_F(SpeechOnTheBus, AFileIsHeardOnceAndThenTheProgramEnds) {
+  speak("flakey turn left");
+  SpeechOptions once = options();
+  once.speaker = "none";
+  SpeechShell speech(service, once);
+  speech.run(bus::Stop{});
+  const auto utterances = heard.take();
+  ASSERT_EQ(utterances.size(), 1U);
+  EXPECT_EQ(utterances[0].data.text, "flakey turn left");
+}
+
 TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
   speak("flakey turn left");
   SpeechShell speech(service, options());

@@ -69,6 +69,8 @@ int serve(const bus::NodeOptions& node_options, viewer::Server::Options options,
                                           node.publish_status();
                                         }});
   server->watch(node.wake_fd());
+  if (const std::string exposed = web::exposure(options.place); !exposed.empty())
+    std::fprintf(stderr, "saphira-foxglove: %s\n", exposed.c_str());
   std::printf(
       "open %s://%s:%d/?key=%s in Foxglove or Lichtblick, as a Foxglove WebSocket; Ctrl-C "
       "ends it\n",

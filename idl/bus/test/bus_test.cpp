@@ -6,6 +6,7 @@
 
 #include "harness.hpp"
 #include "only.hpp"
+#include "saphira/bus/held.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "trouble.hpp"
 
@@ -186,6 +187,45 @@ TEST_P(Bus, WriterThatEndsIsLostByItsName) {
   EXPECT_TRUE(eventually(*b, [&] { return !(lost = reader.take_lost()).empty(); }));
   EXPECT_EQ(lost, std::vector<WriterId>{id});
   EXPECT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
+}
+
+TEST(MemoryBus, AHeldValueIsThatOfALivingWriter) {
+  const auto bus = make_memory_bus();
+  Node reads(node_options("reads", "one"), bus);
+  Held<v1::FloorMap> held(reads.reader(topics::kMap));
+  const auto revisions = [&] {
+    std::vector<std::uint64_t> all;
+    for (const v1::FloorMap& map : held.take())
+      all.push_back(map.revision);
+    return all;
+  };
+  using Revisions = std::vector<std::uint64_t>;
+  const auto map = [](std::uint64_t revision) {
+    v1::FloorMap made;
+    made.revision = revision;
+    return made;
+  };
+  std::optional<Node> first(std::in_place, node_options("registration", "one"), bus);
+  auto writer = std::make_unique<Writer<v1::FloorMap>>(first->writer(topics::kMap));
+  writer->write(map(7));
+  writer->write(map(8));
+  EXPECT_EQ(revisions(), (Revisions{7, 8}));
+  {
+    Node second(node_options("registration", "one"), bus);
+    auto other = second.writer(topics::kMap);
+    other.write(map(1));
+    EXPECT_EQ(revisions(), Revisions{1});
+  }
+  EXPECT_EQ(revisions(), Revisions{8}) << "the second one has left";
+  writer.reset();
+  first.reset();
+  EXPECT_EQ(revisions(), Revisions{}) << "it stays over a restart";
+  Node again(node_options("registration", "one"), bus);
+  auto restarted = std::make_unique<Writer<v1::FloorMap>>(again.writer(topics::kMap));
+  restarted->write(map(9));
+  EXPECT_EQ(revisions(), Revisions{9});
+  restarted.reset();
+  EXPECT_EQ(revisions(), Revisions{}) << "a value of one that had ended does not return";
 }
 
 TEST(MemoryBus, AProgramThatIsSilentForAWhileIsLostAndReturns) {

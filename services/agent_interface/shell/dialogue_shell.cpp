@@ -302,8 +302,8 @@ void DialogueShell::take_utterances() {
 
 void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
-  if (const auto map = maps_.take_newest()) {
-    situation_.map = maps::from_bus(*map);
+  if (const auto maps = maps_.take(); !maps.empty()) {
+    situation_.map = maps::from_bus(maps.back());
     node_.status().state = v1::SERVICE_RUNNING;
     node_.status().reason = "";
   }

@@ -10,6 +10,7 @@
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/held.hpp"
 
 namespace saphira::agent_interface {
 
@@ -59,7 +60,7 @@ class DialogueShell {
   bus::Reader<v1::Message> messages_ = node_.reader(bus::topics::kMessages);
   bus::Reader<v1::BeliefSet> beliefs_ = node_.reader(bus::topics::kBeliefs);
   bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
-  bus::Reader<v1::FloorMap> maps_ = node_.reader(bus::topics::kMap);
+  bus::Held<v1::FloorMap> maps_{node_.reader(bus::topics::kMap)};
   bus::Reader<v1::Vision> visions_ = node_.reader(bus::topics::kVision);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   bool knows_beliefs_ = false;

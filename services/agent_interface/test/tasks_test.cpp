@@ -87,7 +87,7 @@ TEST_F(TasksTest, TheTasksOfAProgramEndWithItAndItsStopGoesOn) {
   // Its hold ends as well, and the task of alice goes on.
   EXPECT_EQ(
       told(tasks.left(model)),
-      "model: I drop the turn, and what was to follow: the program that wanted it has left or "
+      "model: I drop the turn, and the rest of the order: the program that wanted it has left or "
       "taken it back.\n"
       "cancel 2\n"
       "cancel 3\n");
@@ -186,7 +186,7 @@ TEST_F(TasksTest, AStopEndsTheLaterStepsToo) {
   want({motion("bob"), motion("bob")}, "bob");
   EXPECT_EQ(want({motion("alice", "stop")}, "alice"),
             "alice: I stop\n"
-            "bob: I drop the turn for bob, and what was to follow: alice said \"do it\".\n"
+            "bob: I drop the turn for bob, and the rest of the order: alice said \"do it\".\n"
             "cancel 1\n"
             "goal 2 stop 0\n");
   EXPECT_EQ(told(tasks.ended({1, false, "canceled"})), "");
@@ -213,7 +213,7 @@ TEST_F(TasksTest, BetweenBriefStepsTheRobotStandsAndTheTaskGoesOnAfterTheLast) {
   EXPECT_EQ(want({motion("carol", "stop")}, "carol"),
             "carol: I stop\n"
             "alice: I drop the mail for alice: carol said \"do it\".\n"
-            "bob: I drop the turn for bob, and what was to follow: carol said \"do it\".\n"
+            "bob: I drop the turn for bob, and the rest of the order: carol said \"do it\".\n"
             "cancel 1\n"
             "cancel 7\n"
             "cancel 8\n"

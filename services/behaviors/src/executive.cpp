@@ -230,9 +230,8 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
   if (age <= 0.0)
     return;
   output.speed_limit = speed_for_age(age);
-  std::string why = inputs.delay <= 0.0
-                        ? ""
-                        : "commands work " + seconds(inputs.delay) + " after the state they answer";
+  std::string why =
+      inputs.delay <= 0.0 ? "" : "commands take effect " + seconds(inputs.delay) + " late";
   if (old > 0.0)
     why = "intentions are " + seconds(old) + " old" + (why.empty() ? "" : ", " + why);
   if (output.speed_limit < std::max(std::abs(output.speed), model_.max_velocity))

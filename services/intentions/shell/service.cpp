@@ -201,12 +201,9 @@ std::optional<Core::Vision> Service::vision() {
 }
 
 void Service::take_maps() {
-  for (const auto& sample : maps_.take()) {
-    if (sample.info.disposed)
-      continue;
-    map_revision_ = sample.data.revision;
-    new_maps_.push_back(
-        {*map_revision_, std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
+  for (const v1::FloorMap& map : maps_.take()) {
+    map_revision_ = map.revision;
+    new_maps_.push_back({map.revision, std::make_shared<const maps::Map>(maps::from_bus(map))});
   }
 }
 
@@ -249,8 +246,7 @@ void Service::take_claims(Core::Received& received) {
       received.claims.push_back(
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
-           sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL,
-           sample.info.age});
+           sample.info.writer, sample.data.writer_lost == v1::WRITER_LOST_CANCEL, sample.info.age});
     } catch (const FileError& error) {
       notes.warn("a claim of " + saphira::quoted(sample.data.source) + ": " + error.what());
     }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "intentions/shell/memory_file.hpp"
+#include "saphira/bus/held.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/core.hpp"
@@ -70,7 +71,7 @@ class Service final : public runtime::Service {
   bus::Input<v1::Vision>* vision_;
   std::optional<bus::Reader<v1::Vision>> unasked_vision_;
   std::optional<v1::Vision> newest_vision_;
-  bus::Reader<v1::FloorMap> maps_;
+  bus::Held<v1::FloorMap> maps_;
   bus::Reader<v1::BehaviorSchemas> behavior_schemas_;
   bus::Reader<v1::BeliefClaim> claims_;
   bus::Reader<v1::Goal> goals_;

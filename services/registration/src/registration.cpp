@@ -597,6 +597,8 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     if (now_.state == v1::REGISTRATION_TRACKING && now_.confirmed)
       now_.other_map = false;
     look_for_news(inputs, readings);
+  } else {
+    now_.standing.forget();
   }
   report();
   return now_.output;

@@ -25,8 +25,7 @@ bool Standing::step(const Pose& moved, const std::vector<PlacedReading>& reading
   way_ = compose(way_, moved);
   if (way_.position().norm() > settings_.moved ||
       std::abs(norm2_angle(way_.th)) > settings_.turned) {
-    way_ = {};
-    sonars_.clear();
+    forget();
     return false;
   }
   for (const PlacedReading& reading : readings) {

@@ -436,7 +436,7 @@ void Executor::lose_robot(const std::string& hold) {
     if (entry.status.state == v1::GOAL_WAITING)
       wait(entry, code, hold.empty() ? "waits for the robot" : hold);
     else if (open(entry.status))
-      suspend(entry, code, hold.empty() ? "the robot is not connected; goes on when it is" : hold);
+      suspend(entry, code, hold.empty() ? "the robot is not heard; goes on when it is" : hold);
   }
 }
 

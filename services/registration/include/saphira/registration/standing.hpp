@@ -31,6 +31,11 @@ class Standing {
 
   /// One cycle; `moved` is by dead reckoning. True once where the robot was carried.
   bool step(const Pose& moved, const std::vector<PlacedReading>& readings);
+  /// The robot may have moved since the last step.
+  void forget() {
+    way_ = {};
+    sonars_.clear();
+  }
 
  private:
   struct Sonar {

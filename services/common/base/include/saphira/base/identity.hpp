@@ -19,9 +19,10 @@ struct Identity {
 /// None: nobody is checked, as on an open bus.
 using Checked = std::optional<Identity>;
 
-/// A checked identity before what it calls itself: "karen (operator), saphira drive".
+/// A checked identity before the name that it gives itself: "karen (operator), saphira drive". A
+/// name that begins with this identity already, from a program between, stays as it is.
 inline std::string named(const std::string& says, const Checked& who) {
-  if (!who)
+  if (!who || says.starts_with(who->text() + ", "))
     return says;
   return who->text() + (says.empty() ? "" : ", " + says);
 }
