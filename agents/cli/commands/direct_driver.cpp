@@ -1,4 +1,5 @@
 #include "direct.hpp"
+#include "saphira/base/identity.hpp"
 
 namespace saphira::cli {
 
@@ -46,7 +47,7 @@ void DirectDriver::poll() {
     if (std::string who = stops_.hear(*grant_); !who.empty())
       stopped_by_ = std::move(who);
     for (const v1::Refusal& refusal : grant_->refused)
-      if (refusal.source == source_)
+      if (is_named(refusal.source, source_))
         refusal_ = refusal.reason;
   }
   if (drives()) {
@@ -56,7 +57,7 @@ void DirectDriver::poll() {
 }
 
 bool DirectDriver::drives() const {
-  return grant_ && grant_->role != v1::ROLE_NONE && grant_->source == source_;
+  return grant_ && grant_->role != v1::ROLE_NONE && is_named(grant_->source, source_);
 }
 
 std::string DirectDriver::trouble() const {

@@ -1,5 +1,6 @@
 """Driving the wheels, as a program (role direct)."""
 
+import math
 import time
 
 from . import _bus, v1
@@ -25,6 +26,8 @@ class Drive(Context):
 
         Canceled: somebody has stopped the robot.
         """
+        if not (math.isfinite(speed) and math.isfinite(turn)):
+            raise ValueError(f"speed and turn: expected finite numbers, found {speed}, {turn}")
         self._expect_no_stop()
         command = v1.MotorCommand(
             active=True,
@@ -45,6 +48,8 @@ class Drive(Context):
         """Drives while it is waited for, so long from when it is let. Refused: others drive, or nobody
         may.
         """
+        if not seconds >= 0.0:
+            raise ValueError(f"seconds: expected 0 or more, found {seconds}")
         return Pending(self._waiter, lambda: self._go(speed, turn, seconds))
 
     @property

@@ -17,6 +17,7 @@
 #include "maps/shell/convert.hpp"
 #include "saphira.h"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/identity.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "saphira/bus/stop_notice.hpp"
@@ -500,11 +501,11 @@ class BusRobot final : public Robot {
     take_stop(ends, *grant);
     std::string news;
     for (const v1::Refusal& refusal : grant->refused)
-      if (refusal.source == source_)
+      if (is_named(refusal.source, source_))
         news = "the robot's bridge refuses to drive: " + refusal.reason;
-    if (grant->source == source_ && grant->guard == v1::GUARD_STOP)
+    if (is_named(grant->source, source_) && grant->guard == v1::GUARD_STOP)
       news = "the guard stops the robot: " + grant->guard_reason;
-    if (grant->source == source_ && grant->guard == v1::GUARD_LIMIT &&
+    if (is_named(grant->source, source_) && grant->guard == v1::GUARD_LIMIT &&
         !std::exchange(told_limit_, true))
       say_("the guard limits the robot: " + grant->guard_reason, false);
     // Distances in a reason change all the time: only a new kind of trouble is news.

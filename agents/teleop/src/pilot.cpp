@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/base/identity.hpp"
+
 namespace saphira::teleop {
 
 std::optional<v1::MotorCommand> Pilot::drive(const Order& order, const v1::Stamp& stamp) {
@@ -58,7 +60,7 @@ std::optional<v1::MotorCommand> Pilot::stop(bool latched) {
 
 void Pilot::heard(const v1::Grant& grant, double now) {
   for (const v1::Refusal& refusal : grant.refused)
-    if (refusal.role == v1::ROLE_TELEOP && refusal.source == source_) {
+    if (refusal.role == v1::ROLE_TELEOP && is_named(refusal.source, source_)) {
       refusal_ = refusal.reason;
       refused_at_ = now;
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/base/identity.hpp"
+
 namespace saphira::watch {
 
 namespace {
@@ -104,7 +106,7 @@ std::vector<const v1::ProgramMind*> Mind::programs() const {
 const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cycle) const {
   for (const auto& [instance, past] : programs_)
     if (past.epoch() == robots_.epoch() && past.newest() != nullptr &&
-        past.newest()->source == source)
+        is_named(source, past.newest()->source))
       if (const v1::ProgramMind* const then = past.at(cycle);
           then != nullptr && then->behaviors.control &&
           std::ranges::any_of(then->behaviors.behaviors,

@@ -218,12 +218,20 @@ class Cut {
           [&] { return something(free) + at_most(settings_.slow_velocity); }, at);
     const double closing =
         std::min(settings_.closing_velocity, kShareOfWay * reach_ / body_.reaction);
-    const double safe = std::min(stops_within(free - margin_, settings_.careful_velocity, closing),
-                                 stops_within(free - margin_, 0.0));
+    const auto safe_at = [&](double distance) {
+      return std::min(stops_within(distance - margin_, settings_.careful_velocity, closing),
+                      stops_within(distance - margin_, 0.0));
+    };
+    const double safe = safe_at(free);
+    const auto until = [&] {
+      double distance = margin_;
+      while (safe_at(distance) < kCreep && distance < reach_)
+        distance += 0.01;
+      return format("; it lets go beyond %.2f m", distance);
+    };
     if (safe < kCreep)
       cut(
-          0.0, GuardAction::stop,
-          [&] { return something(free) + format("; it lets go beyond %.2f m", margin_); }, at);
+          0.0, GuardAction::stop, [&] { return something(free) + until(); }, at);
     else
       cut(
           safe, GuardAction::slow, [&] { return something(free) + at_most(safe); }, at);

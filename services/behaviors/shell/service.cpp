@@ -79,7 +79,7 @@ void Service::check_files() {
   const Folder::Reload reload = sources_.reload(registry_);
   Notes notes;
   for (const std::string& fault : reload.faults)
-    notes.error(fault + (first ? "" : "\nWhat this file gave before stays in use."));
+    notes.error(fault);
   // At the start, warnings about the shipped files are not logged.
   for (const std::string& warning : reload.warnings)
     if (!first || !warning.starts_with(behaviors_folder()))

@@ -55,8 +55,11 @@ void Folder::take_changed(const std::vector<std::string>& changed, Registry& reg
   }
   for (const std::string& name : open)
     if (const auto old = before.find(name);
-        old == before.end() || old->second != files_[name].fault)
+        old == before.end() || old->second != files_[name].fault) {
+      if (!files_[name].schemas.empty())
+        faults[name].back() += "\nWhat this file gave before stays in use.";
       std::move(faults[name].begin(), faults[name].end(), std::back_inserter(reload.faults));
+    }
 }
 
 void Folder::take(const std::string& name, File& file, Registry& registry, Reload& reload) {

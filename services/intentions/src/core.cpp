@@ -285,7 +285,7 @@ void Core::learn(const Received& received, Notes& notes) {
 void Core::know(const ActivityFolders::Reload& reload, Notes& notes) {
   const bool first = !std::exchange(knows_activities_, true);
   for (const std::string& error : reload.errors)
-    notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
+    notes.error(error);
   // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
   if (!first)
     for (const std::string& warning : reload.warnings)

@@ -71,12 +71,27 @@ TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
   EXPECT_EQ(reload.removed, Names{});
   ASSERT_FALSE(reload.errors.empty());
   EXPECT_NE(reload.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
+  EXPECT_NE(reload.errors[0].find("What this file gave before stays in use."), std::string::npos);
   EXPECT_NE(folders->trouble().find("a.act"), std::string::npos);
   // A file that uses definitions of the broken one is not wrong for that.
   EXPECT_EQ(folders->trouble().find("b.act"), std::string::npos);
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 3s)"));
   EXPECT_EQ(look(), Names{"one"});
   EXPECT_EQ(folders->trouble(), "");
+}
+
+TEST_F(ActivityFoldersTest, AFileIsTriedAgainWhenItsBehaviorHasCome) {
+  folders->know_behaviors({});
+  write(own / "spin.act", activity("spin", "(INTEND :Spin ())"));
+  EXPECT_EQ(look(), Names{});
+  ASSERT_EQ(reload.errors.size(), 1U);
+  EXPECT_EQ(reload.errors[0].find("stays in use"), std::string::npos) << "it gave nothing";
+  BehaviorSignature spin;
+  spin.name = "Spin";
+  folders->know_behaviors({spin});
+  EXPECT_EQ(look(), Names{"spin"});
+  EXPECT_EQ(folders->trouble(), "");
+  EXPECT_FALSE(folders->reload().changed);
 }
 
 // Some editors empty a file before they write it.

@@ -54,6 +54,15 @@ TEST(Identity, StandsBeforeWhatSomebodyCallsItself) {
   EXPECT_EQ(named("saphira goal", kOperator), "karen (operator), saphira goal");
   EXPECT_EQ(named("", kOperator), "karen (operator)");
   EXPECT_EQ(named("saphira goal", std::nullopt), "saphira goal");
+  // Passed on by a program between.
+  EXPECT_EQ(named("karen (operator), saphira ask", kOperator), "karen (operator), saphira ask");
+  EXPECT_EQ(named("karen (operator), saphira ask", kAgent),
+            "planner (agent), karen (operator), saphira ask");
+  EXPECT_TRUE(is_named("planner (agent), sweeper", "sweeper"));
+  EXPECT_TRUE(is_named("sweeper", "sweeper"));
+  EXPECT_FALSE(is_named("planner (agent), sweeper 2", "sweeper"));
+  EXPECT_FALSE(is_named("a sweeper", "sweeper"));
+  EXPECT_FALSE(is_named("planner (agent)", ""));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ ActivityFolders::ActivityFolders(const std::vector<std::string>& paths,
 
 void ActivityFolders::know_behaviors(std::vector<BehaviorSignature> behaviors) {
   base_.know_behaviors(std::move(behaviors));
+  retries_ = !trouble().empty();
 }
 
 /// Reads the changes in a folder; true where there are any.
@@ -96,6 +97,7 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
 
 ActivityFolders::Reload ActivityFolders::reload() {
   Reload reload;
+  reload.changed = std::exchange(retries_, false);
   std::vector<std::string> changed;
   for (Layer& layer : layers_)
     reload.changed = read(layer, reload, changed) || reload.changed;
@@ -119,7 +121,8 @@ ActivityFolders::Reload ActivityFolders::reload() {
   for (const Layer& layer : layers_)
     for (const auto& [path, file] : layer.files)
       if (!file.fault.empty() && file.fault != faults[path])
-        reload.errors.push_back(file.fault);
+        reload.errors.push_back(
+            file.fault + (file.taken ? "\nWhat this file gave before stays in use." : ""));
   for (const auto& [name, origin] : given_)
     if (!wanted.contains(name))
       reload.removed.push_back(name);

@@ -27,6 +27,11 @@ inline std::string named(const std::string& says, const Checked& who) {
   return who->text() + (says.empty() ? "" : ", " + says);
 }
 
+/// True where a checked name, as others publish it, is of the program that calls itself `says`.
+inline bool is_named(const std::string& known, const std::string& says) {
+  return known == says || (known.size() > says.size() + 2 && known.ends_with(", " + says));
+}
+
 /// True where `who` may change, replace or end what `owner` has asked for: the owner and operators.
 /// A stop is anybody's, and no matter of this.
 inline bool may_end(const Checked& who, const Checked& owner) {

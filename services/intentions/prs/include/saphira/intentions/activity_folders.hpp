@@ -29,7 +29,8 @@ class ActivityFolders {
   };
   Reload reload();
 
-  /// From now on a file that names another behavior has an error.
+  /// From now on a file that names another behavior has an error. The next reload() tries files
+  /// with errors again: their behavior may have come later than they.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
   /// The files with errors, and the errors; empty: none.
   std::string trouble() const;
@@ -59,6 +60,7 @@ class ActivityFolders {
   std::vector<Layer> layers_;
   std::shared_ptr<const Functions> functions_;
   Registry base_;
+  bool retries_ = false;
   std::map<std::string, Origin> given_;  ///< by name: the origin of each activity
 };
 
