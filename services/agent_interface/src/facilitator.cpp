@@ -517,6 +517,8 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
     one.code = AnswerCode::underway;
     give(id, name, one);
   } else {
+    if (!open.troubler.empty())  // each reason counts
+      answer.text += " (" + open.troubler + ": " + open.trouble.text + ")";
     open.trouble = answer;
     open.troubler = name;
     if (acts && open.wanted == 1 && !untouched(answer.code))

@@ -20,6 +20,7 @@ constexpr double kSilence = 1.0;
 /// [s] in which goals of before the start come. Later the clocks of other machines would decide
 /// about their age.
 constexpr double kStarting = 10.0;
+constexpr int kMostOfAgents = 100;   // priority; operators have the last word
 constexpr double kClockError = 1.0;  // [s] between two machines
 /// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
 /// start together.
@@ -386,6 +387,8 @@ bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event
   const std::string says = event.goal.requester;
   const std::string who = named(says, goal.person);
   event.goal.requester = who;
+  if (goal.person && goal.person->role == "agent")
+    event.goal.priority = std::min(event.goal.priority, kMostOfAgents);
   event.needs_approval = writes && needs_approval(says, goal.person);
   const auto note = [&](v1::AuditAct act, const std::string& text) {
     if (!is_old)

@@ -237,6 +237,21 @@ TEST_F(OwnedGoal, AnotherMayNeitherChangeNorCancelIt) {
   EXPECT_NE(status().reason, "changed by its requester");
 }
 
+TEST_F(OwnedGoal, OperatorsHaveTheLastWordAboutPriority) {
+  for (const int priority : {100, 101}) {
+    Core core(settings(false));
+    inputs_.stamp.cycle = 0;
+    Core::Received::Goal agents = by(kAgent, kWritten);
+    agents.event.goal.priority = 100000;
+    Core::Received::Goal operators = by(kOperator, kWritten);
+    operators.event.goal.id.number = 2;
+    operators.event.goal.priority = priority;
+    inputs_.received.goals = {agents, operators};
+    step(core);
+    EXPECT_EQ(state(2), priority > 100 ? v1::GOAL_UNDERWAY : v1::GOAL_WAITING);
+  }
+}
+
 TEST_F(OwnedGoal, ItsOwnerMay) {
   hear(by(kKarenHerself, kWritten));
   hear(by(kKarenHerself, kWritten, 7));
