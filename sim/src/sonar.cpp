@@ -86,7 +86,6 @@ Sonars::Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& 
       reach_(model_.max_range + farthest(units_)),
       beam_cosine_(widest_cosine(model_)),
       direct_cosine_(std::cos(model_.direct_cone / 2.0)),
-      wall_cosine_(std::cos(std::max(model_.critical_angle, model_.lost_angle))),
       seed_(seed) {
   set_default_polling();
 }
@@ -200,8 +199,6 @@ void Sonars::hear_surfaces(Firing& firing) const {
 
 // A smooth surface, where it is met at a right angle.
 void Sonars::hear_wall(const Vec2& way, double range, Firing& firing) const {
-  if (way.dot(firing.ahead) < range * wall_cosine_)
-    return;
   const double sure = model_.critical_angle;
   const double lost = std::max(sure, model_.lost_angle - model_.lost_per_metre * range);
   const double off = sure + firing.aside * (lost - sure);

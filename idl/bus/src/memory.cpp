@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -114,8 +113,8 @@ class MemoryWriter : public RawWriter {
  private:
   bool put(const void* sample, bool disposed);
 
-  // The last two samples, of topics without keys. Their memory is used again when nobody has them.
-  std::array<std::shared_ptr<void>, 2> newest_;
+  // The newest samples, of topics without keys. Their memory is used again when nobody has them.
+  std::vector<std::shared_ptr<void>> newest_;
   std::size_t next_ = 0;
 };
 
@@ -177,6 +176,9 @@ MemoryWriter::MemoryWriter(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
   id = next_id(common);
   common.entry.id = hex_text(id);
+  // As many as lie in the history and in a reader, and the next one.
+  newest_.resize(common.type->keyed ? 1
+                                    : static_cast<std::size_t>(common.policies.writer_depth) + 2);
   common.bus->writers.push_back(this);
   for (auto* reader : common.bus->readers)
     match(*this, *reader);
@@ -198,7 +200,7 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
   // Most topics have no reader within the process.
   if (!disposed && !common.policies.transient_local && heard(matches) == 0)
     return true;
-  next_ = 1 - next_;
+  next_ = (next_ + 1) % newest_.size();
   std::shared_ptr<void> copy = newest_[next_];
   if (copy.use_count() != 2)
     copy.reset(common.type->create(), common.type->destroy);

@@ -137,7 +137,6 @@ class Sonars {
   double reach_;        // [m] from the robot's middle
   double beam_cosine_;  // of the angle off the axis beyond which only walls are heard
   double direct_cosine_;
-  double wall_cosine_;            ///< no wall is heard farther from the normal
   std::optional<double> before_;  // [m] range of the last firing
   std::uint64_t seed_;
   std::uint64_t firings_ = 0;
