@@ -188,12 +188,14 @@ void Drive::step_services() {
   states_.write(state);
   services_.advance();
   commanded_ = commands_.take_newest().value();
-  if (auto perception = perceptions_.take_newest())
-    percepts_ = converted(perception->percepts, [](const auto& one) { return lps::from_bus(one); });
-  if (auto registration = registrations_.take_newest())
-    registered_ = std::move(*registration);
-  if (auto intentions = intentions_.take_newest())
-    intended_ = std::move(*intentions);
+  const auto keep = [](auto& newest) {
+    return [&](const auto& sample, const bus::SampleInfo& /*info*/) { newest = sample; };
+  };
+  perceptions_.visit([&](const v1::Perception& perception, const bus::SampleInfo& /*info*/) {
+    percepts_ = converted(perception.percepts, [](const auto& one) { return lps::from_bus(one); });
+  });
+  registrations_.visit(keep(registered_));
+  intentions_.visit(keep(intended_));
   if (const auto look = looks_.take_newest())
     look_ = number_of(from_bus(look->arguments), "angle");
 }

@@ -32,8 +32,10 @@ Whole::Whole(const WholeOptions& options) : drive_(drive_options(options)), sees
 
 void Whole::advance() {
   drive_.advance();
-  if (auto behaviors = behaviors_.take_newest(); behaviors && !behaviors->trouble.empty())
-    trouble_ = behaviors->trouble;
+  behaviors_.visit([&](const v1::BehaviorSet& behaviors, const bus::SampleInfo& /*info*/) {
+    if (!behaviors.trouble.empty())
+      trouble_ = behaviors.trouble;
+  });
   for (const auto& sample : goal_statuses_.take())
     if (!sample.info.disposed)
       statuses_[sample.data.id] = sample.data;

@@ -112,6 +112,10 @@ class MemoryWriter : public RawWriter {
 
  private:
   bool put(const void* sample, bool disposed);
+
+  // The newest samples, of topics without keys. Their memory is used again when nobody has them.
+  std::vector<std::shared_ptr<void>> newest_;
+  std::size_t next_ = 0;
 };
 
 class MemoryReader : public RawReader {
@@ -172,6 +176,9 @@ MemoryWriter::MemoryWriter(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
   id = next_id(common);
   common.entry.id = hex_text(id);
+  // As many as lie in the history and in a reader, and the next one.
+  newest_.resize(common.type->keyed ? 1
+                                    : static_cast<std::size_t>(common.policies.writer_depth) + 2);
   common.bus->writers.push_back(this);
   for (auto* reader : common.bus->readers)
     match(*this, *reader);
@@ -189,14 +196,21 @@ MemoryWriter::~MemoryWriter() {
 }
 
 bool MemoryWriter::put(const void* sample, bool disposed) {
+  std::unique_lock lock(common.bus->mutex);
   // Most topics have no reader within the process.
-  if (!disposed && !common.policies.transient_local && matched() == 0)
+  if (!disposed && !common.policies.transient_local && heard(matches) == 0)
     return true;
-  std::shared_ptr<void> copy(common.type->create(), common.type->destroy);
+  next_ = (next_ + 1) % newest_.size();
+  std::shared_ptr<void> copy = newest_[next_];
+  if (copy.use_count() != 2)
+    copy.reset(common.type->create(), common.type->destroy);
+  if (!common.type->keyed)
+    newest_[next_] = copy;
+  lock.unlock();
   common.type->copy(sample, copy.get());
   const Item item{std::move(copy), common.type->key(sample),        id, disposed,
                   sender,          std::chrono::steady_clock::now()};
-  const std::scoped_lock lock(common.bus->mutex);
+  lock.lock();
   if (disposed) {
     std::erase_if(history, [&](const Item& old) { return old.key == item.key; });
   } else if (common.policies.transient_local) {
@@ -258,6 +272,7 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
       each(data.get(), info_of(item));
     }
   }
+  lock.lock();  // for the writers, which use the memory again
   taken_.clear();
 }
 

@@ -26,6 +26,7 @@ constexpr double kClockError = 1.0;  // [s] between two machines
 /// start together.
 constexpr double kStartsTogether = 3.0;
 constexpr std::size_t kMostEdges = 32;       // of the contract
+constexpr double kOnward = 0.1;              // [m] of the robot, after which others may be nearer
 constexpr std::uint64_t kAskFeatures = 200;  // [cycles] between requests to let the map grow...
 constexpr double kFeaturesLease = 60.0;      // [s] ...and their duration
 constexpr std::uint64_t kVisionLease = 10;   // [cycles] an older result counts as missing
@@ -142,7 +143,7 @@ std::vector<Edge> Core::edges_near(const intentions::Inputs& now) {
       now.around.registration.state != v1::REGISTRATION_TRACKING)
     return edges;
   const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();
-  if (near_.empty() || near_of_ != robot_in_map) {
+  if (near_.empty() || (near_of_ - robot_in_map).norm() > kOnward) {
     near_of_ = robot_in_map;
     near_ = lines_->edges_near(robot_in_map, kMostEdges);
   }

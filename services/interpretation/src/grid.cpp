@@ -14,8 +14,9 @@ namespace {
 constexpr double kStep = 0.04;
 constexpr int kMost = 120;
 constexpr int kHalf = 128;
-constexpr int kFine = 256;  // of a probability
-constexpr int kLanes = 4;   // cells that are looked at at once
+// Parts of a probability: no part has more than one limit between two numbers of steps.
+constexpr int kFine = 4096;
+constexpr int kLanes = 8;  // cells that are looked at at once
 
 double logit(double probability) {
   return std::log(probability / (1.0 - probability));
@@ -23,42 +24,44 @@ double logit(double probability) {
 
 /// A beam, and what it says of the cells of a row of a tile.
 struct Beam {
-  double heading;
-  double cosine;
-  double sine;
-  double edge;       // tangent of half the opening angle
-  double range;      // [m] that counts
-  double far;        // [m] beyond it nothing is detected
-  double detection;  // at no distance
-  double echo;       // [m] infinite: none
-  double spread;     // [m] error of the echo
+  float heading;  // in bins
+  float cosine;
+  float sine;
+  float edge;       // tangent of half the opening angle
+  float range;      // [m] that counts
+  float far;        // [m] beyond it nothing is detected
+  float detection;  // at no distance
+  float echo;       // [m] infinite: none
+  float spread;     // [m] error of the echo
 };
 static_assert(Grid::kTile % kLanes == 0, "look() fills whole steps of a row");
 struct Row {
-  std::array<double, Grid::kTile> behind;  // errors from the cell to the echo
-  std::array<double, Grid::kTile> found;   // probability of an echo of the cell; -1: outside
+  std::array<float, Grid::kTile> behind;  // errors from the cell to the echo
+  std::array<float, Grid::kTile> found;   // probability of an echo of the cell; -1: outside
   std::array<std::int32_t, Grid::kTile> bin;
 };
 
-/// The first cell is at dx, dy from the sonar, in cells of `size`.
-SAPHIRA_WIDE void look(const Beam& beam, double column, double size, double x, double dy, int bins,
-                       int count, Row& row) {
+/// The first cell is at x, y from the sonar, in cells of `size`.
+SAPHIRA_WIDE void look(const Beam& beam, float x, float y, float size, int bins, int count,
+                       Row& row) {
   const auto [heading, c, s, edge, range, far, detection, echo, spread] = beam;
-  const double by_angle = bins / (2.0 * kPi);
+  const auto all_bins = static_cast<float>(bins);
+  const float by_angle = all_bins / static_cast<float>(2.0 * kPi);
   // Some cells more, for whole steps: nobody reads them.
   const int whole = (count + kLanes - 1) / kLanes * kLanes;
   for (int i = 0; i < whole; ++i) {
-    const double dx = (column + i + 0.5) * size - x;
-    const double along = c * dx + s * dy;
-    const double across = -s * dx + c * dy;
-    const double z = std::sqrt(dx * dx + dy * dy);
-    const bool inside = (along > 0.0) & (std::abs(across) <= edge * along) & (z <= range);
-    const double tangent = inside ? across / along : 0.0;
-    const double off = 1.0 - tangent * tangent / (edge * edge);
-    const double bearing = heading + tangent * (1.0 - tangent * tangent / 3.0);
+    const float dx = x + static_cast<float>(i) * size;
+    const float along = c * dx + s * y;
+    const float across = -s * dx + c * y;
+    const float z = std::sqrt(dx * dx + y * y);
+    const bool inside = (along > 0.0F) & (std::abs(across) <= edge * along) & (z <= range);
+    const float tangent = inside ? across / along : 0.0F;
+    const float square = tangent * tangent;
+    const float off = 1.0F - square / (edge * edge);
+    const float bin = heading + tangent * (1.0F - square / 3.0F) * by_angle;
     row.behind[i] = (echo - z) / spread;
-    row.found[i] = inside ? detection * (1.0 - z / far) * off * off : -1.0;
-    row.bin[i] = std::min(bins - 1, static_cast<int>(norm_angle(bearing) * by_angle));
+    row.found[i] = inside ? detection * (1.0F - z / far) * off * off : -1.0F;
+    row.bin[i] = std::min(bins - 1, static_cast<int>(bin - all_bins * std::floor(bin / all_bins)));
   }
 }
 
@@ -79,22 +82,20 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
   for (const double probability : probabilities_)
     bytes_.push_back(static_cast<std::uint8_t>(std::lround(200.0 * probability)));
   for (int steps = 0; steps < kMost; ++steps)
-    detections_.push_back(1.0 - std::exp(-kStep * (steps + 0.5)));
-  detections_.push_back(std::numeric_limits<double>::infinity());
+    detections_.push_back(static_cast<float>(1.0 - std::exp(-kStep * (steps + 0.5))));
+  detections_.push_back(std::numeric_limits<float>::infinity());
   for (int i = 0; i <= kFine; ++i)
     least_steps_.push_back(static_cast<int>(
-        std::upper_bound(detections_.begin(), detections_.end(), static_cast<double>(i) / kFine) -
+        std::upper_bound(detections_.begin(), detections_.end(), static_cast<float>(i) / kFine) -
         detections_.begin()));
 }
 
-int Grid::free_steps(double detection) const {
-  int steps = least_steps_[static_cast<std::size_t>(static_cast<int>(detection * kFine))];
-  while (detection >= detections_[static_cast<std::size_t>(steps)])
-    ++steps;
-  return steps;
+inline int Grid::free_steps(float detection) const {
+  const int least = least_steps_[static_cast<std::size_t>(static_cast<int>(detection * kFine))];
+  return detection >= detections_[static_cast<std::size_t>(least)] ? least + 1 : least;
 }
 
-int Grid::weighed(int said) const {
+inline int Grid::weighed(int said) const {
   const int index = said + kHalf;
   return weighed_[static_cast<std::size_t>(index)];
 }
@@ -195,8 +196,16 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
   const double size = settings_.resolution;
   const double edge = std::tan(settings_.beam);
   const ConeRows cone(sonar, edge, range);
-  const Beam beam{sonar.th,        cone.cosine(),       cone.sine(), edge,  range,
-                  settings_.range, settings_.detection, echo,        spread};
+  const auto narrow = [](double v) { return static_cast<float>(v); };
+  const Beam beam{.heading = narrow(sonar.th * kBins / (2.0 * kPi)),
+                  .cosine = narrow(cone.cosine()),
+                  .sine = narrow(cone.sine()),
+                  .edge = narrow(edge),
+                  .range = narrow(range),
+                  .far = narrow(settings_.range),
+                  .detection = narrow(settings_.detection),
+                  .echo = narrow(echo),
+                  .spread = narrow(spread)};
   const auto cell_of = [size](double v) { return static_cast<long>(std::floor(v / size)); };
   const auto tile_at = [](long cell) {
     return cell >= 0 ? cell / kTile : -((-cell + kTile - 1) / kTile);
@@ -227,11 +236,11 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
         const long count = std::min(column0 + kTile - 1, span.second) - begin + 1;
         if (count <= 0)
           continue;
-        look(beam, static_cast<double>(begin), size, sonar.x, distance(row), kBins,
-             static_cast<int>(count), seen);
+        look(beam, narrow((static_cast<double>(begin) + 0.5) * size - sonar.x),
+             narrow(distance(row)), narrow(size), kBins, static_cast<int>(count), seen);
         const auto cells = static_cast<std::size_t>(count);
         std::size_t first = 0;
-        while (first < cells && seen.found[first] <= 0.0)
+        while (first < cells && seen.found[first] <= 0.0F)
           ++first;
         if (first == cells)
           continue;
@@ -263,39 +272,41 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double spread = std::hypot(deviation, half_cell);
   const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
   arc_.clear();
-  double sum = 0.0;
+  const auto most_density = static_cast<float>(1.0 / (std::sqrt(2.0 * kPi) * spread));
+  float sum = 0.0F;
   std::uint64_t updates = 0;
   const double echo = range.value_or(std::numeric_limits<double>::infinity());
   const auto take = [&](Tile& tile, std::size_t cell0, const Row& row, std::size_t i,
                         std::size_t end) {
     tile.changed = true;
     for (; i < end; ++i) {
-      const double found = row.found[i];
-      if (found <= 0.0)
+      const float found = row.found[i];
+      if (found <= 0.0F)
         continue;
       ++updates;
       const std::size_t cell = cell0 + i;
       const int bin = row.bin[i];
-      const double behind = row.behind[i];
-      if (behind > 3.0) {
+      const float behind = row.behind[i];
+      if (behind > 3.0F) {
         evidence(tile, cell, bin, -free_steps(found));
         continue;
       }
-      Arc arc{&tile, cell, bin, 0.0, 1.0, 0.0};
-      arc.density = found / (std::sqrt(2.0 * kPi) * spread) * std::exp(-behind * behind / 2.0);
-      arc.before = 1.0 - found / (1.0 + std::exp(-1.7 * behind));
-      arc.odds = probability(tile, cell);
+      Arc arc{&tile, cell, bin, 0.0F, 1.0F, 0.0F};
+      arc.density = found * most_density * std::exp(-behind * behind / 2.0F);
+      arc.before = 1.0F - found / (1.0F + std::exp(-1.7F * behind));
+      arc.odds = static_cast<float>(probability(tile, cell));
       sum += arc.odds * arc.density;
       arc_.push_back(arc);
     }
   };
   for_cone(sonar, reach, echo, spread, take);
   updates_ += updates;
+  const auto false_echoes = static_cast<float>(settings_.false_echoes);
+  const auto attribution = static_cast<float>(settings_.attribution);
   // The echo came from somewhere on the arc: the beliefs in the rest of it explain it as well.
   for (const Arc& arc : arc_) {
-    const double rest =
-        settings_.false_echoes + settings_.attribution * (sum - arc.odds * arc.density);
-    const double odds = std::log(arc.before * arc.density / rest + arc.before);
+    const float rest = false_echoes + attribution * (sum - arc.odds * arc.density);
+    const float odds = std::log(arc.before * arc.density / rest + arc.before);
     evidence(*arc.tile, arc.cell, arc.bin, static_cast<int>(std::lround(odds / kStep)));
   }
 }

@@ -171,6 +171,7 @@ void SideView::seek() {
   if (loose.size() < static_cast<std::size_t>(settings_.min_echoes))
     return;
   Candidate best;
+  std::vector<const Return*> echoes;
   for (std::size_t i = 1; i < loose.size(); ++i) {
     const double apart = (loose[i]->sonar - loose[0]->sonar).norm();
     if (apart < kPair || apart > kPairMost)
@@ -178,13 +179,13 @@ void SideView::seek() {
     const auto line = tangent(*loose[0], *loose[i]);
     if (!line)
       continue;
-    std::vector<const Return*> echoes;
+    echoes.clear();
     for (const Return* echo : loose)
       if (misses(*echo, *line, loose.front()->travelled, loose.front()->turned))
         echoes.push_back(echo);
     if (echoes.size() > best.echoes.size()) {
       best.fit.line = *line;
-      best.echoes = echoes;
+      best.echoes.swap(echoes);
     }
   }
   if (best.echoes.size() < static_cast<std::size_t>(settings_.min_echoes))

@@ -137,31 +137,13 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
         known_[at(column, row)] = 1;
 }
 
-inline std::optional<std::size_t> Field::index(const Vec2& position) const {
-  const double column = (position.x() - corner_.x()) / kCell;
-  const double row = (position.y() - corner_.y()) / kCell;
-  if (!(column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_))
-    return std::nullopt;
-  return static_cast<std::size_t>(static_cast<int>(row)) * static_cast<std::size_t>(columns_) +
-         static_cast<std::size_t>(static_cast<int>(column));
-}
-
-std::optional<Vec2> Field::way_to_nearest(const Vec2& position) const {
+Field::Nearest Field::nearest(const Vec2& position) const {
   const auto i = index(position);
   if (!i || nearest_[*i] == kNone)
-    return std::nullopt;
-  const Line& line = lines_[nearest_[*i]];
-  const Vec2 p = position - line.from;
-  const double t = std::clamp(p.dot(line.way), 0.0, line.length);
-  return line.way * t - p;
-}
-
-Field::Nearest Field::nearest(const Vec2& position) const {
-  const auto way = way_to_nearest(position);
-  if (!way)
     return {};
-  const double d = way->norm();
-  return {d, d > 1e-9 ? Vec2(*way / d) : Vec2(1.0, 0.0)};
+  const Vec2 way = way_to(lines_[nearest_[*i]], position);
+  const double d = way.norm();
+  return {d, d > 1e-9 ? Vec2(way / d) : Vec2(1.0, 0.0)};
 }
 
 bool Field::known(const Vec2& position) const {

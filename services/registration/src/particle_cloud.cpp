@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "saphira/geometry/axes.hpp"
 
@@ -17,6 +18,8 @@ void ParticleCloud::begin(const Pose& pose, const Eigen::Matrix3d& covariance, d
   const double a = sigma(axes.eigenvalues()[0], settings_.least_position);
   const double b = sigma(axes.eigenvalues()[1], settings_.least_position);
   const double turned = sigma(covariance(2, 2), settings_.least_turned);
+  moved_ = {};
+  length_ = turned_ = 0.0;
   particles_.assign(settings_.particles, {});
   for (Particle& p : particles_) {
     const double along = random_.normal(0.0, a);
@@ -29,24 +32,38 @@ void ParticleCloud::begin(const Pose& pose, const Eigen::Matrix3d& covariance, d
   }
 }
 
+/// The sum of four uniforms takes a small part of the time of logarithms and cosines.
+double ParticleCloud::noise() {
+  const double sum = random_.uniform() + random_.uniform() + random_.uniform() + random_.uniform();
+  return (sum - 2.0) * std::sqrt(3.0);
+}
+
 void ParticleCloud::move(const Pose& moved) {
-  const double length = std::hypot(moved.x, moved.y);
-  if (length == 0.0 && moved.th == 0.0)
+  moved_ = compose(moved_, moved);
+  length_ += std::hypot(moved.x, moved.y);
+  turned_ += std::abs(moved.th);
+}
+
+void ParticleCloud::settle() {
+  if (length_ == 0.0 && turned_ == 0.0)
     return;
+  const Pose moved = std::exchange(moved_, Pose{});
+  const double length = std::exchange(length_, 0.0);
+  const double turned = std::exchange(turned_, 0.0);
   const double root = std::sqrt(length);
-  const double turn_sigma = std::sqrt(settings_.turn * settings_.turn * std::abs(moved.th) +
+  const double turn_sigma = std::sqrt(settings_.turn * settings_.turn * turned +
                                       settings_.heading * settings_.heading * length);
   for (Particle& p : particles_) {
-    const double turn = p.drift * moved.x + random_.normal(0.0, turn_sigma);
-    const double way = random_.normal(0.0, settings_.way * root);
-    const double heading = p.pose.th - turn / 2.0;
-    const double c = std::cos(heading);
-    const double s = std::sin(heading);
+    const double turn = p.drift * moved.x + turn_sigma * noise();
+    const double way = settings_.way * root * noise();
+    // It turns by little: half of it to the first order.
+    const double c = p.ahead.x() + p.ahead.y() * turn / 2.0;
+    const double s = p.ahead.y() - p.ahead.x() * turn / 2.0;
     p.pose.x += c * (moved.x + way) - s * moved.y;
     p.pose.y += s * (moved.x + way) + c * moved.y;
     p.pose.th = norm2_angle(p.pose.th + moved.th - turn);
     p.ahead = p.pose.direction();
-    p.drift += random_.normal(0.0, settings_.drift_walk * root);
+    p.drift += settings_.drift_walk * root * noise();
   }
 }
 
@@ -69,6 +86,7 @@ std::vector<double> ParticleCloud::weights() const {
 void ParticleCloud::learn(const Pose& before, const Eigen::Matrix3d& covariance_before,
                           const Pose& after, const Eigen::Matrix3d& covariance_after) {
   constexpr double kLeast = -4.5;  // three sigmas: the match may be wrong
+  settle();
   const Eigen::Matrix3d information = covariance_after.inverse();
   const Eigen::Matrix3d learnt = information - covariance_before.inverse();
   const auto off = [&before](const Pose& pose) {
@@ -121,7 +139,8 @@ Pose ParticleCloud::middle(const std::vector<double>& weight) const {
   return result;
 }
 
-ParticleCloud::Estimate ParticleCloud::estimate() const {
+ParticleCloud::Estimate ParticleCloud::estimate() {
+  settle();
   Estimate result;
   const std::vector<double> weight = weights();
   result.pose = middle(weight);

@@ -137,7 +137,7 @@ Presence::Changes Presence::step(const maps::Map& map, std::uint64_t cycle,
     if (kind == Kind::none)
       continue;
     const bool is_seen = std::find(seen.begin(), seen.end(), feature.id) != seen.end();
-    const double size = std::hypot(feature.length, feature.width) / 2.0;
+    const double size = Vec2(feature.length, feature.width).norm() / 2.0;
     if (!is_seen &&
         (feature.pose_in_map.position() - robot_in_map).norm() > settings_.range + size + 0.5)
       continue;

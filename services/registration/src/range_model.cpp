@@ -9,19 +9,16 @@ RangeModel::RangeModel(const Field& field, RangeModelSettings settings)
     : field_(&field),
       settings_(settings),
       facing_(std::cos(settings.facing)),
+      off_axis_(Pose{0.0, 0.0, settings.cone * 0.7}.direction()),
       log_silent_(std::log(settings.silent)),
       log_slanted_silent_(std::log(settings.slanted_silent)),
       log_far_(std::log(settings.far)) {}
 
-double RangeModel::arc_distance(const Pose& sensor, const Vec2& ahead, double range) const {
-  const Vec2 at = sensor.position();
-  double best = std::min(1e3, field_->distance(at + range * ahead));
-  for (const double off : {-1.0, 1.0}) {
-    const double bearing = sensor.th + off * settings_.cone * 0.7;
-    best =
-        std::min(best, field_->distance(at + range * Vec2(std::cos(bearing), std::sin(bearing))));
-  }
-  return best;
+double RangeModel::arc_distance(const Vec2& from, const Vec2& ahead, double range) const {
+  const Vec2 along = range * off_axis_.x() * ahead;
+  const Vec2 across = range * off_axis_.y() * Vec2(-ahead.y(), ahead.x());
+  return std::min({field_->distance(from + range * ahead), field_->distance(from + along - across),
+                   field_->distance(from + along + across)});
 }
 
 /// True where the axis meets a surface before an echo at that range; no surface is nearer than
@@ -38,9 +35,9 @@ bool RangeModel::blocked(const Vec2& from, const Vec2& ahead, double free, doubl
   return false;
 }
 
-double RangeModel::log_likelihood(const Pose& sensor, double range, bool echo) const {
-  const Field::Nearest nearest = field_->nearest(sensor.position());
-  const Vec2 ahead = sensor.direction();
+double RangeModel::log_likelihood(const Vec2& sensor, const Vec2& ahead, double range,
+                                  bool echo) const {
+  const Field::Nearest nearest = field_->nearest(sensor);
   const bool facing =
       nearest.distance < settings_.max_range - 0.3 && nearest.towards.dot(ahead) > facing_;
   if (facing) {
@@ -52,7 +49,7 @@ double RangeModel::log_likelihood(const Pose& sensor, double range, bool echo) c
   }
   if (!echo)
     return log_slanted_silent_;
-  if (blocked(sensor.position(), ahead, nearest.distance, range))
+  if (blocked(sensor, ahead, nearest.distance, range))
     return log_far_;
   const double off = arc_distance(sensor, ahead, range) / settings_.slanted_sigma;
   return std::log(settings_.slanted_heard * std::exp(-0.5 * off * off) + settings_.slanted_other);

@@ -430,12 +430,16 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     const Pose middle = now_.cloud.middle();
     for (const PlacedReading& reading : fresh) {
       const Pose in_robot = relative(now_.pose_in_odom, reading.sensor_in_odom);
-      const auto worth = [&](const Pose& sensor_in_map) {
-        return search_.worth(sensor_in_map, reading.range, reading.echo);
+      const auto worth = [&](const Vec2& sensor_in_map, const Vec2& ahead) {
+        return search_.worth(sensor_in_map, ahead, reading.range, reading.echo);
       };
       now_.cloud.weigh(in_robot, worth);
-      const double here = worth(compose(middle, in_robot));
-      const double own = worth(compose(now_.filter->pose(), in_robot));
+      const auto worth_at = [&](const Pose& robot) {
+        const Pose sensor = compose(robot, in_robot);
+        return worth(sensor.position(), sensor.direction());
+      };
+      const double here = worth_at(middle);
+      const double own = worth_at(now_.filter->pose());
       now_.cloud_score += here;
       now_.lead += here - own;
       // Silence where no surface faces the sonar says nothing.

@@ -55,15 +55,15 @@ void Search::clear() {
   now_ = {};
 }
 
-double Search::worth(const Pose& sensor_in_map, double range, bool echo) const {
-  const double better = model_->log_likelihood(sensor_in_map, range, echo) -
+double Search::worth(const Vec2& sensor_in_map, const Vec2& ahead, double range, bool echo) const {
+  const double better = model_->log_likelihood(sensor_in_map, ahead, range, echo) -
                         (echo ? settings_.any_echo : settings_.any_silence);
   return settings_.trust * std::max(better, -settings_.surprise);
 }
 
 double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
-  return worth(compose(pose, relative(*now_.odom, reading.sensor_in_odom)), reading.range,
-               reading.echo);
+  const Pose sensor = compose(pose, relative(*now_.odom, reading.sensor_in_odom));
+  return worth(sensor.position(), sensor.direction(), reading.range, reading.echo);
 }
 
 void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,

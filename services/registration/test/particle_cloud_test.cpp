@@ -37,10 +37,10 @@ TEST(ParticleCloud, HoldsAndLearnsADriftThatNoFilterMayAssume) {
     if (i % 2 == 0)
       continue;
     for (const double bearing : {kPi / 2, -kPi / 2, kPi / 3, -kPi / 3})
-      cloud.weigh({0.1, 0.0, bearing}, [&](const Pose& sensor) {
+      cloud.weigh({0.1, 0.0, bearing}, [&](const Vec2& sensor, const Vec2& ahead) {
         const double heard = 1.0 / std::abs(std::sin(bearing));
-        const double there = (std::sin(sensor.th) > 0.0 ? 1.0 - sensor.y : 1.0 + sensor.y) /
-                             std::abs(std::sin(sensor.th));
+        const double there =
+            (ahead.y() > 0.0 ? 1.0 - sensor.y() : 1.0 + sensor.y()) / std::abs(ahead.y());
         const double off = (heard - there) / 0.1;
         return 0.3 * std::max(-0.5 * off * off, -4.0);
       });

@@ -20,35 +20,40 @@ constexpr double kCells = 20.0;
 constexpr double kErrors = 12.0;
 constexpr double kShortest = 0.01;  // [m] range of a sonar
 constexpr std::size_t kBits = 64;   // of a word of marks
-constexpr long kLanes = 4;          // cells that are lowered at once
-constexpr double kOutside = -1e9;   // [m] of the columns beyond the grid: behind any sonar
+constexpr long kLanes = 8;          // cells that are lowered at once
+constexpr float kOutside = -1e9F;   // [m] of the columns beyond the grid: behind any sonar
 constexpr double kMoved = 0.001;    // [m] in a cycle: less is rest, and a turn on the spot is
+constexpr float kMostUnit = 1e30F;  // of the stored beliefs: well below what a float holds
+
+float narrow(double value) {
+  return static_cast<float>(value);
+}
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
 }
 
 /// Lowers the beliefs within the cone and the range, less at the cone's rim. In `n` columns.
-SAPHIRA_WIDE void lower(double* all, long n, const std::vector<ConeRow>& cone,
-                        const ColumnParts& columns, double edge, double range, double soft,
-                        double doubt, double least) {
-  const double square = range * range;
+SAPHIRA_WIDE void lower(float* all, long n, const std::vector<ConeRow>& cone,
+                        const ColumnParts& columns, float edge, float range, float soft,
+                        float doubt, float least) {
+  const float square = range * range;
   for (const ConeRow& row : cone) {
-    double* const beliefs = all + row.number * n + row.begin;
-    const double* const x = columns.x.data() + row.begin;
-    const double* const y = columns.y.data() + row.begin;
-    const double row_x = row.x;
-    const double row_y = row.y;
+    float* const beliefs = all + row.number * n + row.begin;
+    const float* const x = columns.x.data() + row.begin;
+    const float* const y = columns.y.data() + row.begin;
+    const float row_x = row.x;
+    const float row_y = row.y;
     // Some cells more, for whole steps: they are outside the cone, or their belief is the least.
     const long count = (row.end - row.begin + kLanes - 1) / kLanes * kLanes;
     for (long i = 0; i < count; ++i) {
-      const double along = x[i] + row_x;
-      const double across = std::abs(y[i] + row_y);
-      const double rim = edge * along;
-      const double sure = std::min((1.0 - across / rim) / soft, 1.0);
-      const double lowered = std::max(beliefs[i] - doubt * sure, least);
+      const float along = x[i] + row_x;
+      const float across = std::abs(y[i] + row_y);
+      const float rim = edge * along;
+      const float sure = std::min((1.0F - across / rim) / soft, 1.0F);
+      const float lowered = std::max(beliefs[i] - doubt * sure, least);
       const bool inside =
-          (along > 0.0) & (across <= rim) & (along * along + across * across <= square);
+          (along > 0.0F) & (across <= rim) & (along * along + across * across <= square);
       beliefs[i] = inside ? lowered : beliefs[i];
     }
   }
@@ -68,18 +73,18 @@ ObstacleMemory::ObstacleMemory(MemorySettings settings)
     : settings_(settings),
       edge_(std::tan(settings.beam)),
       soft_(1.0 - std::tan(settings.sure) / std::tan(settings.beam)),
-      beliefs_(area(settings.cells) + kLanes, 0.0),
+      beliefs_(area(settings.cells) + kLanes, 0.0F),
       held_(static_cast<std::size_t>(settings.cells)),
       words_((static_cast<std::size_t>(settings.cells) + kBits - 1) / kBits),
       marks_(words_ * static_cast<std::size_t>(settings.cells), 0),
-      columns_{std::vector<double>(held_.size() + kLanes, kOutside),
-               std::vector<double>(held_.size() + kLanes)} {}
+      columns_{std::vector<float>(held_.size() + kLanes, kOutside),
+               std::vector<float>(held_.size() + kLanes)} {}
 
 void ObstacleMemory::clear() {
   placed_ = false;
-  std::fill(beliefs_.begin(), beliefs_.end(), 0.0);
+  unit_ = 1.0F;
+  std::fill(beliefs_.begin(), beliefs_.end(), 0.0F);
   std::fill(held_.begin(), held_.end(), Part{});
-  used_ = {};
   std::fill(marks_.begin(), marks_.end(), 0);
   points_.clear();
 }
@@ -102,58 +107,68 @@ void ObstacleMemory::move_to(const Pose& robot_in_odom) {
 }
 
 void ObstacleMemory::shift(long columns, long rows) {
-  const std::vector<double> beliefs = std::exchange(beliefs_, std::vector<double>(beliefs_.size()));
   const std::vector<Part> held = std::exchange(held_, std::vector<Part>(held_.size()));
   std::fill(marks_.begin(), marks_.end(), 0);
   const long n = settings_.cells;
-  const long first = std::max(0L, columns);
-  const long last = std::min(n, n + columns);
-  const Part kept{std::max(used_.begin, rows), std::min(used_.end, n + rows)};
-  used_ = {};
-  if (first >= last || kept.begin >= kept.end)
-    return;
-  used_ = {kept.begin - rows, kept.end - rows};
-  for (long row = kept.begin; row < kept.end; ++row) {
-    const auto from = beliefs.begin() + row * n;
-    std::copy(from + first, from + last, beliefs_.begin() + (row - rows) * n + first - columns);
-    const Part& part = held[static_cast<std::size_t>(row)];
-    for (long column = std::max(part.begin, first); column < std::min(part.end, last); ++column)
-      if (from[column] > 0.0)
-        put(static_cast<std::size_t>((row - rows) * n + column - columns), from[column]);
+  const auto begin = beliefs_.begin();
+  const auto end = begin + n * n;
+  const long by = rows * n + columns;
+  if (std::abs(columns) >= n || std::abs(rows) >= n)
+    std::fill(begin, end, 0.0F);
+  else if (by > 0)
+    std::fill(std::shift_left(begin, end, by), end, 0.0F);
+  else
+    std::fill(begin, std::shift_right(begin, end, -by), 0.0F);
+  const Part kept{std::max(0L, -columns), std::min(n, n - columns)};
+  for (long row = 0; row < n; ++row) {
+    const auto to = begin + row * n;
+    // The ends of the rows before or after are no part of it.
+    std::fill(to, to + std::min(kept.begin, n), 0.0F);
+    std::fill(to + std::max(kept.end, 0L), to + n, 0.0F);
+    if (row + rows < 0 || row + rows >= n)
+      continue;
+    const Part& part = held[static_cast<std::size_t>(row + rows)];
+    for (long column = std::max(part.begin - columns, kept.begin);
+         column < std::min(part.end - columns, kept.end); ++column)
+      if (to[column] > 0.0F)
+        put(static_cast<std::size_t>(row * n + column), to[column]);
   }
 }
 
-SAPHIRA_WIDE void ObstacleMemory::fade() {
-  const double fading = settings_.fading;
-  double* const beliefs = beliefs_.data() + used_.begin * settings_.cells;
-  const long count = (used_.end - used_.begin) * settings_.cells;
-#pragma GCC unroll 8
-  for (long i = 0; i < count; ++i)
-    beliefs[i] *= fading;
+/// Beliefs fade as the unit grows.
+void ObstacleMemory::fade() {
+  unit_ /= narrow(settings_.fading);
+  if (unit_ < kMostUnit)
+    return;
+  for (float& belief : beliefs_)
+    belief /= unit_;
+  unit_ = 1.0F;
 }
 
-void ObstacleMemory::put(std::size_t cell, double belief) {
+void ObstacleMemory::put(std::size_t cell, float belief) {
   beliefs_[cell] = belief;
   const std::size_t row = cell / held_.size();
   const std::size_t column = cell % held_.size();
   const auto at = static_cast<long>(column);
   Part& held = held_[row];
   held.widen(at, at + 1);
-  if (belief >= settings_.obstacle)
+  if (belief >= narrow(settings_.obstacle) * unit_)
     marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
 }
 
 SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, double sine,
                                               long begin, long end) {
-  const double cell = settings_.cell;
-  const double first = static_cast<double>(begin + column0_) + 0.5;
-  const double from = frame.x;
-  double* const x = columns_.x.data() + begin;
-  double* const y = columns_.y.data() + begin;
+  const float cell = narrow(settings_.cell);
+  const float from =
+      narrow((static_cast<double>(begin + column0_) + 0.5) * settings_.cell - frame.x);
+  const float c = narrow(cosine);
+  const float s = narrow(sine);
+  float* const x = columns_.x.data() + begin;
+  float* const y = columns_.y.data() + begin;
   for (int i = 0; i < static_cast<int>(end - begin); ++i) {
-    const double dx = (first + i) * cell - from;
-    x[i] = cosine * dx;
-    y[i] = -sine * dx;
+    const float dx = from + static_cast<float>(i) * cell;
+    x[i] = c * dx;
+    y[i] = -s * dx;
   }
 }
 
@@ -189,7 +204,8 @@ void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held)
     first = std::min(first, begin);
     last = std::max(last, end);
     const double dx = (static_cast<double>(begin + column0_) + 0.5) * cell - sonar.x;
-    cone_.push_back({row, begin, end, dx, dy, rows.sine() * dy, rows.cosine() * dy});
+    cone_.push_back(
+        {row, begin, end, dx, dy, narrow(rows.sine() * dy), narrow(rows.cosine() * dy)});
   }
   see_columns(sonar, rows.cosine(), rows.sine(), first, std::min(last + kLanes, n));
 }
@@ -197,15 +213,14 @@ void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held)
 void ObstacleMemory::pass(double range, double doubt) {
   if (cone_.empty())
     return;
-  used_.widen(cone_.front().number, cone_.back().number + 1);
   if (settings_.least >= 0.0)  // no belief falls below 0
     for (ConeRow& row : cone_) {
       const Part& held = held_[static_cast<std::size_t>(row.number)];
       row.begin = std::max(row.begin, held.begin);
       row.end = std::min(row.end, held.end);
     }
-  lower(beliefs_.data(), settings_.cells, cone_, columns_, edge_, range, soft_, doubt,
-        settings_.least);
+  lower(beliefs_.data(), settings_.cells, cone_, columns_, narrow(edge_), narrow(range),
+        narrow(soft_), narrow(doubt) * unit_, narrow(settings_.least) * unit_);
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
@@ -218,6 +233,9 @@ void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt)
 void ObstacleMemory::find_arc(double range) {
   const double cell = settings_.cell;
   const double inner = std::max(range - settings_.thickness - cell, 0.0);
+  const float edge = narrow(edge_);
+  const float arc = narrow(range);
+  const float thickness = narrow(settings_.thickness);
   arc_.clear();
   for (const ConeRow& row : cone_) {
     const long count = row.end - row.begin;
@@ -235,16 +253,16 @@ void ObstacleMemory::find_arc(double range) {
       if (i == left && left < right)
         i = right;
       const auto at = static_cast<std::size_t>(i);
-      const double along = columns_.x[at] + row.x;
-      const double across = std::abs(columns_.y[at] + row.y);
-      const double rim = edge_ * along;
-      if (along <= 0.0 || across > rim)
+      const float along = columns_.x[at] + row.x;
+      const float across = std::abs(columns_.y[at] + row.y);
+      const float rim = edge * along;
+      if (along <= 0.0F || across > rim)
         continue;
-      const double distance = std::sqrt(along * along + across * across);
-      if (std::abs(distance - range) > settings_.thickness)
+      const float distance = std::sqrt(along * along + across * across);
+      if (std::abs(distance - arc) > thickness)
         continue;
       const std::size_t index = static_cast<std::size_t>(row.number) * held_.size() + at;
-      arc_.push_back({index, std::exp(beliefs_[index]) * (1.0 - 0.5 * (across / rim))});
+      arc_.push_back({index, std::exp(beliefs_[index] / unit_) * (1.0F - 0.5F * (across / rim))});
     }
   }
 }
@@ -254,12 +272,13 @@ void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
   find_arc(range);
   pass(std::max(range - 2.0 * settings_.thickness, 0.0), settings_.passed);
   // The likeliest arc cell so far takes the echo in full, the others in proportion.
-  double likeliest = 0.0;
+  const float seen = narrow(settings_.seen) * unit_;
+  const float most = narrow(settings_.most) * unit_;
+  float likeliest = 0.0F;
   for (const Arc& arc : arc_)
     likeliest = std::max(likeliest, arc.likely);
   for (const Arc& arc : arc_)
-    put(arc.cell,
-        std::min(beliefs_[arc.cell] + settings_.seen * arc.likely / likeliest, settings_.most));
+    put(arc.cell, std::min(beliefs_[arc.cell] + seen * arc.likely / likeliest, most));
 }
 
 void ObstacleMemory::free_before(const Pose& sonar_in_odom, double range) {
@@ -273,13 +292,12 @@ void ObstacleMemory::silence(const Pose& sonar_in_odom) {
 void ObstacleMemory::touch(const Vec2& at_in_odom) {
   const double cell = settings_.cell;
   const long n = settings_.cells;
-  used_ = {0, n};
   for (long row = 0; row < n; ++row)
     for (long column = 0; column < n; ++column) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
                         (static_cast<double>(row + row0_) + 0.5) * cell);
       if ((middle - at_in_odom).norm() <= kTouched * cell)
-        put(static_cast<std::size_t>(row * n + column), settings_.most);
+        put(static_cast<std::size_t>(row * n + column), narrow(settings_.most) * unit_);
     }
 }
 
@@ -288,6 +306,7 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
   const double c = std::cos(robot_in_odom.th);
   const double s = std::sin(robot_in_odom.th);
   see_columns(robot_in_odom, c, s, 0, settings_.cells);
+  const float obstacle = narrow(settings_.obstacle) * unit_;
   const auto marked = [](std::uint64_t marks) { return marks != 0; };
   for (auto at = marks_.begin(); (at = std::find_if(at, marks_.end(), marked)) != marks_.end();
        ++at) {
@@ -298,12 +317,12 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
                       robot_in_odom.y;
     const double row_x = s * dy;
     const double row_y = c * dy;
-    const double* const beliefs = &beliefs_[row * held_.size() + column0];
-    const double* const x = &columns_.x[column0];
-    const double* const y = &columns_.y[column0];
+    const float* const beliefs = &beliefs_[row * held_.size() + column0];
+    const float* const x = &columns_.x[column0];
+    const float* const y = &columns_.y[column0];
     for (std::uint64_t left = *at; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
-      if (beliefs[i] < settings_.obstacle)
+      if (beliefs[i] < obstacle)
         *at ^= left & ~(left - 1);
       else
         points_.emplace_back(x[i] + row_x, y[i] + row_y);

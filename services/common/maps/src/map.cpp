@@ -412,8 +412,7 @@ bool Rectangle::contains(const Vec2& position_in_map) const {
 
 double Rectangle::distance(const Vec2& position_in_map) const {
   const Vec2 inside = to_feature_(position_in_map);
-  return std::hypot(std::max(0.0, std::abs(inside.x()) - half_.x()),
-                    std::max(0.0, std::abs(inside.y()) - half_.y()));
+  return (inside.cwiseAbs() - half_).cwiseMax(0.0).norm();
 }
 
 bool contains(const Feature& feature, const Vec2& position_in_map) {

@@ -86,9 +86,9 @@ class Grid {
     Tile* tile = nullptr;
     std::size_t cell = 0;
     int bin = 0;
-    double density = 0.0;  // of the reading, if the cell were occupied [1/m]
-    double before = 1.0;   // probability that no other cell gave the echo before
-    double odds = 0.0;
+    float density = 0.0F;  // of the reading, if the cell were occupied [1/m]
+    float before = 1.0F;   // probability that no other cell gave the echo before
+    float odds = 0.0F;
   };
   struct Fired {
     bool before = false;
@@ -103,7 +103,7 @@ class Grid {
   int weighed(int said) const;
   /// Steps of evidence against a cell from where a beam, with this probability, would have had an
   /// echo: rounded logarithms, from tables.
-  int free_steps(double detection) const;
+  int free_steps(float detection) const;
   void evidence(Tile& tile, std::size_t cell, int bin, int steps);
   double probability(const Tile& tile, std::size_t cell) const;
 
@@ -112,7 +112,7 @@ class Grid {
   std::array<std::int16_t, 256> weighed_{};  // a bin's log odds, by its evidence
   std::vector<double> probabilities_;        // by total log odds from -kMostTotal on
   std::vector<std::uint8_t> bytes_;          // the same times 200
-  std::vector<double> detections_;           // that give one more step than their index
+  std::vector<float> detections_;            // that give one more step than their index
   std::vector<int> least_steps_;             // by probability in parts of kFine
   double prior_ = 0.0;
   std::map<TileKey, Tile> tiles_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -32,8 +33,9 @@ class Field {
   };
   Nearest nearest(const Vec2& position_in_map) const;
   double distance(const Vec2& position_in_map) const {
-    const auto way = way_to_nearest(position_in_map);
-    return way ? way->norm() : Nearest{}.distance;
+    const auto i = index(position_in_map);
+    return i && nearest_[*i] != kNone ? way_to(lines_[nearest_[*i]], position_in_map).norm()
+                                      : Nearest{}.distance;
   }
   /// True where the map defines the place: the inside of a corridor, junction, lane or office. In a
   /// map of walls alone, everything within them.
@@ -43,19 +45,30 @@ class Field {
   static constexpr double kCell = 0.1;    // [m]
   static constexpr double kMargin = 1.0;  // [m] beyond the outermost surface
   static constexpr std::uint16_t kNone = 0xFFFF;
-  std::optional<std::size_t> index(const Vec2& position) const;
-  std::optional<Vec2> way_to_nearest(const Vec2& position) const;
+  struct Line {
+    Vec2 from;
+    Vec2 way;  // unit vector
+    double length;
+  };
+  static Vec2 way_to(const Line& line, const Vec2& position) {
+    const Vec2 p = position - line.from;
+    return line.way * std::clamp(p.dot(line.way), 0.0, line.length) - p;
+  }
+  /// Of a cell.
+  std::optional<std::size_t> index(const Vec2& position) const {
+    const double column = (position.x() - corner_.x()) / kCell;
+    const double row = (position.y() - corner_.y()) / kCell;
+    if (!(column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_))
+      return std::nullopt;
+    return static_cast<std::size_t>(static_cast<int>(row)) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(static_cast<int>(column));
+  }
 
   Vec2 corner_{0.0, 0.0};
   int columns_ = 0;
   int rows_ = 0;
   std::vector<std::uint16_t> nearest_;  // of surfaces, by rows
   std::vector<std::uint8_t> known_;
-  struct Line {
-    Vec2 from;
-    Vec2 way;  // unit vector
-    double length;
-  };
   std::vector<Line> lines_;
 };
 

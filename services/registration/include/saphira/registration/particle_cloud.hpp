@@ -38,14 +38,17 @@ class ParticleCloud {
   /// The robot's motion by dead reckoning, in its own earlier frame.
   void move(const Pose& moved);
   /// Weighs the poses by a reading of a sonar at `sensor_in_robot`. `worth` is a function of the
-  /// sensor's pose in the map.
+  /// sensor's place in the map, and of the unit vector along its axis.
   template <typename Worth>
   void weigh(const Pose& sensor_in_robot, Worth&& worth) {
-    const Pose& in = sensor_in_robot;
-    for (Particle& p : particles_)
-      p.log_weight += worth(Pose{p.pose.x + p.ahead.x() * in.x - p.ahead.y() * in.y,
-                                 p.pose.y + p.ahead.y() * in.x + p.ahead.x() * in.y,
-                                 norm2_angle(p.pose.th + in.th)});
+    settle();
+    const Vec2 axis = sensor_in_robot.direction();
+    for (Particle& p : particles_) {
+      const Vec2 left(-p.ahead.y(), p.ahead.x());
+      p.log_weight +=
+          worth(p.pose.position() + sensor_in_robot.x * p.ahead + sensor_in_robot.y * left,
+                axis.x() * p.ahead + axis.y() * left);
+    }
   }
   /// Applies a filter's correction between these two poses to all particles.
   void learn(const Pose& before, const Eigen::Matrix3d& covariance_before, const Pose& after,
@@ -59,9 +62,12 @@ class ParticleCloud {
     double drift = 0.0;                                    ///< [rad/m]
     double drift_variance = 0.0;
   };
-  Estimate estimate() const;
+  Estimate estimate();
   /// The pose of the estimate.
-  Pose middle() const { return middle(weights()); }
+  Pose middle() {
+    settle();
+    return middle(weights());
+  }
 
  private:
   struct Particle {
@@ -70,11 +76,19 @@ class ParticleCloud {
     double drift = 0.0;
     double log_weight = 0.0;
   };
+  /// Moves the particles by what the robot has moved since the last time.
+  void settle();
+  /// Nearly normal, with a deviation of 1; never beyond 3.5.
+  double noise();
   std::vector<double> weights() const;
   Pose middle(const std::vector<double>& weight) const;
 
   CloudSettings settings_;
   Random random_{1};
+  // Since the particles moved:
+  Pose moved_;
+  double length_ = 0.0;  ///< [m] of way...
+  double turned_ = 0.0;  ///< [rad] ...and of turns, either way
   std::vector<Particle> particles_;
 };
 

@@ -27,16 +27,19 @@ class RangeModel {
  public:
   explicit RangeModel(const Field& field, RangeModelSettings settings = {});
 
-  /// The log likelihood of a reading, for comparison between poses.
-  double log_likelihood(const Pose& sensor_in_map, double range, bool echo) const;
+  /// The log likelihood of a reading, for comparison between poses. `ahead`: the unit vector along
+  /// the sensor's axis.
+  double log_likelihood(const Vec2& sensor_in_map, const Vec2& ahead, double range,
+                        bool echo) const;
 
  private:
-  double arc_distance(const Pose& sensor_in_map, const Vec2& ahead, double range) const;
+  double arc_distance(const Vec2& from, const Vec2& ahead, double range) const;
   bool blocked(const Vec2& from, const Vec2& ahead, double free, double range) const;
 
   const Field* field_;
   RangeModelSettings settings_;
   double facing_;  ///< cosine
+  Vec2 off_axis_;  ///< the unit vector of the places beside the axis, seen from it
   double log_silent_;
   double log_slanted_silent_;
   double log_far_;

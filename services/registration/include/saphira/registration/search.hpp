@@ -94,7 +94,7 @@ class Search {
             const std::vector<const lps::Percept*>& fresh, const PoseFilter* own);
 
   /// The score of a reading at its sonar's place, relative to an average place.
-  double worth(const Pose& sensor_in_map, double range, bool echo) const;
+  double worth(const Vec2& sensor_in_map, const Vec2& ahead, double range, bool echo) const;
   /// Tests the present place by a reading of this worth; the bearing is in the robot.
   void test_own(double bearing, double worth);
   /// Doors have been found closed that were open before.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "saphira/geometry/pose.hpp"
@@ -14,7 +17,18 @@ class ConeRows {
  public:
   /// From the tip along its heading; `edge` is the tangent of half the opening angle.
   ConeRows(const Pose& tip, double edge, double range)
-      : c_(std::cos(tip.th)), s_(std::sin(tip.th)), edge_(edge), range_(range) {}
+      : c_(std::cos(tip.th)), s_(std::sin(tip.th)), edge_(edge), range_(range) {
+    // To the right of the left edge, and to the left of the right one.
+    for (const std::size_t i : {0U, 1U}) {
+      const double side = i == 0 ? 1.0 : -1.0;
+      const double slope = -side * s_ - edge_ * c_;
+      const Bound bound{(edge_ * s_ - side * c_) / slope, 0.0};
+      if (slope > kFlat)
+        highest_[i] = bound;
+      else if (slope < -kFlat)
+        lowest_[i] = bound;
+    }
+  }
 
   /// Cosine and sine of the heading.
   double cosine() const { return c_; }
@@ -31,22 +45,21 @@ class ConeRows {
     const double left = range_ * range_ - dy * dy;
     if (left < 0.0)
       return {1.0, -1.0};
-    double high = std::sqrt(left);
-    double low = -high;
-    // To the right of the left edge, and to the left of the right one.
-    for (const double side : {1.0, -1.0}) {
-      const double slope = -side * s_ - edge_ * c_;
-      const double most = (edge_ * s_ - side * c_) * dy;
-      if (slope > kFlat)
-        high = std::min(high, most / slope);
-      else if (slope < -kFlat)
-        low = std::max(low, most / slope);
-    }
-    return {low, high};
+    const double half = std::sqrt(left);
+    return {std::max(-half, std::max(lowest_[0].at(dy), lowest_[1].at(dy))),
+            std::min(half, std::min(highest_[0].at(dy), highest_[1].at(dy)))};
   }
 
  private:
   static constexpr double kFlat = 1e-9;  // an edge along the row bounds nothing
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  /// The place of an edge in a row, along x from the tip [m].
+  struct Bound {
+    double at(double dy) const { return slant * dy + offset; }
+    double slant = 0.0;
+    double offset = 0.0;
+  };
 
   /// On an axis, with the heading's parts along it and across it.
   std::pair<double, double> reach(double along, double across) const {
@@ -62,6 +75,8 @@ class ConeRows {
   double s_;
   double edge_;
   double range_;
+  std::array<Bound, 2> lowest_{Bound{0.0, -kFar}, Bound{0.0, -kFar}};
+  std::array<Bound, 2> highest_{Bound{0.0, kFar}, Bound{0.0, kFar}};
 };
 
 }  // namespace saphira

@@ -33,8 +33,8 @@ MemorySettings for_range(double range, MemorySettings settings = {});
 
 /// The places of a grid's cells, as seen from a frame, are sums: of a part for the column...
 struct ColumnParts {
-  std::vector<double> x;  ///< [m]
-  std::vector<double> y;
+  std::vector<float> x;  ///< [m]
+  std::vector<float> y;
 };
 /// ...and of one for the row: here the cells of a row that a sonar's cone may cover.
 struct ConeRow {
@@ -43,8 +43,8 @@ struct ConeRow {
   long end = 0;
   double dx = 0.0;  ///< [m] from the sonar to the first cell, in odom
   double dy = 0.0;
-  double x = 0.0;  ///< [m] the row's part
-  double y = 0.0;
+  float x = 0.0F;  ///< [m] the row's part
+  float y = 0.0F;
 };
 
 /// The obstacles that the sonars have seen around the robot, until later readings contradict them.
@@ -83,10 +83,10 @@ class ObstacleMemory {
   /// A cell of the arc of an echo.
   struct Arc {
     std::size_t cell;
-    double likely;
+    float likely;
   };
 
-  /// Columns of a row, or rows.
+  /// Columns of a row.
   struct Part {
     void widen(long from, long to) {
       *this = begin == end ? Part{from, to} : Part{std::min(begin, from), std::max(end, to)};
@@ -107,7 +107,7 @@ class ObstacleMemory {
   void find_arc(double range);
   void shift(long columns, long rows);
   void fade();
-  void put(std::size_t cell, double belief);
+  void put(std::size_t cell, float belief);
 
   MemorySettings settings_;
   double edge_;  ///< tangent of the cone's half angle
@@ -116,9 +116,9 @@ class ObstacleMemory {
   Pose robot_in_odom_;  ///< of the last move_to
   long column0_ = 0;    ///< of the grid's corner, in cells of odom
   long row0_ = 0;
-  std::vector<double> beliefs_;       ///< by rows
+  std::vector<float> beliefs_;        ///< by rows, in units
   std::vector<Part> held_;            ///< by row: no other belief is above 0
-  Part used_;                         ///< rows: no other belief is not 0
+  float unit_ = 1.0F;                 ///< a belief of 1, as it is stored
   std::size_t words_;                 ///< of marks, in a row
   std::vector<std::uint64_t> marks_;  ///< bits by cell: all obstacles, until the next collect more
   ColumnParts columns_;               ///< seen from the sonar or the robot
