@@ -97,9 +97,9 @@ inline int failed(const std::string& why) {
 /// Adds a subcommand to the parser.
 using AddCommand = void(CLI::App& app, Chosen& chosen);
 AddCommand add_demo, add_up, add_check, add_security, add_keys, add_audit, add_box, add_stop,
-    add_renew, add_status, add_list, add_echo, add_log, add_goal, add_intentions, add_behaviors,
-    add_why, add_beliefs, add_processes, add_device, add_map, add_scenario, add_say, add_talk,
-    add_knows, add_ask, add_agents, add_drive, add_direct, add_estop, add_complete, add_write,
-    add_wiring, add_programs, add_bench;
+    add_renew, add_status, add_doctor, add_list, add_echo, add_log, add_goal, add_intentions,
+    add_behaviors, add_why, add_beliefs, add_processes, add_device, add_map, add_scenario, add_say,
+    add_talk, add_knows, add_ask, add_agents, add_drive, add_direct, add_estop, add_complete,
+    add_write, add_wiring, add_programs, add_bench;
 
 }  // namespace saphira::cli

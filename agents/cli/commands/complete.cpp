@@ -11,6 +11,7 @@
 #include "saphira/bus/introspect.hpp"
 #include "saphira/cli/device_words.hpp"
 #include "saphira/cli/map_words.hpp"
+#include "system/system.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -72,6 +73,12 @@ std::vector<std::string> fixed_words(const CLI::App& root, const Begun& line) {
     return topic_names();
   if (name == "up" || name == "check" || name == "stop" || name == "renew")
     return names_in(config_folder() + "/deployments", ".yaml");
+  if (name == "doctor") {
+    std::vector<std::string> units;
+    for (const runtime::Unit& unit : system::units())
+      units.push_back(unit.name);
+    return units;
+  }
   if (name == "map")
     return map_verbs();
   if (name == "device") {

@@ -19,12 +19,12 @@ namespace {
 
 /// In the order of the help.
 constexpr AddCommand* kCommands[]{
-    add_demo,      add_scenario, add_up,         add_check,     add_stop,    add_renew,
-    add_programs,  add_security, add_keys,       add_audit,     add_box,     add_estop,
-    add_status,    add_goal,     add_intentions, add_behaviors, add_why,     add_beliefs,
-    add_processes, add_say,      add_talk,       add_knows,     add_ask,     add_agents,
-    add_map,       add_drive,    add_direct,     add_device,    add_list,    add_echo,
-    add_write,     add_log,      add_wiring,     add_bench,     add_complete};
+    add_demo,     add_scenario,  add_up,    add_check,      add_stop,      add_renew,
+    add_programs, add_security,  add_keys,  add_audit,      add_box,       add_estop,
+    add_status,   add_doctor,    add_goal,  add_intentions, add_behaviors, add_why,
+    add_beliefs,  add_processes, add_say,   add_talk,       add_knows,     add_ask,
+    add_agents,   add_map,       add_drive, add_direct,     add_device,    add_list,
+    add_echo,     add_write,     add_log,   add_wiring,     add_bench,     add_complete};
 
 int print_help(const CLI::App& root, const std::string& name) {
   std::vector<std::string> names;

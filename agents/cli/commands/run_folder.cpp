@@ -55,6 +55,11 @@ std::string memory_folder(uid_t user) {
   return "/dev/shm/saphira-" + std::to_string(user);
 }
 
+/// For the text of the lock in such a folder.
+std::string memory_file(const std::filesystem::path& folder) {
+  return memory_folder(getuid()) + "/" + folder.filename().string();
+}
+
 /// In the user's home, which several machines may share; empty: there is none to write to.
 std::string folder_in_home() {
   const char* const state = std::getenv("XDG_STATE_HOME");
@@ -186,11 +191,28 @@ RunFolder::RunFolder(const std::string& name, const std::string& robot, unsigned
 }
 
 void RunFolder::tell() {
-  if (!text_.empty() && fill(lock_, text_))
+  if (text_.empty())
+    return;
+  if (fill(lock_, text_)) {
     text_.clear();
+    return;
+  }
+  // What the lock of an earlier one says is not ours.
+  fill(lock_, "");
+  mkdir(memory_folder(getuid()).c_str(), 0755);
+  if (!is_folder_of(getuid(), memory_folder(getuid())))
+    return;
+  in_memory_ = memory_file(path_);
+  const int file = open(in_memory_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (file >= 0) {
+    fill(file, text_);
+    close(file);
+  }
 }
 
 RunFolder::~RunFolder() {
+  if (!in_memory_.empty())
+    unlink(in_memory_.c_str());
   if (lock_ >= 0) {
     unlock(lock_);
   } else {
@@ -214,7 +236,9 @@ std::vector<Running> running_deployments() {
         continue;
       }
       Running running{entry.path().filename(), 0, {}, 0};
-      std::ifstream in(path);
+      std::error_code gone;
+      const bool told = std::filesystem::file_size(path, gone) > 0;
+      std::ifstream in(told ? path : memory_file(entry.path()));
       in >> running.pid >> running.domain >> std::ws;
       std::getline(in, running.robot);
       if (running.pid > 0)

@@ -22,13 +22,14 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   const std::string& path() const { return path_; }
-  /// Tells running_deployments of it, where the disk had no room for that before.
+  /// Tells running_deployments of it: where the disk has no room for that, by a file in memory.
   void tell();
 
  private:
   std::string path_;
   int lock_ = -1;
-  std::string text_;  ///< still to be told
+  std::string text_;       ///< still to be told by the lock
+  std::string in_memory_;  ///< the file that tells it meanwhile; empty: none
 };
 
 /// A running deployment of this user on this machine.

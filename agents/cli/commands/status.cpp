@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/heartbeat.hpp"
+#include "saphira/situation/words.hpp"
 #include "saphira/watch/mind.hpp"
 #include "watch.hpp"
 
@@ -64,6 +65,8 @@ std::string text_of(const Mind& mind, const Restarts& restarts) {
     text += "trouble: " + trouble + "\n";
   if (const std::string second = second_deployment(now.programs); !second.empty())
     text += second + "\n";
+  if (!now.found.empty())
+    text += "slow: of " + situation::listed(now.found) + " no status has come yet\n";
   return text + clocks_apart(now.programs) + restarts.text() + silent_peers(node);
 }
 

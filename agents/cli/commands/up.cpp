@@ -440,8 +440,10 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   int status = 0;
   while (!stop.requested() && seconds_since(began) < kStarted) {
     if (waitpid(child, &status, WNOHANG) == child) {
-      std::cerr << read_bytes(log) << "saphira: it has ended; all that it said is in " << log
-                << '\n';
+      const std::string said = read_bytes(log);
+      std::cerr << said << "saphira: it has ended; "
+                << (said.empty() ? "nothing could be written to " : "all that it said is in ")
+                << log << '\n';
       return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
     }
     for (const Running& one : running_deployments())

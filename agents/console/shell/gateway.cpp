@@ -18,10 +18,11 @@ namespace {
 
 namespace topics = bus::topics;
 
-constexpr double kGreeting = 5.0;    // [s] limit for a page's hello
-constexpr double kExplain = 0.5;     // [s]
-constexpr std::size_t kLines = 200;  // of a log
-constexpr std::size_t kMany = 2000;  // instances of a topic
+constexpr double kGreeting = 5.0;     // [s] limit for a page's hello
+constexpr double kExplain = 0.5;      // [s]
+constexpr double kListenAgain = 3.0;  // [s]
+constexpr std::size_t kLines = 200;   // of a log
+constexpr std::size_t kMany = 2000;   // instances of a topic
 
 ServerOptions server_of(const GatewayOptions& options, const Kept& kept) {
   ServerOptions server = options.server;
@@ -69,7 +70,7 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
       origin_((options.server.place.certificate.empty() ? "http://" : "https://") +
               web::name_of(options.server.place)),
       node_(among_robots(node)),
-      server_(server_of(options, kept), access_, page_files(), events()) {
+      server_(opened(options, kept)) {
   access_.port = server_.port();
   keep_port(options.key_file, kept, access_.port);
   look_at_keys();
@@ -99,6 +100,26 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
           std::fprintf(stderr, "the relay %s is not reached (%s); it is dialled again and again\n",
                        host.c_str(), why.c_str());
         });
+}
+
+Server Gateway::opened(const GatewayOptions& options, const Kept& kept) {
+  while (true) {
+    try {
+      return Server(server_of(options, kept), access_, page_files(), events());
+    } catch (const std::runtime_error& error) {
+      if (options.stop == nullptr || options.stop->requested())
+        throw;
+      if (node_.status().reason != error.what())
+        node_.error(error.what());
+      node_.status().state = v1::SERVICE_WAITING;
+      node_.status().reason = error.what();
+    }
+    // A status a second.
+    for (const double until = now() + kListenAgain; now() < until && !options.stop->requested();) {
+      node_.publish_status();
+      node_.wait(std::chrono::milliseconds(200), options.stop);
+    }
+  }
 }
 
 Server::Events Gateway::events() {
@@ -193,6 +214,7 @@ void Gateway::feed_all() {
 
 int Gateway::run(const bus::Stop& stop) {
   node_.status().state = v1::SERVICE_RUNNING;
+  node_.status().reason.clear();
   server_.run(stop.fd());
   return bus::kExitOk;
 }

@@ -39,6 +39,9 @@ struct GatewayOptions {
   std::string dial_authority;          ///< PEM file to check its certificate
   std::string box;                     ///< folder for the last minute after an event; empty: none
   std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
+  /// While no port is free the status says so, and it is tried again, until this stop; none: that
+  /// is an error at once.
+  const bus::Stop* stop = nullptr;
 };
 
 /// [s] of the clock of these files.
@@ -60,6 +63,8 @@ class Gateway {
 
  private:
   Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept);
+  /// The server, when it has a place to listen on.
+  Server opened(const GatewayOptions& options, const Kept& kept);
 
   using Connection = Server::Connection;
 

@@ -115,6 +115,8 @@ int main(int argc, char** argv) {
           return static_cast<int>(bus::kExitOk);
         if (!screenshot.file.empty())
           options.server.place.port = 0;
+        else
+          options.stop = &stop;
         console::Gateway gateway(node, options);
         if (!screenshot.file.empty())
           return picture(gateway, screenshot);

@@ -123,10 +123,18 @@ bool steps(const Situation& s, const Known& known) {
   return known.newest > 0 && s.now < known.newest + kHungCycles && s.silence <= kListened;
 }
 
+constexpr const char* kSlow = " (it hangs, or the network is slow)";
+
+bool is_found(const Situation& s, const std::string& name) {
+  return std::ranges::find(s.found, name) != s.found.end();
+}
+
 /// That of one instance. The cyclic samples have no mark of their writer: they count for the
 /// instance that `counts`.
 Condition present_condition(const Situation& s, const Program& program, bool counts) {
   const auto wanted = counts ? expected(s, program.status.name) : std::nullopt;
+  if (program.age > kLostAge && is_found(s, program.status.name))
+    return {Health::late, "has not reported for " + seconds_text(program.age) + kSlow};
   if (program.age > kLostAge && !(wanted && steps(s, wanted->known)))
     return {Health::lost, "has not been heard for " + seconds_text(program.age) +
                               " (it is dead, hangs, or is cut off)"};
@@ -162,6 +170,8 @@ Condition present_condition(const Situation& s, const std::string& name) {
   // A present program may not have published yet.
   if (s.listened < kListened)
     return {};
+  if (is_found(s, name))
+    return {Health::late, std::string("is on the bus, and has not reported yet") + kSlow};
   const auto wanted = expected(s, name);
   if (wanted && steps(s, wanted->known))
     return {};

@@ -36,6 +36,9 @@ template <class T>
 void read(const Json& json, std::vector<T>& samples) {
   samples = contract::samples<T>(json);
 }
+void read(const Json& json, std::vector<std::string>& words) {
+  words = json.get<std::vector<std::string>>();
+}
 void read(const Json& json, std::vector<Program>& programs) {
   for (const auto& [name, of] : json.items()) {
     programs.push_back(program(name.substr(0, name.find('#'))));
@@ -85,6 +88,7 @@ Situation situation_of(const Json& json) {
   member("beliefs", s.beliefs);
   member("schemas", s.schemas);
   member("programs", s.programs);
+  member("found", s.found);
   member("processes", s.processes);
   if (known < json.size())
     throw std::invalid_argument("a situation has no such member");

@@ -249,6 +249,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
     now.doubtful_since = doubtful_since_;
   }
   now.programs = processes_.all();
+  now.found = processes_.found();
   now.processes = services();
   return now;
 }

@@ -36,9 +36,33 @@ std::vector<situation::Program> Processes::all() const {
   return processes;
 }
 
+std::vector<std::string> Processes::found() const {
+  // A lost packet of discovery is repeated after 3 s, one of a status within a second.
+  const bool far = node_.options().profile != bus::Profile::host;
+  const double lately = far ? 8.0 : 5.0;  // [s] what has not reported by then does not, or hangs
+  const double late = far ? 6.0 : situation::kLostAge;  // [s] likewise
+  std::vector<std::string> names;
+  for (const bus::ProgramEntry& program : bus::found_programs(node_)) {
+    const auto of_it = std::ranges::find_if(entries_, [&program](const auto& entry) {
+      const v1::ServiceStatus& status = entry.second.status;
+      return status.name == program.name && status.pid == program.pid &&
+             status.host == program.host;
+    });
+    const double age = of_it == entries_.end() ? program.known : seconds_since(of_it->second.came);
+    const bool is_open = of_it == entries_.end()
+                             ? age < lately
+                             : age > situation::kLostAge && age < late && !of_it->second.gone;
+    // The commands of people have no status.
+    if (program.pid != 0 && program.name != "cli" && program.let_in && !program.silent && is_open)
+      names.push_back(program.name);
+  }
+  return names;
+}
+
 situation::Situation Processes::situation() const {
   situation::Situation now;
   now.programs = all();
+  now.found = found();
   now.listened = seconds_since(began_);
   return now;
 }
@@ -134,13 +158,19 @@ std::chrono::milliseconds listening_time(const bus::Node& node, bool heard) {
 
 double listen(bus::Node& node, const bus::Stop& stop, const Processes& processes,
               const std::function<void()>& poll, const std::function<std::size_t()>& news) {
-  constexpr std::chrono::seconds kMost{10};
+  const std::chrono::seconds most(node.options().profile == bus::Profile::host ? 10 : 15);
   const auto began = Clock::now();
   auto changed = began;
   std::size_t before = news();
-  while (!stop.requested() &&
-         Clock::now() - changed < listening_time(node, processes.heard_any()) &&
-         Clock::now() - began < kMost) {
+  // On a network the programs that a robot needs may be found late.
+  const auto is_done = [&] {
+    const auto quiet = Clock::now() - changed;
+    if (quiet < listening_time(node, processes.heard_any()))
+      return false;
+    const situation::Situation now = processes.situation();
+    return now.found.empty() && (unheard(now).empty() || quiet >= listening_time(node, false));
+  };
+  while (!stop.requested() && !is_done() && Clock::now() - began < most) {
     node.wait(std::chrono::milliseconds(50), &stop);
     poll();
     if (news() > before)

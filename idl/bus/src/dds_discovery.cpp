@@ -108,6 +108,7 @@ void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
     endpoint.ownership =
         proxy.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
     endpoint.id = hex_text(to_id(proxy.guid()));
+    endpoint.denied = why_denied(proxy.guid(), endpoint);
     endpoints_[proxy.guid()] = endpoint;
     tell_forbidden(proxy.guid(), endpoint);
     for (const auto& own : own_)
@@ -157,6 +158,9 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data = printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     program.host = field(data, "host");
+    program.robot = field(data, "robot");
+    program.contract = field(data, "contract");
+    tell_contract(program);
     if (machines_)
       machines_->tell(to_text(prefix), field(data, "hears"));
     const bool joins = program.pid == 0;
@@ -221,25 +225,42 @@ std::shared_ptr<const Identity> Discovery::identity_of(const rtps::GUID_t& write
   return found == programs_.end() || !found->second.identity ? stranger : found->second.identity;
 }
 
-// Fast DDS refuses the match, without naming the endpoint or the reason.
-void Discovery::tell_forbidden(const rtps::GUID_t& guid, const EndpointEntry& endpoint) {
-  const auto program = programs_.find(guid.guidPrefix);
-  if (!guard_ || told_.size() >= kMostProgramsTold || program == programs_.end() ||
-      !program->second.identity)
+// Their topics have the same names, and perhaps types of the same names.
+void Discovery::tell_contract(const Program& program) {
+  if (program.contract.empty() || program.contract == SAPHIRA_CONTRACT ||
+      told_.size() >= kMostProgramsTold ||
+      !told_.insert({"contract", program.name + " " + program.host}).second)
     return;
+  troubles_.push_back(program.name + " at " + program.host + " has the contract " +
+                      program.contract +
+                      ", and this program " SAPHIRA_CONTRACT
+                      ": they do not understand each other; both sides need one version");
+  wake_->signal();
+}
+
+std::string Discovery::why_denied(const rtps::GUID_t& guid, const EndpointEntry& endpoint) const {
+  const auto program = programs_.find(guid.guidPrefix);
+  if (!guard_ || program == programs_.end() || !program->second.identity)
+    return {};
   const Identity& identity = *program->second.identity;
   std::string why = guard_->why_not(identity, endpoint.topic, endpoint.writer);
   const std::string robot = entrance_->robot_of(Entrance::prefix_at(guid.guidPrefix.value));
   if (why.empty() && !robot.empty() && endpoint.robot != robot)
     why = identity.text() + " may not have it of " + endpoint.robot +
           ": its permissions are for the robot " + robot + " alone";
+  return why;
+}
+
+// Fast DDS refuses the match, without naming the endpoint or the reason.
+void Discovery::tell_forbidden(const rtps::GUID_t& guid, const EndpointEntry& endpoint) {
   const bool ours = std::any_of(own_.begin(), own_.end(), [&](const EndpointEntry& own) {
     return own.topic == endpoint.topic && own.writer != endpoint.writer;
   });
-  if (why.empty() || !ours || !told_.insert({"forbidden", why}).second)
+  if (endpoint.denied.empty() || !ours || told_.size() >= kMostProgramsTold ||
+      !told_.insert({"forbidden", endpoint.denied}).second)
     return;
   refusals_.texts.push_back("topic " + endpoint.topic + ": " + name(with_program(guid, endpoint)) +
-                            " is refused: " + why);
+                            " is refused: " + endpoint.denied);
   wake_->signal();
 }
 
@@ -318,6 +339,28 @@ std::vector<EndpointEntry> Discovery::endpoints() const {
   for (const auto& [guid, endpoint] : endpoints_)
     if (!peers_.absent(Peers::program_of(to_id(guid))))
       result.push_back(with_program(guid, endpoint));
+  return result;
+}
+
+std::vector<ProgramEntry> Discovery::programs() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<ProgramEntry> result;
+  for (const auto& [prefix, program] : programs_) {
+    const auto of_it = [&prefix = prefix](const auto& item) {
+      return item.first.guidPrefix == prefix;
+    };
+    result.push_back({.name = program.name,
+                      .host = program.host,
+                      .pid = program.pid,
+                      .robot = program.robot,
+                      .contract = program.contract,
+                      .subject = program.subject,
+                      .let_in = !entrance_ || entrance_->is_in(Entrance::prefix_at(prefix.value)),
+                      .silent = peers_.absent(program_of(prefix)),
+                      .known = std::chrono::duration<double>(Clock::now() - program.found).count(),
+                      .endpoints = static_cast<std::size_t>(
+                          std::count_if(endpoints_.begin(), endpoints_.end(), of_it))});
+  }
   return result;
 }
 

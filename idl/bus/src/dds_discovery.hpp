@@ -68,6 +68,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
 
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
+  std::vector<ProgramEntry> programs() const;
   std::vector<std::string> take_troubles();
   Refusals take_refusals();
   void watch(bool on) { watched_ = on; }
@@ -77,7 +78,9 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     std::string name;
     std::string host;
     std::uint32_t pid = 0;  ///< 0: not built on this library
-    int discovered = 0;     ///< times found minus times dropped
+    std::string robot;
+    std::string contract;
+    int discovered = 0;  ///< times found minus times dropped
     std::chrono::steady_clock::time_point found = std::chrono::steady_clock::now();
     std::string subject;                       ///< announced; empty on an open bus
     std::shared_ptr<const Identity> identity;  ///< none on an open bus
@@ -100,6 +103,10 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
 
   void count_programs_here();
   void tell_refused(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const Program& program);
+  void tell_contract(const Program& program);
+  /// The reason why a program may not have this endpoint, in words; empty: it may, or is not known.
+  std::string why_denied(const eprosima::fastrtps::rtps::GUID_t& guid,
+                         const EndpointEntry& endpoint) const;
   void tell_forbidden(const eprosima::fastrtps::rtps::GUID_t& guid, const EndpointEntry& endpoint);
 
   template <class Proxy>

@@ -78,6 +78,8 @@ class Transport {
                                                  const TypeInfo& type) = 0;
   /// Everybody's endpoints but this node's.
   virtual std::vector<EndpointEntry> endpoints() const = 0;
+  /// As found_programs() has them. None on the bus in memory.
+  virtual std::vector<ProgramEntry> programs() const { return {}; }
   /// As Census has it.
   virtual std::vector<OtherProgram> others() const { return {}; }
   /// Endpoints that did not match one of this node's since the last call, one text each.

@@ -114,6 +114,14 @@ std::vector<EndpointEntry> Census::endpoints() const {
   return result;
 }
 
+std::vector<ProgramEntry> found_programs(Node& node) {
+  auto result = internal::transport_of(node).programs();
+  std::ranges::sort(result, {}, [](const ProgramEntry& entry) {
+    return std::make_tuple(entry.name, entry.host, entry.pid);
+  });
+  return result;
+}
+
 std::vector<OtherProgram> Census::others() const {
   return internal::transport_of(*node_).others();
 }

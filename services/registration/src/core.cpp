@@ -66,6 +66,15 @@ maps::Feature artifact_of(const Arguments& arguments) {
   return artifact;
 }
 
+/// An artifact that may be put on a map. A zone without any part near it would matter nowhere.
+maps::Feature on_the_map(maps::Feature artifact, const maps::Map& map) {
+  const double reach = std::hypot(artifact.length, artifact.width) / 2;
+  if (artifact.type == lps::PointType::zone)
+    if (const auto why = maps::outside(map, artifact.pose_in_map.position(), kOutside + reach))
+      throw std::invalid_argument("the zone is nowhere near the map: " + *why);
+  return artifact;
+}
+
 registration::Settings settings_for(const std::vector<lps::SonarMount>& sonars) {
   registration::Settings settings;
   settings.sonars = sonars;
@@ -395,7 +404,7 @@ Arguments Core::obey(const Request& request) {
   } else if (what == "put" || what == "remove") {
     auto id = static_cast<std::uint32_t>(number_of(with, "id"));
     if (what == "put")
-      id = editor.put(artifact_of(with));
+      id = editor.put(on_the_map(artifact_of(with), map()));
     else if (!editor.remove(id))
       throw std::invalid_argument("no artifact (" + std::to_string(id) + ") in the map");
     use(std::move(editor));

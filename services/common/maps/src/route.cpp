@@ -180,6 +180,9 @@ void Search::tell_zones(const Place& to, RouteResult& result) const {
     for (const Zone* const zone : met_by(*free.route))
       if (std::find(met.begin(), met.end(), zone) == met.end() && zone->rule != ZoneRule::preferred)
         result.around.push_back(zone->text);
+  for (const Held& held : held_)
+    if (held.leaving && held.zone->rule == ZoneRule::keep_out)
+      result.out_of.push_back(held.zone->text);
   for (const Zone* const zone : met)
     if (zone->rule == ZoneRule::slow || zone->rule == ZoneRule::preferred)
       result.through.push_back(zone->text);
@@ -438,6 +441,7 @@ std::string RouteResult::remark() const {
       text +=
           &zone == &zones.front() ? (text.empty() ? "" : ", and ") + (how + zone) : " and " + zone;
   };
+  add("out of ", out_of);
   add("around ", around);
   add("through ", through);
   return text;

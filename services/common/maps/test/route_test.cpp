@@ -111,7 +111,7 @@ class Ways : public test::LinePlayer {
 };
 
 TEST(Route, IsAsWritten) {
-  EXPECT_EQ(test::play<Ways>("services/common/maps/test/routes.txt"), 19);
+  EXPECT_EQ(test::play<Ways>("services/common/maps/test/routes.txt"), 20);
 }
 
 }  // namespace

@@ -306,7 +306,7 @@ void add_paths(Functions& functions) {
                   return zone.empty() ? Value() : Value(zone);
                 });
   functions.add(
-      "zones-on", 1, 1, "(zones-on PATH): the zones that it goes around or through, or nil",
+      "zones-on", 1, 1, "(zones-on PATH): the zones that it goes out of, around or through, or nil",
       [](const World& world, Values arguments) {
         const Value::List& path = arguments[0].list();
         const std::string remark = path.empty() ? "" : route(world, Value(), path.back()).remark();

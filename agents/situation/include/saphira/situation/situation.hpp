@@ -67,7 +67,8 @@ struct Situation {
   std::vector<v1::Belief> beliefs;    ///< at present: the activities' beliefs
   std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
   std::vector<Program> programs;            ///< at present
-  std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
+  std::vector<std::string> found;  ///< on the bus, and their status has not come yet, or is late
+  std::vector<v1::ProcessSet> processes;  ///< at present, of programs that are heard
 
   /// That of the robot's samples; 0: none is known.
   std::uint64_t robot_epoch() const {

@@ -92,6 +92,9 @@ class Processes {
   double quiet() const { return seconds_since(changed_); }
   /// The part of the robot's situation that comes from the status, without cyclic topics.
   situation::Situation situation() const;
+  /// Those that discovery has found in the last seconds, and whose status has not come yet, or is
+  /// late on a network.
+  std::vector<std::string> found() const;
   /// Of all seen processes, including ended ones.
   std::uint64_t late_cycles() const;
   bus::Node& node() const { return node_; }
@@ -125,7 +128,8 @@ std::string who_is_there(const Processes& processes);
 /// second. Where nobody was heard, other machines may still be on their way.
 std::chrono::milliseconds listening_time(const bus::Node& node, bool heard = true);
 /// Polls until `news`, which rises with all that is noticed and heard, has stayed the same for that
-/// time: on a slow network later. For 10 s at most. Returns the time of the newest [s].
+/// time: on a slow network later. For 10 s at most, on a network 15. Returns the time of the newest
+/// [s].
 double listen(bus::Node& node, const bus::Stop& stop, const Processes& processes,
               const std::function<void()>& poll, const std::function<std::size_t()>& news);
 

@@ -88,6 +88,21 @@ struct EndpointEntry {
   std::string ownership;   ///< shared, exclusive
   std::string id;          ///< GUID in hexadecimal: unique
   bool known_type = true;  ///< false: our topic with another type
+  std::string denied;  ///< with security: the reason why its program may not have it; empty: it may
+};
+
+/// A program that discovery has found: of this robot, or of all where the node meets the others.
+struct ProgramEntry {
+  std::string name;
+  std::string host{};      ///< empty where it does not say it
+  std::uint32_t pid = 0;   ///< 0: not built on this library
+  std::string robot{};     ///< empty where it does not say it
+  std::string contract{};  ///< as in version(); empty where it does not say it
+  std::string subject{};   ///< of the certificate that it announces; empty: it has none
+  bool let_in = true;      ///< false: it has not proved that it is a member of the site
+  bool silent = false;     ///< its presence is not heard
+  double known = 0.0;      ///< [s] since it was found
+  std::size_t endpoints = 0;
 };
 
 /// A program of another robot.
@@ -123,6 +138,9 @@ class Census {
  private:
   Node* node_;
 };
+
+/// The programs that discovery has found, without this one. Sorted by name, then process.
+std::vector<ProgramEntry> found_programs(Node& node);
 
 /// Why a writer's samples do not reach a reader of its topic; empty where they do. Partitions that
 /// are disjoint are not a mismatch but two robots.

@@ -65,10 +65,11 @@ struct RouteResult {
   std::optional<Route> route;
   std::string reason;
   // The zones that matter, in words.
+  std::vector<std::string> out_of{};   ///< keep-outs in which the robot stands
   std::vector<std::string> around{};   ///< without them another way would be shorter
   std::vector<std::string> through{};  ///< slow or preferred zones on the way
 
-  /// "around keep-out zone "lab", and through slow zone "kitchen""; empty: no zone matters.
+  /// "out of keep-out zone "hall", and around keep-out zone "lab""; empty: no zone matters.
   std::string remark() const;
 };
 
