@@ -63,6 +63,11 @@ class ParticleCloud {
   /// The pose of the estimate.
   Pose middle() const { return middle(weights()); }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("random", random_)("particles", particles_);
+  }
+
  private:
   struct Particle {
     Pose pose;

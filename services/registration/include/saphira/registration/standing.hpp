@@ -32,6 +32,11 @@ class Standing {
   /// One cycle; `moved` is by dead reckoning. True once where the robot was carried.
   bool step(const Pose& moved, const std::vector<PlacedReading>& readings);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("way", way_)("sonars", sonars_);
+  }
+
  private:
   struct Sonar {
     double direction = 0.0;      ///< [rad] in dead reckoning, of the newest reading
