@@ -102,6 +102,7 @@ class Drive {
   const v1::Registration& registered() const { return registered_; }
   Pose believed() const;
   const registration::Core& registration() const { return *registration_; }
+  runtime::Composition& services() { return services_; }
   /// Another program on their bus.
   bus::Node& node() { return node_; }
   const std::shared_ptr<bus::MemoryBus>& bus() const { return memory_; }

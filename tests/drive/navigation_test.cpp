@@ -14,6 +14,7 @@
 #include "drive/eyes.hpp"
 #include "drive/whole.hpp"
 #include "lines.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
@@ -546,7 +547,13 @@ std::string golden(const std::string& name) {
 /// One case of errands.txt or golden.txt.
 class Errand : public LinePlayer {
  public:
+  /// [cycles] For the next players: the services go on with restored cores. 0: never.
+  static inline std::uint64_t restores_every = 0;
+  /// Of the newest one.
+  static inline Fnv1a course;
+
   Errand() {
+    course = {};
     events_ = {{"world", [this](auto& in) { world(in); }},
                {"floor",
                 [this](auto& in) {
@@ -587,6 +594,19 @@ class Errand : public LinePlayer {
     if (!whole_)
       whole_.emplace(options_);
     return *whole_;
+  }
+  /// The robot's way to the last bit, and its orders.
+  void note_course() {
+    if (restores_every > 0 && whole().cycle() % restores_every == 0)
+      whole().drive().services().each([](runtime::Service& service) {
+        const std::string state = service.save();
+        service.restore(state);
+        EXPECT_EQ(service.save(), state);
+      });
+    const Pose truth = whole().truth();
+    const v1::MotorCommand& command = whole().drive().commanded();
+    for (const double value : {truth.x, truth.y, truth.th, command.velocity, command.heading})
+      course.add({reinterpret_cast<const char*>(&value), sizeof value});
   }
   sim::Scene& scene() { return whole().drive().scene(); }
   sim::Robot& robot() { return whole().drive().robot(); }
@@ -633,6 +653,7 @@ class Errand : public LinePlayer {
           people_.listen(whole());
           for (const v1::Belief& one : whole().beliefs())
             believed_[one.name] = one.value;
+          note_course();
           return done();
         },
         cycles);
@@ -852,11 +873,47 @@ TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
   EXPECT_EQ(played, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Library, Golden, ::testing::ValuesIn(kScenarios), [](const auto& each) {
+const auto kNamed = [](const auto& each) {
   std::string name = each.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
-});
+};
+INSTANTIATE_TEST_SUITE_P(Library, Golden, ::testing::ValuesIn(kScenarios), kNamed);
+
+class Restored : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Restored, CoresGoOnAsTheOldOnesToTheLastBit) {
+  const auto course = [](std::uint64_t restores_every) {
+    Errand::restores_every = restores_every;
+    play<Errand>("tests/drive/golden.txt", '#',
+                 [](int, const std::string& name) { return name == GetParam(); });
+    Errand::restores_every = 0;
+    return Errand::course.text();
+  };
+  const std::string as_usual = course(0);
+  EXPECT_EQ(course(50), as_usual);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cores, Restored, ::testing::Values("deliver", "lost", "follow-person"),
+                         kNamed);
+
+TEST(RestoredCores, AStateOfAnotherVersionIsAnErrorAndChangesNothing) {
+  Whole whole(office());
+  whole.ask("go-to-place", {text("place", "EJ-231")});
+  for (int i = 0; i < 100; ++i)
+    whole.advance();
+  int services = 0;
+  whole.drive().services().each([&](runtime::Service& service) {
+    ++services;
+    const std::string state = service.save();
+    for (const std::string& other :
+         {"{\"another\":1," + state.substr(1), std::string("{\"another\":1}"), std::string("{}"),
+          std::string("none"), state.substr(0, state.size() / 2)})
+      EXPECT_THROW(service.restore(other), std::runtime_error) << other.substr(0, 60);
+    EXPECT_EQ(service.save(), state);
+  });
+  EXPECT_EQ(services, 4);
+}
 
 TEST(GoldenTraces, EveryActivityThatIsShippedIsInOne) {
   std::string all;

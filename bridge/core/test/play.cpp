@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "rules.hpp"
+#include "saphira/base/archive.hpp"
+#include "saphira/base/fnv1a.hpp"
 
 namespace saphira::bridge::test {
 
@@ -54,8 +56,9 @@ CoreSettings settings_of(unsigned bits) {
 
 class Player {
  public:
-  explicit Player(protocol::ByteView bytes)
+  Player(protocol::ByteView bytes, unsigned restores_every)
       : script_(bytes),
+        restores_every_(restores_every),
         settings_(settings_of(script_.byte())),
         robot_(parameters_of(script_.byte())),
         serial_(script_.flag()),
@@ -64,11 +67,18 @@ class Player {
 
   Played go() {
     pass(0.02);
-    while (!script_.over() && played_.wrong.empty())
+    for (unsigned events = 1; !script_.over() && played_.wrong.empty(); ++events) {
       event();
+      if (restores_every_ > 0 && events % restores_every_ == 0) {
+        Core anew(settings_);
+        restore(saved(core_), anew);
+        core_ = std::move(anew);
+      }
+    }
     core_.end(now_);
     deliver();
     rules_.settled(core_);
+    played_.sent = sent_.value();
     return played_;
   }
 
@@ -89,6 +99,8 @@ class Player {
   void ask_devices();
 
   Script script_;
+  unsigned restores_every_;
+  Fnv1a sent_;
   Played played_;
   CoreSettings settings_;
   protocol::RobotParameters robot_;
@@ -138,9 +150,12 @@ void Player::deliver() {
   for (std::vector<Output> outputs = core_.take(); !outputs.empty(); outputs = core_.take()) {
     for (const Output& output : outputs) {
       rules_.output(output);
-      if (const auto* const send = std::get_if<Send>(&output))
+      if (const auto* const send = std::get_if<Send>(&output)) {
+        for (const std::uint8_t byte : send->bytes)
+          sent_.add(byte);
         hear(send->bytes);
-      else if (std::holds_alternative<Identified>(output))
+      }
+      if (std::holds_alternative<Identified>(output))
         identified();
       else if (std::holds_alternative<Answered>(output))
         core_.answered(now_);
@@ -395,8 +410,8 @@ void Player::event() {
 
 }  // namespace
 
-Played play(protocol::ByteView bytes) {
-  return Player(bytes).go();
+Played play(protocol::ByteView bytes, unsigned restores_every) {
+  return Player(bytes, restores_every).go();
 }
 
 }  // namespace saphira::bridge::test

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "saphira/protocol/packet.hpp"
@@ -18,6 +19,9 @@ struct Played {
   int steps = 0;    ///< of a simulator
   int silences = 0;
   int gaps = 0;
+  std::uint64_t sent = 0;  ///< a hash of all bytes to the robot
+
+  bool operator==(const Played&) const = default;
 };
 
 /// A core, a robot, drivers, and a person who presses the emergency stop. The bytes give the
@@ -34,6 +38,9 @@ struct Played {
 /// - While an emergency stop is latched no command moves the robot, and it is told to stand.
 /// - When the link is closed, the robot was told to stand.
 /// - A simulator steps when the behaviors have answered and the permit covers it.
-Played play(protocol::ByteView bytes);
+///
+/// `restores_every` so many events a new core goes on, into which the state was saved and restored;
+/// 0: never.
+Played play(protocol::ByteView bytes, unsigned restores_every = 0);
 
 }  // namespace saphira::bridge::test

@@ -7,14 +7,23 @@
 namespace saphira::bridge::test {
 namespace {
 
+protocol::Bytes script(std::uint64_t seed) {
+  Random random(seed);
+  protocol::Bytes bytes(2000);
+  for (std::uint8_t& byte : bytes)
+    byte = static_cast<std::uint8_t>(random.next());
+  return bytes;
+}
+
+TEST(Plays, GoOnTheSameWithRestoredCores) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    EXPECT_EQ(play(script(seed), 20), play(script(seed))) << "seed " << seed;
+}
+
 TEST(Plays, KeepEveryRule) {
   Played all;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
-    Random random(seed);
-    protocol::Bytes bytes(2000);
-    for (std::uint8_t& byte : bytes)
-      byte = static_cast<std::uint8_t>(random.next());
-    const Played played = play(bytes);
+    const Played played = play(script(seed));
     ASSERT_EQ(played.wrong, "") << "seed " << seed;
     all.sessions += played.sessions;
     all.cycles += played.cycles;

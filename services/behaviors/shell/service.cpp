@@ -49,7 +49,7 @@ void Service::step(const runtime::Turn& turn) {
     inputs.intent = from_bus(*intentions);
   inputs.command_age = command_age(turn);
 
-  const Core::Outputs outputs = core_.step(inputs);
+  const Core::Outputs outputs = core_->step(inputs);
   v1::MotorCommand command = command_to_bus(outputs.output);
   command.source = ports_.name();
   command.number = outputs.number;

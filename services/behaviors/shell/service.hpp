@@ -24,9 +24,11 @@ class Service final : public runtime::Service {
   /// std::runtime_error where a plug-in, or the shipped behaviors, cannot be loaded at all.
   Service(runtime::Ports& ports, const Options& options);
 
-  ProcessTable& processes() override { return core_.processes(); }
+  ProcessTable& processes() override { return core_->processes(); }
   void step(const runtime::Turn& turn) override;
   void check_files() override;
+  std::string save() const override { return saved(*core_); }
+  void restore(std::string_view state) override { renew(core_, state, registry_); }
 
  private:
   std::optional<double> command_age(const runtime::Turn& turn);
@@ -38,7 +40,7 @@ class Service final : public runtime::Service {
   runtime::Output<v1::BehaviorSet> behaviors_;
   runtime::Output<v1::BehaviorSet> recall_;
   runtime::Output<v1::BehaviorSchemas> schemas_;
-  Core core_;
+  std::optional<Core> core_{std::in_place};
   Sources sources_;
   Registry registry_;     ///< of the sources
   bool changed_ = false;  ///< since the last step

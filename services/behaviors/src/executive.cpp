@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "free_path.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/cycle.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/foresight.hpp"
@@ -91,6 +92,29 @@ void Executive::reset() {
 
 void Executive::reset(RobotModel model) {
   *this = Executive(std::move(registry_), std::move(model), settings_);
+}
+
+void Executive::archive(Archive& a) {
+  std::vector<Saved> memories;
+  if (!a.restores())
+    for (const Instance& instance : instances_)
+      memories.push_back({saved(*instance.behavior)});
+  a("model", model_)("lps", lps_)("instances", instances_)("memories", memories)(
+      "reconciled", reconciled_)("reconcile_trouble", reconcile_trouble_)("missing", missing_)(
+      "newest_intent", newest_intent_)("intent_came", intent_came_)("held", held_)(
+      "backwards", backwards_)("intent_age", intent_age_);
+  if (!a.restores())
+    return;
+  a.expect(memories.size() == instances_.size(), "a memory for each instance");
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    const std::string& name = instances_[i].intended.schema;
+    const Schema* const schema = registry_.find(name);
+    a.expect(schema != nullptr, "no schema but " + joined(registry_.names()) + ": " + name);
+    instances_[i].revision = schema->revision;
+    instances_[i].behavior = schema->make();
+    restore(memories[i].text, *instances_[i].behavior);
+  }
+  reconciled_revision_ = registry_.revision();
 }
 
 // A stall gives the side, and the sign of the commanded speed gives front or back.

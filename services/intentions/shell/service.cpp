@@ -76,7 +76,9 @@ Service::Service(runtime::Ports& ports, const Options& options)
       memory_(options.memory_file, kMostEndings, ports.files()),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
-      core_(settings(ports, memory_, functions_, options.approval)) {
+      settings_(settings(ports, memory_, functions_, options.approval)),
+      core_(settings_) {
+  settings_.memory = {};
   Notes notes;
   for (const std::string& trouble : memory_.troubles())
     notes.warn(trouble);
@@ -85,6 +87,11 @@ Service::Service(runtime::Ports& ports, const Options& options)
     unasked_vision_.emplace(ports.newest(bus::topics::kVision));
   ports.gate([this](const v1::RobotState&) { return missing(); });
   check_files();
+}
+
+void Service::restore(std::string_view state) {
+  settings_.registry = core_->executor().registry();
+  renew(core_, state, settings_);
 }
 
 /// In lockstep every run has, from the first cycle on, the same schemas of behaviors, the same map
@@ -116,7 +123,7 @@ void Service::say(const Notes& notes, const std::vector<v1::AuditEntry>& audit) 
 }
 
 void Service::step(const runtime::Turn& turn) {
-  const Core::Outputs outputs = core_.step(inputs_of(turn));
+  const Core::Outputs outputs = core_->step(inputs_of(turn));
   remember(outputs.intended.updates);
   if (const auto& by = outputs.intended.stop)
     stops_.ask({"stop", {{"by", *by}}}, std::exchange(next_stop_, bus::next_request_number()));
@@ -138,7 +145,7 @@ void Service::between(double silence) {
 }
 
 void Service::step_between(const Core::Received& received, double silence) {
-  const Core::BetweenOutputs told = core_.between(received, silence);
+  const Core::BetweenOutputs told = core_->between(received, silence);
   remember(told.updates);
   publish(told.updates);
   say(told.notes, told.audit);
@@ -269,7 +276,7 @@ void Service::check_files() {
   Core::Received received;
   received.activities = std::move(reload);
   step_between(received);
-  schemas_.write({.schemas = converted(core_.executor().registry().all(),
+  schemas_.write({.schemas = converted(core_->executor().registry().all(),
                                        [](const Schema* schema) { return to_bus(*schema); }),
                   .trouble = folders_.trouble()});
 }
@@ -326,10 +333,10 @@ void Service::publish(const Core::Outputs& said) {
   v1::Intentions sample{.behavior_control = outputs.behavior_control,
                         .speed_limit = std::max(0.0, limit.speed),
                         .limit_reason = limit.reason,
-                        .heeds = core_.executor().heeds()};
+                        .heeds = core_->executor().heeds()};
   sample.behaviors =
       converted(outputs.behaviors, [](const IntendedBehavior& each) { return to_bus(each); });
-  sample.nodes = converted(outputs.nodes, dated(core_.executor()), kMostNodes);
+  sample.nodes = converted(outputs.nodes, dated(core_->executor()), kMostNodes);
   sample.edges = converted(said.edges, [](const Edge& edge) {
     return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
   });
@@ -358,7 +365,7 @@ void Service::draw_way(const std::vector<Vec2>& way) {
 }
 
 void Service::publish(const std::vector<Belief>& beliefs) {
-  beliefs_.write({.beliefs = converted(beliefs, dated(core_.executor()), kMostBeliefs)});
+  beliefs_.write({.beliefs = converted(beliefs, dated(core_->executor()), kMostBeliefs)});
 }
 
 namespace {

@@ -37,14 +37,16 @@ class Service final : public runtime::Service {
   /// std::runtime_error where the memory file cannot be written.
   Service(runtime::Ports& ports, const Options& options);
 
-  ProcessTable& processes() override { return core_.processes(); }
+  ProcessTable& processes() override { return core_->processes(); }
   std::optional<std::string> ask(const std::string& name, ProcessAction action,
                                  std::uint32_t cycles) override {
-    return core_.ask(name, action, cycles);
+    return core_->ask(name, action, cycles);
   }
   void step(const runtime::Turn& turn) override;
   void between(double silence) override;
   void check_files() override;
+  std::string save() const override { return saved(*core_); }
+  void restore(std::string_view state) override;
 
  private:
   std::string missing();
@@ -98,7 +100,8 @@ class Service final : public runtime::Service {
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;
   ActivityFolders folders_;
-  Core core_;
+  Core::Settings settings_;
+  std::optional<Core> core_;
   bool knows_behaviors_ = false;
   std::vector<Core::NewMap> new_maps_;         ///< since the last step
   std::optional<std::uint64_t> map_revision_;  ///< of the newest map

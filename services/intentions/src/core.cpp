@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/cycle.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/intentions/functors.hpp"
@@ -263,8 +264,9 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
     NewMap& next = newer_maps_.front();
     // An added or removed object leaves plans as they are.
     if (topology_ == nullptr || !maps::same_places(*map_, *next.map)) {
-      topology_ = std::make_shared<const maps::Topology>(*next.map);
+      places_ = next.map;
       places_revision_ = next.revision;
+      topology_ = std::make_shared<const maps::Topology>(*places_);
       executor_.know_places(topology_);
     }
     map_ = std::move(next.map);
@@ -272,6 +274,23 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
     near_.clear();
     newer_maps_.pop_front();
   }
+}
+
+void Core::archive(Archive& a) {
+  a("processes", processes_)("executor", executor_)("remembers", remembers_)(
+      "memory_damaged", memory_damaged_)("knows_activities", knows_activities_)("gaze", gaze_)(
+      "adds_features", adds_features_)("estop", estop_)("newest_grant", newest_grant_)("lps", lps_)(
+      "percepts", percepts_)("things", things_)("readings", readings_)("map", map_)(
+      "places", places_)("near_of", near_of_)("near", near_)("places_revision", places_revision_)(
+      "newer_maps", newer_maps_)("requesters", requesters_)("owners", owners_)("answers", answers_)(
+      "claimants", claimants_)("logged", logged_)("nodes", nodes_)("way", way_)(
+      "beliefs_revision", beliefs_revision_)("robot_here", robot_here_)(
+      "heard_epoch", heard_epoch_)("registration_heard", registration_heard_);
+  if (!a.restores())
+    return;
+  topology_ = places_ ? std::make_shared<const maps::Topology>(*places_) : nullptr;
+  lines_ = map_ ? std::make_shared<const maps::LineMap>(*map_) : nullptr;
+  executor_.know_places(topology_);
 }
 
 void Core::learn(const Received& received, Notes& notes) {

@@ -21,14 +21,14 @@ void Service::step(const runtime::Turn& turn) {
   inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom);
   inputs.readings = lps::sonars_from_bus(turn.robot);
 
-  const Core::Outputs outputs = core_.step(inputs);
+  const Core::Outputs outputs = core_->step(inputs);
   v1::Perception sample = to_bus(*outputs.output);
   sample.odom = turn.robot.odom;
   perceptions_.write(std::move(sample));
   for (const TileKey& key : outputs.gone)
     tiles_.dispose(to_bus(key));
   for (const TileKey& key : outputs.tiles) {
-    v1::GridTile tile = to_bus(core_.grid(), key);
+    v1::GridTile tile = to_bus(core_->grid(), key);
     tile.odom = turn.robot.odom;
     tiles_.write(std::move(tile));
   }

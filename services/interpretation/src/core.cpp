@@ -25,13 +25,17 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars, std::vector<TileKey
   gone.assign(told_.begin(), told_.end());
   told_.clear();
   changed_.clear();
-  Settings settings;
-  settings.sonars = sonars;
   // The same robot again: ids continue, so that none stands for two objects.
-  if (interpretation_ && interpretation_->settings().sonars == settings.sonars)
+  if (interpretation_ && interpretation_->settings().sonars == sonars)
     interpretation_->reset();
   else
-    interpretation_.emplace(std::move(settings), &tasks_);
+    make(sonars);
+}
+
+void Core::make(const std::vector<lps::SonarMount>& sonars) {
+  Settings settings;
+  settings.sonars = sonars;
+  interpretation_.emplace(std::move(settings), &tasks_);
 }
 
 void Core::note_tiles(const Output& output, std::uint64_t cycle, Outputs& outputs) {

@@ -62,6 +62,7 @@ Service::Service(runtime::Ports& ports, const Core::Settings& settings, std::str
       registrations_(ports.each_cycle(bus::topics::kRegistration)),
       maps_(ports.changes(bus::topics::kMap)),
       requests_(ports.requests(bus::topics::kRegistrationRequest, Core::functors())),
+      settings_(settings),
       saver_(ports.files() == Files::kStay ? "" : memory_file_) {
   try {
     core_.emplace(settings);

@@ -32,6 +32,8 @@ class Service final : public runtime::Service {
   ProcessTable& processes() override { return core_->processes(); }
   void step(const runtime::Turn& turn) override;
   void between(double silence) override;
+  std::string save() const override { return saved(*core_); }
+  void restore(std::string_view state) override { renew(core_, state, settings_); }
 
  private:
   void publish_map();
@@ -43,6 +45,7 @@ class Service final : public runtime::Service {
   runtime::Output<v1::Registration> registrations_;
   runtime::Output<v1::FloorMap> maps_;
   Desk& requests_;
+  Core::Settings settings_;
   std::optional<Core> core_;
   runtime::Saver saver_;
   std::optional<std::uint64_t> published_;  ///< revision of the map

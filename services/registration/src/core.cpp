@@ -176,6 +176,13 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars) {
     set_builder();
 }
 
+/// A Registration to be restored, or none.
+void Core::make(bool begun) {
+  registration_.reset();
+  if (begun)
+    registration_.emplace(settings_for(now_.sonars), maps::Map{});
+}
+
 /// Starts or ends additions to the map, according to adds_features.
 void Core::set_builder() {
   if (now_.building)

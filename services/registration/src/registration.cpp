@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/state.hpp"
@@ -708,6 +709,17 @@ void Registration::set_map(maps::Map map) {
   auto next = std::make_unique<Self>(self_->settings(), std::move(map));
   next->set_state(self_->state());
   next->follow_edit(self_->map());
+  self_ = std::move(next);
+}
+
+void Registration::archive(Archive& a) {
+  maps::Map map = self_->map();
+  RegistrationState state = self_->state();
+  a("map", map)("state", state);
+  if (!a.restores())
+    return;
+  auto next = std::make_unique<Self>(self_->settings(), std::move(map));
+  next->set_state(std::move(state));
   self_ = std::move(next);
 }
 

@@ -14,7 +14,8 @@ Service::Service(runtime::Ports& ports, const Options& options)
       channels_(ports.events(bus::topics::kVisionChannels)),
       output_(ports.each_cycle(bus::topics::kVision)),
       pictures_(options.stereo_socket, [&ports] { ports.wake(); }),
-      core_(options.camera) {
+      camera_(options.camera),
+      core_(std::in_place, camera_) {
   ports.gate([this](const v1::RobotState& state) { return missing(state); });
 }
 
@@ -31,7 +32,7 @@ void Service::step(const runtime::Turn& turn) {
                       .seen = std::exchange(seen_, {}),
                       .no_pictures = pictures_.trouble()};
 
-  const Core::Outputs outputs = core_.step(inputs);
+  const Core::Outputs outputs = core_->step(inputs);
   v1::Vision sample = to_bus(outputs.things);
   sample.odom = turn.robot.odom;
   sample.picture = outputs.picture;
@@ -59,7 +60,7 @@ std::string Service::missing(const v1::RobotState& state) {
   if (state.stamp.epoch != epoch_)
     return {};  // the first step of an epoch: their number is unknown
   take_channels(epoch_);
-  if (!core_.has_channels(cycle, state.vision_packets_per_s, seen_))
+  if (!core_->has_channels(cycle, state.vision_packets_per_s, seen_))
     return std::string(bus::topics::kVisionChannels.name) + " of cycle " +
            std::to_string(cycle - 1);
   return {};

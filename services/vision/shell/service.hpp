@@ -21,8 +21,10 @@ class Service final : public runtime::Service {
  public:
   Service(runtime::Ports& ports, const Options& options);
 
-  ProcessTable& processes() override { return core_.processes(); }
+  ProcessTable& processes() override { return core_->processes(); }
   void step(const runtime::Turn& turn) override;
+  std::string save() const override { return saved(*core_); }
+  void restore(std::string_view state) override { renew(core_, state, camera_); }
 
  private:
   void take_channels(std::uint64_t epoch);
@@ -33,7 +35,8 @@ class Service final : public runtime::Service {
   bus::Reader<v1::VisionChannels> channels_;
   runtime::Output<v1::Vision> output_;
   Pictures pictures_;
-  Core core_;
+  ColorCamera camera_;
+  std::optional<Core> core_;
   std::uint64_t epoch_ = 0;       ///< of the newest step
   std::vector<Core::Seen> seen_;  ///< since then
 };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "saphira/base/archive.hpp"
+
 namespace saphira::vision {
 namespace {
 
@@ -98,6 +100,36 @@ TEST_F(CoreTest, SaysWhyNoPicturesCome) {
   EXPECT_TRUE(step().notes.empty());
   inputs_.no_pictures.clear();
   EXPECT_EQ(step().notes.lines()[0].text, "stereo pictures come");
+}
+
+TEST(Core, ARestoredOneGoesOnAsTheOldOneToTheLastBit) {
+  std::optional<Core> core(std::in_place);
+  std::optional<Core> restored(std::in_place);
+  Core::Inputs inputs;
+  inputs.new_robot = true;
+  inputs.odom = 1;
+  for (inputs.cycle = 1; inputs.cycle <= 300; ++inputs.cycle) {
+    const auto at = static_cast<double>(inputs.cycle);
+    inputs.pose_in_odom = {0.03 * at, 0.01 * at, 0.002 * at};
+    inputs.seen.clear();
+    if (inputs.cycle % 70 > 10) {  // else out of sight
+      Core::Seen seen{inputs.cycle - 1, 1, inputs.pose_in_odom, {}};
+      seen.channels[0] = {80 - static_cast<int>(inputs.cycle % 90), -10, 400, 20, 20};
+      seen.channels[2] = {-30, 20, 90, 10, 10};
+      inputs.seen = {seen};
+    }
+    if (inputs.cycle % 50 == 0) {
+      const std::string state = saved(*restored);
+      EXPECT_EQ(state, saved(*core));
+      saphira::restore(state, restored.emplace());
+    }
+    core->processes().step(inputs.cycle);
+    restored->processes().step(inputs.cycle);
+    const Core::Outputs outputs = core->step(inputs);
+    EXPECT_FALSE(outputs.things.empty() && inputs.cycle % 70 > 20);
+    EXPECT_EQ(outputs.things, restored->step(inputs).things);
+    inputs.new_robot = false;
+  }
 }
 
 }  // namespace

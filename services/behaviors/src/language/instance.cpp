@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "program.hpp"
+#include "saphira/base/archive.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::behaviors::language {
 namespace {
@@ -45,15 +47,11 @@ class Instance : public Behavior {
     Evaluation evaluation;
     Call call = begin(parameters, context, evaluation);
     run(*program_, program_->init, registers_.data(), call);
-    if (old_ == nullptr)
-      return;
     for (const Program::Kept& kept : program_->kept)
-      for (const Program::Kept& before : old_->kept)
-        if (before.name == kept.name && before.type == kept.type)
-          std::copy_n(old_registers_.data() + before.at, kept.type == Type::point ? 3 : 1,
-                      registers_.data() + kept.at);
-    old_.reset();
-    old_registers_.clear();
+      for (const Old& old : old_)
+        if (old.name == kept.name && old.type == kept.type)
+          std::ranges::copy(old.registers, registers_.data() + kept.at);
+    old_.clear();
   }
 
   Evaluation update(const Parameters& parameters, const Context& context) override {
@@ -75,13 +73,27 @@ class Instance : public Behavior {
   }
 
   void take_over(const Behavior& old) override {
-    if (const auto* const before = dynamic_cast<const Instance*>(&old)) {
-      old_ = before->program_;
-      old_registers_ = before->registers_;
-    }
+    if (const auto* const before = dynamic_cast<const Instance*>(&old))
+      for (const Program::Kept& kept : before->program_->kept) {
+        const double* const from = before->registers_.data() + kept.at;
+        old_.push_back({kept.name, kept.type, {from, from + (kept.type == Type::point ? 3 : 1)}});
+      }
+  }
+
+  void archive(Archive& a) override {
+    a("registers", registers_)("old", old_);
+    a.expect(registers_.size() == program_->registers.size(),
+             counted(program_->registers.size(), "register") + " of " + program_->name);
   }
 
  private:
+  /// A variable that persists.
+  struct Old {
+    std::string name;
+    Type type = Type::real;
+    std::vector<double> registers;
+  };
+
   /// Loads the parameters.
   Call begin(const Parameters& parameters, const Context& context, Evaluation& evaluation) {
     for (std::size_t i = 0; i < program_->parameters.size(); ++i) {
@@ -164,8 +176,7 @@ class Instance : public Behavior {
 
   std::shared_ptr<const Program> program_;
   std::vector<double> registers_;
-  std::shared_ptr<const Program> old_;  ///< of the version before, until init
-  std::vector<double> old_registers_;
+  std::vector<Old> old_;  ///< of the version before, until init
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "saphira/base/archive.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "saphira/base/base64.hpp"
 #include "saphira/base/numbers.hpp"
 
 namespace saphira {
@@ -160,6 +162,15 @@ void Archive::integer(std::uint64_t& value, std::uint64_t /*least*/, std::uint64
   expect(json.is_number_unsigned() && json.get<std::uint64_t>() <= most,
          "a whole number from 0 to " + std::to_string(most));
   pass(restores_, json, value);
+}
+
+void Archive::bytes(std::span<std::byte> bytes) {
+  std::string coded = base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  text(coded);
+  const auto read = restores_ ? from_base64(coded) : std::nullopt;
+  expect(read && read->size() == bytes.size(), counted(bytes.size(), "byte") + " in base64");
+  if (read)
+    std::ranges::copy(*read, reinterpret_cast<char*>(bytes.data()));
 }
 
 void Archive::json(std::string& text) {

@@ -119,5 +119,36 @@ TEST(Archive, NoDamageOfATextIsMoreThanAnError) {
   }
 }
 
+struct More {
+  std::array<std::array<std::int16_t, 2>, 3> cells{};
+  std::variant<std::monostate, bool, Place> either;
+  std::tuple<int, bool, double> three{};
+  std::shared_ptr<const Place> shared;
+  std::vector<bool> bits;
+
+  void archive(Archive& a) {
+    a.bytes("cells", cells);
+    a("either", either)("three", three)("shared", shared)("bits", bits);
+  }
+};
+
+TEST(Archive, KindsSharedValuesBitsAndBytesAreTheSameAfterTheirText) {
+  More more;
+  more.cells = {{{1, -2}, {300, -32768}, {0, 5}}};
+  more.either = Place{2.0, 0.5F};
+  more.three = {-3, true, 0.25};
+  more.shared = std::make_shared<const Place>(Place{4.0, 1.5F});
+  more.bits = {true, false, true};
+  const More same = restored<More>(saved(more));
+  EXPECT_EQ(same.cells, more.cells);
+  EXPECT_TRUE(same.either == more.either);
+  EXPECT_TRUE(same.three == more.three);
+  ASSERT_TRUE(same.shared);
+  EXPECT_EQ(*same.shared, *more.shared);
+  EXPECT_EQ(same.bits, more.bits);
+  EXPECT_FALSE(restored<More>(saved(More{})).shared);
+  EXPECT_THROW(restored<More>(R"({"cells":"AAAA"})"), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace saphira

@@ -23,6 +23,11 @@ class BehaviorParameters {
   /// where it never had one.
   bool place(Arguments& parameters, const World& world) const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("given", given_)("things", things_)("on_map", on_map_);
+  }
+
  private:
   Arguments given_;
   std::vector<std::uint64_t> things_;  ///< of each parameter lps::SeenThing::id, or 0

@@ -101,6 +101,35 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
     remember(ending);
 }
 
+void Executor::archive(Archive& a) {
+  a("beliefs", *beliefs_)("entries", entries_)("remembered_places", remembered_places_)(
+      "remembered_work", remembered_work_)("set_revision", set_revision_)(
+      "remembered", remembered_)("remembered_order", remembered_order_)(
+      "ended_order", ended_order_)("next_order", next_order_)("now", now_)("awake", awake_)(
+      "epoch", epoch_)("cycle", cycle_)("robot_here", robot_here_)("on_map", on_map_)(
+      "recalled", recalled_)("person", person_)("heeds", heeds_)("saved_heeds", saved_heeds_)(
+      "seen_stop", seen_stop_)("own_stops", own_stops_)("stop_by", stop_by_)(
+      "stop_asked", stop_asked_)("odom", odom_)("withdrawn", withdrawn_)("placed", placed_)(
+      "endings", endings_);
+  if (a.restores())
+    for (auto& [id, entry] : entries_) {
+      entry.schema = registry_->share(entry.goal.functor);
+      a.expect(entry.schema || !open(entry.status), "no activity " + entry.goal.functor);
+    }
+  struct InForest {
+    Executor& self;
+    void archive(Archive& in) {
+      self.forest_.archive(in, [&](std::uint32_t root) {
+        for (const auto& [id, entry] : self.entries_)
+          if (entry.node == root && entry.schema)
+            return entry.schema->make(entry.arguments);
+        in.fail("a goal for each tree");
+      });
+    }
+  } forest{*this};
+  a("forest", forest);
+}
+
 void Executor::remember(const Ending& ending) {
   if (remembered_.insert_or_assign(ending.id, ending).second)
     remembered_order_.push_back(ending.id);

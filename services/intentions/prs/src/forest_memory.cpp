@@ -175,4 +175,40 @@ void Forest::restore(std::uint32_t root, const Saved& saved, const World& world)
   }
 }
 
+void Forest::archive(Archive& a,
+                     const std::function<std::unique_ptr<Activity>(std::uint32_t)>& make_root) {
+  std::vector<std::uint32_t> ids;
+  std::map<std::uint32_t, Saved> activities;
+  for (const auto& [id, node] : nodes_) {
+    ids.push_back(id);
+    if (node->activity != nullptr && !a.restores())
+      activities[id] = {saved(*node->activity)};
+  }
+  a("ids", ids)("activities", activities);
+  if (a.restores()) {
+    nodes_.clear();
+    for (const std::uint32_t id : ids)
+      nodes_[id] = std::make_unique<Node>();
+    order_is_old_ = true;
+    graves_.clear();
+  }
+  for (const auto& [id, node] : nodes_)
+    a("I" + std::to_string(id), *node);
+  a("roots", roots_)("changed", changed_)("last_id", last_id_)("now", now_)("to_begin", to_begin_)(
+      "to_tell", to_tell_)("doomed", doomed_)("begun", begun_)("ended", ended_)("said", said_)(
+      "requests", requests_)("questions", questions_)("control_off", control_off_)(
+      "whiles", whiles_)("woken", woken_);
+  if (!a.restores())
+    return;
+  for (const auto& [id, memory] : activities) {
+    Node* const node = at(id);
+    a.expect(node != nullptr, "the intention of each activity");
+    const std::shared_ptr<const Schema> schema = registry_->share(node->shown.schema);
+    a.expect(schema != nullptr, "no activity " + node->shown.schema);
+    node->activity =
+        node->shown.parent == 0 ? make_root(id) : instantiate(*schema, node->given, Robot{});
+    saphira::restore(memory.text, *node->activity);
+  }
+}
+
 }  // namespace saphira::intentions

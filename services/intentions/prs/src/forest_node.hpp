@@ -42,6 +42,15 @@ struct Forest::Node {
   Ticks stepped = -1;                  ///< time of the newest step
   bool gone = false;                   ///< removed, in the course of a step
   std::optional<std::string> trouble;  ///< with a behavior of its own
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("shown", shown)("children", children)("root", root)("depth", depth)("concurrent", concurrent)(
+        "holds", holds)("suspended", suspended)("suspended_at", suspended_at)("timeout", timeout)(
+        "begun", begun)("level", level)("outcome", outcome)("given", given)("label", label)(
+        "behavior", behavior)("parameters", parameters)("until_satisfied", until_satisfied)(
+        "since", since)("progress", progress)("stepped", stepped)("trouble", trouble);
+  }
 };
 
 }  // namespace saphira::intentions

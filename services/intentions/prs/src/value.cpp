@@ -162,12 +162,8 @@ bool Value::operator==(const Value& other) const {
   return is_ == other.is_;
 }
 
-/// As text: it is read with the checks of the language.
 void Value::archive(Archive& a) {
-  std::string text = to_text(*this);
-  a.item(text);
-  if (a.restores())
-    *this = parse_value(text);
+  a.item(is_);
 }
 
 std::string to_text(const Value& value) {

@@ -66,6 +66,9 @@ class Follow : public Activity {
     if (trail.places() != places)
       self.moved_on();
   }
+  void archive(Archive& a) override {
+    a("distance", distance_)("speed", speed_)("place", place_)("now", now_);
+  }
   Saved save() const override { return {saved(now_)}; }
   void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>&) override {
     now_ = restored<Now>(saved.text);

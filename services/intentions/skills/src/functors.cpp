@@ -76,6 +76,11 @@ class Watchdog {
   double patience() const { return patience_; }
   void patience(double seconds) { patience_ = seconds; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("step", step_)("patience", patience_)("best", best_)("since", since_);
+  }
+
  private:
   double step_;
   double patience_;
@@ -103,6 +108,11 @@ class Motion {
   /// Some robots do not report that their motors are off.
   bool none_though_told() const { return told_ && !moved_ && !stalled_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("first", first_)("moved", moved_)("told", told_)("stalled", stalled_);
+  }
+
  private:
   static constexpr double kMoved = 0.01;              // [m]
   static constexpr double kTurned = radians(1.0);     // [rad]
@@ -128,6 +138,11 @@ class KeepOut {
   std::string reason() const { return "it must not go on: " + zone_; }
   /// After a pause, or towards another target.
   void restart() { zone_.clear(); }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("zone", zone_)("since", since_);
+  }
 
  private:
   static constexpr double kStands = 2.0;  // [s]
@@ -166,9 +181,8 @@ constexpr double kWidestAngle = radians(5.0);
 /// Turns on the spot. No behavior watches obstacles: the robot is round and stays in its place.
 class TurnTo : public Activity {
  public:
-  explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
-    take(arguments);
-  }
+  TurnTo() = default;  ///< to be restored
+  explicit TurnTo(const Arguments& arguments) { take(arguments); }
 
   bool change(const Arguments& arguments) override {
     take(arguments);
@@ -220,6 +234,12 @@ class TurnTo : public Activity {
                                       why_not_moving(self.robot(), motion_));
   }
 
+  void archive(Archive& a) override {
+    a("heading", heading_)("target", target_)("waiting_since", waiting_since_)("angle", angle_)(
+        "near", near_)("turn_speed", turn_speed_)("watchdog", watchdog_)("motion", motion_)(
+        "whole_turn", whole_turn_)("new_target", new_target_);
+  }
+
  private:
   void take(const Arguments& arguments) {
     heading_.reset();
@@ -239,7 +259,7 @@ class TurnTo : public Activity {
   double angle_ = 0.0;          ///< [rad] as asked for; 0: a share of the turn
   double near_ = kWidestAngle;  ///< [rad] counts as there
   double turn_speed_ = 0.0;
-  Watchdog watchdog_;
+  Watchdog watchdog_{radians(2.0), kPatience};
   Motion motion_;
   double whole_turn_ = 0.0;
   bool new_target_ = true;
@@ -343,6 +363,14 @@ class GoTo : public Activity {
       self.fail(v1::CODE_BLOCKED, format("no nearer for %.0f s, %.2f m from the point",
                                          watchdog_.waited(self.now()), left) +
                                       why_not_moving(self.robot(), motion_));
+  }
+
+  void archive(Archive& a) override {
+    a("target", target_)("facing", facing_)("turn", turn_)("waiting_since", waiting_since_)(
+        "keep_out", keep_out_)("speed", speed_)("radius", radius_)("near", near_)(
+        "watchdog", watchdog_)("motion", motion_)("last", last_)("path", path_)(
+        "whole_way", whole_way_)("new_target", new_target_)("there", there_)(
+        "checking_since", checking_since_)("checks", checks_);
   }
 
  private:
@@ -470,6 +498,12 @@ class Drive : public Activity {
     return distance_ > 0.0 ? std::string() : format("drove %.2f m until the deadline", path_);
   }
 
+  void archive(Archive& a) override {
+    a("speed", speed_)("distance", distance_)("patience", patience_)("restart", restart_)(
+        "keep_out", keep_out_)("motion", motion_)("anchor", anchor_)("anchored", anchored_)(
+        "last", last_)("path", path_);
+  }
+
  private:
   void take(const Arguments& arguments) {
     speed_ = value_of(arguments, "speed");
@@ -527,6 +561,8 @@ class Halt : public Activity {
       self.fail(v1::CODE_BLOCKED,
                 format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
   }
+
+  void archive(Archive& a) override { a("first", first_)("begun", begun_); }
 
  private:
   double first_ = 0.0;

@@ -81,6 +81,11 @@ class ExploreUnknown : public Activity {
       stand(self);
   }
 
+  void archive(Archive& a) override {
+    a("speed", speed_)("explorer", explorer_)("way", way_)("driving_to", driving_to_)(
+        "turning", turning_)("free_walls", free_walls_)("lanes", lanes_)("places", places_);
+  }
+
  private:
   void stand(Self& self) {
     for (const char* const behavior : {"AvoidCollision", "KeepOff", "GoToPos", "TurnTo"})

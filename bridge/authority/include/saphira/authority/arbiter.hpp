@@ -136,6 +136,15 @@ class Arbiter {
   /// The number of refused commands since the start.
   std::uint64_t refused_count() const { return refused_count_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("epoch", epoch_)("deaf_cycle", deaf_cycle_)("deaf_until", deaf_until_)("deaf_why", deaf_why_)(
+        "players", players_)("numbers", numbers_)("offers", offers_)("stop", stop_.id)(
+        "stop_source", stop_.source)("last_stopper", last_stopper_)("stop_cycle", stop_cycle_)(
+        "latches", latches_)("pressed", pressed_)("person", person_)("quiet_since", quiet_since_)(
+        "quiet_heard", quiet_heard_)("refused", refused_)("refused_count", refused_count_);
+  }
+
  private:
   /// The writer in a role, by its newest accepted command.
   struct Player {

@@ -32,6 +32,11 @@ class Coverage {
   /// 0.35 m.
   double way(bool forward) const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("radius", radius_)("range", range_)("robot_in_odom", robot_in_odom_)("lobes", lobes_);
+  }
+
  private:
   struct Lobe {
     ToFrame to_sonar{Pose{}};

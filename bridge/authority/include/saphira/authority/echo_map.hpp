@@ -50,6 +50,15 @@ class EchoMap {
   };
   std::optional<Firing> heard(const Vec2& spot) const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("range", range_);
+    if (a.restores())
+      *this = EchoMap(range_);
+    a("memory", memory_)("edges", edges_)("robot_in_odom", robot_in_odom_)("cycle", cycle_)(
+        "echoes", echoes_)("fired_ahead", fired_ahead_)("fired_behind", fired_behind_);
+  }
+
  private:
   struct Echo {
     int sonar = 0;

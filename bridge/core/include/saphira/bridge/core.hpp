@@ -125,13 +125,32 @@ class Core {
   const authority::Latches& latches() const { return arbiter_.latches(); }
   const protocol::RobotParameters& parameters() const { return reflector_.parameters(); }
 
+  /// Between two calls, when the outputs were taken.
+  template <class Archive>
+  void archive(Archive& a) {
+    a("words", words_)("audit", audit_)("parser", parser_)("connection", connection_)(
+        "reflector", reflector_)("arbiter", arbiter_)("drivers", drivers_)("guards", guards_)(
+        "session", session_)("last_epoch", last_epoch_)("last_odom", last_odom_)("memory", memory_)(
+        "slack", slack_)("shown", shown_)("line", line_)("own_deceleration", own_deceleration_)(
+        "robot_trouble", robot_trouble_)("permit", permit_)("kept", kept_)("grant", grant_)(
+        "told", told_)("guarded", guarded_)("refused_drivers", refused_drivers_)(
+        "grant_changed", grant_changed_)("driver_spoke", driver_spoke_)("expires_at", expires_at_)(
+        "flush_at", flush_at_)("stops", stops_)("numberless_stops", numberless_stops_)(
+        "room", room_)("last_loop", last_loop_)("last_bytes", last_bytes_)(
+        "stale_until", stale_until_)("hold_off", hold_off_)("keeper_alive", keeper_alive_)(
+        "keeper_restarts", keeper_restarts_)("keeper_new_until", keeper_new_until_)(
+        "reported_at", reported_at_)("wait", wait_)("reaction_at", reaction_at_)(
+        "reaction_sum", reaction_sum_)("reaction_max", reaction_max_)("reactions", reactions_)(
+        "late", late_)("steps", steps_);
+  }
+
  private:
   /// The state of one session with the robot, forgotten at its end.
   struct Session {
     v1::Stamp stamp;
     authority::Body body;
-    authority::EchoMap echoes;
-    authority::Coverage coverage;
+    authority::EchoMap echoes{};
+    authority::Coverage coverage{};
     reflector::Sweep sweep;
     Doubts doubts;
     std::uint64_t bad_before = 0;  ///< the parser's count at the start of the session

@@ -33,6 +33,12 @@ class Line {
   double stands_until() const { return stands_until_; }
   std::string why_it_stands(double now) const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("newest", newest_)("count", count_)("next", next_)("damaged", damaged_)(
+        "heard_moving", heard_moving_)("unheard", unheard_)("stands_until", stands_until_);
+  }
+
  private:
   static constexpr std::size_t kWindow = 50;
   void add(bool damaged);
@@ -61,6 +67,11 @@ class Doubts {
   std::string newest(double now) const;
   /// New doubts, each once, and no more often than a person can read.
   std::optional<std::string> take_words(double now);
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("count", count_)("newest", newest_)("at", at_)("news", news_)("told", told_);
+  }
 
  private:
   std::uint64_t count_ = 0;

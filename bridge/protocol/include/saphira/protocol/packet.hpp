@@ -65,6 +65,12 @@ class PacketParser {
 
   const ParserCounters& counters() const { return counters_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("buffer", buffer_)("begin", begin_)("give_up", give_up_)("counters", counters_);
+    a.expect(begin_ <= buffer_.size(), "a place in the buffer");
+  }
+
  private:
   void skip(std::size_t count);
 

@@ -50,6 +50,11 @@ class Channels {
   /// The newest setpoint of the translation channel [m/s].
   double sent_velocity() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("channels", channels_)("brake", brake_);
+  }
+
  private:
   struct Channel {
     Order want;

@@ -49,6 +49,13 @@ class Connection {
   /// The awaited answer, in words.
   std::string waiting_for() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("in_session", in_session_)("identity", identity_)("sent", sent_)(
+        "answered", answered_)("began", began_)("round_trip", round_trip_)("nameless", nameless_)(
+        "echoes", echoes_)("tries", tries_);
+  }
+
  private:
   Packets go(State state, double now);
 

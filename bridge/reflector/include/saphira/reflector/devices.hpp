@@ -71,6 +71,12 @@ class Devices {
   /// Requests that failed since the last call, in words.
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("items", items_)("digital_output", digital_output_)("reports", reports_)("changed", changed_)(
+        "answered", answered_)("troubles", troubles_);
+  }
+
  private:
   struct Item {
     DeviceRequest request;

@@ -58,6 +58,12 @@ class DirectMotion {
   /// [m] The remaining way of a position; 0: done, or no position.
   double distance_left() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("limits", limits_)("setpoints", setpoints_)("target", target_)("speed", speed_)(
+        "travelled", travelled_)("begun", begun_)("sets", sets_);
+  }
+
  private:
   Limits limits_;
   Setpoints setpoints_;

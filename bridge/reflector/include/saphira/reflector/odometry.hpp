@@ -66,6 +66,12 @@ class Odometry {
   /// The last packet's way along the robot's own heading [m].
   double advance() const { return advance_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("settings", settings_)("first", first_)("remembered", remembered_)("fresh", fresh_)(
+        "slack", slack_)("memory", memory_)("pose", pose_)("advance", advance_);
+  }
+
  private:
   void begin(const RawPose& raw, std::uint64_t odom);
 

@@ -86,6 +86,13 @@ class Reflector {
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
   double sent_velocity() const { return channels_.sent_velocity(); }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("parameters", parameters_)("odometry", odometry_)("motion", motion_)("channels", channels_)(
+        "devices", devices_)("state", state_)("last_packet", last_packet_)("last_sent", last_sent_)(
+        "packet_times", packet_times_)("sonar_times", sonar_times_);
+  }
+
  private:
   void fill_buckets();
 

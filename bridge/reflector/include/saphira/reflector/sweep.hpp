@@ -14,6 +14,12 @@ class Sweep {
   /// `angle` [rad] to either side. A stop or a turn of the driver ends it.
   void step(std::uint64_t cycle, bool needed, double angle, Setpoints& setpoints);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("swings", swings_)("begun", begun_)("cycle", cycle_)("angle", angle_)("course_in_odom",
+                                                                            course_in_odom_);
+  }
+
  private:
   bool swings_ = false;
   std::uint64_t begun_ = 0;  ///< the cycle before the first of the swing

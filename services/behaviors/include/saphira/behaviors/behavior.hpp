@@ -14,6 +14,10 @@
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
 
+namespace saphira {
+class Archive;
+}
+
 namespace saphira::behaviors {
 
 /// The properties of the robot that behaviors need; from its description.
@@ -134,6 +138,8 @@ class Behavior {
   /// This instance replaces `old`, which ran with an earlier version of the schema. Called before
   /// init. May keep the memory of `old`.
   virtual void take_over(const Behavior& old);
+  /// Saves and restores its memory, see Archive. Without this, a restored behavior begins anew.
+  virtual void archive(Archive& /*a*/) {}
 };
 
 /// A rule in its written form, for people.

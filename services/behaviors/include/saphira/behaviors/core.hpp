@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
@@ -33,9 +34,19 @@ class Core {
     std::string degraded;  ///< the reason for restricted driving; empty: none
   };
 
+  /// `schemas`: all, until others are an input.
+  explicit Core(Registry schemas = {}) : executive_(std::move(schemas), RobotModel{}) {}
+
   Outputs step(const Inputs& inputs);
 
   ProcessTable& processes() { return processes_; }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("processes", processes_)("executive", executive_)("delay", delay_)(
+        "frame_since", frame_since_)("number", number_)("trouble", trouble_)("slow", slow_)(
+        "active", active_);
+  }
 
  private:
   void begin(const Inputs& inputs);
@@ -45,7 +56,7 @@ class Core {
   // sfInitControlProcs. While suspended, it removes all behaviors, and releases the robot.
   Process& execution_ =
       processes_.add("execute-current-behaviors", "evaluates the behaviors, and drives the robot");
-  Executive executive_{Registry{}, RobotModel{}};
+  Executive executive_;
   PeakAge delay_;
   std::uint64_t frame_since_ = 0;  ///< cycle in which the odom frame last changed
   std::uint64_t number_ = 0;

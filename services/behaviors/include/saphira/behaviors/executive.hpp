@@ -107,6 +107,9 @@ class Executive {
   const lps::LocalPerceptualSpace& lps() const { return lps_; }
   Registry& registry() { return registry_; }
 
+  /// Its state but the registry. Restored behaviors are made by the registry.
+  void archive(Archive& a);
+
  private:
   struct Instance {
     Intended intended;  ///< the newest request
@@ -114,6 +117,11 @@ class Executive {
     std::uint64_t revision = 0;  ///< of its schema
     std::unique_ptr<Behavior> behavior;
     bool initialised = false;
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a("intended", intended)("parameters", parameters)("initialised", initialised);
+    }
   };
   /// Contact is wanted where every behavior that contributes to the speed wants it: the least of
   /// their limits. An active avoiding behavior forbids contact.

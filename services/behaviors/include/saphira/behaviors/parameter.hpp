@@ -41,6 +41,11 @@ class Parameters {
   /// The index of a text among its choices.
   std::size_t choice(std::size_t index) const { return items_[index].choice; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("items", items_);
+  }
+
  private:
   /// One for each parameter of the schema; nothing for an absent point.
   struct Item {

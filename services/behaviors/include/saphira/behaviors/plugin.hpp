@@ -7,7 +7,7 @@
 namespace saphira::behaviors {
 
 /// Changes with the part of this library that plug-ins use.
-inline constexpr int kPluginVersion = 1;
+inline constexpr int kPluginVersion = 2;
 
 }  // namespace saphira::behaviors
 

@@ -152,6 +152,9 @@ class Core {
   std::optional<std::string> ask(const std::string& name, ProcessAction action,
                                  std::uint32_t cycles);
 
+  /// Its state but the activities and behaviors that it knows: a restored core is made with them.
+  void archive(Archive& a);
+
  private:
   void know(const ActivityFolders::Reload& reload, Notes& notes);
   void learn(const Received& received, Notes& notes);
@@ -194,6 +197,7 @@ class Core {
   std::vector<lps::SeenThing> things_;
   std::vector<lps::SonarReading> readings_;
   std::shared_ptr<const maps::Map> map_;
+  std::shared_ptr<const maps::Map> places_;  ///< the map of the topology
   std::shared_ptr<const maps::Topology> topology_;
   std::shared_ptr<const maps::LineMap> lines_;  ///< of the map
   Vec2 near_of_{0.0, 0.0};                      ///< a place in the map...

@@ -16,6 +16,11 @@ class Gaze {
   /// The direction to ask of the head [rad], where it has to turn.
   std::optional<double> step(const World& world);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("asked", asked_)("at", at_)("now", now_);
+  }
+
  private:
   double wanted(const World& world, const Value& watched) const;
 

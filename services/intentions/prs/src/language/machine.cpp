@@ -66,7 +66,7 @@ class Machine : public Activity {
 
   Saved save() const override { return {saved(*this)}; }
   void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) override;
-  void archive(Archive& a);
+  void archive(Archive& a) override;
 
   const Value* variable(std::string_view name) const override {
     for (std::size_t i = 0; i < program_->locals.size(); ++i)
@@ -714,7 +714,8 @@ void Machine::archive(Archive& a) {
   if (program != mark_of(*program_))
     throw ActivityError("the schema " + program_->name + " is another than it was");
   a("locals", locals_)("threads", threads_)("last_thread", last_thread_)("begun_at", begun_at_);
-  a("suspended_at", suspended_at_)("outcome", outcome_)("reason", reason_);
+  a("suspended_at", suspended_at_)("outcome", outcome_)("reason", reason_)("over", over_);
+  a("shown_at", shown_at_)("shown_waiting", shown_waiting_);
   a.expect(locals_.size() == program_->locals.size() && !threads_.empty(),
            "the progress of " + program_->name);
 }
@@ -734,6 +735,7 @@ void Machine::restore(const Saved& saved, const std::map<std::uint32_t, std::uin
       now(child.id);
     std::erase_if(thread.children, [](const Child& child) { return child.id == 0; });
   }
+  next.shown_at_ = kNowhere;
   *this = std::move(next);
 }
 

@@ -34,7 +34,20 @@ class Core {
   const Grid& grid() const { return interpretation_->grid(); }
   ProcessTable& processes() { return processes_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    std::optional<std::vector<lps::SonarMount>> sonars;
+    if (interpretation_)
+      sonars = interpretation_->settings().sonars;
+    a("processes", processes_)("changed", changed_)("told", told_)("sonars", sonars);
+    if (a.restores() && sonars)
+      make(*sonars);
+    if (interpretation_)
+      a("interpretation", *interpretation_);
+  }
+
  private:
+  void make(const std::vector<lps::SonarMount>& sonars);
   void begin(const std::vector<lps::SonarMount>& sonars, std::vector<TileKey>& gone);
   void note_tiles(const Output& output, std::uint64_t cycle, Outputs& outputs);
 

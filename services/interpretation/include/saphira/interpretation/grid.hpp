@@ -72,6 +72,11 @@ class Grid {
   std::uint64_t updates() const { return updates_; }  ///< cells, since the beginning
   const GridSettings& settings() const { return settings_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("tiles", tiles_)("cleared", cleared_)("fired", fired_)("updates", updates_);
+  }
+
  private:
   static constexpr int kBins = 12;  // of the direction of view
   static constexpr std::size_t kCells = static_cast<std::size_t>(kTile * kTile);
@@ -81,6 +86,11 @@ class Grid {
     std::array<std::int16_t, kCells> total{};
     std::array<bool, kCells> seen{};
     bool changed = false;
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a.bytes("bins", bins).bytes("total", total).bytes("seen", seen);
+    }
   };
   struct Arc {
     Tile* tile = nullptr;

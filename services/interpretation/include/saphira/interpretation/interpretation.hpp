@@ -87,6 +87,13 @@ class Interpretation {
   const SideView& left() const { return sides_[0]; }
   const SideView& right() const { return sides_[1]; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("placed", placed_)("pose_in_odom", pose_in_odom_)("cycle", cycle_)("travelled", travelled_)(
+        "turned", turned_)("grid", grid_)("sides", sides_)("others", others_)(
+        "standing", standing_)("last_id", last_id_)("output", output_);
+  }
+
  private:
   using Lines = std::array<std::uint32_t, 2>;
   struct Standing {

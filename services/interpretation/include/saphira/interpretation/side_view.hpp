@@ -106,6 +106,14 @@ class SideView {
 
   const std::vector<Wall>& walls() const { return walls_; }
 
+  /// The walls are found again by the next interpret().
+  template <class Archive>
+  void archive(Archive& a) {
+    a("returns", returns_)("lines", lines_)("last_line", last_line_);
+    if (a.restores())
+      walls_.clear();
+  }
+
  private:
   struct Candidate {
     std::uint32_t id = 0;
@@ -113,6 +121,11 @@ class SideView {
     double newest = 0.0;  // travelled and turned at its newest echo
     double turned = 0.0;
     std::vector<const Return*> echoes;
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a("id", id)("fit", fit)("newest", newest)("turned", turned);
+    }
   };
   // The distance of an echo from the line that was heard last there, if it belongs to it.
   std::optional<double> misses(const Return& firing, const Line& line, double newest,

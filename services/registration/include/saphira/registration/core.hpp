@@ -100,11 +100,21 @@ class Core {
   /// Its micro-tasks. They are stepped before the core, for the same cycle.
   ProcessTable& processes() { return processes_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    bool begun = registration_.has_value();
+    a("processes", processes_)("now", now_)("begun", begun);
+    if (a.restores())
+      make(begun);
+    if (registration_)
+      a("registration", *registration_);
+  }
+
  private:
   /// Its learnt state but that of the Registration.
   struct State {
     std::string option;  ///< the map at the start of the service
-    maps::Editor editor;
+    maps::Editor editor{};
     std::string source;                    ///< the origin of the map
     bool changed = false;                  ///< the map, since its origin
     std::optional<Pose> start;             ///< on the map at the start of the service
@@ -126,6 +136,7 @@ class Core {
   };
 
   void begin(const std::vector<lps::SonarMount>& sonars);
+  void make(bool begun);
   void take_up(Remembered remembered);
   void set_builder();
   void end_building();

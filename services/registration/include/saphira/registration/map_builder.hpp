@@ -106,6 +106,17 @@ class MapBuilder {
   int closures() const { return closures_; }
   const FeatureGraph& graph() const { return graph_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("sonars", settings_.sonars)("snap", settings_.snap_to_right_angle_grid)("given", given_)(
+        "graph", graph_)("known_lines", known_lines_)("known_points", known_points_)(
+        "taken", taken_)("ahead", ahead_)("driven_through", driven_through_)("editor", editor_)(
+        "own", own_)("door_of", door_of_)("wall_of", wall_of_)("start_in_map", start_in_map_)(
+        "placed", placed_)("believed", believed_)("odom", odom_)("pose_in_odom", pose_in_odom_)(
+        "pose_in_map", pose_in_map_)("covariance", covariance_)("way", way_)(
+        "settled_way", settled_way_)("news", news_)("closures", closures_);
+  }
+
  private:
   /// Data of a line or an opening besides its place.
   struct Known {

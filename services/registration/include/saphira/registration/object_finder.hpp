@@ -39,6 +39,11 @@ class ObjectFinder {
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("candidates", candidates_);
+  }
+
  private:
   struct Candidate {
     std::vector<Look> met;

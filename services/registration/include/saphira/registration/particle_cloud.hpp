@@ -69,6 +69,11 @@ class ParticleCloud {
     return middle(weights());
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("random", random_)("particles", particles_);
+  }
+
  private:
   struct Particle {
     Pose pose;

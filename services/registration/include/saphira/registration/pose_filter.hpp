@@ -47,6 +47,11 @@ class PoseFilter {
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("covariance", covariance_)("errors", errors_);
+  }
+
  private:
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();

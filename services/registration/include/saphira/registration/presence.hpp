@@ -62,6 +62,11 @@ class Presence {
     closed_ = std::move(closed);
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("watched", watched_)("closed", closed_);
+  }
+
  private:
   struct Watched {
     maps::Feature feature;

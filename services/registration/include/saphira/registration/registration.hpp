@@ -22,6 +22,10 @@
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
 
+namespace saphira {
+class Archive;
+}
+
 namespace saphira::registration {
 
 /// One sigma of a pose.
@@ -165,6 +169,8 @@ class Registration {
   /// Continues from there in the same odometry frame. In another one the pose is a guess, beside
   /// `start`: lost until the readings fit only one of them.
   void restore(const Memory& memory, const std::optional<Pose>& start = std::nullopt);
+  /// Its map and learnt state.
+  void archive(Archive& a);
 
  private:
   class Self;

@@ -37,6 +37,11 @@ class Standing {
     sonars_.clear();
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("way", way_)("sonars", sonars_);
+  }
+
  private:
   struct Sonar {
     double direction = 0.0;      ///< [rad] in dead reckoning, of the newest reading

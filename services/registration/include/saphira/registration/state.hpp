@@ -35,6 +35,18 @@ struct RegistrationState {
         cloud(settings.cloud),
         presence(settings.presence),
         objects(settings.objects) {}
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("on", on)("state", state)("filter", filter)("confirmed", confirmed)("doubted", doubted)(
+        "carried", carried)("start", start)("other_map", other_map)("cycle", cycle)("odom", odom)(
+        "pose_in_odom", pose_in_odom)("moved", moved)("way", way)("turned", turned)("turns", turns)(
+        "done", done)("used", used)("since_readings", since_readings)("trial", trial)(
+        "weighed", weighed)("lead", lead)("cloud_score", cloud_score)("leads", leads)("led", led)(
+        "cloud", cloud)("search", search)("standing", standing)("presence", presence)(
+        "objects", objects)("output", output);
+  }
+
   bool on = true;
   v1::RegistrationState state = v1::REGISTRATION_UNPLACED;
   std::optional<PoseFilter> filter;

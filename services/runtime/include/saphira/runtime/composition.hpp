@@ -37,6 +37,13 @@ class Composition {
       part.shell->idle();
   }
 
+  /// Of its services, in order: for each f(service).
+  template <class F>
+  void each(F&& f) {
+    for (const Part& part : parts_)
+      f(part.shell->service());
+  }
+
  private:
   struct Part {
     std::unique_ptr<bus::Node> node;

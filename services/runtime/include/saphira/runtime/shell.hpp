@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/idl/common.hpp"
 #include "saphira/runtime/ports.hpp"
@@ -46,6 +48,20 @@ class Service {
   /// Checks the files that people edit while the robot drives. Called once a second, after a step;
   /// in lockstep, where cycles are short, every hundred.
   virtual void check_files() {}
+
+  /// Its core's whole state, and the return to it by a new core: std::runtime_error where the text
+  /// does not fit, as of another version; then the present core stays.
+  virtual std::string save() const { return "null"; }
+  virtual void restore(std::string_view /*state*/) {}
+
+ protected:
+  template <class Core, class... Settings>
+  static void renew(std::optional<Core>& core, std::string_view state,
+                    const Settings&... settings) {
+    saphira::restore(state, *std::make_unique<Core>(settings...));
+    core.emplace(settings...);  // at its place: it is referred to
+    saphira::restore(state, *core);
+  }
 };
 
 /// The one shell of all cyclic services: it chooses the next cycle and its inputs (bus::Cycle),
@@ -75,6 +91,7 @@ class Shell {
   void idle();
 
   const Ports& ports() const { return ports_; }
+  Service& service() { return *service_; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -53,6 +53,13 @@ class Core {
 
   ProcessTable& processes() { return processes_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("processes", processes_)("vision", vision_)("places", places_)("newer", newer_)(
+        "counted", counted_)("joined", joined_)("picture", picture_)("color", color_)("no_pictures",
+                                                                                      no_pictures_);
+  }
+
  private:
   /// The robot's pose in a cycle.
   struct Place {

@@ -47,6 +47,11 @@ class Tracker {
   /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracks_.clear(); }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("tracks", tracks_)("next_id", next_id_);
+  }
+
  private:
   using State = Eigen::Vector4d;  // x, y [m], velocity [m/s]
   using Covariance = Eigen::Matrix4d;

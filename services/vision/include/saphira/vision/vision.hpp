@@ -30,6 +30,11 @@ class Vision {
   /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracker_.reset(); }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("tracker", tracker_);
+  }
+
  private:
   void see_people(const Bands& bands, const std::vector<Sight>& people, std::uint64_t cycle,
                   const Pose& robot_in_odom);

@@ -43,6 +43,11 @@ class PeakAge {
   }
   double peak() const { return peak_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("peak", peak_);
+  }
+
  private:
   // Per cycle: a peak halves in 2.3 s.
   static constexpr double kFading = 0.97;

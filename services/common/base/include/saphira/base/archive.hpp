@@ -1,16 +1,20 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "saphira/base/enumerators.hpp"
@@ -20,7 +24,7 @@
 namespace saphira {
 
 /// Saves a state as a line of JSON, and restores it to the last bit: numbers, texts, enumerations,
-/// optional values, pairs, containers, matrices, and plain structs of them, member by member. A
+/// optional and shared values, variants, containers, matrices, and plain structs of them. A
 /// class with private state lists its members once, for both directions; as a template it needs no
 /// header:
 ///
@@ -67,6 +71,14 @@ class Archive {
   void item(T& value);
   /// Any JSON.
   void json(std::string& text);
+  /// A large array of whole numbers as a member: its bytes, in base64.
+  template <class T, std::size_t count>
+  Archive& bytes(std::string_view name, std::array<T, count>& value) {
+    enter(name);
+    bytes(std::as_writable_bytes(std::span(value)));
+    leave();
+    return *this;
+  }
 
   /// "pose[1]: expected a number, found "abc"" at the present place.
   [[noreturn]] void fail(const std::string& expected) const;
@@ -89,6 +101,7 @@ class Archive {
   void truth(bool& value);
   void number(double& value);
   void text(std::string& value);
+  void bytes(std::span<std::byte> bytes);
   void integer(std::int64_t& value, std::int64_t least, std::int64_t most);
   void integer(std::uint64_t& value, std::uint64_t least, std::uint64_t most);
 
@@ -112,6 +125,18 @@ class Archive {
   void take(Wide wide, T& value) const {
     if (restores_)
       value = static_cast<T>(wide);
+  }
+
+  template <class... Kinds>
+  void kinds(std::variant<Kinds...>& value) {
+    size(2, true);
+    std::size_t kind = value.index();
+    element(kind);
+    expect(kind < sizeof...(Kinds), "a kind below " + std::to_string(sizeof...(Kinds)));
+    std::size_t i = 0;
+    if (restores_)
+      ((i++ == kind ? static_cast<void>(value.template emplace<Kinds>()) : void()), ...);
+    std::visit([&](auto& of_kind) { element(of_kind); }, value);
   }
 
   bool restores_;
@@ -161,6 +186,10 @@ void Archive::item(T& value) {
     std::conditional_t<std::is_signed_v<T>, std::int64_t, std::uint64_t> wide = value;
     integer(wide, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
     take(wide, value);
+  } else if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {  // of a protocol, not all named
+    auto number = static_cast<std::uint8_t>(value);
+    item(number);
+    take(number, value);
   } else if constexpr (std::is_enum_v<T>) {
     constexpr auto& all = kEnumerators<T>;
     constexpr auto& names = kEnumeratorNames<T>;
@@ -174,10 +203,24 @@ void Archive::item(T& value) {
     expect(i < all.size(), "one of " + joined(names));
     if (restores_)
       value = all[i];
+  } else if constexpr (requires { value.valueless_by_exception(); }) {
+    kinds(value);
   } else if constexpr (requires { value.first, value.second; }) {
     size(2, true);
     element(value.first);
     element(value.second);
+  } else if constexpr (
+      requires { std::get<0>(value); } && !requires { value.data(); }) {
+    size(std::tuple_size_v<T>, true);
+    std::apply([&](auto&... each) { (element(each), ...); }, value);
+  } else if constexpr (requires { value.use_count(); }) {
+    using Element = std::remove_const_t<typename T::element_type>;
+    auto shared = std::const_pointer_cast<Element>(value);
+    if (!present(shared != nullptr))
+      shared.reset();
+    else
+      item(restores_ ? *(shared = std::make_shared<Element>()) : *shared);
+    value = std::move(shared);
   } else if constexpr (requires { value.has_value(); }) {
     if (present(value.has_value()))
       item(value ? *value : value.emplace());
@@ -201,7 +244,16 @@ void Archive::members(T& value) {
 
 template <class T>
 void Archive::container(T& value) {
-  if constexpr (requires { typename T::mapped_type; }) {
+  if constexpr (std::same_as<T, std::vector<bool>>) {
+    std::string bits;
+    for (const bool each : value)
+      bits += each ? '1' : '0';
+    text(bits);
+    expect(bits.find_first_not_of("01") == std::string::npos, "zeros and ones");
+    value.resize(bits.size());
+    for (std::size_t i = 0; i < bits.size(); ++i)
+      value[i] = bits[i] == '1';
+  } else if constexpr (requires { typename T::mapped_type; }) {
     copy<std::pair<typename T::key_type, typename T::mapped_type>>(value);
   } else if constexpr (requires { typename T::key_type; }) {
     copy<typename T::key_type>(value);

@@ -26,6 +26,11 @@ class Notes {
   bool empty() const { return lines_.empty(); }
   bool operator==(const Notes&) const = default;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("lines", lines_);
+  }
+
  private:
   std::vector<Note> lines_;
 };

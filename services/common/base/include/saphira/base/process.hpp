@@ -99,6 +99,13 @@ class ProcessTable {
 
   std::vector<const Process*> processes() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    for (const auto& process : processes_)
+      a(process->name(), process->now_);
+    a("told", told_)("asked", asked_);
+  }
+
  private:
   std::vector<std::unique_ptr<Process>> processes_;
   std::vector<int> told_;  ///< states, as of the last take_changed()

@@ -36,6 +36,11 @@ class Random {
     return mean + deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("increment", increment_);
+  }
+
  private:
   std::uint64_t state_ = 0;
   std::uint64_t increment_;

@@ -52,6 +52,12 @@ struct Output {
   std::optional<Vec2> look_at;       ///< turn towards this point of the map on the spot
   double speed = 0.0;
   std::string reason;  ///< purpose, in words
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("done", done)("point_in_map", point_in_map)("look_at", look_at)("speed", speed)("reason",
+                                                                                      reason);
+  }
 };
 
 /// Explores a floor corridor by corridor: drives to the end of the map built so far, and on, until
@@ -60,7 +66,7 @@ struct Output {
 /// the map, the pose and the way come from registration::MapBuilder.
 class Explorer {
  public:
-  explicit Explorer(Settings settings);
+  explicit Explorer(Settings settings = {});
 
   const Output& step(const Inputs& inputs);
   const Output& output() const { return output_; }
@@ -70,6 +76,22 @@ class Explorer {
   bool in_room() const { return in_room_; }
   Vec2 start() const { return start_in_map_.position(); }
   const FreeFloor& floor() const { return floor_; }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("settings", settings_)("floor", floor_)("output", output_)("doing", doing_)(
+        "start_in_map", start_in_map_)("lead", lead_)("probe_from", probe_from_)("tried", tried_)(
+        "left", left_)("seen_open", seen_open_)("gaps", gaps_)("shut", shut_)("path", path_)(
+        "heard", heard_)("listened_at", listened_at_)("open_way", open_way_)("looks", looks_)(
+        "turned", turned_)("aligned", aligned_)("look_cycle", look_cycle_)(
+        "steady_cycle", steady_cycle_)("look_from", look_from_)("squeeze", squeeze_)(
+        "aside", aside_)("may_squeeze", may_squeeze_)("open_aside", open_aside_)("probed", probed_)(
+        "ended", ended_)("progress", progress_)("progress_cycle", progress_cycle_)(
+        "reopened", reopened_)("stuck", stuck_)("begun", begun_)("home", home_)(
+        "turning", turning_)("open", open_)("in_room", in_room_)("roamed", roamed_)("edge", edge_)(
+        "tried_edges", tried_edges_)("roamed_way", roamed_way_)("roamed_at", roamed_at_)(
+        "planned", planned_)("in_corridor", in_corridor_);
+  }
 
  private:
   /// A way out of the mapped area: from a point, straight on.

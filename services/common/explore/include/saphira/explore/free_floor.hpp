@@ -25,7 +25,7 @@ class FreeFloor {
   /// [m] In a larger room the robot's drift would cost more than the farther floor is worth.
   static constexpr double kReach = 16.0;
 
-  explicit FreeFloor(std::vector<lps::SonarMount> sonars);
+  explicit FreeFloor(std::vector<lps::SonarMount> sonars = {});
 
   void add(const Pose& robot_in_map, const std::vector<lps::SonarReading>& readings);
 
@@ -44,6 +44,12 @@ class FreeFloor {
   /// Lanes to the widest place that is far from all lanes so far, from the nearest of them; of the
   /// first, from the robot's place. Empty: the lanes are near to all floor that can be reached.
   std::vector<Lane> next_lanes(const Vec2& from, const std::vector<Lane>& lanes) const;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("sonars", sonars_)("corner", corner_)("evidence", evidence_)("seen", seen_)(
+        "driven", driven_)("passed", passed_);
+  }
 
  private:
   static constexpr double kCell = 0.1;                                  // [m]

@@ -110,6 +110,11 @@ class ToFrame {
     return {c_ * dx + s_ * dy, -s_ * dx + c_ * dy};
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("x", x_)("y", y_)("c", c_)("s", s_);
+  }
+
  private:
   double x_;
   double y_;

@@ -86,6 +86,15 @@ class LocalPerceptualSpace {
   /// sfOccPlane and sfOccPlaneRet.
   Occupancy plane(Direction direction, Source source, double d, double s1, double s2) const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("settings", settings_);
+    if (a.restores())
+      reset();
+    a("placed", placed_)("robot_in_odom", robot_in_odom_)("cycle", cycle_)("front", front_)(
+        "left", left_)("right", right_)("memory", memory_);
+  }
+
  private:
   void take(const SonarReading& reading, const Pose& robot_in_odom);
   /// The remembered obstacles, in the present frame of the robot.

@@ -79,6 +79,14 @@ class ObstacleMemory {
   /// The cells that hold an obstacle, in the robot's frame as of the last collect.
   const std::vector<Vec2>& points() const { return points_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    const std::size_t cells = beliefs_.size();
+    a("placed", placed_)("robot_in_odom", robot_in_odom_)("column", column0_)("row", row0_)(
+        "beliefs", beliefs_)("held", held_)("used", used_)("marks", marks_)("points", points_);
+    a.expect(beliefs_.size() == cells, "a grid of that size");
+  }
+
  private:
   /// A cell of the arc of an echo.
   struct Arc {

@@ -38,6 +38,11 @@ class SonarBuffer {
   /// From the oldest to the newest.
   std::vector<SonarEntry> in_order() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("limit", limit_)("next", next_)("entries", entries_);
+  }
+
  private:
   void put(const SonarEntry& entry);
 

@@ -50,6 +50,11 @@ class Editor {
   /// Replaces the map. Features with the same id in both keep it.
   void replace(Map map);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("map", map_)("last_id", last_id_)("gone", gone_)("revision", revision_);
+  }
+
  private:
   std::size_t index_of(std::uint32_t id) const;
   void number();

@@ -161,6 +161,8 @@ class Activity {
   /// removed.
   virtual bool keeps_children() const { return false; }
   /// The progress, for a restart of the service; none: the arguments are enough.
+  /// Its whole state, to go on at the same place in the same forest.
+  virtual void archive(Archive& a) { static_cast<void>(a); }
   virtual Saved save() const { return {}; }
   /// Continues from save(). `children`: their new numbers by the old ones. std::runtime_error where
   /// it cannot: then it is unchanged.

@@ -62,6 +62,12 @@ class Beliefs {
   /// Increases with each change of all().
   std::uint64_t revision() const { return revision_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a("set", set_)("claims", claims_)("conditions", conditions_)("claim_count", claim_count_)(
+        "revision", revision_)("set_revision", set_revision_)("looked", looked_);
+  }
+
  private:
   struct Claim {
     GoalId id;

@@ -145,6 +145,9 @@ class Executor {
   /// nullptr: no such intention or variable.
   const Value* variable(std::uint32_t node, std::string_view name);
 
+  /// Its state but the registry, which has to have the activities, and the places.
+  void archive(Archive& a);
+
  private:
   struct Entry {
     Goal goal;            ///< as written, to tell a change from a repetition
@@ -167,6 +170,15 @@ class Executor {
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
     std::deque<double> levels;  ///< of the last cycles, for the trend
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
+          "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
+          "accepted", accepted)("ended", ended)("node", node)("status", status)("before", before)(
+          "refusal", refusal)("refusal_code", refusal_code)("published", published)(
+          "published_at", published_at)("levels", levels);
+    }
   };
   using Entries = std::map<GoalId, Entry>;
 

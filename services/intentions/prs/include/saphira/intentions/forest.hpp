@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -92,6 +93,9 @@ class Forest {
   /// (another version of the schema, an object that is not seen any more): the tree is then as it
   /// was planted.
   void restore(std::uint32_t root, const Saved& saved, const World& world);
+  /// The whole forest. `make_root` makes the activity of a root, to be restored.
+  void archive(Archive& a,
+               const std::function<std::unique_ptr<Activity>(std::uint32_t)>& make_root);
   /// True where save() may have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
 
