@@ -113,7 +113,7 @@ TEST(Explore, TheGuardLetsTheRobotPassACupboard) {
 
 // No wall is heard, and the robot does not move.
 TEST(Explorer, AWayThatItCannotFollowIsLeft) {
-  Explorer explorer({});
+  Explorer explorer(Settings{});
   const maps::Map map;
   const std::vector<Vec2> way{{0.0, 0.0}};
   const std::vector<lps::SonarReading> silent;
@@ -124,7 +124,7 @@ TEST(Explorer, AWayThatItCannotFollowIsLeft) {
 }
 
 TEST(FreeFloor, SaysThatItGoesOnBeyondItsCells) {
-  FreeFloor floor({});
+  FreeFloor floor(std::vector<lps::SonarMount>{});
   for (double x = 0.0; x < FreeFloor::kReach - 0.7; x += 0.1)
     floor.add({x, 0.0, 0.0}, {});
   EXPECT_FALSE(floor.goes_on());

@@ -71,7 +71,8 @@ class ParticleCloud {
 
   template <class Archive>
   void archive(Archive& a) {
-    a("random", random_)("particles", particles_);
+    a("random", random_)("moved", moved_)("length", length_)("turned", turned_)("particles",
+                                                                                particles_);
   }
 
  private:

@@ -83,7 +83,7 @@ class ObstacleMemory {
   void archive(Archive& a) {
     const std::size_t cells = beliefs_.size();
     a("placed", placed_)("robot_in_odom", robot_in_odom_)("column", column0_)("row", row0_)(
-        "beliefs", beliefs_)("held", held_)("used", used_)("marks", marks_)("points", points_);
+        "beliefs", beliefs_)("held", held_)("unit", unit_)("marks", marks_)("points", points_);
     a.expect(beliefs_.size() == cells, "a grid of that size");
   }
 
