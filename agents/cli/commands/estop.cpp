@@ -67,18 +67,23 @@ class Button {
   }
 
   int reset(const bus::Stop& stop) {
-    const v1::Answer answer =
-        resets_.ask(bus::request("reset"), kResetLimit, &stop, [this] { poll(); });
-    if (!bus::well(answer.code)) {
-      complain("saphira: not reset: %s\n", answer.code == v1::ANSWER_NOBODY
-                                               ? ("no bridge is heard; " + why_nobody()).c_str()
-                                               : answer.text.c_str());
-      return bus::kExitFailed;
+    const std::vector<v1::Answer> ends = resets_.ask_each(
+        bus::request("reset"), kResetLimit, kAllHeard, [this] { return bridges_.count(); }, &stop,
+        [this] { poll(); });
+    bool all_said = true;
+    for (const v1::Answer& end : ends) {
+      if (!bus::well(end.code)) {
+        complain("saphira: not reset: %s\n", end.code == v1::ANSWER_NOBODY
+                                                 ? ("no bridge is heard; " + why_nobody()).c_str()
+                                                 : end.text.c_str());
+        return bus::kExitFailed;
+      }
+      if (!end.text.empty())
+        print("%s\n", end.text.c_str());
+      all_said = all_said && !end.text.empty();
     }
-    if (!answer.text.empty()) {
-      print("%s\n", answer.text.c_str());
+    if (all_said)
       return bus::kExitOk;
-    }
     // The next grant shows the release of the stop, and autonomy's wait.
     while (!stop.requested() && seconds_since(began_) < kResetLimit &&
            (seconds_since(began_) < kAllHeard || !released())) {
@@ -133,7 +138,7 @@ void add_estop(CLI::App& app, Chosen& chosen) {
       "estop", "Emergency stop: the robot stands until `saphira estop reset`, whatever else runs");
   CLI::App* reset =
       command->add_subcommand("reset", "Releases it; the robot stands until a new command");
-  chosen.reach[command] = {"estop (not its reset)", [reset] { return !reset->parsed(); }};
+  chosen.reach[command] = {"estop"};
   command->require_subcommand(0, 1);
   command->footer(
       "Exit code 0: a bridge has confirmed it; 1: none has. Who drives by then does not drive on\n"

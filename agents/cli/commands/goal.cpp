@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -24,7 +24,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
-constexpr double kStopAgain = 0.2;         ///< [s] until a stop is asked for again
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
 constexpr double kSilent = 3.0;            ///< [s] until missing intentions are reported
@@ -78,64 +77,49 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
   Bridges bridges(node);
-  // Not by RequestClient: each bridge is to hear it, and the client ends with the first answer.
-  bus::Writer<v1::Request> stops = node.writer<v1::Request>(bus::topics::kDriveStop);
-  bus::Reader<v1::Answer> answers = node.reader(bus::topics::kRobotAnswers);
-  v1::Request request = bus::request("stop");
-  request.asker = node.instance();
-  request.number = bus::next_request_number();
-  request.source = person("saphira goal stop");
+  bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
   const auto began = Clock::now();
-  std::optional<Clock::time_point> sent;
   const std::string robot = called(node_options.robot);
-  std::set<bus::WriterId> heard;  // bridges that have answered
-  std::set<bus::WriterId> done;
+  bool heard = false;
+  bool done = false;
+  bool refused = false;
   double told = 0.0;
-  while (!stop.requested()) {
-    // The same stop again, which a bridge that knows it only answers.
-    if (!sent || (heard.size() < std::max<std::size_t>(bridges.count(), 1) &&
-                  seconds_since(*sent) > kStopAgain)) {
-      sent = Clock::now();
-      stops.write(request);
-    }
-    node.wait(milliseconds(20), &stop);
+  const auto hear = [&](const v1::Answer& answer) {
+    if (!std::exchange(heard, true))
+      print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
+            seconds_since(began));
+    if (!bus::ended(answer.code))
+      return;
+    done = true;
+    refused = refused || !bus::well(answer.code);
+    if (bus::well(answer.code))
+      print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
+    else
+      complain("saphira: %s. The latched stop is saphira estop.\n", answer.text.c_str());
+  };
+  const auto meanwhile = [&] {
     processes.poll();
     bridges.poll();
-    for (const auto& sample : answers.take()) {
-      const v1::Answer& answer = sample.data;
-      if (sample.info.disposed || answer.asker != request.asker || answer.number != request.number)
-        continue;
-      if (heard.insert(sample.info.writer).second && heard.size() == 1)
-        print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
-              seconds_since(began));
-      if (!bus::ended(answer.code))
-        continue;
-      if (!bus::well(answer.code)) {
-        complain("saphira: %s. The latched stop is saphira estop.\n", answer.text.c_str());
-        return bus::kExitFailed;
-      }
-      if (done.insert(sample.info.writer).second)
-        print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
-    }
-    if (!done.empty() && seconds_since(began) >= kAllHeard && done.size() >= bridges.count()) {
-      if (bridges.count() > 1)
-        print("this was a stop%s\n", bridges.several().c_str());
-      return bus::kExitOk;
-    }
-    if (!heard.empty() && (done.empty() || seconds_since(began) < kConfirmPatience))
-      continue;
-    if (seconds_since(began) > told + kConfirmPatience) {
-      told = seconds_since(began);
-      const std::string who =
-          !heard.empty() ? "not every bridge" + bridges.several() : who_is_there(processes);
-      complain(
-          "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
-          "trying; Ctrl-C ends it.\n",
-          told, who.c_str());
-    }
+    if ((heard && !done) || seconds_since(began) <= told + kConfirmPatience)
+      return;
+    told = seconds_since(began);
+    const std::string who =
+        heard ? "not every bridge" + bridges.several() : who_is_there(processes);
+    complain(
+        "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
+        "trying; Ctrl-C ends it.\n",
+        told, who.c_str());
+  };
+  stops.ask_each(
+      bus::request("stop"), std::numeric_limits<double>::infinity(), kAllHeard,
+      [&] { return bridges.count(); }, &stop, meanwhile, hear);
+  if (stop.requested()) {
+    complain("saphira: ended before the robot was seen at rest\n");
+    return bus::kExitFailed;
   }
-  complain("saphira: ended before the robot was seen at rest\n");
-  return bus::kExitFailed;
+  if (bridges.count() > 1)
+    print("this was a stop%s\n", bridges.several().c_str());
+  return refused ? bus::kExitFailed : bus::kExitOk;
 }
 
 /// Tells once when the program that carries out goals is silent, and when it is back.

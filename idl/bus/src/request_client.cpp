@@ -89,6 +89,12 @@ bool RequestClient::turn(double now) {
     if (sample.info.disposed || answer.asker != node_.instance() || found == pending_.end())
       continue;
     Pending& one = found->second;
+    if (one.each) {
+      bool& has_ended = one.each->told[sample.info.writer];
+      if (has_ended)
+        continue;
+      has_ended = ended(answer.code);
+    }
     one.heard = true;
     if (one.request.deadline <= 0.0)
       one.end = now + one.next;
@@ -96,14 +102,20 @@ bool RequestClient::turn(double now) {
     one.lost.code = v1::ANSWER_TOO_LATE;
     one.lost.text = "the request is still under way";
     heard.emplace_back(one.hear, std::move(answer));
-    if (ended(heard.back().second.code))
+    if (ended(heard.back().second.code) && !one.each)
       pending_.erase(found);
   }
+  for (const WriterId& lost : reader_.take_lost())
+    for (auto& [number, one] : pending_)
+      if (one.each)
+        one.each->told.erase(lost);
   bool wrote = false;
   if (!pending_.empty()) {
     // A program that was started again has to hear the requests anew.
     const std::size_t before = std::exchange(matched_, writer_.matched());
     for (auto& [number, one] : pending_) {
+      if (one.each)
+        one.heard = one.each->heard();
       if (matched_ < before && one.heard) {
         one.heard = false;
         one.again = now;
@@ -117,7 +129,10 @@ bool RequestClient::turn(double now) {
       if (!one.again)
         one.again = now + kAgain;
     }
-    std::erase_if(pending_, [now](const auto& each) { return now >= *each.second.end; });
+    std::erase_if(pending_, [now](const auto& item) {
+      const Pending& one = item.second;
+      return now >= *one.end || (one.each && now >= one.each->from && one.each->ended());
+    });
   }
   for (const auto& [hear, answer] : heard)
     if (hear)
@@ -169,6 +184,35 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
       meanwhile();
     if (auto answer = end ? std::nullopt : take_direct(one.request))
       return *std::move(answer);
+  }
+}
+
+std::vector<v1::Answer> RequestClient::ask_each(v1::Request request, double patience, double settle,
+                                                const std::function<std::size_t()>& servers,
+                                                const Stop* stop,
+                                                const std::function<void()>& meanwhile, Hear hear) {
+  std::vector<v1::Answer> ends;
+  const auto listen = [&](const v1::Answer& answer) {
+    if (ended(answer.code))
+      ends.push_back(answer);
+    if (hear)
+      hear(answer);
+  };
+  Pending& one = begin(std::move(request), listen, patience, patience);
+  one.each = {servers, seconds() + settle, {}};
+  const std::uint64_t number = one.request.number;
+  const std::shared_ptr<void> forgets(nullptr, [this, number](void*) { pending_.erase(number); });
+  while (true) {
+    turn(seconds());
+    if (!pending_.contains(number))
+      return ends;
+    if (stop != nullptr && stop->requested()) {
+      ends.push_back(one.lost);
+      return ends;
+    }
+    node_.wait(kPollPeriod, stop);
+    if (meanwhile)
+      meanwhile();
   }
 }
 

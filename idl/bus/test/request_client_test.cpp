@@ -4,6 +4,7 @@
 
 #include "node_options.hpp"
 #include "only.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -216,6 +217,63 @@ TEST_F(RequestClients, AnAnswerMayAskForMore) {
   server.answer(server.taken(), v1::ANSWER_DONE);
   client_.poll(100.1);
   EXPECT_EQ(told.size(), 1U);
+}
+
+TEST_F(RequestClients, EachServerComesToItsEnd) {
+  Server one(bus_);
+  Server other(bus_);
+  std::optional<Server> late;
+  const auto begun = request("stop");
+  int turns = 0;
+  const auto play = [&] {
+    switch (++turns) {
+      case 1: {
+        const v1::Request asked = one.taken();
+        EXPECT_EQ(other.taken(), asked);
+        one.answer(asked, v1::ANSWER_UNDERWAY, "stopping");
+        other.answer(asked, v1::ANSWER_DONE, "stopped");
+        other.answer(asked, v1::ANSWER_DONE, "stopped");
+        one.answer(asked, v1::ANSWER_DONE, "stopped too");
+        late.emplace(bus_);
+        break;
+      }
+      default:  // the one that came late hears it when it is written again
+        for (const auto& sample : late->requests.take())
+          late->answer(sample.data, v1::ANSWER_DONE, "late");
+    }
+  };
+  const std::vector<v1::Answer> ends = client_.ask_each(
+      begun, 60.0, 0.0, [&] { return late ? 3U : 2U; }, nullptr, play, into(told_));
+  EXPECT_EQ(joined(ends, ", ", &v1::Answer::text), "stopped, stopped too, late");
+  EXPECT_EQ(told_.size(), 4U);
+}
+
+TEST_F(RequestClients, AServerThatIsLostIsNotWaitedFor) {
+  std::optional<Server> one(bus_);
+  Server other(bus_);
+  std::size_t servers = 2;
+  v1::Request asked;
+  const auto play = [&] {
+    if (one) {
+      one->answer(one->taken(), v1::ANSWER_DONE, "gone");
+      asked = other.taken();
+      other.answer(asked, v1::ANSWER_UNDERWAY, "stopping");
+      one.reset();
+      servers = 1;
+    } else {
+      other.answer(asked, v1::ANSWER_DONE, "stopped");
+    }
+  };
+  std::vector<v1::Answer> ends;
+  ends = client_.ask_each(
+      request("stop"), 60.0, 0.0, [&] { return servers; }, nullptr, play);
+  EXPECT_EQ(ends.back().text, "stopped");
+}
+
+TEST_F(RequestClients, WithoutServersTheClientEnds) {
+  const std::vector<v1::Answer> ends =
+      client_.ask_each(request("stop"), 0.0, 0.0, [] { return 0U; });
+  EXPECT_EQ(only(ends).code, v1::ANSWER_NOBODY);
 }
 
 }  // namespace

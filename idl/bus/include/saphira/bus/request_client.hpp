@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "saphira/base/withdraw.hpp"
 #include "saphira/bus/node.hpp"
@@ -38,6 +40,15 @@ class RequestClient {
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {}, Hear hear = {});
 
+  /// Asks several programs, such as the bridges of all robots: those that are found within `settle`
+  /// [s], of which there are `servers()` by now. Waits until each has come to its end. `hear` hears
+  /// all answers, each program's end once. Returns the ends; where `patience` [s] is over, or at a
+  /// stop, the last one is this client's.
+  std::vector<v1::Answer> ask_each(v1::Request request, double patience, double settle,
+                                   const std::function<std::size_t()>& servers,
+                                   const Stop* stop = nullptr,
+                                   const std::function<void()>& meanwhile = {}, Hear hear = {});
+
   /// Asks without waiting: the number of the request. Its answers come in poll(). It ends `first`
   /// [s] after the next poll(); without a deadline in the request, `next` [s] after each
   /// ANSWER_UNDERWAY.
@@ -49,6 +60,17 @@ class RequestClient {
   void poll(double now) { turn(now); }
 
  private:
+  /// For a request to several programs.
+  struct Each {
+    std::function<std::size_t()> servers;
+    double from = 0.0;              ///< [s] then all have been found
+    std::map<WriterId, bool> told;  ///< those that have answered; true: they have ended
+
+    bool heard() const { return !told.empty() && told.size() >= servers(); }
+    bool ended() const {
+      return heard() && std::ranges::all_of(told, [](const auto& one) { return one.second; });
+    }
+  };
   /// A request that has not ended.
   struct Pending {
     v1::Request request;
@@ -59,6 +81,7 @@ class RequestClient {
     bool heard = false;                 ///< by a program that is still there
     std::optional<double> again = 0.0;  ///< [s] then it is written; none: it was, since poll()
     std::optional<double> end{};        ///< [s] then it is lost; none: it was not polled yet
+    std::optional<Each> each{};         ///< none: the first end counts
   };
   Pending& begin(v1::Request request, Hear hear, double first, double next);
   bool write(Pending& one);
