@@ -73,11 +73,11 @@ class Sieve : public transport::ChainingTransport {
       hear(remote);
       return;
     }
-    std::unique_lock<std::mutex> alone;
+    const bool introduces = announces || (descriptor_.guard && is_handshake(buffer, sound));
+    std::unique_lock<std::mutex> alone(introductions(), std::defer_lock);
+    if (introduces)
+      alone.lock();
     if (descriptor_.guard) {
-      const bool introduces = announces || is_handshake(buffer, sound);
-      if (introduces)
-        alone = std::unique_lock(introductions());
       const Entrance::Prefix sender = Entrance::prefix_at(sender_of(buffer));
       if (const std::string member = descriptor_.guard->revoked(sender.data()); !member.empty()) {
         drop(remote, "they use the certificate of " + member + ", which is revoked");
@@ -193,8 +193,10 @@ class Sieve : public transport::ChainingTransport {
 
   /// Fast DDS 2.9 prepares a handshake in variables that the threads of all ports share, without a
   /// lock (SecurityManager::match_builtin_endpoints). Where two programs are found at once, one of
-  /// them is never let in. Programs in one process call each other directly, so one lock serves the
-  /// process.
+  /// them is never let in. On an open bus each thread that finds a program takes one of four spare
+  /// proxies and then waits for the readers of discovery, which wait for a spare proxy: four
+  /// threads at once never end (EDPSimple::assignRemoteEndpoints). Programs in one process call
+  /// each other directly, so one lock serves the process.
   static std::mutex& introductions() {
     static std::mutex mutex;
     return mutex;
