@@ -157,6 +157,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data = printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     program.host = field(data, "host");
+    program.robot = field(data, "robot");
+    program.program = field(data, "program");
     if (machines_)
       machines_->tell(to_text(prefix), field(data, "hears"));
     const bool joins = program.pid == 0;
@@ -318,6 +320,18 @@ std::vector<EndpointEntry> Discovery::endpoints() const {
   for (const auto& [guid, endpoint] : endpoints_)
     if (!peers_.absent(Peers::program_of(to_id(guid))))
       result.push_back(with_program(guid, endpoint));
+  return result;
+}
+
+std::vector<Announcer> Discovery::announcers() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Announcer> result;
+  for (const auto& [prefix, program] : programs_) {
+    const Peers::Program id = program_of(prefix);
+    if (!peers_.absent(id) && !(entrance_ && entrance_->is_refused(id)))
+      result.push_back(
+          {id, program.robot, program.program.empty() ? program.name : program.program});
+  }
   return result;
 }
 

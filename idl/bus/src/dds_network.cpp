@@ -184,8 +184,10 @@ void set_up_library() {
 }
 
 fdds::UserDataQosPolicy user_data(const NodeOptions& options, const std::string& heard) {
-  const std::string text = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";" +
-                           Fleet(options).fields() + (heard.empty() ? "" : "hears=" + heard + ";");
+  const std::string text =
+      "host=" + host_name() + ";pid=" + std::to_string(getpid()) +
+      ";program=" + (options.program.empty() ? options.name : options.program) + ";" +
+      Fleet(options).fields() + (heard.empty() ? "" : "hears=" + heard + ";");
   fdds::UserDataQosPolicy data;
   data.setValue(std::vector<rtps::octet>(text.begin(), text.end()));
   return data;

@@ -78,7 +78,8 @@ class Transport {
                                                  const TypeInfo& type) = 0;
   /// Everybody's endpoints but this node's.
   virtual std::vector<EndpointEntry> endpoints() const = 0;
-  /// As Census has it.
+  /// As Census has them.
+  virtual std::vector<Announcer> announcers() const { return {}; }
   virtual std::vector<OtherProgram> others() const { return {}; }
   /// Endpoints that did not match one of this node's since the last call, one text each.
   virtual std::vector<std::string> take_troubles() = 0;

@@ -114,6 +114,12 @@ std::vector<EndpointEntry> Census::endpoints() const {
   return result;
 }
 
+std::vector<Announcer> Census::announcers() const {
+  auto result = internal::transport_of(*node_).announcers();
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 std::vector<OtherProgram> Census::others() const {
   return internal::transport_of(*node_).others();
 }
