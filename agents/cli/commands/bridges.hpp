@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <map>
 
+#include "saphira/base/text.hpp"
+#include "saphira/watch/roll.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
 
-/// The newest grant of every bridge with this robot's name, or of every robot. Usually there is
+/// The bridges with this robot's name, or of every robot, and their newest grants. Usually there is
 /// one; a stop has to reach all.
 class Bridges {
  public:
   explicit Bridges(bus::Node& node)
-      : grants_(node.reader(bus::topics::kGrant)),
+      : census_(node),
+        grants_(node.reader(bus::topics::kGrant)),
+        roll_(std::chrono::duration<double>(listening_time(node)).count()),
+        robot_(node.options().robot),
         every_robot_(node.options().robot == kEveryRobot) {}
 
   void poll() {
@@ -23,22 +28,55 @@ class Bridges {
     for (const bus::WriterId& lost : grants_.take_lost())
       heard_.erase(lost);
     std::erase_if(heard_, [](const auto& one) { return seconds_since(one.second.came) > kSilent; });
+    std::vector<bus::Announcer> announced = census_.announcers();
+    // With --robot NAME a program of every robot is met as well.
+    std::erase_if(announced,
+                  [&](const bus::Announcer& one) { return !every_robot_ && one.robot != robot_; });
+    roll_.update(announced, heard(), now());
   }
-  std::size_t count() const { return heard_.size(); }
+  std::size_t count() const { return roll_.count(); }
+  /// All of them are known.
+  bool complete() const { return roll_.complete(now()); }
+  /// The robots of bridges that none of these writers is of, in words.
+  std::string without(const std::set<bus::WriterId>& writers) const {
+    return joined(roll_.without(writers));
+  }
+  /// For a request to all of them. `answered`: gets those that have answered.
+  bus::RequestClient::Servers servers(std::set<bus::WriterId>* answered = nullptr) const {
+    return {[this, answered](const std::set<bus::WriterId>& told) {
+              if (answered != nullptr)
+                *answered = told;
+              return roll_.without(told).empty();
+            },
+            [this] { return complete(); }};
+  }
   /// Of any bridge.
   const std::optional<v1::Grant>& newest() const { return newest_; }
   /// True where there is a bridge, and it holds for each.
   template <class Holds>
   bool all(Holds holds) const {
-    return !heard_.empty() &&
+    return !heard_.empty() && roll_.without(heard()).empty() &&
            std::ranges::all_of(heard_, [&](const auto& one) { return holds(one.second.grant); });
+  }
+  /// The robots whose bridges do not say so, in words.
+  template <class Holds>
+  std::string not_so(Holds holds) const {
+    std::set<bus::WriterId> so;
+    for (const auto& [writer, one] : heard_)
+      if (holds(one.grant))
+        so.insert(writer);
+    return without(so);
   }
   /// " of 2 robots of this name: give one of them another (--robot)"; empty with one bridge.
   std::string several() const {
-    if (heard_.size() < 2)
+    if (count() < 2)
       return {};
-    return " of " + std::to_string(heard_.size()) + " robots" +
+    return " of " + std::to_string(count()) + " robots" +
            (every_robot_ ? "" : " of this name: give one of them another (--robot)");
+  }
+  /// ": ant, bee"; empty where there are no several robots.
+  std::string names() const {
+    return every_robot_ && count() > 1 ? ": " + joined(roll_.robots()) : "";
   }
 
  private:
@@ -47,13 +85,23 @@ class Bridges {
     v1::Grant grant;
     Clock::time_point came;
   };
+  static double now() {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  }
+  std::set<bus::WriterId> heard() const {
+    std::set<bus::WriterId> writers;
+    for (const auto& [writer, one] : heard_)
+      writers.insert(writer);
+    return writers;
+  }
+
+  bus::Census census_;
   bus::Reader<v1::Grant> grants_;
+  watch::Roll roll_;
+  const std::string robot_;
   const bool every_robot_;
   std::map<bus::WriterId, Heard> heard_;
   std::optional<v1::Grant> newest_;
 };
-
-/// [s] Every bridge on the bus is heard within this time.
-inline constexpr double kAllHeard = 0.6;
 
 }  // namespace saphira::cli

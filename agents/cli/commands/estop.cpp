@@ -24,10 +24,7 @@ constexpr const char* kOtherStop = "; saphira goal stop, which is anybody's, sto
 class Button {
  public:
   explicit Button(const bus::NodeOptions& options)
-      : node_(options),
-        processes_(node_),
-        source_(person("saphira estop")),
-        resets_(node_, bus::topics::kEstopReset, source_) {}
+      : node_(options), processes_(node_), source_(person("saphira estop")) {}
 
   /// Presses until every bridge of this name confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
@@ -38,23 +35,26 @@ class Button {
       write(false);
       node_.wait(kAgain, &stop);
       poll();
-      const bool all = bridges_.all([](const v1::Grant& one) { return one.estopped; });
-      if (all && after == 0.0)
+      const bool all = bridges_.all(is_latched);
+      if (!all)
+        after = 0.0;
+      else if (after == 0.0)
         after = seconds_since(began_);
-      if (all && seconds_since(began_) >= kAllHeard) {
+      if (all && bridges_.complete()) {
         // Latched: the bridge holds the stop without us.
         while (write(true))
           node_.wait(milliseconds(5));
-        print("%s: %s (confirmed by the bridge%s after %.2f s)\n",
+        print("%s: %s (confirmed by the bridge%s after %.2f s)%s\n",
               called(node_.options().robot).c_str(), latched(*bridges_.newest()).c_str(),
-              bridges_.several().c_str(), after);
+              bridges_.several().c_str(), after, bridges_.names().c_str());
         return bus::kExitOk;
       }
       if (seconds_since(began_) < told + kConfirmPatience)
         continue;
       told = seconds_since(began_);
       if (bridges_.count() > 1) {
-        complain("saphira: NOT CONFIRMED by each bridge%s\n", bridges_.several().c_str());
+        complain("saphira: NOT CONFIRMED by each bridge%s; not by that of %s\n",
+                 bridges_.several().c_str(), bridges_.not_so(is_latched).c_str());
         continue;
       }
       complain(
@@ -67,9 +67,9 @@ class Button {
   }
 
   int reset(const bus::Stop& stop) {
-    const std::vector<v1::Answer> ends = resets_.ask_each(
-        bus::request("reset"), kResetLimit, kAllHeard, [this] { return bridges_.count(); }, &stop,
-        [this] { poll(); });
+    bus::RequestClient resets(node_, bus::topics::kEstopReset, source_);  // of operators alone
+    const std::vector<v1::Answer> ends = resets.ask_each(
+        bus::request("reset"), kResetLimit, bridges_.servers(), &stop, [this] { poll(); });
     bool all_said = true;
     for (const v1::Answer& end : ends) {
       if (!bus::well(end.code)) {
@@ -86,12 +86,13 @@ class Button {
       return bus::kExitOk;
     // The next grant shows the release of the stop, and autonomy's wait.
     while (!stop.requested() && seconds_since(began_) < kResetLimit &&
-           (seconds_since(began_) < kAllHeard || !released())) {
+           (!bridges_.complete() || !released())) {
       node_.wait(kAgain, &stop);
       poll();
     }
     if (!released()) {
-      complain("saphira: not reset by each bridge%s\n", bridges_.several().c_str());
+      complain("saphira: not reset by each bridge%s; not by that of %s\n",
+               bridges_.several().c_str(), bridges_.not_so(is_free).c_str());
       return bus::kExitFailed;
     }
     const v1::Grant& grant = *bridges_.newest();
@@ -103,6 +104,9 @@ class Button {
   }
 
  private:
+  static bool is_latched(const v1::Grant& one) { return one.estopped; }
+  static bool is_free(const v1::Grant& one) { return !one.estopped; }
+
   /// False where there is nothing more to say.
   bool write(bool latched) {
     const auto command = pilot_.stop(latched);
@@ -115,9 +119,7 @@ class Button {
     processes_.poll();
     bridges_.poll();
   }
-  bool released() const {
-    return bridges_.all([](const v1::Grant& one) { return !one.estopped; });
-  }
+  bool released() const { return bridges_.all(is_free); }
 
   std::string why_nobody() const { return who_is_there(processes_); }
 
@@ -127,7 +129,6 @@ class Button {
   Bridges bridges_{node_};
   Processes processes_;
   std::string source_;
-  bus::RequestClient resets_;
   teleop::Pilot pilot_{source_};
 };
 
@@ -141,7 +142,7 @@ void add_estop(CLI::App& app, Chosen& chosen) {
   chosen.reach[command] = {"estop"};
   command->require_subcommand(0, 1);
   command->footer(
-      "Exit code 0: a bridge has confirmed it; 1: none has. Who drives by then does not drive on\n"
+      "Exit code 0: each bridge has confirmed it; 1: not. Who drives by then does not drive on\n"
       "after the reset: goals are ended, a person lets the keys go first.");
   command->callback([reset, &chosen] {
     const bool released = reset->parsed();

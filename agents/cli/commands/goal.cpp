@@ -80,6 +80,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::RequestClient stops(node, bus::topics::kDriveStop, person("saphira goal stop"));
   const auto began = Clock::now();
   const std::string robot = called(node_options.robot);
+  std::set<bus::WriterId> answered;
   bool heard = false;
   bool done = false;
   bool refused = false;
@@ -100,25 +101,28 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const auto meanwhile = [&] {
     processes.poll();
     bridges.poll();
-    if ((heard && !done) || seconds_since(began) <= told + kConfirmPatience)
+    if (seconds_since(began) <= told + kConfirmPatience ||
+        (heard && bridges.without(answered).empty()))
       return;
     told = seconds_since(began);
-    const std::string who =
-        heard ? "not every bridge" + bridges.several() : who_is_there(processes);
+    const std::string who = bridges.count() > 0
+                                ? "not by the bridge of " + bridges.without(answered)
+                                : who_is_there(processes);
     complain(
         "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
         "trying; Ctrl-C ends it.\n",
         told, who.c_str());
   };
-  stops.ask_each(
-      bus::request("stop"), std::numeric_limits<double>::infinity(), kAllHeard,
-      [&] { return bridges.count(); }, &stop, meanwhile, hear);
+  stops.ask_each(bus::request("stop"), std::numeric_limits<double>::infinity(),
+                 bridges.servers(&answered), &stop, meanwhile, hear);
   if (stop.requested()) {
-    complain("saphira: ended before the robot was seen at rest\n");
+    const std::string missing = bridges.without(answered);
+    complain("saphira: ended before %s was seen at rest%s\n", robot.c_str(),
+             missing.empty() ? "" : ("; not confirmed by the bridge of " + missing).c_str());
     return bus::kExitFailed;
   }
   if (bridges.count() > 1)
-    print("this was a stop%s\n", bridges.several().c_str());
+    print("this was a stop%s%s\n", bridges.several().c_str(), bridges.names().c_str());
   return refused ? bus::kExitFailed : bus::kExitOk;
 }
 

@@ -161,6 +161,7 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     program.robot = field(data, "robot");
     program.contract = field(data, "contract");
     tell_contract(program);
+    program.program = field(data, "program");
     if (machines_)
       machines_->tell(to_text(prefix), field(data, "hears"));
     const bool joins = program.pid == 0;
@@ -360,6 +361,18 @@ std::vector<ProgramEntry> Discovery::programs() const {
                       .known = std::chrono::duration<double>(Clock::now() - program.found).count(),
                       .endpoints = static_cast<std::size_t>(
                           std::count_if(endpoints_.begin(), endpoints_.end(), of_it))});
+  }
+  return result;
+}
+
+std::vector<Announcer> Discovery::announcers() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Announcer> result;
+  for (const auto& [prefix, program] : programs_) {
+    const Peers::Program id = program_of(prefix);
+    if (!peers_.absent(id) && !(entrance_ && entrance_->is_refused(id)))
+      result.push_back(
+          {id, program.robot, program.program.empty() ? program.name : program.program});
   }
   return result;
 }

@@ -69,6 +69,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
   std::vector<ProgramEntry> programs() const;
+  std::vector<Announcer> announcers() const;
   std::vector<std::string> take_troubles();
   Refusals take_refusals();
   void watch(bool on) { watched_ = on; }
@@ -77,8 +78,9 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   struct Program {
     std::string name;
     std::string host;
-    std::uint32_t pid = 0;  ///< 0: not built on this library
     std::string robot;
+    std::string program;
+    std::uint32_t pid = 0;  ///< 0: not built on this library
     std::string contract;
     int discovered = 0;  ///< times found minus times dropped
     std::chrono::steady_clock::time_point found = std::chrono::steady_clock::now();

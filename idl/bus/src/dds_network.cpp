@@ -185,8 +185,9 @@ void set_up_library() {
 
 fdds::UserDataQosPolicy user_data(const NodeOptions& options, const std::string& heard) {
   const std::string text = "host=" + host_name() + ";pid=" + std::to_string(getpid()) +
-                           ";contract=" SAPHIRA_CONTRACT ";" + Fleet(options).fields() +
-                           (heard.empty() ? "" : "hears=" + heard + ";");
+                           ";contract=" SAPHIRA_CONTRACT ";program=" +
+                           (options.program.empty() ? options.name : options.program) + ";" +
+                           Fleet(options).fields() + (heard.empty() ? "" : "hears=" + heard + ";");
   fdds::UserDataQosPolicy data;
   data.setValue(std::vector<rtps::octet>(text.begin(), text.end()));
   return data;

@@ -49,8 +49,8 @@ eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     std::shared_ptr<Machines> machines, std::shared_ptr<Guard> guard,
     std::shared_ptr<Entrance> entrance, const Fleet& fleet);
 
-/// The user data of a participant: its host, its process, its robot (Fleet), and the machines that
-/// it hears.
+/// The user data of a participant: its host, its process and program, its robot (Fleet), and the
+/// machines that it hears.
 eprosima::fastdds::dds::UserDataQosPolicy user_data(const NodeOptions& options,
                                                     const std::string& heard);
 

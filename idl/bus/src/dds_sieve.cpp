@@ -73,11 +73,11 @@ class Sieve : public transport::ChainingTransport {
       hear(remote);
       return;
     }
-    std::unique_lock<std::mutex> alone;
+    const bool introduces = announces || (descriptor_.guard && is_handshake(buffer, sound));
+    std::unique_lock<std::mutex> alone(introductions(), std::defer_lock);
+    if (introduces)
+      alone.lock();
     if (descriptor_.guard) {
-      const bool introduces = announces || is_handshake(buffer, sound);
-      if (introduces)
-        alone = std::unique_lock(introductions());
       const Entrance::Prefix sender = Entrance::prefix_at(sender_of(buffer));
       if (const std::string member = descriptor_.guard->revoked(sender.data()); !member.empty()) {
         drop(remote, "they use the certificate of " + member + ", which is revoked");
@@ -87,8 +87,10 @@ class Sieve : public transport::ChainingTransport {
         return;
       }
       if (!speaks_for_itself(buffer, sound)) {
-        if (!is_farewell(buffer, sound))  // an honest program says it too
+        if (!is_farewell(buffer, sound))
           drop(remote);
+        else if (opened.sealed && says_own_end(sender, remote))
+          pass(next, farewell(sender.data()), local, remote);
         return;
       }
       const auto fate = fate_of(sender, announces, introduces, opened.sealed, remote);
@@ -124,6 +126,14 @@ class Sieve : public transport::ChainingTransport {
     return announces    ? descriptor_.entrance->announced(sender, address_of(from), now, seal)
            : introduces ? descriptor_.entrance->shakes_hands(sender, now)
                         : descriptor_.entrance->sends(sender, now);
+  }
+
+  /// True where a sealed farewell is of one that was let in. Fast DDS's encrypted farewell gets
+  /// lost where not all keys were exchanged yet, as of a short command, which would then stay for
+  /// its lease. The seal keeps strangers from it, and the address the members of other machines.
+  bool says_own_end(const Entrance::Prefix& sender, const rtps::Locator_t& from) const {
+    return descriptor_.entrance->is_in(sender) &&
+           descriptor_.entrance->address_of(sender) == address_of(from);
   }
 
   /// Counts a dropped packet.
@@ -193,8 +203,10 @@ class Sieve : public transport::ChainingTransport {
 
   /// Fast DDS 2.9 prepares a handshake in variables that the threads of all ports share, without a
   /// lock (SecurityManager::match_builtin_endpoints). Where two programs are found at once, one of
-  /// them is never let in. Programs in one process call each other directly, so one lock serves the
-  /// process.
+  /// them is never let in. On an open bus each thread that finds a program takes one of four spare
+  /// proxies and then waits for the readers of discovery, which wait for a spare proxy: four
+  /// threads at once never end (EDPSimple::assignRemoteEndpoints). Programs in one process call
+  /// each other directly, so one lock serves the process.
   static std::mutex& introductions() {
     static std::mutex mutex;
     return mutex;

@@ -119,6 +119,12 @@ bool Entrance::is_in(const Prefix& prefix) const {
   return known != known_.end() && known->second.in;
 }
 
+bool Entrance::is_refused(const Prefix& prefix) const {
+  const std::scoped_lock lock(mutex_);
+  const auto known = known_.find(prefix);
+  return known != known_.end() && known->second.refused;
+}
+
 void Entrance::limit(const Prefix& prefix, const std::string& robot) {
   const std::scoped_lock lock(mutex_);
   if (const auto known = known_.find(prefix); known != known_.end() && !robot.empty())

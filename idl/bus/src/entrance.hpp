@@ -61,6 +61,7 @@ class Entrance {
   void refuse(const Prefix& prefix);
   void forget(const Prefix& prefix, Time now);
   bool is_in(const Prefix& prefix) const;
+  bool is_refused(const Prefix& prefix) const;
   /// The robot that its permissions are for, as its handshake says [empty: every one].
   void limit(const Prefix& prefix, const std::string& robot);
   std::string robot_of(const Prefix& prefix) const;

@@ -222,7 +222,7 @@ bool is_farewell(const std::uint8_t* message, std::size_t size) {
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
-    if (part.has_data() && part.is_of(kParticipantWriter) && (part.flags() & kKey) != 0)
+    if (part.has_data() && part.is_of(kParticipantWriter) && (part.flags() & kPayload) == 0)
       return true;
   }
   return false;

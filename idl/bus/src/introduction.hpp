@@ -19,7 +19,8 @@ namespace saphira::bus::internal {
 /// handshake with the certificate; it compares neither with the sender.
 bool speaks_for_itself(const std::uint8_t* message, std::size_t size);
 
-/// True where a sound message says that a participant has ended.
+/// True where a sound message says that a participant has ended: it has a key in place of data, or,
+/// as Fast DDS writes it, nothing but inline QoS.
 bool is_farewell(const std::uint8_t* message, std::size_t size);
 
 /// A program as its announcement describes it: its name, and its user data ("key=value;...").

@@ -90,10 +90,11 @@ bool RequestClient::turn(double now) {
       continue;
     Pending& one = found->second;
     if (one.each) {
-      bool& has_ended = one.each->told[sample.info.writer];
-      if (has_ended)
+      one.each->told.insert(sample.info.writer);
+      if (one.each->ended.contains(sample.info.writer))
         continue;
-      has_ended = ended(answer.code);
+      if (ended(answer.code))
+        one.each->ended.insert(sample.info.writer);
     }
     one.heard = true;
     if (one.request.deadline <= 0.0)
@@ -107,8 +108,10 @@ bool RequestClient::turn(double now) {
   }
   for (const WriterId& lost : reader_.take_lost())
     for (auto& [number, one] : pending_)
-      if (one.each)
+      if (one.each) {
         one.each->told.erase(lost);
+        one.each->ended.erase(lost);
+      }
   bool wrote = false;
   if (!pending_.empty()) {
     // A program that was started again has to hear the requests anew.
@@ -131,7 +134,7 @@ bool RequestClient::turn(double now) {
     }
     std::erase_if(pending_, [now](const auto& item) {
       const Pending& one = item.second;
-      return now >= *one.end || (one.each && now >= one.each->from && one.each->ended());
+      return now >= *one.end || (one.each && one.each->over());
     });
   }
   for (const auto& [hear, answer] : heard)
@@ -187,9 +190,8 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
   }
 }
 
-std::vector<v1::Answer> RequestClient::ask_each(v1::Request request, double patience, double settle,
-                                                const std::function<std::size_t()>& servers,
-                                                const Stop* stop,
+std::vector<v1::Answer> RequestClient::ask_each(v1::Request request, double patience,
+                                                Servers servers, const Stop* stop,
                                                 const std::function<void()>& meanwhile, Hear hear) {
   std::vector<v1::Answer> ends;
   const auto listen = [&](const v1::Answer& answer) {
@@ -199,7 +201,7 @@ std::vector<v1::Answer> RequestClient::ask_each(v1::Request request, double pati
       hear(answer);
   };
   Pending& one = begin(std::move(request), listen, patience, patience);
-  one.each = {servers, seconds() + settle, {}};
+  one.each = {std::move(servers), {}, {}};
   const std::uint64_t number = one.request.number;
   const std::shared_ptr<void> forgets(nullptr, [this, number](void*) { pending_.erase(number); });
   while (true) {

@@ -188,6 +188,22 @@ TEST(Announcement, IsNoFarewell) {
   EXPECT_FALSE(is_farewell(reinterpret_cast<const std::uint8_t*>(one.data()), one.size()));
 }
 
+TEST(Announcement, IsAFarewellWithoutDataAndKey) {
+  // As Fast DDS 2.9 writes it: inline QoS alone.
+  const std::string qos = number(0x70, 2) + number(16, 2) + kJohn + std::string("\0\0\1\xc1", 4) +
+                          number(0x71, 2) + number(4, 2) + std::string("\0\0\0\3", 4) +
+                          number(1, 2) + number(0, 2);
+  const std::string end =
+      header(kJohn) +
+      submessage(0x15, 0x03,
+                 number(0, 2) + number(16, 2) + std::string("\0\1\0\xc7", 4) +
+                     std::string("\0\1\0\xc2", 4) + number(0, 4) + number(1, 4) + qos);
+  const auto* const message = reinterpret_cast<const std::uint8_t*>(end.data());
+  EXPECT_TRUE(is_announcement(message, end.size()));
+  EXPECT_TRUE(is_farewell(message, end.size()));
+  EXPECT_FALSE(speaks_for_itself(message, end.size()));
+}
+
 TEST(Announcement, NobodySpeaksForAnother) {
   EXPECT_FALSE(good(header(kJohn) +
                     submessage(0x0c, 0x01, number(0, 4) + std::string("\2\2\1\x0f") + kKate)));

@@ -219,6 +219,31 @@ TEST_F(RequestClients, AnAnswerMayAskForMore) {
   EXPECT_EQ(told.size(), 1U);
 }
 
+RequestClient::Servers servers(
+    std::function<std::size_t()> count, std::function<bool()> complete = [] { return true; }) {
+  return {[count = std::move(count)](const auto& told) { return told.size() >= count(); },
+          std::move(complete)};
+}
+
+TEST_F(RequestClients, OneThatIsOnItsWayIsWaitedFor) {
+  Server one(bus_);
+  std::optional<Server> late;
+  int turns = 0;
+  const auto play = [&] {
+    if (++turns == 1)
+      one.answer(one.taken(), v1::ANSWER_DONE, "stopped");
+    if (turns == 3)
+      late.emplace(bus_);
+    if (late)
+      for (const auto& sample : late->requests.take())
+        late->answer(sample.data, v1::ANSWER_DONE, "late");
+  };
+  const std::vector<v1::Answer> ends = client_.ask_each(
+      request("stop"), 60.0,
+      servers([&] { return late ? 2U : 1U; }, [&] { return late.has_value(); }), nullptr, play);
+  EXPECT_EQ(joined(ends, ", ", &v1::Answer::text), "stopped, late");
+}
+
 TEST_F(RequestClients, EachServerComesToItsEnd) {
   Server one(bus_);
   Server other(bus_);
@@ -243,7 +268,7 @@ TEST_F(RequestClients, EachServerComesToItsEnd) {
     }
   };
   const std::vector<v1::Answer> ends = client_.ask_each(
-      begun, 60.0, 0.0, [&] { return late ? 3U : 2U; }, nullptr, play, into(told_));
+      begun, 60.0, servers([&] { return late ? 3U : 2U; }), nullptr, play, into(told_));
   EXPECT_EQ(joined(ends, ", ", &v1::Answer::text), "stopped, stopped too, late");
   EXPECT_EQ(told_.size(), 4U);
 }
@@ -251,7 +276,7 @@ TEST_F(RequestClients, EachServerComesToItsEnd) {
 TEST_F(RequestClients, AServerThatIsLostIsNotWaitedFor) {
   std::optional<Server> one(bus_);
   Server other(bus_);
-  std::size_t servers = 2;
+  std::size_t count = 2;
   v1::Request asked;
   const auto play = [&] {
     if (one) {
@@ -259,20 +284,19 @@ TEST_F(RequestClients, AServerThatIsLostIsNotWaitedFor) {
       asked = other.taken();
       other.answer(asked, v1::ANSWER_UNDERWAY, "stopping");
       one.reset();
-      servers = 1;
+      count = 1;
     } else {
       other.answer(asked, v1::ANSWER_DONE, "stopped");
     }
   };
   std::vector<v1::Answer> ends;
-  ends = client_.ask_each(
-      request("stop"), 60.0, 0.0, [&] { return servers; }, nullptr, play);
+  ends = client_.ask_each(request("stop"), 60.0, servers([&] { return count; }), nullptr, play);
   EXPECT_EQ(ends.back().text, "stopped");
 }
 
 TEST_F(RequestClients, WithoutServersTheClientEnds) {
   const std::vector<v1::Answer> ends =
-      client_.ask_each(request("stop"), 0.0, 0.0, [] { return 0U; });
+      client_.ask_each(request("stop"), 0.0, servers([] { return 0U; }));
   EXPECT_EQ(only(ends).code, v1::ANSWER_NOBODY);
 }
 

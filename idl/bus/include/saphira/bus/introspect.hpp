@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -112,6 +113,14 @@ struct OtherProgram {
   auto operator<=>(const OtherProgram&) const = default;
 };
 
+/// A program that announced itself. Its endpoints are discovered after it.
+struct Announcer {
+  std::array<std::uint8_t, 12> id{};  ///< the beginning of its WriterIds
+  std::string robot;                  ///< empty where it does not say it
+  std::string program;                ///< such as bridge, whatever its name
+  auto operator<=>(const Announcer&) const = default;
+};
+
 /// Two endpoints of one topic and one robot that do not hear each other.
 struct Mismatch {
   EndpointEntry writer;
@@ -129,6 +138,8 @@ class Census {
 
   /// Sorted by topic, writers first, then program.
   std::vector<EndpointEntry> endpoints() const;
+  /// The programs that this node meets and that are there. Sorted.
+  std::vector<Announcer> announcers() const;
   /// The programs of other robots that announced themselves lately, for a node that notes them.
   /// Sorted.
   std::vector<OtherProgram> others() const;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,17 @@ class RequestClient {
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {}, Hear hear = {});
 
-  /// Asks several programs, such as the bridges of all robots: those that are found within `settle`
-  /// [s], of which there are `servers()` by now. Waits until each has come to its end. `hear` hears
-  /// all answers, each program's end once. Returns the ends; where `patience` [s] is over, or at a
-  /// stop, the last one is this client's.
-  std::vector<v1::Answer> ask_each(v1::Request request, double patience, double settle,
-                                   const std::function<std::size_t()>& servers,
+  /// The programs that a request is for.
+  struct Servers {
+    /// True where none of those that are there is missing among these writers of answers.
+    std::function<bool(const std::set<WriterId>&)> all_of;
+    /// True where no other is on its way.
+    std::function<bool()> complete;
+  };
+  /// Asks several programs, such as the bridges of all robots. Waits until each has come to its
+  /// end. `hear` hears all answers, each program's end once. Returns the ends; where `patience` [s]
+  /// is over, or at a stop, the last one is this client's.
+  std::vector<v1::Answer> ask_each(v1::Request request, double patience, Servers servers,
                                    const Stop* stop = nullptr,
                                    const std::function<void()>& meanwhile = {}, Hear hear = {});
 
@@ -62,14 +68,12 @@ class RequestClient {
  private:
   /// For a request to several programs.
   struct Each {
-    std::function<std::size_t()> servers;
-    double from = 0.0;              ///< [s] then all have been found
-    std::map<WriterId, bool> told;  ///< those that have answered; true: they have ended
+    Servers servers;
+    std::set<WriterId> told;   ///< those that have answered
+    std::set<WriterId> ended;  ///< of these
 
-    bool heard() const { return !told.empty() && told.size() >= servers(); }
-    bool ended() const {
-      return heard() && std::ranges::all_of(told, [](const auto& one) { return one.second; });
-    }
+    bool heard() const { return !told.empty() && servers.all_of(told); }
+    bool over() const { return told.size() == ended.size() && heard() && servers.complete(); }
   };
   /// A request that has not ended.
   struct Pending {

@@ -23,6 +23,7 @@ class Stop {
 };
 
 /// SIGINT, SIGTERM and SIGHUP request this stop, which must outlive the signals. One a process.
+/// Where this stop has not ended 30 s after the last of them, the program is ended hard.
 void stop_on_signals(Stop& stop);
 
 }  // namespace saphira::bus
