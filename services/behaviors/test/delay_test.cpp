@@ -132,8 +132,7 @@ TEST_F(DelayTest, LossAndJitterDoNotMakeTheSpeedJump) {
 TEST_F(DelayTest, TheDelayOfTheCommandsCountsAsWell) {
   Output output = step(1, 0.5);
   EXPECT_NEAR(output.speed, kUnseenWay / 0.5, 1e-9);
-  EXPECT_NE(output.limit_reason.find("commands take effect 0.5 s late"),
-            std::string::npos)
+  EXPECT_NE(output.limit_reason.find("commands take effect 0.5 s late"), std::string::npos)
       << output.limit_reason;
   EXPECT_NEAR(output.input_age, 0.1, 1e-9) << "of what the step used";
   output = step(6, 0.5);

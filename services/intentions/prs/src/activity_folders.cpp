@@ -121,8 +121,8 @@ ActivityFolders::Reload ActivityFolders::reload() {
   for (const Layer& layer : layers_)
     for (const auto& [path, file] : layer.files)
       if (!file.fault.empty() && file.fault != faults[path])
-        reload.errors.push_back(
-            file.fault + (file.taken ? "\nWhat this file gave before stays in use." : ""));
+        reload.errors.push_back(file.fault +
+                                (file.taken ? "\nWhat this file gave before stays in use." : ""));
   for (const auto& [name, origin] : given_)
     if (!wanted.contains(name))
       reload.removed.push_back(name);
