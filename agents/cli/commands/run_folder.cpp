@@ -197,7 +197,7 @@ void RunFolder::tell() {
     text_.clear();
     return;
   }
-  // The lock of an earlier one is not ours.
+  // The text of an earlier lock is not ours.
   fill(lock_, "");
   mkdir(memory_folder(getuid()).c_str(), 0755);
   if (!is_folder_of(getuid(), memory_folder(getuid())))
