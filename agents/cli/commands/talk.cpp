@@ -40,7 +40,7 @@ struct TalkOptions {
 
 std::string user() {
   const char* const name = std::getenv("USER");
-  return name == nullptr || *name == '\0' ? "somebody" : name;
+  return name == nullptr ? "" : name;  // empty: a person whom the robot does not know
 }
 
 /// The reason why a sentence got no answer; empty while one may still come. `silence`: [s] since it

@@ -289,8 +289,10 @@ void DialogueShell::take_utterances() {
     utterance.confidence = sample.data.confidence;
     utterance.time = sample.data.time;
     utterance.id = {sample.data.id.writer, sample.data.id.number};
-    utterance.speaker = first_letters(sample.data.speaker, kLongestName);
     utterance.person = bus::asker_of(sample.info, sample.data.person);
+    const bool unnamed = sample.data.speaker.empty() && utterance.person;
+    utterance.speaker =
+        first_letters(unnamed ? utterance.person->name : sample.data.speaker, kLongestName);
     if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;
     situation_.goals = known_goals();

@@ -110,7 +110,7 @@ void Dialogue::prefer_answer(Grammar::Understood& understood, const Question* qu
   std::vector<Meaning>& meanings = understood.meanings;
   if (understood.answer && meanings.size() == 1 && meanings.front().functor != "stop" &&
       (is_yes_or_no(*understood.answer) || meanings.front().functor == "to_place" ||
-       slot(meanings.front(), "object") == "it")) {
+       meanings.front().functor == "talk" || slot(meanings.front(), "object") == "it")) {
     meanings = {*understood.answer};
     understood.then.clear();
     understood.apart.clear();
@@ -278,6 +278,8 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
   again.time = utterance.time;
   again.program = utterance.program;
   again.person = utterance.person;
+  if (!question.asked)
+    again.corrects = utterance.text;
   Grammar::Understood next;
   const bool bare = understood.meanings.empty();
   const std::vector<Meaning>& heard = bare ? understood.bare : understood.meanings;

@@ -36,7 +36,8 @@ bool is_fact(const Meaning& meaning) {
 
 /// The unit of a motion's distance [m].
 double meters_in(std::string_view unit) {
-  return unit == "ft"               ? 0.3048
+  return unit == "yd"               ? 0.9144
+         : unit == "ft"             ? 0.3048
          : unit == "inches"         ? 0.0254
          : unit == "cm"             ? 0.01
          : unit == "mm"             ? 0.001
@@ -101,7 +102,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
       return true;
     }
     if (distance > kLongestWay) {
-      refuse(utterance, "I go up to " + plain(kLongestWay) + " m at a time", out);
+      refuse(utterance, "I do not: I go " + plain(kLongestWay) + " m at a time at most", out);
       return true;
     }
     if (slot(meaning, "direction") == "back") {
@@ -120,7 +121,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
       return true;
     }
     if (degrees > 180.0) {
-      refuse(utterance, "I turn by up to 180 degrees at a time", out);
+      refuse(utterance, "I do not: I turn by 180 degrees at a time at most", out);
       return true;
     }
     const double angle = degrees / 180.0 * std::numbers::pi;
@@ -479,12 +480,17 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
                           claim_source(utterance)});
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
+  if (!asked && denies && understood.bare.size() == 1 && understood.meanings.empty() &&
+      understood.bare.front().functor == "no" && !tasks_.empty())
+    understood.meanings = {{"stop", {}}};  // "no!"
   const bool stops =
       understood.meanings.size() == 1 && (understood.meanings.front().functor == "stop" ||
                                           understood.meanings.front().functor == kHold);
+  const std::string present = tasks_.going_on(utterance.speaker);
   // A stop too many costs less than one that was missed.
   if (understood.meanings.empty() || (utterance.confidence < kSure && !stops))
-    refuse(utterance, "what?", out);
+    refuse(utterance,
+           present.empty() ? "what?" : "what?" + present.substr(1) + "; say stop to end it", out);
   else if (utterance.confidence < kCertain && !stops)
     ask_again(std::move(understood), utterance, out);
   else
@@ -506,7 +512,7 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
              !understood.polite) {
     refuse(utterance, "is that a question? Without the question mark I take it as a fact", out);
   } else if (!name_speaker(understood, utterance.speaker)) {
-    refuse(utterance, "I do not know who you are", out);
+    refuse(utterance, "I do not know who you are: say your name in place of my or I", out);
   } else if (!understood.apart.empty()) {
     ask_for_order(std::move(understood), utterance, out);
   } else {

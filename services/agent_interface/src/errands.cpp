@@ -8,9 +8,8 @@
 namespace saphira::agent_interface {
 namespace {
 
-constexpr double kLongestWait = 3600.0;  // [s]
-constexpr double kLongHold = 36000.0;    // [s] of the activity, or until it is told to go on
-constexpr double kWaitThere = 600.0;     // [s] until the robot is free for others
+constexpr double kLongestWait = 36000.0;  // [s] of the activity, or until it is told to go on
+constexpr double kWaitThere = 600.0;      // [s] until the robot is free for others
 
 /// The last part of an utterance that has these words, as its speaker wrote it.
 std::string part_as_said(const std::string& words, std::string text) {
@@ -66,18 +65,18 @@ void Dialogue::change_pace(bool slower, const Utterance& utterance, const Situat
   }
 }
 
-/// The next time that the clock shows that. Without "am" or "pm" an hour up to twelve is of either
-/// half of the day.
+/// The next time that the clock shows that. Without "am" or "pm" an hour up to eleven is of either
+/// half of the day, but not where it is written as "09:00".
 void Dialogue::wait_until(const Meaning& meaning, const Utterance& utterance, Outputs& out) {
   constexpr std::int64_t kMinute = 60;
   constexpr std::int64_t kHour = 60 * kMinute;
-  constexpr std::int64_t kLongest = 10 * kHour;  // of the activity
+  const std::string written = slot(meaning, "hour");
   const double hour = number_of(meaning, "hour");
   const double minute = number_of(meaning, "minute");
   const std::string half = slot(meaning, "half");
-  const bool twelve = hour >= 1.0 && hour <= 12.0;
+  const bool either = half.empty() && hour >= 1.0 && hour < 12.0 && written.front() != '0';
   if (hour != std::floor(hour) || minute != std::floor(minute) || hour >= 24.0 || minute >= 60.0 ||
-      (!half.empty() && !twelve)) {
+      (!half.empty() && (hour < 1.0 || hour > 12.0))) {
     refuse(utterance, "I know no such time of the day", out);
     return;
   }
@@ -88,15 +87,18 @@ void Dialogue::wait_until(const Meaning& meaning, const Utterance& utterance, Ou
   const auto now = static_cast<std::int64_t>(utterance.time);
   const auto clock = [&](const char* part) { return std::stoll(local_text(now, part)); };
   const std::int64_t shown = clock("%H") * kHour + clock("%M") * kMinute + clock("%S");
-  const std::int64_t turn = (half.empty() && twelve ? 12 : 24) * kHour;
+  const std::int64_t turn = (either ? 12 : 24) * kHour;
   const auto whole = static_cast<std::int64_t>(hour);
   const std::int64_t wanted =
       (half.empty() ? whole : whole % 12 + (half == "pm" ? 12 : 0)) * kHour +
       static_cast<std::int64_t>(minute) * kMinute;
   const std::int64_t seconds = (wanted - shown + 2 * turn) % turn;
   const std::string time = local_text(now + seconds, "%H:%M");
-  if (seconds > kLongest)
-    refuse(utterance, "I wait for up to ten hours, and not until " + time, out);
+  if (static_cast<double>(seconds) > kLongestWait)
+    refuse(utterance,
+           "I do not: " + time + " is in " + std::to_string((seconds + kHour - 1) / kHour) +
+               " hours, and I wait for ten hours at most",
+           out);
   else
     want(with(meaning, "hour", time), utterance, "pause",
          {number("seconds", static_cast<double>(seconds))});
@@ -152,8 +154,10 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     const std::string name = slot(meaning, "unit");
     const double unit = name.starts_with("hour") ? 3600.0 : name.starts_with("minute") ? 60.0 : 1.0;
     const double seconds = number_of(meaning, "time") * unit;
-    if (seconds <= 0.0 || seconds > kLongestWait)
-      refuse(utterance, "I wait for up to an hour", out);
+    if (seconds <= 0.0)
+      refuse(utterance, "that is no time to wait", out);
+    else if (seconds > kLongestWait)
+      refuse(utterance, "I do not: I wait for ten hours at most", out);
     else
       want(meaning, utterance, "pause", {number("seconds", seconds)});
   } else if (functor == "until") {
@@ -168,7 +172,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
           return goal.state == v1::GOAL_UNDERWAY && !goal.asker.empty();
         });
     if (tasks_.task() != nullptr && !moves_for_others)
-      want(meaning, utterance, "pause", {number("seconds", kLongHold)});
+      want(meaning, utterance, "pause", {number("seconds", kLongestWait)});
     else
       want({"stop", {}}, utterance, "stop", {});
   } else if (functor == "go_on") {

@@ -23,8 +23,8 @@ constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "mete
                                                                      {"pm", "pm"}}};
 
 /// Short forms, and the words in the grammars.
-constexpr std::array<std::pair<const char*, const char*>, 3> kShort{
-    {{"pls", "please"}, {"plz", "please"}, {"deg", "degrees"}}};
+constexpr std::array<std::pair<const char*, const char*>, 4> kShort{
+    {{"pls", "please"}, {"plz", "please"}, {"thx", "thanks"}, {"deg", "degrees"}}};
 
 bool is_number(const std::string& word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
@@ -341,6 +341,13 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     said.erase(said.begin(), std::find_if(said.begin(), said.end(), is_keyword) + 1);
     if (!said.empty() && said.front() == kComma)
       said.erase(said.begin());
+    for (std::vector<std::string>* const some : {&words, &said})
+      if (const auto verb = std::find_if(some->begin(), some->end(),
+                                         [](const std::string& word) { return word != "please"; });
+          verb != some->end())
+        for (const std::string& right : verbs_)
+          if (is_misspelled(*verb, right))
+            *verb = right;
   } else if (urgent.meaning) {
     return {true, false, false, {*urgent.meaning}};  // "stop, Flakey!"
   } else if (words.size() > 1 && is_keyword(words.back())) {
@@ -662,7 +669,7 @@ std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
     int common = 0;
     for (const auto& [name, value] : rule.meaning.slots)
       if (const auto slot = meaning.slots.find(name); slot != meaning.slots.end())
-        common += !value.empty() && slot->second == value ? 2 : 1;
+        common += !value.empty() && slot->second == value ? 3 : 2;
     if (best == nullptr || common > most) {
       best = &rule;
       most = common;

@@ -80,6 +80,7 @@ class Grammar::Reader {
   std::vector<std::string>* words_named(std::string_view first) {
     return first == "no-names"     ? &grammar_.no_names_
            : first == "greetings"  ? &grammar_.greetings_
+           : first == "verbs"      ? &grammar_.verbs_
            : first == "alarms"     ? &grammar_.alarms_
            : first == "not-behind" ? &grammar_.not_behind_
            : first == "passed"     ? &grammar_.passed_
@@ -90,7 +91,7 @@ class Grammar::Reader {
   void header() {
     const std::size_t from = at_;
     const std::string first = word(
-        "keyword, greetings, names, no-names, alarms, not-behind, passed, not-after, steps, "
+        "keyword, greetings, verbs, names, no-names, alarms, not-behind, passed, not-after, steps, "
         "polite, "
         "list, typed, reply, urgent, alone, later, timed or a functor");
     if (std::vector<std::string>* const some = words_named(first)) {

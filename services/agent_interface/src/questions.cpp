@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "words.hpp"
@@ -114,8 +115,10 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
     say(utterance, doing(situation), true, out);
   } else if (functor == "why") {
     say(utterance, why(situation), true, out);
-  } else if (functor == "what_can_you_do") {
-    say(utterance, grammar_.paraphrase(meaning), true, out);
+  } else if (functor == "what_can_you_do" || functor == "talk") {
+    const auto seconds = static_cast<std::int64_t>(utterance.time);
+    const std::string time = seconds > 0 ? local_text(seconds, "%H:%M") : "unknown to me";
+    say(utterance, grammar_.paraphrase(with(meaning, "time", time)), true, out);
   } else if (functor == "what_do_you_carry") {
     std::string all;
     for (const auto& [object, to] : situation.carried)
@@ -238,7 +241,9 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
     std::string newest;
     for (std::size_t i = 0; i < std::min(known.size(), kFewFacts); ++i)
       newest += "; " + as_told(known[known.size() - 1 - i]);
-    say(utterance, known.empty() ? "nobody has told me anything" : "I know " + counts + newest,
+    say(utterance,
+        (known.empty() ? "nobody has told me anything" : "I know " + counts + newest) +
+            (situation.is_slow ? "; I go slowly until I am told to go faster" : ""),
         true, out);
   } else if (functor == "is_there" || functor == "who_is_in") {
     const bool people = functor == "who_is_in";

@@ -104,9 +104,13 @@ Tasks::Outputs Tasks::left(const ProgramId& program) {
 
 Tasks::Outputs Tasks::later(double time, std::vector<Task> steps, const Utterance& order) {
   Outputs out;
+  Later one{time, order, std::move(steps)};
+  std::erase_if(later_, [&](const Later& known) {  // the order is said once more
+    return same_person(known.order.speaker, order.speaker) && whole_text(known) == whole_text(one);
+  });
   const bool many = later_.size() >= kMostLater;
   if (!many)
-    later_.push_back({time, order, std::move(steps)});
+    later_.push_back(std::move(one));
   out.said.push_back({order.id, order.speaker,
                       many ? "I have too much to do later already" : whole_text(later_.back()),
                       many, many});
@@ -143,7 +147,7 @@ Tasks::Outputs Tasks::deny(const Task& task, const Utterance& utterance) const {
   const std::string ends = named_task(task, utterance.speaker);
   out.denied = {.act = v1::AUDIT_REFUSED,
                 .who = named(named_person(utterance.speaker) + " (by words)", utterance.person),
-                .text = "to end " + ends + ": " + quoted(utterance.text)};
+                .text = "to end " + ends + ": " + quoted(words_said(utterance))};
   out.said.push_back({utterance.id, utterance.speaker,
                       "that would end " + ends + ": " + task.goal.person->name +
                           " or an operator may do that, and everybody may stop me",
@@ -203,8 +207,8 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
         ": " + out.why, [](const Later&) { return true; }, out);
   }
   if (!brief)
-    drop(false, utterance.speaker, utterance.text, out);
-  drop(true, utterance.speaker, utterance.text, out);
+    drop(false, utterance.speaker, words_said(utterance), out);
+  drop(true, utterance.speaker, words_said(utterance), out);
   if (!stop)
     out.said.push_back(announced);
   begin(std::move(first), out);
@@ -237,7 +241,10 @@ Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
 }
 
 std::string Tasks::going_on(const std::string& listener) const {
-  const Task* const other = task();
+  const Task* other = task();
+  for (const Task& one : open_)
+    if (other == nullptr && !is_stop(one))
+      other = &one;
   return other == nullptr ? std::string() : ": I go on with " + named_task(*other, listener);
 }
 

@@ -23,8 +23,8 @@ std::string squeezed(std::string word) {
   return word;
 }
 
-/// True for a stretched or repeated word ("stopstop"), one with two letters swapped, and a long one
-/// with a letter left out.
+}  // namespace
+
 bool is_misspelled(const std::string& word, const std::string& right) {
   std::string given = squeezed(word);
   const std::string meant = squeezed(right);
@@ -44,8 +44,6 @@ bool is_misspelled(const std::string& word, const std::string& right) {
       return true;
   return false;
 }
-
-}  // namespace
 
 class Grammar::UrgentFinder {
  public:

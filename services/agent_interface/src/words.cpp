@@ -35,6 +35,10 @@ std::string named_person(const std::string& name) {
   return name.empty() ? "somebody" : name;
 }
 
+const std::string& words_said(const Utterance& utterance) {
+  return utterance.corrects.empty() ? utterance.text : utterance.corrects;
+}
+
 std::string named_task(const Task& task, const std::string& listener) {
   return (task.name.empty() ? "that" : task.name) +
          (same_person(task.goal.speaker, listener) ? ""
@@ -79,7 +83,7 @@ std::string source_of(const Advice& advice) {
 }
 
 std::string claim_source(const Utterance& utterance) {
-  return named_person(utterance.speaker) + " said \"" + utterance.text + "\"";
+  return named_person(utterance.speaker) + " said \"" + words_said(utterance) + "\"";
 }
 
 }  // namespace saphira::agent_interface

@@ -37,6 +37,10 @@ inline constexpr const char* kMark = ".";
 /// The words of a text, with the marks between them.
 std::vector<std::string> words_and_marks_of(std::string_view text);
 
+/// True for a stretched or repeated word ("stopstop"), one with two letters swapped, and a long one
+/// with a letter left out.
+bool is_misspelled(const std::string& word, const std::string& right);
+
 /// Of a word: a letter, a digit, a hyphen, or a byte of a letter in UTF-8.
 bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.
@@ -52,6 +56,8 @@ Meaning with(Meaning meaning, const std::string& name, const std::string& value)
 std::string time_text(double unix_time);
 /// "somebody" for an empty name.
 std::string named_person(const std::string& name);
+/// The words that were said, also where they corrected a sentence before.
+const std::string& words_said(const Utterance& utterance);
 /// "the mail for alice"; for the listener's own task without that name.
 std::string named_task(const Task& task, const std::string& listener);
 bool same_person(const std::string& a, const std::string& b);

@@ -510,6 +510,12 @@ TEST_F(DialogueOnTheBus, AGoalByWordsNamesThePersonAtADoor) {
   EXPECT_EQ(asked.data.person.role, "agent");
 }
 
+TEST_F(DialogueOnTheBus, ASpeakerWithoutANameHasThatOfTheMember) {
+  heard.set_sender({"karen", "operator"});
+  say("Flakey, turn left", "");
+  EXPECT_EQ(test::only(goals.take()).data.requester, "karen (by words)");
+}
+
 TEST_F(DialogueOnTheBus, ARequestOfTheRobotBecomesAGoalOfItsAsker) {
   bus::Node hub(test::memory_options("facilitator"), memory);
   FacilitatorShell facilitator(hub, 0.0);

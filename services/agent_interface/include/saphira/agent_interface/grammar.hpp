@@ -160,6 +160,7 @@ class Grammar {
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
   std::vector<std::string> greetings_;  ///< words that may stand before the keyword
+  std::vector<std::string> verbs_;      ///< orders that may be misspelled
   std::vector<std::string> no_names_;   ///< words that no name contains
   /// Words behind which an urgent order is none ("never stop"), before which they are looked for
   /// ("never ever stop"), and after which no order of the sentence is urgent ("if").

@@ -31,6 +31,7 @@ struct Utterance {
   double confidence = 1.0;  ///< [0..1] of the recognizer
   double time = 0.0;        ///< [s] since 1970; 0: unknown
   ProgramId program{};      ///< the task ends with this program
+  std::string corrects{};   ///< the words themselves, where they put the text in place of another
   Checked person{};         ///< who said it, as checked; the speaker's name is not
 };
 
