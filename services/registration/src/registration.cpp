@@ -20,7 +20,6 @@ constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther
 constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are stored
 constexpr double kUnconfirmed = 0.5;         // the highest confidence of a given pose
-constexpr double kUnfit = 0.8;               // the same where the newest readings do not fit
 constexpr double kBesideTheMap = 1.0;        // [m] a pose farther outside is not on it
 constexpr std::uint64_t kNoFrame = 0;        // no frame of a robot has this number
 
@@ -106,7 +105,6 @@ class Registration::Self {
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
   void find_environment();
-  bool in_a_room() const;
   double explained_by_furniture() const;
   void report();
 
@@ -134,8 +132,6 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
   now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
-  now_.search.own_recent = settings_.fits;
-  now_.fits = true;
   now_.state = v1::REGISTRATION_TRACKING;
   now_.confirmed = confidence > kUnconfirmed;
   now_.doubted = now_.carried = now_.other_map = false;
@@ -490,13 +486,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
-  // The evidence of openings stays: walls are alike in other corridors. Many silent walls mean that
-  // the robot was elsewhere, perhaps by more than the width of the cloud.
-  if (now_.search.against >= settings_.doubts) {
-    now_.confirmed = false;
-    now_.carried = true;
-    now_.search.own_openings = 0;
-  }
+  // The evidence of openings stays: walls are alike in other corridors.
   now_.search.against = now_.search.strange = 0.0;
   now_.done.clear();
   now_.leads = true;
@@ -604,7 +594,6 @@ const Output& Registration::Self::step(const Inputs& inputs) {
       now_.state = v1::REGISTRATION_TRACKING;
     if (now_.state == v1::REGISTRATION_TRACKING)
       now_.doubted = false;
-    now_.fits = now_.search.own_recent >= (now_.fits ? settings_.unfit : settings_.fits);
     // Walls are alike elsewhere: the pose of a robot that was carried needs an opening, too.
     now_.confirmed = now_.confirmed ||
                      (now_.search.own_score >= settings_.sure &&
@@ -676,9 +665,6 @@ void Registration::Self::report() {
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
                  between(search_.contradiction() - explained_by_furniture(), settings_.refuted,
                          settings_.doubts));
-    const bool unfit = !now_.fits && !in_a_room();
-    if (unfit)
-      now_.output.confidence = std::min(now_.output.confidence, kUnfit);
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =
@@ -689,20 +675,17 @@ void Registration::Self::report() {
               "door, or tell it where it is (saphira map place)"
         : !now_.confirmed ? "as it was told or remembered: too little was heard yet to confirm it"
         : now_.output.confidence < 0.5        ? "the readings hardly fit the map"
-        : unfit                               ? "the newest readings hardly fit the map"
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
                                               : "matched with the map";
   }
 }
 
-bool Registration::Self::in_a_room() const {
-  const auto& region = now_.output.environment;
-  return region && map_.features[*region].type == PointType::office;
-}
-
 /// Maps leave furniture out: in a room, a share of the evidence of its walls says nothing.
 double Registration::Self::explained_by_furniture() const {
-  return in_a_room() ? std::min(settings_.furniture, search_.contradiction_of_walls()) : 0.0;
+  const auto& region = now_.output.environment;
+  return region && map_.features[*region].type == PointType::office
+             ? std::min(settings_.furniture, search_.contradiction_of_walls())
+             : 0.0;
 }
 
 Registration::Registration(Settings settings, maps::Map map, std::optional<Pose> pose_in_map)

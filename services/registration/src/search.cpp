@@ -82,7 +82,6 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
-  now_.own_recent *= std::exp(-way / settings_.recent);
   now_.openings *= std::exp(-way / settings_.openings_memory);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
@@ -91,7 +90,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
       if (now_.own)
-        score_own(weigh(*now_.own, reading));
+        now_.own_score += weigh(*now_.own, reading);
       now_.history.push_back(reading);
     }
     while (now_.history.size() > settings_.history)
@@ -110,7 +109,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       PoseFilter copy = *own;
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
       const double score = worth(*percept, result, own->pose());
-      score_own(score);
+      now_.own_score += score;
       if (opening && score > 0.0) {
         ++now_.own_openings;
         support_own(score, 1.0);
@@ -125,11 +124,6 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       propose(*percept);
   }
   thin_out();
-}
-
-void Search::score_own(double score) {
-  now_.own_score += score;
-  now_.own_recent += score;
 }
 
 void Search::support_own(double evidence, double share) {

@@ -178,16 +178,6 @@ class Straight {
       seen.clear();
     } while (start_.x + way_ < x);
   }
-  /// The same, with things at this range in all other directions.
-  void past_things(double range, double x) {
-    do {
-      way_ += 0.01;
-      std::vector<lps::SonarReading> readings = around(range);
-      for (const int side : {kSonars / 4, 3 * kSonars / 4})
-        readings[static_cast<std::size_t>(side)].range = 1.0;
-      step({}, readings);
-    } while (start_.x + way_ < x);
-  }
   /// It stands, and hears something at this range all around.
   void stand(double range, int cycles) {
     for (int i = 0; i < cycles; ++i)
@@ -283,23 +273,6 @@ TEST(Registration, WhoWasCarriedIsSureAgainByAnOpening) {
   robot.see_door(1, 12.0);
   EXPECT_EQ(registration.output().confidence, 1.0);
   EXPECT_FALSE(registration.save().carried);
-}
-
-/// The good readings of the way before do not outweigh the newest ones.
-TEST(Registration, NewestReadingsThatDoNotFitMakeItUnsure) {
-  const Pose start{4.0, 0.0, 0.0};
-  Registration registration(
-      settings(), maps::parse_map("CORRIDOR (1) 15000, 0, 0, 30000, 2000\n", "test"), start);
-  Straight robot(registration, start);
-  robot.to(10.0);
-  EXPECT_EQ(registration.output().confidence, 1.0);
-  robot.past_things(0.5, 10.8);
-  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
-  EXPECT_GT(registration.state().search.own_score, 50.0);
-  EXPECT_EQ(registration.output().confidence, 0.8) << "no goal succeeds";
-  EXPECT_EQ(registration.output().reason, "the newest readings hardly fit the map");
-  robot.to(13.0);
-  EXPECT_EQ(registration.output().confidence, 1.0);
 }
 
 TEST(Registration, OnAMapWithoutOpeningsWallsMakeItSureAgain) {

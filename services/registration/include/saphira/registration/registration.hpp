@@ -58,10 +58,6 @@ struct Settings {
   double sure = 15.0;        ///< from this on they fit; a tracking robot has 20 to 50
   double lost = -6.0;        ///< below this the pose does not hold...
   double again_sure = 20.0;  ///< ...until it has fitted this well again
-  // The score of the newest way alone: the good readings of an earlier place fade at once. A robot
-  // that tracks has 4 to 7.
-  double unfit = 1.5;  ///< below this the pose is unsure...
-  double fits = 3.5;   ///< ...until the newest readings have fitted this well again
   // Evidence against the present pose: a robot that was carried must doubt before the good readings
   // of its old place have faded.
   double doubts = 3.0;    ///< up to this one the pose holds...

@@ -31,7 +31,6 @@ struct SearchSettings {
   std::size_t history = 60;      ///< readings that test a new hypothesis
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
-  double recent = 0.7;           ///< [m] the same for the newest part of the present place's score
   double agrees = 0.2;           ///< the limit of one reading's evidence for the present place...
   double alike = 0.1;    ///< ...and its share against silent walls: others are alike elsewhere
   double strange = 3.0;  ///< the limit of the evidence of echoes that a person or box explains
@@ -65,9 +64,8 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;   ///< of the present place
-  double own_recent = 0.0;  ///< the part of that of the newest way
-  int own_openings = 0;     ///< seen openings that the present place has
+  double own_score = 0.0;  ///< of the present place
+  int own_openings = 0;    ///< seen openings that the present place has
   // Evidence against the present place, never below 0 (Page's test, 1954), so that the good
   // readings of a place before do not count.
   double against = 0.0;   ///< walls that are not heard
@@ -130,7 +128,6 @@ class Search {
   bool leads(const Pose& pose, double score) const;
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
-  void score_own(double score);
   void support_own(double evidence, double share);
   double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;
   void thin_out();

@@ -52,7 +52,6 @@ struct RegistrationState {
   std::optional<PoseFilter> filter;
   /// The readings have fitted the pose since it was given.
   bool confirmed = false;
-  bool fits = true;  ///< the newest readings do
   /// Dead reckoning has begun anew: the robot may have been carried, and the pose is a guess until
   /// the readings have fitted it.
   bool doubted = false;
