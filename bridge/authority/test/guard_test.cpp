@@ -26,7 +26,7 @@ TEST(Guard, StopsBeforeWhatIsAhead) {
   EXPECT_EQ(out.action, GuardAction::stop);
   EXPECT_EQ(out.velocity, 0.0);
   EXPECT_DOUBLE_EQ(out.rotation_velocity, 0.4) << "turning is the way out";
-  EXPECT_EQ(out.reason, "something 0.23 m ahead; it lets go beyond 0.25 m");
+  EXPECT_EQ(out.reason, "something 0.23 m ahead; it lets go beyond 0.26 m");
   EXPECT_EQ(out.obstacle, Vec2(0.45, 0.0));
 }
 
@@ -54,7 +54,7 @@ TEST(Guard, IsBlindBehindSoItIsSlowThere) {
   EXPECT_DOUBLE_EQ(out.velocity, -0.3);
   out = guard({}, body, {{-0.40, 0.0}}, -0.3, 0.0);
   EXPECT_EQ(out.action, GuardAction::stop);
-  EXPECT_EQ(out.reason, "something 0.18 m behind; it lets go beyond 0.25 m");
+  EXPECT_EQ(out.reason, "something 0.18 m behind; it lets go beyond 0.26 m");
 }
 
 TEST(Guard, IsSlowWhereNoSonarLooksAhead) {

@@ -87,7 +87,7 @@ TEST(Connection, ALineThatEchoesIsNoRobot) {
     if (out.empty())
       out = c.tick(now = c.due());
   }
-  EXPECT_NE(c.waiting_for().find("sends back what it is sent"), std::string::npos);
+  EXPECT_NE(c.waiting_for().find("the line echoes every byte"), std::string::npos);
   // A robot is connected to the line.
   c.begin(now);
   c.packet(Bytes{0}, now);

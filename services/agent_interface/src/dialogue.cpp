@@ -102,7 +102,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
       return true;
     }
     if (distance > kLongestWay) {
-      refuse(utterance, "I do not: I go " + plain(kLongestWay) + " m at a time at most", out);
+      refuse(utterance, "no: I go " + plain(kLongestWay) + " m at a time at most", out);
       return true;
     }
     if (slot(meaning, "direction") == "back") {
@@ -121,7 +121,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
       return true;
     }
     if (degrees > 180.0) {
-      refuse(utterance, "I do not: I turn by 180 degrees at a time at most", out);
+      refuse(utterance, "no: I turn by 180 degrees at a time at most", out);
       return true;
     }
     const double angle = degrees / 180.0 * std::numbers::pi;

@@ -96,7 +96,7 @@ void Dialogue::wait_until(const Meaning& meaning, const Utterance& utterance, Ou
   const std::string time = local_text(now + seconds, "%H:%M");
   if (static_cast<double>(seconds) > kLongestWait)
     refuse(utterance,
-           "I do not: " + time + " is in " + std::to_string((seconds + kHour - 1) / kHour) +
+           "no: " + time + " is in " + std::to_string((seconds + kHour - 1) / kHour) +
                " hours, and I wait for ten hours at most",
            out);
   else
@@ -157,7 +157,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
     if (seconds <= 0.0)
       refuse(utterance, "that is no time to wait", out);
     else if (seconds > kLongestWait)
-      refuse(utterance, "I do not: I wait for ten hours at most", out);
+      refuse(utterance, "no: I wait for ten hours at most", out);
     else
       want(meaning, utterance, "pause", {number("seconds", seconds)});
   } else if (functor == "until") {

@@ -118,7 +118,8 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
   } else if (functor == "what_can_you_do" || functor == "talk") {
     const auto seconds = static_cast<std::int64_t>(utterance.time);
     const std::string time = seconds > 0 ? local_text(seconds, "%H:%M") : "unknown to me";
-    say(utterance, grammar_.paraphrase(with(meaning, "time", time)), true, out);
+    const bool clock = slot(meaning, "what") == "clock";
+    say(utterance, grammar_.paraphrase(clock ? with(meaning, "time", time) : meaning), true, out);
   } else if (functor == "what_do_you_carry") {
     std::string all;
     for (const auto& [object, to] : situation.carried)

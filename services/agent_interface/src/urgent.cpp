@@ -35,7 +35,7 @@ bool is_misspelled(const std::string& word, const std::string& right) {
     return true;
   for (std::size_t i = 0; i + 1 < given.size(); ++i) {
     std::swap(given[i], given[i + 1]);
-    if (given == meant)
+    if (squeezed(given) == meant)
       return true;
     std::swap(given[i], given[i + 1]);
   }

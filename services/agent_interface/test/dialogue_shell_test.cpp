@@ -119,7 +119,7 @@ TEST_F(DialogueOnTheBus, NoTaskIsTakenWhileABridgeHoldsTheEmergencyStop) {
 TEST_F(DialogueOnTheBus, ARefusalIsMarked) {
   EXPECT_EQ(say("Flakey, go upstairs"), "what?");
   EXPECT_TRUE(refused);
-  EXPECT_EQ(say("Flakey, go forward 200 meters"), "I go up to 20 m at a time");
+  EXPECT_EQ(say("Flakey, go forward 200 meters"), "no: I go 20 m at a time at most");
   EXPECT_TRUE(refused);
   EXPECT_EQ(say("Flakey, turn left"), "I turn 90 degrees to the left");
   EXPECT_FALSE(refused);

@@ -342,7 +342,7 @@ class Hall : public test::LinePlayer {
 };
 
 TEST(RegistrationCore, DoesAsWritten) {
-  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 28);
+  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 29);
 }
 
 TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {
