@@ -222,10 +222,13 @@ void Archive::item(T& value) {
       item(restores_ ? *(shared = std::make_shared<Element>()) : *shared);
     value = std::move(shared);
   } else if constexpr (requires { value.has_value(); }) {
-    if (present(value.has_value()))
-      item(value ? *value : value.emplace());
-    else
+    if (!present(value.has_value())) {
       value.reset();
+    } else {
+      if (!value)  // no emplace(): clang does not know of default values in nested structs
+        value = typename T::value_type{};
+      item(*value);
+    }
   } else if constexpr (std::is_aggregate_v<T> && !requires { value.data(); }) {
     members(value);
   } else {
