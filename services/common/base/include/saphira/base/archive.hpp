@@ -225,8 +225,13 @@ void Archive::item(T& value) {
     if (!present(value.has_value())) {
       value.reset();
     } else {
-      if (!value)  // no emplace(): clang does not know of default values in nested structs
+      // To clang, a nested struct with default values has no default constructor here.
+      if constexpr (requires { value.emplace(); }) {
+        if (!value)
+          value.emplace();
+      } else if (!value) {
         value = typename T::value_type{};
+      }
       item(*value);
     }
   } else if constexpr (std::is_aggregate_v<T> && !requires { value.data(); }) {
