@@ -69,8 +69,8 @@ make() {
   SAPHIRA_PEERS=$laptop_peers on $laptop "$bin/saphira" echo robot/state >"$run/heard" 2>"$run/heard.log" &
 }
 robot_peers() { [ "$SAPHIRA_PROFILE" = wan ] && echo 10.78.0.2; }
-start_bridge() {
-  SAPHIRA_PEERS=$(robot_peers) on $robot "$bin/saphira-bridge" --link "$run/robot" --robots "$config/robots" \
+start_bridge() {  # not by on(): $! would be the shell between, and a kill would miss the bridge
+  SAPHIRA_PEERS=$(robot_peers) nsenter --net=/run/netns/$robot "$bin/saphira-bridge" --link "$run/robot" --robots "$config/robots" \
     --state "$run/state" >>"$run/bridge.log" 2>&1 &
   bridge=$!
 }

@@ -444,7 +444,7 @@ double Core::due(double now) const {
     until = std::min(until, flush_at_);
   if (!settings_.lockstep && grant_.role != Role::none)
     until = std::min(until, expires_at_);
-  if (connection_.state() != State::closed && !connection_.open())
+  if (may_connect(now) && connection_.state() != State::closed && !connection_.open())
     until = std::min(until, connection_.due());
   if (parser_.pending())
     until = std::min(until, last_bytes_ + kPacketPause);
