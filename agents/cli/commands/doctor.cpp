@@ -11,7 +11,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <random>
 #include <utility>
 
 #include "commands.hpp"
@@ -61,7 +60,7 @@ class Ear {
     group.sin_family = AF_INET;
     group.sin_port = htons(port_);
     inet_pton(AF_INET, kGroup, &group.sin_addr);
-    const std::string probe = "saphira doctor " + std::to_string(std::random_device{}());
+    const std::string probe = "saphira doctor " + std::to_string(getpid());
     if (!hears_ || sendto(socket_, probe.data(), probe.size(), 0,
                           reinterpret_cast<const sockaddr*>(&group), sizeof group) < 0)
       return false;
@@ -188,7 +187,7 @@ std::vector<watch::OtherDomain> other_domains(const bus::NodeOptions& options) {
   return all;
 }
 
-/// True where more time would change what is found.
+/// True while further findings may come with more time.
 bool is_open(const bus::ProgramEntry& program) {
   return !program.let_in || program.endpoints == 0;
 }

@@ -138,6 +138,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.done.clear();
   now_.cloud.clear();
   now_.leads = false;
+  now_.standing.forget();
   forget_looks();
 }
 

@@ -275,6 +275,19 @@ TEST(Registration, WhoWasCarriedIsSureAgainByAnOpening) {
   EXPECT_FALSE(registration.save().carried);
 }
 
+/// As after the building of a map: the ranges of the place before are no evidence.
+TEST(Registration, ThePlaceOfARobotThatIsPlacedIsNotComparedWithTheOldOne) {
+  const Pose start{4.0, 0.0, 0.0};
+  const maps::Map map = maps::parse_map("CORRIDOR (1) 15000, 0, 0, 30000, 2000\n", "test");
+  Registration registration(settings(), map, start);
+  Straight robot(registration, start);
+  robot.to(6.0);
+  robot.stand(1.0, 6);
+  registration.restore(registration.save());
+  robot.stand(2.0, 5);
+  EXPECT_EQ(registration.output().state, v1::REGISTRATION_TRACKING);
+}
+
 TEST(Registration, OnAMapWithoutOpeningsWallsMakeItSureAgain) {
   const Pose start{4.0, 0.0, 0.0};
   Registration registration(

@@ -82,7 +82,7 @@ class ParticleCloud {
     double drift = 0.0;
     double log_weight = 0.0;
   };
-  /// Moves the particles by what the robot has moved since the last time.
+  /// Applies the motion since the last call to the particles.
   void settle();
   /// Nearly normal, with a deviation of 1; never beyond 3.5.
   double noise();
