@@ -1,6 +1,8 @@
 #include "saphira/bus/cycle.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <limits>
 #include <set>
 #include <utility>
@@ -40,6 +42,8 @@ constexpr double kDeafAgain = 60.0;
 constexpr std::size_t kMostTold = 1000;
 // Descriptions that are kept: of this bridge's last epochs, and of other bridges of this robot.
 constexpr std::size_t kDescriptions = 64;
+// [s] for the status of a program of the same name that has announced itself.
+constexpr double kNamesake = 2.0;
 constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
 
 double since(Clock::time_point time) {
@@ -108,14 +112,27 @@ struct Cycle::Impl {
   }
 
   // Another program of this name serves this robot. Two such programs would contradict each other.
-  bool yields() {
-    const auto other = neighbours.serves_instead(status);
-    if (!other)
+  void yield() {
+    if (const auto other = neighbours.serves_instead(status)) {
+      status.state = v1::SERVICE_WAITING;
+      status.reason = *other;
+      yielding = true;
+      yielded = true;
+    } else {
+      yielding = awaits_namesake();
+    }
+  }
+
+  // Announcements come before the samples of any topic, so a program that begins knows of another
+  // one of its name before it hears goals or the robot.
+  bool awaits_namesake() const {
+    if (began_stepping || since(made) > kNamesake)
       return false;
-    status.state = v1::SERVICE_WAITING;
-    status.reason = *other;
-    joining = true;
-    return true;
+    const auto announced = internal::transport_of(node).announcers();
+    return std::ranges::any_of(announced, [&](const Announcer& other) {
+      return other.robot == node.options().robot && other.program == status.name &&
+             !neighbours.knows(other.id);
+    });
   }
 
   // Fast DDS may leave one side of a match deaf for ever. If others hear the robot, begin anew.
@@ -390,7 +407,10 @@ struct Cycle::Impl {
   bool fresh = true;                   // the next step is the first of its epoch
   bool quiet = false;                  // no step was due for so long that the status says it
   bool yielding = false;               // to another program of this name
-  int behind = 0;                      // states in a row that were behind the newest one
+  bool yielded = false;                // at some time
+  bool began_stepping = false;
+  const Clock::time_point made = Clock::now();
+  int behind = 0;  // states in a row that were behind the newest one
   std::uint64_t behind_cycle = 0;
   std::set<std::string> told;
   std::string degraded;
@@ -423,8 +443,8 @@ std::optional<Step> Cycle::poll() {
     self.node.rouse();
   self.drain_statuses();
   self.drain();
-  self.yielding = self.yields();
-  if (self.yielding)
+  self.yield();
+  if (self.yielding || self.yielded)
     return {};
   auto step = self.lockstep ? self.due_lockstep() : self.due_live();
   if (!step)
@@ -432,6 +452,7 @@ std::optional<Step> Cycle::poll() {
   step->description = &self.robot_now;
   step->new_epoch = std::exchange(self.fresh, false);
   self.joining = false;
+  self.began_stepping = true;
   self.last = step->robot.stamp.cycle;
   self.note_step(*step);
   self.began = Clock::now();
@@ -447,7 +468,7 @@ bool Cycle::idle(const std::function<void()>& idle) {
     self.note_deafness();
   }
   self.publish_status();
-  if (idle)
+  if (idle && !self.yielding)
     idle();
   self.looked = Clock::now();
   return true;
@@ -460,6 +481,8 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
   while (!stop.requested()) {
     if (auto step = poll())
       return step;
+    if (superseded())
+      return {};
     if (self.lockstep && !self.yielding && self.node.spin(kStepSpin))
       self.node.clear_wake();
     else if (this->idle(idle))
@@ -470,6 +493,10 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
           &stop);
   }
   return {};
+}
+
+bool Cycle::superseded() const {
+  return impl_->yielded && !impl_->yielding;
 }
 
 void Cycle::done() {

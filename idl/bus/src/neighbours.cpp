@@ -49,6 +49,11 @@ std::optional<std::string> Neighbours::serves_instead(const v1::ServiceStatus& o
   return std::nullopt;
 }
 
+bool Neighbours::knows(const Peers::Program& program) const {
+  return std::ranges::any_of(
+      all_, [&](const auto& item) { return Peers::program_of(item.first) == program; });
+}
+
 bool Neighbours::stepping_since(Time since, Time now) const {
   return std::any_of(all_.begin(), all_.end(), [&](const auto& item) {
     const Neighbour& neighbour = item.second;

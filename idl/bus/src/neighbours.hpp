@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "peers.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/topics.hpp"
 
@@ -25,6 +26,8 @@ class Neighbours {
 
   /// The program that serves in place of `own`, in words.
   std::optional<std::string> serves_instead(const v1::ServiceStatus& own) const;
+  /// True where a status of that program is known.
+  bool knows(const Peers::Program& program) const;
   /// True where another program has been stepping without a break since that time, which shows that
   /// its robot is heard.
   bool stepping_since(Time since, Time now) const;

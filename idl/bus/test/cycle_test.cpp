@@ -261,8 +261,16 @@ TEST_P(Cycles, OfTwoServicesOfOneNameOneWaitsUntilTheOtherIsGone) {
     }));
     EXPECT_FALSE(steps(*other));
   }
+  EXPECT_FALSE(other->superseded());
   cycle_.reset();
   service_.reset();
+  EXPECT_TRUE(eventually(*bridge_, [&] {
+    send(1, ++number);
+    EXPECT_FALSE(steps(*other)) << "its state is older than that of the one that is gone";
+    return other->superseded();
+  }));
+  other.reset();
+  other = std::make_unique<Cycle>(*second);
   EXPECT_TRUE(eventually(*bridge_, [&] {
     send(1, ++number);
     return steps(*other);

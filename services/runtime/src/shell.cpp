@@ -10,26 +10,38 @@ constexpr std::chrono::seconds kIdleFilePoll{1};
 
 }  // namespace
 
-Shell::Shell(bus::Node& node, const Make& make)
-    : node_(node),
-      cycle_(node),
-      ports_(node, cycle_),
-      service_(make(ports_)),
-      processes_(node, service_->processes(),
-                 [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
-                   return service_->ask(name, action, cycles);
-                 }) {}
+Shell::Life::Life(bus::Node& node, const Make& make)
+    : cycle(node),
+      ports(node, cycle),
+      service(make(ports)),
+      processes(node, service->processes(),
+                [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
+                  return service->ask(name, action, cycles);
+                }) {}
+
+Shell::Shell(bus::Node& node, Make make) : node_(node), make_(std::move(make)) {
+  begin();
+}
+
+void Shell::begin() {
+  life_.reset();  // its endpoints are gone before the new ones are there
+  life_ = std::make_unique<Life>(node_, make_);
+  odom_.reset();
+}
 
 bool Shell::step(const bus::Stop& stop) {
-  const auto step = cycle_.next(stop, [this] { between(); });
-  if (!step)
-    return false;
-  step_now(*step);
-  return true;
+  const auto step = life_->cycle.next(stop, [this] { between(); });
+  if (step)
+    step_now(*step);
+  else if (!stop.requested())
+    begin();
+  return !stop.requested() || step;
 }
 
 bool Shell::advance() {
-  const auto step = cycle_.poll();
+  if (life_->cycle.superseded())
+    begin();
+  const auto step = life_->cycle.poll();
   if (!step)
     return false;
   step_now(*step);
@@ -37,34 +49,34 @@ bool Shell::advance() {
 }
 
 void Shell::idle() {
-  cycle_.idle([this] { between(); });
+  life_->cycle.idle([this] { between(); });
 }
 
 void Shell::step_now(const bus::Step& step) {
   stepped_ = Clock::now();
-  processes_.step(cycle_.stamp());
+  life_->processes.step(life_->cycle.stamp());
   if (step.new_epoch)
     odom_.reset();
   const std::uint64_t odom = step.robot.odom;
-  service_->step({cycle_.stamp(), step.robot, *step.description, step.new_epoch,
-                  odom_.has_value() && *odom_ != odom});
+  life_->service->step({life_->cycle.stamp(), step.robot, *step.description, step.new_epoch,
+                        odom_.has_value() && *odom_ != odom});
   odom_ = odom;
   // After the robot has its command.
   if (++steps_ % (node_.options().lockstep ? kFilePollInLockstep : kFilePollPeriod) == 0)
     check_files();
-  cycle_.done();
+  life_->cycle.done();
 }
 
 void Shell::between() {
-  processes_.idle();
-  service_->between(std::chrono::duration<double>(Clock::now() - stepped_).count());
+  life_->processes.idle();
+  life_->service->between(std::chrono::duration<double>(Clock::now() - stepped_).count());
   if (Clock::now() - checked_files_ >= kIdleFilePoll)
     check_files();
 }
 
 void Shell::check_files() {
   checked_files_ = Clock::now();
-  service_->check_files();
+  life_->service->check_files();
 }
 
 }  // namespace saphira::runtime

@@ -9,6 +9,7 @@ namespace {
 
 /// The inputs that a service saw.
 struct Seen {
+  int made = 0;
   std::vector<v1::Stamp> steps;
   std::vector<bool> new_robot;
   std::vector<bool> new_frame;
@@ -27,6 +28,7 @@ class Repeater final : public Service {
         messages_(ports.events(bus::topics::kMessages)),
         behaviors_(ports.each_cycle(bus::topics::kBehaviors)),
         beliefs_(ports.changes(bus::topics::kBeliefs)) {
+    ++seen.made;
     ports.gate([&seen](const v1::RobotState&) { return seen.missing; });
   }
   ProcessTable& processes() override { return table_; }
@@ -119,6 +121,29 @@ TEST_P(RuntimeTest, AGateHoldsLockstepAlone) {
   EXPECT_EQ(shell_.advance(), !GetParam());
   seen_.missing.clear();
   EXPECT_EQ(shell_.advance(), GetParam());
+  EXPECT_EQ(seen_.steps.size(), 1U);
+}
+
+TEST_P(RuntimeTest, WaitsWhileAnotherOfItsNameServesAndIsMadeAnewThen) {
+  Seen seen;
+  std::optional<bus::Node> node(std::in_place, test::memory_options("repeater", GetParam()),
+                                memory_);
+  std::optional<Shell> other(std::in_place, *node,
+                             [&](Ports& ports) { return std::make_unique<Repeater>(ports, seen); });
+  state();
+  ASSERT_TRUE(other->advance());
+  EXPECT_FALSE(shell_.advance());
+  shell_.idle();
+  EXPECT_EQ(seen_.between, 0);
+  EXPECT_EQ(node_.status().state, v1::SERVICE_WAITING);
+  other.reset();
+  node.reset();
+  EXPECT_FALSE(shell_.advance());
+  EXPECT_EQ(seen_.made, 1);
+  const bool knows_the_state = shell_.advance();  // in lockstep it is kept
+  EXPECT_EQ(seen_.made, 2);
+  state();
+  EXPECT_TRUE(knows_the_state || shell_.advance());
   EXPECT_EQ(seen_.steps.size(), 1U);
 }
 

@@ -137,11 +137,15 @@ class Cycle {
   /// The step that is due now, or nothing. Never waits.
   std::optional<Step> poll();
   /// Where no step is due: publishes the node's status (the missing input, counters) and calls
-  /// `idle`, at most every 5 ms. False where it was too early to do so.
+  /// `idle`, at most every 5 ms. False where it was too early to do so. `idle` is not called while
+  /// another program of this name serves the robot.
   bool idle(const std::function<void()>& idle = {});
-  /// Waits for the next step; nothing when stop was requested. Calls idle() meanwhile: on each wake
-  /// without a due step, and at least twice a second.
+  /// Waits for the next step; nothing when stop was requested, or superseded(). Calls idle()
+  /// meanwhile: on each wake without a due step, and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
+  /// True when another program of this name has served the robot and is gone: the state of this
+  /// one is older, and no step follows. A new Cycle takes its place.
+  bool superseded() const;
   /// Ends the step that next() began and counts its time.
   void done();
 

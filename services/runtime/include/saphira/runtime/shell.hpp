@@ -65,7 +65,9 @@ class Service {
 };
 
 /// The one shell of all cyclic services: it chooses the next cycle and its inputs (bus::Cycle),
-/// keeps epochs and odom frames, the processes, the status and the log.
+/// keeps epochs and odom frames, the processes, the status and the log. While another program of
+/// its name serves the robot, it waits; then it makes the service anew, since files and state on
+/// the bus are the other one's by then.
 ///
 /// To be made and used in one thread. It steps by itself (run), or takes turns with others in a
 /// thread (advance, idle).
@@ -74,7 +76,7 @@ class Shell {
   using Make = std::function<std::unique_ptr<Service>(Ports&)>;
 
   /// Throws the service's exceptions for its options and files.
-  Shell(bus::Node& node, const Make& make);
+  Shell(bus::Node& node, Make make);
   Shell(const Shell&) = delete;
   Shell& operator=(const Shell&) = delete;
 
@@ -90,21 +92,29 @@ class Shell {
   /// Without a due step: requests, files and status. At most every 5 ms.
   void idle();
 
-  const Ports& ports() const { return ports_; }
-  Service& service() { return *service_; }
+  const Ports& ports() const { return life_->ports; }
+  Service& service() { return *life_->service; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  struct Life {
+    Life(bus::Node& node, const Make& make);
+
+    bus::Cycle cycle;
+    Ports ports;
+    std::unique_ptr<Service> service;
+    ProcessesOnBus processes;
+  };
+
+  void begin();
   void step_now(const bus::Step& step);
   void between();
   void check_files();
 
   bus::Node& node_;
-  bus::Cycle cycle_;
-  Ports ports_;
-  std::unique_ptr<Service> service_;
-  ProcessesOnBus processes_;
+  Make make_;
+  std::unique_ptr<Life> life_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step of this epoch
   std::uint64_t steps_ = 0;
   Clock::time_point stepped_ = Clock::now();
