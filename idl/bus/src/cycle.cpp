@@ -1,6 +1,5 @@
 #include "saphira/bus/cycle.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <limits>
@@ -9,8 +8,9 @@
 
 #include "epochs.hpp"
 #include "internal.hpp"
-#include "neighbours.hpp"
+#include "peers.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/bus/namesakes.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -42,8 +42,6 @@ constexpr double kDeafAgain = 60.0;
 constexpr std::size_t kMostTold = 1000;
 // Descriptions that are kept: of this bridge's last epochs, and of other bridges of this robot.
 constexpr std::size_t kDescriptions = 64;
-// [s] for the status of a program of the same name that has announced itself.
-constexpr double kNamesake = 2.0;
 constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
 
 double since(Clock::time_point time) {
@@ -59,7 +57,7 @@ struct Cycle::Impl {
         lockstep(the_node.options().lockstep),
         robot(the_node.reader(topics::kRobotState)),
         descriptions(the_node.reader(topics::kRobotDescription)),
-        statuses(the_node.reader(topics::kStatus)) {}
+        namesakes(the_node) {}
 
   void refuse(const char* topic, const v1::Stamp& stamp, const std::string& why) {
     ++status.refused_samples;
@@ -100,45 +98,10 @@ struct Cycle::Impl {
     node.info("epoch " + std::to_string(epochs.epoch()));
   }
 
-  void drain_statuses() {
-    for (const WriterId& gone : statuses.take_lost())
-      neighbours.lose(gone);
-    statuses.visit([&](const v1::ServiceStatus& other, const SampleInfo& info) {
-      if (info.disposed)
-        neighbours.lose(info.writer);
-      else if (other.instance != status.instance)
-        neighbours.update(info.writer, other, Clock::now());
-    });
-  }
-
-  // Another program of this name serves this robot. Two such programs would contradict each other.
-  void yield() {
-    if (const auto other = neighbours.serves_instead(status)) {
-      status.state = v1::SERVICE_WAITING;
-      status.reason = *other;
-      yielding = true;
-      yielded = true;
-    } else {
-      yielding = awaits_namesake();
-    }
-  }
-
-  // Announcements come before the samples of any topic, so a program that begins knows of another
-  // one of its name before it hears goals or the robot.
-  bool awaits_namesake() const {
-    if (began_stepping || since(made) > kNamesake)
-      return false;
-    const auto announced = internal::transport_of(node).announcers();
-    return std::ranges::any_of(announced, [&](const Announcer& other) {
-      return other.robot == node.options().robot && other.program == status.name &&
-             !neighbours.knows(other.id);
-    });
-  }
-
   // Fast DDS may leave one side of a match deaf for ever. If others hear the robot, begin anew.
   void note_deafness() {
     if (!pending.empty() || since(waiting_since) < kDeaf || since(renewed) < kDeafAgain ||
-        !neighbours.stepping_since(waiting_since, Clock::now()))
+        !namesakes.stepping_since(waiting_since))
       return;
     renewed = Clock::now();
     node.warn("hears no robot/state, though others of this robot do: begins anew on the bus");
@@ -392,8 +355,7 @@ struct Cycle::Impl {
   const bool lockstep;
   Reader<v1::RobotState> robot;
   Reader<v1::RobotDescription> descriptions;
-  Reader<v1::ServiceStatus> statuses;
-  internal::Neighbours neighbours;
+  Namesakes namesakes;
   Epochs epochs;
   std::deque<Arrived> arrived;  // whose bridge is not known yet
   std::vector<std::unique_ptr<detail::InputSlot>> inputs;
@@ -406,11 +368,7 @@ struct Cycle::Impl {
   bool joining = true;                 // no step of this epoch yet
   bool fresh = true;                   // the next step is the first of its epoch
   bool quiet = false;                  // no step was due for so long that the status says it
-  bool yielding = false;               // to another program of this name
-  bool yielded = false;                // at some time
-  bool began_stepping = false;
-  const Clock::time_point made = Clock::now();
-  int behind = 0;  // states in a row that were behind the newest one
+  int behind = 0;                      // states in a row that were behind the newest one
   std::uint64_t behind_cycle = 0;
   std::set<std::string> told;
   std::string degraded;
@@ -441,10 +399,9 @@ std::optional<Step> Cycle::poll() {
   Impl& self = *impl_;
   if (self.lockstep)
     self.node.rouse();
-  self.drain_statuses();
+  self.namesakes.poll();
   self.drain();
-  self.yield();
-  if (self.yielding || self.yielded)
+  if (self.namesakes.waits() || superseded())
     return {};
   auto step = self.lockstep ? self.due_lockstep() : self.due_live();
   if (!step)
@@ -452,7 +409,7 @@ std::optional<Step> Cycle::poll() {
   step->description = &self.robot_now;
   step->new_epoch = std::exchange(self.fresh, false);
   self.joining = false;
-  self.began_stepping = true;
+  self.namesakes.act();
   self.last = step->robot.stamp.cycle;
   self.note_step(*step);
   self.began = Clock::now();
@@ -463,12 +420,12 @@ bool Cycle::idle(const std::function<void()>& idle) {
   Impl& self = *impl_;
   if (Clock::now() - self.looked < kStepLook)
     return false;
-  if (!self.yielding) {
+  if (!self.namesakes.waits()) {
     self.note_waiting();
     self.note_deafness();
   }
   self.publish_status();
-  if (idle && !self.yielding)
+  if (idle && !self.namesakes.waits())
     idle();
   self.looked = Clock::now();
   return true;
@@ -483,7 +440,7 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       return step;
     if (superseded())
       return {};
-    if (self.lockstep && !self.yielding && self.node.spin(kStepSpin))
+    if (self.lockstep && !self.namesakes.waits() && self.node.spin(kStepSpin))
       self.node.clear_wake();
     else if (this->idle(idle))
       self.node.wait(kIdle, &stop);
@@ -496,7 +453,7 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
 }
 
 bool Cycle::superseded() const {
-  return impl_->yielded && !impl_->yielding;
+  return impl_->namesakes.superseded();
 }
 
 void Cycle::done() {

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         dialogue.grammar = find_file(config_folder() + "/grammars", dialogue.grammar, ".grammar");
         bus::Node node(options);
-        agent_interface::DialogueShell(node, dialogue).run(stop);
+        while (!stop.requested())
+          agent_interface::DialogueShell(node, dialogue).run(stop);
         return bus::kExitOk;
       });
 }

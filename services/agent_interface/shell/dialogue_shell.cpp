@@ -17,6 +17,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/bus/namesakes.hpp"
 #include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
@@ -49,6 +50,11 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
     if (!trouble.empty())
       node_.warn(trouble);
   }
+}
+
+void DialogueShell::begin() {
+  node_.status().state = v1::SERVICE_DEGRADED;
+  node_.status().reason = "no map has come: places have no names yet";
   for (const Claimed& one : dialogue_.claims())
     claim(one);
   for (const LastingGoal& goal : dialogue_.lasting()) {
@@ -304,6 +310,8 @@ void DialogueShell::take_utterances() {
 
 void DialogueShell::step(double seconds, double now) {
   situation_.now = now;
+  if (!std::exchange(begun_, true))
+    begin();
   if (const auto maps = maps_.take(); !maps.empty()) {
     situation_.map = maps::from_bus(maps.back());
     node_.status().state = v1::SERVICE_RUNNING;
@@ -334,15 +342,17 @@ void DialogueShell::run(const bus::Stop& stop) {
   const auto seconds = [] {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   };
-  node_.status().state = v1::SERVICE_WAITING;
-  node_.status().reason = "no map has come: places have no names yet";
+  bus::Namesakes others(node_);
   double looked = seconds();
-  while (!stop.requested()) {
+  while (!stop.requested() && !others.superseded()) {
     node_.wait(kPollPeriod, &stop);
-    step(seconds(), unix_time());
-    if (seconds() - looked > 1.0) {
-      reload();
-      looked = seconds();
+    if (!others.poll() && !others.superseded()) {
+      others.act();
+      step(seconds(), unix_time());
+      if (seconds() - looked > 1.0) {
+        reload();
+        looked = seconds();
+      }
     }
     node_.publish_status();
   }

@@ -31,9 +31,11 @@ class DialogueShell {
   void step(double seconds = 0.0, double now = 0.0);
   /// Reads the grammar again where its file has changed; a file with an error is not accepted.
   void reload();
+  /// Until stop is requested, or another dialogue of this robot has served (bus::Namesakes).
   void run(const bus::Stop& stop);
 
  private:
+  void begin();
   void announce();
   void take_goals(double seconds);
   void adopt(std::uint64_t tag, const v1::GoalId& id);
@@ -48,6 +50,7 @@ class DialogueShell {
   void remember();
   void publish();
 
+  bool begun_ = false;
   bus::Node& node_;
   DialogueOptions options_;
   WatchedFolder folder_;

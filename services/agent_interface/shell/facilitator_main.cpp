@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         bus::Node node(options);
         using agent_interface::FacilitatorShell;
-        FacilitatorShell(node, FacilitatorShell::seconds(), memory).run(stop);
+        while (!stop.requested())
+          FacilitatorShell(node, FacilitatorShell::seconds(), memory).run(stop);
         return bus::kExitOk;
       });
 }

@@ -8,6 +8,7 @@
 #include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/namesakes.hpp"
 #include "saphira/bus/sender.hpp"
 
 namespace saphira::agent_interface {
@@ -181,15 +182,20 @@ double FacilitatorShell::seconds() {
 
 void FacilitatorShell::run(const bus::Stop& stop) {
   constexpr double kStatusTime = 0.45;  // [s] twice a second
-  node_.status().state = v1::SERVICE_RUNNING;
-  while (!stop.requested()) {
+  bus::Namesakes others(node_);
+  while (!stop.requested() && !others.superseded()) {
     const double now = seconds();
     const double due = facilitator_.due().value_or(now + kStatusTime);
     const double wait = std::clamp(due - now, 0.001, kStatusTime);
     if (awaits_)
       node_.spin(kSpin);
     node_.wait(std::chrono::milliseconds(static_cast<int>(1000.0 * wait) + 1), &stop);
-    step(seconds());
+    if (!others.poll() && !others.superseded()) {
+      others.act();
+      node_.status().state = v1::SERVICE_RUNNING;
+      node_.status().reason.clear();
+      step(seconds());
+    }
     node_.publish_status();
   }
 }

@@ -19,6 +19,7 @@ class FacilitatorShell {
 
   /// Takes the inputs and sends the outputs. now: [s] of a clock that never goes back.
   void step(double now);
+  /// Until stop is requested, or another facilitator of this robot has served (bus::Namesakes).
   void run(const bus::Stop& stop);
   /// [s] The clock of run().
   static double seconds();

@@ -1,0 +1,77 @@
+#include "saphira/bus/namesakes.hpp"
+
+#include <algorithm>
+
+#include "internal.hpp"
+#include "neighbours.hpp"
+
+namespace saphira::bus {
+namespace {
+
+// For the status of a program of the same name that has announced itself.
+constexpr std::chrono::seconds kAwaited{2};
+
+}  // namespace
+
+struct Namesakes::Impl {
+  explicit Impl(Node& the_node) : node(the_node), statuses(the_node.reader(topics::kStatus)) {}
+
+  bool may_serve() const {
+    if (acted || Clock::now() - made > kAwaited)
+      return false;
+    const auto announced = internal::transport_of(node).announcers();
+    return std::ranges::any_of(announced, [&](const Announcer& other) {
+      return other.robot == node.options().robot && other.program == node.status().name &&
+             !neighbours.knows(other.id);
+    });
+  }
+
+  Node& node;
+  Reader<v1::ServiceStatus> statuses;
+  internal::Neighbours neighbours;
+  const Clock::time_point made = Clock::now();
+  bool acted = false;
+  bool waits = false;
+  bool served = false;  // another one, at some time
+};
+
+Namesakes::Namesakes(Node& node) : impl_(std::make_unique<Impl>(node)) {}
+Namesakes::~Namesakes() = default;
+
+bool Namesakes::poll() {
+  Impl& self = *impl_;
+  v1::ServiceStatus& own = self.node.status();
+  for (const WriterId& gone : self.statuses.take_lost())
+    self.neighbours.lose(gone);
+  self.statuses.visit([&](const v1::ServiceStatus& other, const SampleInfo& info) {
+    if (info.disposed)
+      self.neighbours.lose(info.writer);
+    else if (other.instance != own.instance)
+      self.neighbours.update(info.writer, other, Clock::now());
+  });
+  if (const auto other = self.neighbours.serves_instead(own)) {
+    own.state = v1::SERVICE_WAITING;
+    own.reason = *other;
+    self.served = true;
+    return self.waits = true;
+  }
+  return self.waits = self.may_serve();
+}
+
+bool Namesakes::waits() const {
+  return impl_->waits;
+}
+
+void Namesakes::act() {
+  impl_->acted = true;
+}
+
+bool Namesakes::superseded() const {
+  return impl_->served && !impl_->waits;
+}
+
+bool Namesakes::stepping_since(Clock::time_point since) const {
+  return impl_->neighbours.stepping_since(since, Clock::now());
+}
+
+}  // namespace saphira::bus
