@@ -15,6 +15,7 @@
 #include "recorder.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
+#include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
@@ -91,10 +92,8 @@ int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& fil
     std::filesystem::remove(file);
     return bus::kExitFailed;
   }
-  if (!writer.close()) {
-    std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
-    return bus::kExitFailed;
-  }
+  if (!writer.close())
+    fail_to_be(file, "written");
   std::printf("%s\n", file.c_str());
   return bus::kExitOk;
 }
@@ -104,12 +103,8 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
   const auto topics = recorder::recorded_topics(options.topics);
   const Held held(file, options.overwrite);
   std::ofstream out(file, std::ios::binary);
-  const auto failed = [&](int code) {
-    std::fprintf(stderr, "saphira: %s\n", cannot_be(file, "written").c_str());
-    return code;
-  };
   if (!out)
-    return failed(bus::kExitUsage);
+    fail_to_be(file, "written");
   bus::Node node(node_options);
   node.status().state = v1::SERVICE_RUNNING;
   if (options.last_minute)
@@ -131,12 +126,12 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
     if (Clock::now() - flushed >= kFlush) {
       flushed = Clock::now();
       if (!writer.flush())
-        return failed(bus::kExitFailed);
+        fail_to_be(file, "written");
     }
   }
   recorder.poll(unix_nanoseconds());
   if (!writer.close())
-    return failed(bus::kExitFailed);
+    fail_to_be(file, "written");
   const std::chrono::duration<double> lasted = Clock::now() - began;
   std::fprintf(stderr, "%llu samples in %.0f s, %.1f MB\n",
                static_cast<unsigned long long>(writer.samples()), lasted.count(),

@@ -31,8 +31,14 @@ void Roll::update(const std::vector<bus::Announcer>& announced,
     changed_ = now;
   programs_ = std::move(programs);
   bridges_.clear();
-  for (const Id& id : bridges)
+  bridgeless_.clear();
+  for (const bus::Announcer& one : announced)
+    if (one.program == "behaviors" && !one.robot.empty())
+      bridgeless_.insert(one.robot);
+  for (const Id& id : bridges) {
     bridges_[id] = robots[id].empty() ? "a robot without a name" : robots[id];
+    bridgeless_.erase(bridges_[id]);
+  }
 }
 
 std::vector<std::string> Roll::robots() const {
@@ -43,7 +49,7 @@ std::vector<std::string> Roll::without(const std::set<bus::WriterId>& writers) c
   std::set<Id> ids;
   for (const bus::WriterId& writer : writers)
     ids.insert(id_of(writer));
-  std::vector<std::string> robots;
+  std::vector<std::string> robots(bridgeless_.begin(), bridgeless_.end());
   for (const auto& [id, robot] : bridges_)
     if (!ids.contains(id))
       robots.push_back(robot);

@@ -53,6 +53,18 @@ TEST(Roll, NamesTheRobotsThatAreMissing) {
   EXPECT_EQ(roll.count(), 2U);
 }
 
+TEST(Roll, MissesARobotWhoseBridgeIsNotFound) {
+  Roll roll(1.0);
+  std::vector<bus::Announcer> all{announcer(1, "ant"), announcer(2, "bee", "behaviors")};
+  roll.update(all, {}, 0.0);
+  EXPECT_EQ(roll.without({writer_of(1)}), Names{"bee"});
+  EXPECT_EQ(roll.count(), 2U);
+  all.push_back(announcer(3, "bee"));
+  roll.update(all, {}, 0.1);
+  EXPECT_EQ(roll.without({writer_of(1), writer_of(3)}), Names{});
+  EXPECT_EQ(roll.count(), 2U);
+}
+
 TEST(Roll, HasBridgesThatAreHeardAlone) {
   Roll roll(1.0);
   roll.update({announcer(1, "ant", "")}, {writer_of(1), writer_of(7)}, 0.0);

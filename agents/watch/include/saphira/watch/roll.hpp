@@ -11,7 +11,8 @@
 namespace saphira::watch {
 
 /// The bridges that an order to all of them has to reach, by the announcements of programs. A
-/// bridge is announced before it is heard. Pure.
+/// bridge is announced before it is heard. A robot whose behaviors are there without its bridge
+/// counts as well: its bridge hangs, or is cut off. Pure.
 class Roll {
  public:
   /// quiet: [s] without a new program after which all are known.
@@ -25,7 +26,7 @@ class Roll {
     return changed_ && (now - *changed_ >= quiet_ || now - *began_ >= kMost);
   }
 
-  std::size_t count() const { return bridges_.size(); }
+  std::size_t count() const { return bridges_.size() + bridgeless_.size(); }
   /// The robots of all bridges, and of those that none of these writers is of. Sorted.
   std::vector<std::string> robots() const;
   std::vector<std::string> without(const std::set<bus::WriterId>& writers) const;
@@ -38,6 +39,7 @@ class Roll {
 
   const double quiet_;
   std::map<Id, std::string> bridges_;  ///< their robots
+  std::set<std::string> bridgeless_;   ///< robots
   std::set<Id> programs_;
   std::optional<double> began_;
   std::optional<double> changed_;  ///< [s] then the newest program came
