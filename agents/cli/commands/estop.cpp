@@ -1,4 +1,5 @@
 // The emergency stop, and its reset.
+#include <optional>
 #include <stdexcept>
 
 #include "bridges.hpp"
@@ -31,6 +32,7 @@ class Button {
     double told = 0.0;
     double after = 0.0;
     pilot_.press(source_);
+    stops_.emplace(node_.writer(bus::topics::kDriveEstop));  // a member may have the reset alone
     while (!stop.requested()) {
       write(false);
       node_.wait(kAgain, &stop);
@@ -49,7 +51,7 @@ class Button {
               bridges_.several().c_str(), after, bridges_.names().c_str());
         return bus::kExitOk;
       }
-      if (seconds_since(began_) < told + kConfirmPatience)
+      if (all || seconds_since(began_) < told + kConfirmPatience)
         continue;
       told = seconds_since(began_);
       if (bridges_.count() > 1) {
@@ -111,7 +113,7 @@ class Button {
   bool write(bool latched) {
     const auto command = pilot_.stop(latched);
     if (command)
-      stops_.write(*command);
+      stops_->write(*command);
     return command.has_value();
   }
 
@@ -125,7 +127,7 @@ class Button {
 
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
-  bus::Writer<v1::MotorCommand> stops_ = node_.writer(bus::topics::kDriveEstop);
+  std::optional<bus::Writer<v1::MotorCommand>> stops_;
   Bridges bridges_{node_};
   Processes processes_;
   std::string source_;
