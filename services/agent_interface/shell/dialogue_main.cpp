@@ -17,8 +17,9 @@ int main(int argc, char** argv) {
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         dialogue.grammar = find_file(config_folder() + "/grammars", dialogue.grammar, ".grammar");
         bus::Node node(options);
-        while (!stop.requested())
+        do
           agent_interface::DialogueShell(node, dialogue).run(stop);
+        while (!stop.requested());
         return bus::kExitOk;
       });
 }

@@ -14,8 +14,9 @@ int main(int argc, char** argv) {
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         bus::Node node(options);
         using agent_interface::FacilitatorShell;
-        while (!stop.requested())
+        do
           FacilitatorShell(node, FacilitatorShell::seconds(), memory).run(stop);
+        while (!stop.requested());
         return bus::kExitOk;
       });
 }

@@ -180,6 +180,7 @@ TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
   EXPECT_EQ(claimed.data.value, "(\"john\")");
   EXPECT_EQ(claimed.data.source, "Alice said \"Flakey, John usually knows where Karen is\"");
   start();
+  dialogue->step();
   const auto known = knows.take_newest();
   ASSERT_TRUE(known);
   ASSERT_EQ(known->known.size(), 1u);
