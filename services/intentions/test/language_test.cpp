@@ -280,7 +280,8 @@ TEST(ActivityErrors, AtRunTimeReachTheGoal) {
   stage.step(2);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(stage.status(1).code, v1::CODE_ACTIVITY);
-  EXPECT_EQ(stage.status(1).reason, "(+) expected a number, got the text \"abc\"");
+  EXPECT_EQ(stage.status(1).reason,
+            "(+) expected a number, got the text \"abc\" (test.act, line 1)");
 }
 
 TEST(ActivityValues, ReadWhatTheyWrite) {

@@ -199,13 +199,14 @@ TEST(Modality, NothingGrowsWithoutBound) {
              "(defintention :part :goals '((WAIT-FOR stalled :forever t)))");
   wide.begin(3000);
   EXPECT_EQ(wide.status(1).state, v1::GOAL_FAILED);
-  EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already");
+  EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already (test.act, line 1)");
 
   Stage driving(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
   driving.begin(3000);
   EXPECT_EQ(driving.status(1).state, v1::GOAL_FAILED);
   EXPECT_EQ(driving.status(1).reason,
-            "there are 256 behaviors already: does an activity begin others without end?");
+            "there are 256 behaviors already: does an activity begin others without end? "
+            "(test.act, line 1)");
 
   // Each begins two that wait, up to the limit, and then fails with the reason.
   Stage crowd(
@@ -228,7 +229,7 @@ TEST(Modality, NothingGrowsWithoutBound) {
 
   Stage parallel(activity("(:again (SPLIT (WAIT-FOR stalled :forever t))) (GOTO :again)"));
   parallel.begin(300);
-  EXPECT_EQ(parallel.status(1).reason, "more than 64 goals in parallel");
+  EXPECT_EQ(parallel.status(1).reason, "more than 64 goals in parallel (test.act, line 1)");
 
   Stage bomb("(defintention :it :goals '((AND (INTEND :it ()) (INTEND :it ()))))");
   bomb.begin(200);
@@ -237,7 +238,7 @@ TEST(Modality, NothingGrowsWithoutBound) {
   Stage lists(
       activity("(:again (= x (list x x)) (= y (format \"~a~a~a\" y y \"abc\"))) (GOTO :again)"));
   lists.begin(200);
-  EXPECT_EQ(lists.status(1).reason, "a list of more than 4096 values");
+  EXPECT_EQ(lists.status(1).reason, "a list of more than 4096 values (test.act, line 1)");
 }
 
 }  // namespace

@@ -232,7 +232,7 @@ class Machine : public Activity {
       try {
         perform(thread, self);
       } catch (const ActivityError& error) {
-        failure(thread, error.code(), error.what(), self);
+        failure(thread, error, self);
       }
     }
     return moved;
@@ -384,7 +384,7 @@ class Machine : public Activity {
           return true;
       }
     } catch (const ActivityError& error) {
-      failure(thread, error.code(), error.what(), self);
+      failure(thread, error, self);
       return true;
     }
   }
@@ -647,6 +647,15 @@ class Machine : public Activity {
     }
     over_ = true;
     self.succeed("done");
+  }
+
+  /// A mistake of the activity is named with its place.
+  void failure(Thread& thread, const ActivityError& error, Self& self) {
+    std::string reason = error.what();
+    if (error.code() == v1::CODE_ACTIVITY)
+      reason += " (" + program_->file.substr(program_->file.rfind('/') + 1) + ", line " +
+                std::to_string(program_->steps[thread.at].line) + ")";
+    failure(thread, error.code(), reason, self);
   }
 
   void failure(Thread& thread, GoalCode code, const std::string& reason, Self& self) {
