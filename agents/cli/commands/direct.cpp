@@ -51,6 +51,7 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
   const auto began = Clock::now();
   auto moved = began;
   double nearest = 1e9;
+  Course course(wanted);
   int code = bus::kExitFailed;
   std::string end = "stopped by Ctrl-C";
   while (!stop.requested()) {
@@ -69,15 +70,20 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
       end = "stopped by " + driver.stopped_by();
       break;
     }
-    if (driver.drives() && driver.robot()) {
-      const double left = left_of(wanted, *driver.grant(), *driver.robot());
-      if (done(wanted, *driver.grant(), *driver.robot())) {
+    if (driver.grant() && driver.robot()) {
+      const Course::State state = course.update(driver.drives(), *driver.grant(), *driver.robot());
+      if (state == Course::State::done) {
         code = bus::kExitOk;
         end = "done";
         break;
       }
-      if (left < nearest - kProgress) {
-        nearest = left;
+      if (state == Course::State::interrupted) {
+        end = "interrupted: " +
+              (driver.drives() ? "the bridge was started again" : describe(*driver.grant()));
+        break;
+      }
+      if (state == Course::State::drives && course.left() < nearest - kProgress) {
+        nearest = course.left();
         moved = Clock::now();
       }
     }
@@ -87,10 +93,8 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
       break;
     }
   }
-  const std::string rest =
-      driver.drives() && driver.robot() ? rest_of(wanted, *driver.grant(), *driver.robot()) : "";
   driver.release();
-  print("%s%s\n", end.c_str(), rest.c_str());
+  print("%s%s\n", end.c_str(), code == bus::kExitOk ? "" : course.rest().c_str());
   return code;
 }
 

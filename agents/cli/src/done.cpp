@@ -56,37 +56,39 @@ v1::MotorCommand command_of(const Move& move) {
   return command;
 }
 
-double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot) {
-  switch (move.kind) {
+Course::State Course::update(bool drives, const v1::Grant& grant, const v1::RobotState& robot) {
+  const std::uint64_t before = driving_.stamp.epoch;
+  interrupted_ = interrupted_ || (before != 0 && (!drives || grant.stamp.epoch != before));
+  if (drives && !interrupted_)
+    driving_ = grant;
+  if (driving_.stamp.epoch == 0)
+    return State::waits;
+  bool at_rest = false;
+  double there = 0.0;
+  switch (move_.kind) {
     case Move::Kind::move:
-      return std::abs(grant.distance_left);
-    case Move::Kind::turn:
-      return std::abs(norm2_angle(grant.heading - robot.pose_in_odom.th));
-    case Move::Kind::speed:
+      left_ = std::abs(driving_.distance_left);
+      at_rest = std::abs(robot.velocity) < kStands;
       break;
+    case Move::Kind::turn:
+      left_ = std::abs(norm2_angle(driving_.heading - robot.pose_in_odom.th));
+      at_rest = driving_.rotation == v1::ROTATION_HEADING &&
+                std::abs(robot.rotation_velocity) < kDoesNotTurn;
+      there = kThere;
+      break;
+    case Move::Kind::speed:
+      return drives ? State::drives : State::waits;
   }
-  return 0.0;
+  if (interrupted_)
+    return State::interrupted;
+  return at_rest && left_ <= there ? State::done : State::drives;
 }
 
-bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot) {
-  switch (move.kind) {
-    case Move::Kind::move:
-      return grant.distance_left == 0.0 && std::abs(robot.velocity) < kStands;
-    case Move::Kind::turn:
-      return grant.rotation == v1::ROTATION_HEADING && left_of(move, grant, robot) <= kThere &&
-             std::abs(robot.rotation_velocity) < kDoesNotTurn;
-    case Move::Kind::speed:
-      break;
-  }
-  return false;
-}
-
-std::string rest_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot) {
-  const double left = left_of(move, grant, robot);
-  if (move.kind == Move::Kind::move && left > 0.0)
-    return format(", %.2f m left", left);
-  if (move.kind == Move::Kind::turn && left > kThere)
-    return format(", %.0f degrees left", degrees(left));
+std::string Course::rest() const {
+  if (move_.kind == Move::Kind::move && left_ > 0.0)
+    return format(", %.2f m left", left_);
+  if (move_.kind == Move::Kind::turn && left_ > kThere)
+    return format(", %.0f degrees left", degrees(left_));
   return {};
 }
 

@@ -82,9 +82,12 @@ Move move_of(const Json& json) {
 /// The report about a way: done or not, and the rest of it.
 std::string progress(const Json& json) {
   const Move move = move_of(json);
-  const auto grant = part<v1::Grant>(json, "grant").value_or(v1::Grant());
+  auto grant = part<v1::Grant>(json, "grant").value_or(v1::Grant());
+  grant.stamp.epoch = 1;
   const auto robot = part<v1::RobotState>(json, "robot").value_or(v1::RobotState());
-  return (done(move, grant, robot) ? "done" : "not done") + rest_of(move, grant, robot);
+  Course course(move);
+  const Course::State state = course.update(true, grant, robot);
+  return (state == Course::State::done ? "done" : "not done") + course.rest();
 }
 
 using In = const std::string&;
@@ -271,6 +274,36 @@ TEST(SecondDeployment, AProgramThatIsStartedAgainIsNone) {
   EXPECT_FALSE(second.news(kTwo, 10.0));
   EXPECT_FALSE(second.news(kOne, 11.9));
   EXPECT_FALSE(second.news(kOne, 99.0));
+}
+
+TEST(Course, AnInterruptedMoveIsNotDone) {
+  const Move move{Move::Kind::move, "move", 1.0};
+  v1::RobotState robot;
+  const auto grant = [](double left, std::uint64_t epoch = 7) {
+    return v1::Grant{.stamp = {.epoch = epoch}, .distance_left = left};
+  };
+  Course stopped(move);
+  EXPECT_EQ(stopped.update(false, grant(0.0), robot), Course::State::waits);
+  EXPECT_EQ(stopped.update(true, grant(0.4), robot), Course::State::drives);
+  EXPECT_EQ(stopped.update(false, grant(0.0), robot), Course::State::interrupted);
+  EXPECT_EQ(stopped.update(true, grant(0.0), robot), Course::State::interrupted)
+      << "the bridge does not begin it again";
+  EXPECT_EQ(stopped.rest(), ", 0.40 m left");
+  Course restarted(move);
+  restarted.update(true, grant(0.4), robot);
+  EXPECT_EQ(restarted.update(true, grant(1.0, 8), robot), Course::State::interrupted);
+  EXPECT_EQ(restarted.left(), 0.4);
+}
+
+TEST(Course, AnInterruptedTurnKeepsItsTarget) {
+  Course course({Move::Kind::turn, "turn", 1.0});
+  v1::RobotState robot;
+  robot.pose_in_odom.th = 0.3;
+  course.update(true, {.stamp = {.epoch = 7}, .rotation = v1::ROTATION_HEADING, .heading = 1.0},
+                robot);
+  robot.pose_in_odom.th = 0.5;
+  EXPECT_EQ(course.update(false, {.stamp = {.epoch = 7}}, robot), Course::State::interrupted);
+  EXPECT_DOUBLE_EQ(course.left(), 0.5);
 }
 
 }  // namespace

@@ -277,6 +277,9 @@ std::string Arbiter::reset(const std::string& source, double now) {
   const Player& person = player(Role::teleop);
   if (person.held && person.newest.active && fresh(person, now))
     must_let_go(person.newest.writer, "the emergency stop was reset while a person drove");
+  for (auto& [key, said] : numbers_)
+    if (key.first == Role::direct && said.newest_at != kNever)
+      said.must_let_go = "the emergency stop was reset while it asked to drive";
   quiet_heard_ = kNever;
   return {};
 }

@@ -162,7 +162,7 @@ class Drivers : public saphira::test::LinePlayer {
 };
 
 TEST(Drivers, AreAsWritten) {
-  EXPECT_EQ(saphira::test::play<Drivers>("bridge/authority/test/drivers.txt"), 59);
+  EXPECT_EQ(saphira::test::play<Drivers>("bridge/authority/test/drivers.txt"), 60);
 }
 
 TEST(Arbiter, ThreeCyclesAreWithinALeaseOfThreeCycles) {

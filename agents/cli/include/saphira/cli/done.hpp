@@ -27,11 +27,30 @@ inline constexpr double kProgress = 0.01;
 std::string trouble_of(const Move& move);
 /// The command to repeat until it is done.
 v1::MotorCommand command_of(const Move& move);
-/// The remaining way [m or rad, not negative], by the grant; 0 for a speed.
-double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
-/// sfDonePosition, sfDoneHeading: at the target, and at rest. A speed is never done.
-bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
-/// Such as ", 0.35 m left"; empty without a rest.
-std::string rest_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
+/// The course of a move, by the grants of its robot. Pure.
+class Course {
+ public:
+  enum class State {
+    waits,  ///< its commands do not go to the wheels yet
+    drives,
+    done,        ///< sfDonePosition, sfDoneHeading: at the target, and at rest; never of a speed
+    interrupted  ///< over: the bridge does not begin an interrupted motion again
+  };
+
+  explicit Course(const Move& move) : move_(move) {}
+
+  /// drives: this move's commands go to the wheels.
+  State update(bool drives, const v1::Grant& grant, const v1::RobotState& robot);
+  /// The remaining way [m or rad, not negative]; 0 of a speed.
+  double left() const { return left_; }
+  /// Such as ", 0.35 m left"; empty without a rest.
+  std::string rest() const;
+
+ private:
+  Move move_;
+  v1::Grant driving_;  ///< the newest by which it drove
+  double left_ = 0.0;
+  bool interrupted_ = false;
+};
 
 }  // namespace saphira::cli

@@ -95,8 +95,8 @@ struct Grant {
 ///
 /// Two states are latched, over connections and, with latches() and restore(), over a restart:
 /// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
-///   does not drive after it: a person has to let go first. Autonomy must have come to rest by
-///   itself, as it does when its goals end; otherwise it waits for a hand-back.
+///   does not drive after it: a person or a direct driver has to let go first. Autonomy must have
+///   come to rest by itself, as it does when its goals end; otherwise it waits for a hand-back.
 /// - After a person has driven, autonomy waits for a hand-back.
 class Arbiter {
  public:
