@@ -10,26 +10,6 @@
 namespace saphira::intentions {
 namespace {
 
-TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
-  Stage stage(
-      activity("(INTEND :go-to-pos ((goal . (point 1 2)) (speed . 300mm/s)) :name first)"
-               "(INTEND :TurnTo ((goal . (point 1 2))) :name second :priority 1)"));
-  stage.begin(5);
-  ASSERT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  EXPECT_EQ(stage.out.behaviors[0].priority, 2);
-  EXPECT_TRUE(stage.out.behaviors[0].blocking);
-  EXPECT_EQ(find(stage.out.behaviors[0].parameters, "speed")->number, 0.3);
-  EXPECT_EQ(stage.display(), "* it S2; * GoToPos B");
-  stage.satisfy("first", 0.89, 5);
-  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
-  stage.satisfy("first", 0.95, 1);
-  EXPECT_EQ(stage.behaviors(), Names({"TurnTo"})) << "in the cycle in which the first ended";
-  EXPECT_EQ(stage.out.behaviors[0].priority, 1);
-  stage.satisfy("second", 1.0, 3);
-  EXPECT_EQ(stage.status(1).state, v1::GOAL_SUCCEEDED);
-  EXPECT_TRUE(stage.out.behaviors.empty());
-}
-
 TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
   Stage stage(
       "(defintention :where :params (name)\n"
@@ -274,19 +254,10 @@ TEST(ActivityErrors, AFileMayNameWhatAnotherOneHas) {
   EXPECT_EQ(loaded.schemas.size(), 2U) << "only the broken one is left out";
 }
 
-TEST(ActivityErrors, AtRunTimeReachTheGoal) {
-  Stage stage("(defintention :it :params (x) :goals '((= y (+ x 1)) (SUCCEED \"~a\" y)))");
-  stage.ask(1, "it", {text("x", "abc")});
-  stage.step(2);
-  EXPECT_EQ(stage.status(1).state, v1::GOAL_FAILED);
-  EXPECT_EQ(stage.status(1).code, v1::CODE_ACTIVITY);
-  EXPECT_EQ(stage.status(1).reason, "(+) expected a number, got the text \"abc\"");
-}
-
 TEST(ActivityValues, ReadWhatTheyWrite) {
   for (const char* const text :
        {"nil", "t", "2.5", "-1e-07", "follow-it", "\"a \\\"b\\\" c\"", "\"1\"", "(a 1 (b nil))",
-        "(point 1 2.5 -0.5 :map)", "(region 3 12)", "\"\"", "\"T\""})
+        "(point 1 2.5 -0.5 :map)", "(region 3 12)", "(thing 8 0)", "\"\"", "\"T\""})
     EXPECT_EQ(to_text(parse_value(text)), text);
   EXPECT_EQ(parse_value("()"), Value());
   EXPECT_EQ(parse_value("90deg").number() != nullptr, true);

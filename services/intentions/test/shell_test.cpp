@@ -74,37 +74,6 @@ TEST_F(ShellTest, DrivesToAGoalAndSaysSo) {
   EXPECT_TRUE(robot.intended->behavior_control);
 }
 
-TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
-  start();
-  auto grants = robot_node.writer(bus::topics::kGrant);
-  const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
-  cycle();
-  cycle();
-  ASSERT_EQ(state(id), v1::GOAL_UNDERWAY);
-  grants.write({.estopped = true, .estop_source = "button"});
-  grants.write(v1::Grant());  // reset before the service read it
-  cycle();
-  EXPECT_EQ(state(id), v1::GOAL_CANCELED) << bus::describe(*goals.status(id));
-  EXPECT_EQ(goals.status(id)->reason.find("emergency stop, pressed by \"button\""), 0U);
-  EXPECT_TRUE(robot.intended->behaviors.empty());
-  grants.write(v1::Grant());
-  const v1::GoalId next = goals.ask(go_to(5.0, 0.0));
-  cycle();
-  cycle();
-  EXPECT_EQ(state(next), v1::GOAL_UNDERWAY) << bus::describe(*goals.status(next));
-}
-
-TEST_F(ShellTest, CancelsByDispose) {
-  start();
-  const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
-  cycle();
-  goals.cancel(id);
-  cycle();
-  EXPECT_EQ(state(id), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(id)->code, v1::CODE_DISPOSED);
-  EXPECT_TRUE(robot.intended->behaviors.empty());
-}
-
 TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
   start();
   const v1::GoalId own = goals.ask(go_to(5.0, 0.0));
@@ -121,28 +90,6 @@ TEST_F(ShellTest, TheReasonOfACancelIsInTheStatusWhoeverCancels) {
   EXPECT_EQ(state(other), v1::GOAL_CANCELED);
   EXPECT_EQ(goals.status(other)->code, v1::CODE_DISPOSED);
   EXPECT_EQ(goals.status(other)->reason, "withdrawn by another program: the floor is wet");
-}
-
-TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
-  start();
-  v1::GoalId canceled;
-  v1::GoalId kept;
-  {
-    bus::Node node(test::memory_options("another", true), bus);
-    bus::GoalClient another(node, "another");
-    canceled = another.ask(go_to(5.0, 0.0));
-    v1::Goal goal = go_to(0.5, 0.0);
-    goal.writer_lost = v1::WRITER_LOST_KEEP;
-    kept = another.ask(goal);
-    cycle();
-    EXPECT_EQ(state(canceled), v1::GOAL_UNDERWAY);
-  }
-  cycle();
-  EXPECT_EQ(state(canceled), v1::GOAL_CANCELED);
-  EXPECT_EQ(goals.status(canceled)->code, v1::CODE_WRITER_LOST);
-  for (int i = 0; i < 100 && !bus::ended(state(kept)); ++i)
-    cycle();
-  EXPECT_EQ(state(kept), v1::GOAL_SUCCEEDED);
 }
 
 TEST_F(ShellTest, AProgramThatWasSilentIsBelievedAgainAndItsEndedGoalsStayEnded) {
