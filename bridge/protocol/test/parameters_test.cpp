@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "broken_text.hpp"
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/command.hpp"
@@ -301,52 +301,11 @@ TEST(CutFiles, OfTheManualAndOfAriaAreNoticed) {
   expect_no_silent_cut(kAriaForm);
 }
 
-using test::Broken;
-
-class BrokenParameters : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenParameters, SayWhereAndWhatWasExpected) {
-  test::expect_mistake(GetParam(), [](const char* text) { parse_parameters(text, "broken.p"); });
+TEST(Parameters, MistakesSayWhereAndWhatWasExpected) {
+  EXPECT_EQ(test::each_mistake("bridge/protocol/test/mistakes.txt",
+                               [](const std::string& text) { parse_parameters(text, "broken.p"); }),
+            36);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, BrokenParameters,
-    ::testing::Values(
-        Broken{"RobotRadius abc\n", 1, 13, "expected a number (RobotRadius in mm)"},
-        Broken{"RobotRadius\nSonarNum 0\n", 1, 12, "expected RobotRadius"},
-        Broken{"RobotRadius -5\n", 1, 13, "between"}, Broken{"RobotRadius 99 2\n", 1, 16, "end of"},
-        Broken{"RobotRadius nan\n", 1, 13, "expected a number"},
-        Broken{"MaxVelocity 400mm/s\n", 1, 13, "expected a number"},
-        Broken{"VelConvFactor 2,5\n", 1, 15, "expected a number"},
-        Broken{"Protocol psos5\n", 1, 10, "expected psos, p2os or arcos"},
-        Broken{"  Batery 12\n", 1, 3, "did you mean Battery?"},
-        Broken{"Radius 1\n", 1, 1, "expected a keyword"},
-        Broken{"RobotRadius 100\n\nrobotradius 200\n", 3, 1, "line 1"},
-        Broken{"SonarNum 2\nSonarUnit 0 1 2 3\n", 1, 10, "SonarUnit 1 is missing"},
-        Broken{"SonarNum 1.5\n", 1, 10, "whole number"}, Broken{"SonarNum 65\n", 1, 10, "between"},
-        Broken{"SonarUnit 0 1 2 3\n", 1, 18, "SonarNum"},
-        Broken{"", 1, 1, "expected also AngleConvFactor"}, Broken{";; P", 1, 1, "RobotRadius"},
-        Broken{"Class Pioneer\nRobotRadius 220 ; mm\n", 2, 16, "MaxVelocity, MaxRVelocity"},
-        Broken{"SonarNum 0\nRobotRadius 22", 2, 15, "expected a line break"},
-        Broken{"SonarNum 1\nSonarUnit 0 1 2\n", 2, 16, "bearing"},
-        Broken{"SonarNum 1\nSonarUnit 0 1 2 3\nSonarUnit 0 1 2 3\n", 3, 11, "once"},
-        Broken{"Class\n", 1, 6, "a word"}, Broken{"DistConvFactor 0\n", 1, 16, "between"},
-        Broken{"AngleConvFactor 0.0879\n", 1, 17, "radians a tick"},
-        Broken{"DistConvFactor 485\n", 1, 16, "in mm a tick"},
-        Broken{"MaxVelocity 0.4\n", 1, 13, "in mm/s"},
-        Broken{"TransAccel 0.3\n", 1, 12, "in mm/s2"}, Broken{"HeadReach 200\n", 1, 11, "between"},
-        Broken{"HeadReach 90\nHeadPulse 20\nAngleConvFactor 0.006\nDistConvFactor 1\n"
-               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
-               1, 1, "to be -300 to 3300"},
-        Broken{"Protocol arcos\nHeadReach 90\nAngleConvFactor 0.006\nDistConvFactor 1\n"
-               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
-               2, 1, "do not show its servo"},
-        Broken{"HasGripper maybe\n", 1, 12, "true or false"},
-        Broken{"HasGripper\n", 1, 11, "true or false"},
-        Broken{"SwitchToBaudRate 12345\n", 1, 18, "38400"},
-        Broken{"NumFrontBumpers 8\n", 1, 17, "between"},
-        Broken{"Protocol\n", 1, 9, "psos, p2os or arcos"},
-        Broken{"FrontBuffer 201\n", 1, 13, "between"}));
 
 TEST(Parameters, AMissingFileIsNamed) {
   EXPECT_TRUE(test::has(test::trouble([] { load_parameters("/nowhere/x.p"); }), "/nowhere/x.p"));
