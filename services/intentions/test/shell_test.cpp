@@ -145,6 +145,29 @@ TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
   EXPECT_NEAR(robot.world.robot.pose_in_odom.x, begun + 2.0, 0.2);
 }
 
+// Of its half turn only the rest is left.
+TEST_F(ShellTest, AHalfTurnIsAHalfTurnOverARestart) {
+  const test::TempDir dir;
+  start(dir.path("memory"));
+  const v1::GoalId id = goals.ask(test::goal("about-turn"));
+  double turned = 0.0;
+  bool restarted = false;
+  for (int i = 0; i < 300 && (!goals.status(id) || !bus::ended(state(id))); ++i) {
+    const double before = robot.world.robot.pose_in_odom.th;
+    cycle();
+    turned += norm2_angle(robot.world.robot.pose_in_odom.th - before);
+    if (!restarted && turned > kPi / 2.0) {
+      restarted = true;
+      kill();
+      start(dir.path("memory"));
+    }
+  }
+  EXPECT_TRUE(restarted);
+  EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED) << bus::describe(*goals.status(id));
+  EXPECT_EQ(goals.status(id)->note, "");
+  EXPECT_NEAR(turned, kPi, 0.15);
+}
+
 TEST_F(ShellTest, ARefusalReachesItsRequesterWithoutARobot) {
   start();
   const v1::GoalId refused = goals.ask(test::goal("fly"));
