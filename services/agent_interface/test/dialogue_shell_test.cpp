@@ -402,12 +402,6 @@ TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {
   EXPECT_TRUE(goals.take().empty());
 }
 
-TEST_F(DialogueOnTheBus, AGrammarWithAMistakeIsRefusedAtTheStart) {
-  options.grammar = folder.path("my.grammar");
-  std::ofstream(options.grammar) << "keyword: flakey\nstop(\n";
-  EXPECT_THROW(start(), FileError);
-}
-
 /// The words of a stop go to the bridge itself, whatever other programs do.
 TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   bus::Node bridge{test::memory_options("bridge"), memory};

@@ -65,13 +65,6 @@ TEST_F(DialogueTest, AGoalWithAStatusIsTakenUpHoweverLongItLasts) {
   EXPECT_EQ(dialogue.without_status({tag}, 111.0).canceled, std::vector<std::uint64_t>{tag});
 }
 
-TEST(Goals, ThePersonBehindTheWordsIsNamed) {
-  WantedGoal goal;
-  EXPECT_EQ(goal.requester(), "");
-  goal.speaker = "Alice";
-  EXPECT_EQ(goal.requester(), "Alice (by words)");
-}
-
 TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   situation.asked_about = "answer";
   situation.asked_for = "Karen";
