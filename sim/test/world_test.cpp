@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "broken_text.hpp"
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/random.hpp"
 
@@ -45,38 +45,11 @@ TEST(World, PushesAreNestedAndPopped) {
   near(world.segments[3].to, 1.0, 0.0);
 }
 
-using test::Broken;
-
-TEST(World, AWallOfNoLengthIsLeftOutAndTold) {
-  const World world = parse_world("width 10 height 10\n0 0 5 0\n3 3 3 3\n0 0 0 5\n", "mine.wld");
-  EXPECT_EQ(world.segments.size(), 2U);
-  ASSERT_EQ(world.warnings.size(), 1U);
-  EXPECT_TRUE(world.warnings[0].starts_with("mine.wld:3: ")) << world.warnings[0];
+TEST(World, MistakesSayWhereAndWhatWasExpected) {
+  EXPECT_EQ(test::each_mistake("sim/test/world-mistakes.txt",
+                               [](const std::string& text) { parse_world(text, "broken.wld"); }),
+            15);
 }
-
-class BrokenWorld : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenWorld, SaysWhereAndWhatWasExpected) {
-  test::expect_mistake(GetParam(), [](const char* text) { parse_world(text, "broken.wld"); });
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, BrokenWorld,
-    ::testing::Values(Broken{"", 1, 1, "expected width"},
-                      Broken{"2D-Map\nLINES\n0 0 1 1\n", 1, 1, "a map of ARIA and MobileSim"},
-                      Broken{"define wall model\n", 1, 1, "a world of Stage"},
-                      Broken{"width 10\n", 1, 1, "expected height"},
-                      Broken{"0 0 1 1\n", 1, 1, "width and height of the world before"},
-                      Broken{"width 10\nheight\n", 2, 7, "expected height of the world"},
-                      Broken{"width 10 height 10\n0 0 abc 30000\n", 2, 5, "x of the second point"},
-                      Broken{"width 10 height 10\n0 0 1\n", 2, 6, "y of the second point"},
-                      Broken{"width 10 height 10\npop\n", 2, 1, "push before this pop"},
-                      Broken{"width 10 height 10\npush 0 0\n", 2, 9, "theta"},
-                      Broken{"width 10 height 10\nwall 1 2 3 4\n", 2, 1, "found \"wall\""},
-                      Broken{"width 10 height 10\nposition 0 0 0\nposition 0 0 0\n", 3, 1, "once"},
-                      Broken{"width 10 width 10\n", 1, 10, "once"},
-                      Broken{"width -1\n", 1, 7, "between"},
-                      Broken{"width 10 height 10\n0 0 1e30 0\n", 2, 5, "between"}));
 
 TEST(Geometry, NearestPoint) {
   const Segment segment{{0.0, 0.0}, {2.0, 0.0}};

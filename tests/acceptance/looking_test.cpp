@@ -96,21 +96,6 @@ TEST_F(LookingTest, ListsInterruptsAndResumesProcesses) {
   EXPECT_EQ(run({"processes", "stop", "behaviors", "x"}).code, 2);
 }
 
-TEST_F(LookingTest, WhatAPersonSaysIsBelievedUntilItIsTakenBack) {
-  ASSERT_NO_FATAL_FAILURE(drive());
-  for (const char* value : {"yes", "no", "no"}) {
-    const Outcome said = run({"beliefs", "set", "answer", value});
-    EXPECT_EQ(said.code, 0) << said.text;
-    EXPECT_TRUE(has(said.text, std::string("answer = ") + value)) << said.text;
-  }
-  EXPECT_EQ(run({"beliefs", "unset", "answer"}).code, 0);
-  const Outcome gone = run({"beliefs", "answer", "--once"});
-  EXPECT_TRUE(has(gone.text, "nothing is believed of answer")) << gone.text;
-  const Outcome again = run({"beliefs", "unset", "answer"});
-  EXPECT_EQ(again.code, 1);
-  EXPECT_TRUE(has(again.text, "nobody has said answer")) << again.text;
-}
-
 // As docs/robots-of-others.md compares a robot with its file.
 TEST_F(LookingTest, MovesAndTurnsAsThePageSays) {
   system.start_all();

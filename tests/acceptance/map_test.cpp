@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,86 +17,6 @@ namespace {
 /// end.
 v1::Goal go_along_the_corridor(double x) {
   return goal("go_to", {bus::point("position", x, 7.0, 0.0, v1::FRAME_MAP)});
-}
-
-/// In lockstep, with the same result in seconds that takes the live system a minute.
-class MapTest : public testing::Test {
- protected:
-  /// Lets the robot drive until the goal's success, which must come.
-  void arrive(const v1::Goal& goal) {
-    const v1::GoalId id = system.ask(goal);
-    system.permit(permitted_ += 1500);
-    const std::optional<v1::GoalStatus> status = system.wait_end(id, [this] { take(); });
-    ASSERT_TRUE(status) << system.output();
-    EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
-  }
-  /// Lets the robot make steps until the condition holds.
-  bool step_until(const std::function<bool()>& condition) {
-    system.permit(permitted_ += 300);
-    return wait_until([&] {
-      system.node.wait(std::chrono::milliseconds(10));
-      take();
-      return condition();
-    });
-  }
-  void take() {
-    for (const auto& sample : registrations.take())
-      registered.push_back(sample.data);
-    if (auto newest = maps.take_newest())
-      map = std::move(newest);
-  }
-  bool on_map(std::uint32_t id) const {
-    return map && std::any_of(map->artifacts.begin(), map->artifacts.end(),
-                              [id](const v1::MapArtifact& each) { return each.id == id; });
-  }
-  /// Ends the run: without a contact, and with the right pose in registration.
-  void end() {
-    take();
-    const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
-    EXPECT_EQ(rows.back().contacts, 0);
-    for (const sim::TraceRow& row : rows) {
-      if (registered.empty() || row.cycle != registered.back().stamp.cycle)
-        continue;
-      const v1::Pose2& pose = registered.back().pose_in_map;
-      EXPECT_LT(std::hypot(pose.x - row.pose_in_world.x, pose.y - row.pose_in_world.y), 0.3);
-      return;
-    }
-    ADD_FAILURE() << "registration of no cycle of the trace";
-  }
-
-  LockstepSystem system{{.world = read_file(source("config/worlds/office.wld")),
-                         .robot = "pioneer",
-                         .map = "office"}};
-  bus::Reader<v1::Registration> registrations{system.node.reader(bus::topics::kRegistration)};
-  bus::Reader<v1::FloorMap> maps{system.node.reader(bus::topics::kMap)};
-  std::vector<v1::Registration> registered;
-  std::optional<v1::FloorMap> map;
-
- private:
-  std::uint64_t permitted_ = 0;
-};
-
-TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
-  bus::RequestClient requests(system.node, bus::topics::kRegistrationRequest, "test");
-  ASSERT_TRUE(step_until([&] {
-    return !registered.empty() && registered.back().state == v1::REGISTRATION_TRACKING;
-  })) << system.output();
-  // Beside the way, half a metre before the wall: its absence shows by echoes from behind it.
-  v1::Request request{.functor = "put",
-                      .arguments = {bus::number("id", 900), bus::text("type", "OBJECT"),
-                                    bus::point("position", 5.0, 7.4, 0.0, v1::FRAME_MAP),
-                                    bus::number("length", 0.5), bus::number("width", 0.2)}};
-  ASSERT_EQ(requests.ask(request, 60.0).code, v1::ANSWER_DONE) << system.output();
-  ASSERT_TRUE(step_until([&] { return on_map(900); })) << system.output();
-  // A goal continues while the map changes; on the way back at the latest the object is missed.
-  arrive(go_along_the_corridor(11.5));
-  if (on_map(900))
-    arrive(go_along_the_corridor(2.0));
-  end();
-  EXPECT_FALSE(on_map(900)) << system.output();
-  EXPECT_TRUE(on_map(112)) << "what a person wrote and is there";
-  EXPECT_NE(system.output().find("object 900 is taken from the map"), std::string::npos)
-      << system.output();
 }
 
 /// The true way of a robot that builds a map from nothing, in one process or in many.

@@ -33,36 +33,6 @@ class Walker : public LockstepSystem {
   bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);
 };
 
-TEST(SeeingAcceptance, AWalkerIsFollowed) {
-  Walker system;
-  const v1::GoalId id = system.follow();
-  system.permit(700);
-  std::uint64_t people = 0;
-  std::uint64_t colors = 0;
-  std::uint64_t skipped = 0;
-  const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
-    for (const auto& sample : system.visions.take()) {
-      // In lockstep every picture is processed.
-      skipped += sample.data.picture != sample.data.stamp.cycle;
-      for (const v1::SeenThing& thing : sample.data.things) {
-        people += thing.kind == v1::SEEN_PERSON;
-        colors += thing.kind == v1::SEEN_BLOB && thing.channel == 0;
-      }
-    }
-  });
-  ASSERT_TRUE(status);
-  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << "\n" << system.output();
-  EXPECT_GT(people, 200U);
-  EXPECT_GT(colors, 100U);
-  EXPECT_EQ(skipped, 0U);
-  // She came from 10.5 to 7 m, and around the corner to the east.
-  const auto rows = sim::parse_trace(system.end(), "trace.csv");
-  ASSERT_FALSE(rows.empty());
-  EXPECT_GT(rows.back().pose_in_world.x, 19.5);
-  EXPECT_NEAR(rows.back().pose_in_world.y, 7.0, 1.2);
-  EXPECT_EQ(rows.back().contacts, 0);
-}
-
 // A run in lockstep with cameras is also the same to the last bit, with the way of its head.
 TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
   const auto run = [] {

@@ -1,8 +1,7 @@
 // Reaction time: from an information packet at the bridge's socket to the command packet that
 // answers it, with bridge and behaviors in processes of their own; beside it, at the same time, a
 // two-hop ping over the bus with payloads of the same types. The program plays the robot server and
-// the intentions. With --serial, bridge and robot have a serial line between them, as slow as a
-// real one, and the bound is the time that the line takes for the two packets.
+// the intentions.
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -25,7 +24,6 @@
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
-#include "serial_line.hpp"
 #include "support/guarded.hpp"
 #include "support/node_options.hpp"
 #include "support/quantile.hpp"
@@ -34,6 +32,8 @@ using namespace saphira;
 using Clock = std::chrono::steady_clock;
 
 namespace {
+
+constexpr double kLimitUs = 50000.0;  // of an answer
 
 double us_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -142,9 +142,8 @@ v1::Intentions intentions(const v1::Stamp& stamp) {
 
 class Reaction {
  public:
-  Reaction(bus::Node& node, ScriptedRobot& robot, double limit_us)
+  Reaction(bus::Node& node, ScriptedRobot& robot)
       : robot_(robot),
-        limit_us_(limit_us),
         states_(std::in_place, node.reader(bus::topics::kRobotState)),
         intend_(node.writer(bus::topics::kIntentions)) {}
 
@@ -154,7 +153,7 @@ class Reaction {
     const auto start = Clock::now();
     robot_.send(packet);
     std::optional<double> took;
-    while (us_since(start) < limit_us_) {
+    while (us_since(start) < kLimitUs) {
       const protocol::Bytes body = robot_.packet(10);
       if (body.empty())
         continue;
@@ -180,30 +179,12 @@ class Reaction {
 
  private:
   ScriptedRobot& robot_;
-  double limit_us_;
   std::optional<bus::Reader<v1::RobotState>> states_;
   bus::Writer<v1::Intentions> intend_;
   v1::Stamp stamp_;
   long n_ = 0;
   double last_heading_ = -1.0;
 };
-
-int report_serial(const std::vector<double>& ours, int unanswered, int baud, bool json) {
-  // Ten bits a byte, the longest packet first.
-  const std::size_t bytes =
-      protocol::encode(information(0)).size() + protocol::encode(protocol::Heading{1.0}).size();
-  const double bound = static_cast<double>(bytes) * 1e7 / baud;
-  const double p50 = test::quantile(ours, 0.5);
-  const double p99 = test::quantile(ours, 0.99);
-  bench::print({{"baud", baud},
-                {"p50_us", p50},
-                {"p99_us", p99},
-                {"line_us", bound},
-                {"ratio_p50", p50 / bound},
-                {"unanswered", unanswered}},
-               json);
-  return 0;
-}
 
 }  // namespace
 
@@ -214,12 +195,9 @@ int main(int argc, char** argv) {
   int count = 300;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--hz", hz, "information packets a second").in_range(1.0, 50.0);
-  int baud = 0;
   bool echo = false;
   app.add_flag("--echo", echo, "answer the ping").hidden();
   app.add_option("--count", count, "samples").in_range(10, 100000);
-  app.add_option("--serial", baud, "a serial line of this baud rate between robot and bridge")
-      .one_of({"9600", "19200", "38400", "57600", "115200"});
   if (const auto code = app.parse(argc, argv))
     return *code;
   return test::guarded([&] {
@@ -229,19 +207,13 @@ int main(int argc, char** argv) {
     const std::string name = "bench" + std::to_string(getpid());
     const std::string socket = "/tmp/saphira-" + name;
     ScriptedRobot robot(socket);
-    const std::string device = "/tmp/saphira-" + name + "-tty";
-    std::optional<test::SerialLine> line;
-    if (baud != 0)
-      line.emplace(device, socket, baud);
-    const std::string port =
-        line ? "serial:" + device + "@" + std::to_string(baud) : "unix:" + socket;
-    const bench::Child bridge({"saphira-bridge", "--robot-port", port, "--robots",
+    const bench::Child bridge({"saphira-bridge", "--robot-port", "unix:" + socket, "--robots",
                                config_folder() + "/robots", "--robot", name, "--domain", domain});
     const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
     robot.connect();
 
     bus::Node node(test::node_options("bench", name, domain));
-    Reaction reaction(node, robot, line ? 95000.0 : 50000.0);
+    Reaction reaction(node, robot);
 
     const auto period = std::chrono::duration<double>(1.0 / hz);
     const auto paced = [&](const std::function<void()>& each, int times) {
@@ -268,11 +240,6 @@ int main(int argc, char** argv) {
       else
         ++unanswered;
     };
-    if (line) {
-      paced(take, count);
-      return report_serial(ours, unanswered, baud, json);
-    }
-
     // Both at once, out of phase: on the same machine at the same time. (A robot server must not
     // fall silent meanwhile.)
     const bench::Child answers({"saphira-bench-reaction", "--echo"});

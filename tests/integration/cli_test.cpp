@@ -12,7 +12,6 @@
 #include <array>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -243,10 +242,6 @@ TEST_F(CliTest, AskForProgramsSaysThatNobodyAnswers) {
   EXPECT_EQ(outcome.code, 1) << outcome.text;
   EXPECT_TRUE(has(outcome.text, R"({"agent":"","code":"nobody","text":"no program )"))
       << outcome.text;
-}
-
-TEST_F(CliTest, StatusOfAnEmptyBusSaysSo) {
-  expect({"status"}, 1, {"no program is on the bus (robot " + robot_});
 }
 
 TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
@@ -541,96 +536,6 @@ TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   close(frozen);
   close(terminal);
-}
-
-/// A command without a reader of its output.
-class Unread {
- public:
-  explicit Unread(std::vector<std::string> words) {
-    std::vector<char*> argv;
-    argv.reserve(words.size() + 1);
-    for (std::string& word : words)
-      argv.push_back(word.data());
-    argv.push_back(nullptr);
-    EXPECT_EQ(pipe2(pipe_.data(), O_CLOEXEC), 0);
-    EXPECT_GT(fcntl(pipe_[1], F_SETPIPE_SZ, 4096), 0);
-    // Full from the start: no character of the command fits.
-    const std::string filling(4096, '.');
-    EXPECT_EQ(write(pipe_[1], filling.data(), filling.size()), 4096);
-    pid_ = fork();
-    if (pid_ == 0) {
-      dup2(pipe_[1], STDOUT_FILENO);
-      dup2(pipe_[1], STDERR_FILENO);
-      execv(argv[0], argv.data());
-      _exit(127);
-    }
-    close(pipe_[1]);
-  }
-  ~Unread() {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-    close(pipe_[0]);
-  }
-  Unread(const Unread&) = delete;
-  Unread& operator=(const Unread&) = delete;
-  void signal(int number) const { kill(pid_, number); }
-  bool ended() const { return waitpid(pid_, nullptr, WNOHANG) == pid_; }
-
- private:
-  std::array<int, 2> pipe_{};
-  pid_t pid_ = -1;
-};
-
-TEST_F(CliTest, UpSupervisesWhenNobodyReadsWhatItPrints) {
-  const std::string pids = folder_.path("pids");
-  const std::string file = write("loud.yaml",
-                                 "programs:\n"
-                                 "  - {name: loud, program: sh, bus: false,\n"
-                                 "     arguments: [-c, \"echo $$ >> " +
-                                     pids +
-                                     "; while true; do echo much to say and nobody to read it; "
-                                     "done\"]}\n");
-  std::vector<std::string> words = command({"up", file});
-  words[0] = test::program(words[0]);
-  const Unread up(words);
-  const auto started = [&] {
-    std::ifstream in(pids);
-    std::vector<pid_t> all;
-    for (pid_t pid = 0; in >> pid;)
-      all.push_back(pid);
-    return all;
-  };
-  ASSERT_TRUE(test::wait_until([&] { return !started().empty(); }));
-  kill(started().front(), SIGKILL);
-  EXPECT_TRUE(test::wait_until([&] { return started().size() >= 2; }));
-  up.signal(SIGTERM);
-  EXPECT_TRUE(test::wait_until([&] { return up.ended(); }));
-  EXPECT_NE(kill(started().back(), 0), 0) << "what it started is stopped";
-}
-
-TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
-  const std::string file =
-      write("two.yaml",
-            "programs:\n"
-            "  - {name: a, program: sh, bus: false,\n"
-            "     arguments: [-c, \"echo pid $$; exec sleep 600\"]}\n"
-            "  - {name: b, program: sh, bus: false,\n"
-            "     arguments: [-c, \"echo robot $SAPHIRA_ROBOT; exec sleep 600\"]}\n");
-  test::Process up(command({"up", file}), folder_.path("up"));
-  ASSERT_TRUE(test::wait_until([&] {
-    return has(up.output(), "a       | pid ") && has(up.output(), "b       | robot " + robot_);
-  })) << up.output();
-  const std::string text = up.output();
-  const int pid = std::stoi(text.substr(text.find("| pid ") + 6));
-  kill(pid, SIGKILL);
-  EXPECT_TRUE(test::wait_until([&] { return has(up.output(), "a started again"); })) << up.output();
-  // A second instance would share sockets and memory.
-  const Outcome again = run({"up", file});
-  EXPECT_NE(again.code, 0);
-  EXPECT_TRUE(has(again.text, "running already")) << again.text;
-  up.signal(SIGTERM);
-  EXPECT_EQ(up.wait(), 0);
-  EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
 }
 
 TEST_F(CliTest, AnEmergencyStopNeedsNoRoomOnTheDisk) {

@@ -34,6 +34,30 @@ int each_line(const std::string& file, char comment, const Use& use) {
   return used;
 }
 
+/// Plays a file of mistakes, "text => LINE:COLUMN what was expected", whose texts have "\n" for a
+/// line break: parse(text) has to throw the FileError. Returns how many there are.
+template <class Parse>
+int each_mistake(const std::string& file, const Parse& parse) {
+  return each_line(file, '#', [&](const std::string& line) {
+    const std::size_t arrow = line.rfind("=> ");
+    std::string text = line.substr(0, arrow - (arrow > 0 ? 1 : 0));
+    for (std::size_t at = 0; (at = text.find('\\', at)) != std::string::npos; ++at)
+      text.replace(at, 2, text.substr(at, 2) == "\\r" ? "\r" : "\n");
+    const std::string wanted = line.substr(arrow + 3);
+    const std::size_t space = wanted.find(' ');
+    try {
+      parse(text);
+      ADD_FAILURE() << "no error: " << line;
+    } catch (const FileError& error) {
+      EXPECT_EQ(std::to_string(error.line()) + ":" + std::to_string(error.column()),
+                wanted.substr(0, space))
+          << error.what();
+      EXPECT_NE(std::string(error.what()).find(wanted.substr(space + 1)), std::string::npos)
+          << error.what();
+    }
+  });
+}
+
 /// Plays a file of cases, each with a player of its own: "== its name" begins one, and " ; " parts
 /// lines that are written as one. `wanted`, of a case's number and name: of cases that take long,
 /// those of one test. Returns how many cases there are.

@@ -91,7 +91,6 @@ bool SerialLine::take(int fd, int direction) {
   if (d.waiting.empty())
     d.due = Clock::now() + byte_;
   d.waiting.insert(d.waiting.end(), buffer.begin(), buffer.begin() + n);
-  waited_[direction] = std::max<std::uint64_t>(waited_[direction], d.waiting.size());
   return true;
 }
 

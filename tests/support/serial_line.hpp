@@ -31,9 +31,6 @@ class SerialLine {
   /// Bytes that went through, to and from the robot.
   std::uint64_t to_robot() const { return bytes_[0]; }
   std::uint64_t from_robot() const { return bytes_[1]; }
-  /// The longest queue before the line [bytes].
-  std::uint64_t waited_to_robot() const { return waited_[0]; }
-  std::uint64_t waited_from_robot() const { return waited_[1]; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -58,7 +55,6 @@ class SerialLine {
   Direction directions_[2];  ///< to the robot, from it
   std::atomic<bool> cut_[2]{false, false};
   std::atomic<std::uint64_t> bytes_[2]{0, 0};
-  std::atomic<std::uint64_t> waited_[2]{0, 0};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

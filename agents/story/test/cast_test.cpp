@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "trouble.hpp"
@@ -70,24 +71,8 @@ TEST(Cast, ALineMayWaitForTheRobotAtAPlace) {
 }
 
 TEST(Cast, MistakesNameLineAndColumn) {
-  const auto mistake = [](const std::string& text) {
-    try {
-      Cast(text, "f");
-    } catch (const FileError& error) {
-      return std::to_string(error.line()) + ":" + std::to_string(error.column());
-    }
-    return std::string("none");
-  };
-  EXPECT_EQ(mistake("HAS report\n"), "1:1");
-  EXPECT_EQ(mistake("PERSON karen\n"), "1:13");
-  EXPECT_EQ(mistake("PERSON karen kitchen\nLIKES tea\n"), "2:1");
-  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alice\n"), "2:6");
-  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alise go\n"), "2:6");
-  EXPECT_EQ(mistake("PERSON alice N1\nPERSON alice N2\n"), "2:8");
-  EXPECT_EQ(mistake("PERSON Alice N1\n"), "1:8");
-  EXPECT_EQ(mistake("ENDS\n"), "1:1");
-  EXPECT_EQ(mistake("NEAR kitchen 1\n"), "1:1");
-  EXPECT_EQ(mistake("PERSON alice N1\nSAYS alice go\nNEAR kitchen far\n"), "3:14");
+  const auto parse = [](const std::string& text) { Cast(text, "f"); };
+  EXPECT_EQ(test::each_mistake("agents/story/test/mistakes.txt", parse), 10);
 }
 
 TEST(Cast, AStoryHasABeginningAndPlacesOfTheMap) {

@@ -1,6 +1,7 @@
 // The cases of cases.txt: the test is the shell, the robot and the drivers.
 #include <gtest/gtest.h>
 
+#include "arguments.hpp"
 #include "lines.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
@@ -39,63 +40,67 @@ std::string in_words(const Answer& answer) {
 class Bridge : public saphira::test::LinePlayer {
  public:
   Bridge() {
-    events_ = {{"lockstep",
-                [this](auto& in) { begin({.lockstep = true, .free_step = !rest(in).empty()}); }},
-               {"anew", [this](auto&) { begin({}); }},
-               {"robot", [this](auto& in) { each(in, &Bridge::set_robot); }},
-               {"shows", [this](auto& in) { each(in, &Bridge::show); }},
-               {"around", [this](auto& in) { around(in); }},
-               {"parameters", [this](auto& in) { s_->has_parameters = rest(in) == "yes"; }},
-               {"mute", [this](auto&) { s_->mute = true; }},
-               {"connect", [this](auto&) { s_->connect(); }},
-               {"driven", [this](auto& in) { driven(rest(in)); }},
-               {"pass", [this](auto& in) { s_->pass(read<double>(in)); }},
-               {"slowly", [this](auto& in) { s_->pass_slowly(read<double>(in)); }},
-               {"cycle", [this](auto&) { s_->cycle(); }},
-               {"cycles", [this](auto& in) { cycles(in); }},
-               {"hears", [this](auto& in) { s_->say(packet(read<std::string>(in), in)); }},
-               {"receives",
-                [this](auto&) { s_->core.received(std::exchange(s_->to_bridge, {}), s_->now); }},
-               {"drive", [this](auto& in) { s_->tell(wish(in)); }},
-               {"late", [this](auto& in) { late_ = wish(in); }},
-               {"comes", [this](auto&) { s_->tell(late_); }},
-               {"command", [this](auto& in) { s_->core.command(wish(in), s_->now); }},
-               {"answer", [this](auto&) { s_->answer(); }},
-               {"leave",
-                [this](auto& in) {
-                  s_->core.writer_lost(valued<Role>(rest(in)), {}, s_->now);
-                  s_->answer();
-                }},
-               {"reset",
-                [this](auto& in) {
-                  s_->core.request({.functor = "reset", .arguments = {}, .source = rest(in)},
-                                   s_->now);
-                  s_->deliver();
-                }},
-               {"restore",
-                [this](auto& in) {
-                  s_->core.restore({true, rest(in), authority::Wait::none});
-                  s_->deliver();
-                }},
-               {"permit",
-                [this](auto& in) {
-                  s_->core.permit(read<std::uint64_t>(in));
-                  s_->answer();
-                }},
-               {"lose",
-                [this](auto& in) {
-                  s_->core.link_closed(rest(in), s_->now);
-                  s_->deliver();
-                }},
-               {"end",
-                [this](auto&) {
-                  s_->core.end(s_->now);
-                  s_->deliver();
-                }},
-               {"forget", [this](auto&) { s_->forget(); }},
-               {"noted", [this](auto& in) { EXPECT_GT(times_noted(rest(in)), 0) << notes(); }},
-               {"noted-once", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 1) << notes(); }},
-               {"not-noted", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 0) << notes(); }}};
+    events_ = {
+        {"lockstep",
+         [this](auto& in) { begin({.lockstep = true, .free_step = !rest(in).empty()}); }},
+        {"anew", [this](auto&) { begin({}); }},
+        {"vision", [this](auto&) { begin({.vision = true}); }},
+        {"robot", [this](auto& in) { each(in, &Bridge::set_robot); }},
+        {"shows", [this](auto& in) { each(in, &Bridge::show); }},
+        {"around", [this](auto& in) { around(in); }},
+        {"parameters", [this](auto& in) { s_->has_parameters = rest(in) == "yes"; }},
+        {"mute", [this](auto&) { s_->mute = true; }},
+        {"connect", [this](auto&) { s_->connect(); }},
+        {"driven", [this](auto& in) { driven(rest(in)); }},
+        {"pass", [this](auto& in) { s_->pass(read<double>(in)); }},
+        {"slowly", [this](auto& in) { s_->pass_slowly(read<double>(in)); }},
+        {"cycle", [this](auto&) { s_->cycle(); }},
+        {"cycles", [this](auto& in) { cycles(in); }},
+        {"hears", [this](auto& in) { s_->say(packet(read<std::string>(in), in)); }},
+        {"receives",
+         [this](auto&) { s_->core.received(std::exchange(s_->to_bridge, {}), s_->now); }},
+        {"drive", [this](auto& in) { s_->tell(wish(in)); }},
+        {"late", [this](auto& in) { late_ = wish(in); }},
+        {"comes", [this](auto&) { s_->tell(late_); }},
+        {"command", [this](auto& in) { s_->core.command(wish(in), s_->now); }},
+        {"answer", [this](auto&) { s_->answer(); }},
+        {"leave",
+         [this](auto& in) {
+           s_->core.writer_lost(valued<Role>(rest(in)), {}, s_->now);
+           s_->answer();
+         }},
+        {"reset",
+         [this](auto& in) {
+           s_->core.request({.functor = "reset", .arguments = {}, .source = rest(in)}, s_->now);
+           s_->deliver();
+         }},
+        {"restore",
+         [this](auto& in) {
+           s_->core.restore({true, rest(in), authority::Wait::none});
+           s_->deliver();
+         }},
+        {"request", [this](auto& in) { request(in); }},
+        {"turns-servo",
+         [this](auto& in) { EXPECT_TRUE(s_->was_sent(protocol::Ptu{read<std::uint16_t>(in)})); }},
+        {"permit",
+         [this](auto& in) {
+           s_->core.permit(read<std::uint64_t>(in));
+           s_->answer();
+         }},
+        {"lose",
+         [this](auto& in) {
+           s_->core.link_closed(rest(in), s_->now);
+           s_->deliver();
+         }},
+        {"end",
+         [this](auto&) {
+           s_->core.end(s_->now);
+           s_->deliver();
+         }},
+        {"forget", [this](auto&) { s_->forget(); }},
+        {"noted", [this](auto& in) { EXPECT_GT(times_noted(rest(in)), 0) << notes(); }},
+        {"noted-once", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 1) << notes(); }},
+        {"not-noted", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 0) << notes(); }}};
     facts_ = {
         {"drives", [this] { return named(s_->core.grant().role); }},
         {"age", [this] { return format("%g", s_->core.grant().command_age); }},
@@ -148,6 +153,20 @@ class Bridge : public saphira::test::LinePlayer {
            return joined(s_->all<LaterAnswer>(), " | ",
                          [](const LaterAnswer& later) { return in_words(later.answer); });
          }},
+        {"answered", [this] { return answer_ ? in_words(*answer_) : "later"; }},
+        {"later",
+         [this] {
+           return joined(s_->all<LaterAnswer>(), " | ", [](const LaterAnswer& later) {
+             return std::to_string(later.number) + (later.device ? " device " : " ") +
+                    in_words(later.answer);
+           });
+         }},
+        {"devices", [this] { return std::to_string(s_->all<DevicesChanged>().size()); }},
+        {"device asked by", [this] { return newest<DevicesChanged>().requests.at(0).source; }},
+        {"devices at", [this] { return std::to_string(newest<DevicesChanged>().stamp.cycle); }},
+        {"unread",
+         [this] { return std::to_string(newest<DevicesChanged>().reports.unread.at(0x9A)); }},
+        {"vision set", [this] { return newest<VisionSet>().text; }},
         {"audited", [this] { return audited(); }}};
   }
 
@@ -231,6 +250,16 @@ class Bridge : public saphira::test::LinePlayer {
     if (around.has_keeper)
       around.keeper_alive = rest(in) == "alive";
   }
+  /// "request NUMBER FUNCTOR arguments"; the number 0 is of an asker that does not count.
+  void request(std::istringstream& in) {
+    Request asked;
+    asked.source = "a person";
+    asked.number = read<std::uint64_t>(in);
+    asked.functor = read<std::string>(in);
+    asked.arguments = saphira::test::arguments_of(rest(in));
+    answer_ = s_->core.request(asked, s_->now);
+    s_->answer();
+  }
   /// "cycles COUNT ROLE [SPEED]".
   void cycles(std::istringstream& in) {
     const int count = read<int>(in);
@@ -253,6 +282,12 @@ class Bridge : public saphira::test::LinePlayer {
     }
     if (what == "simulator")
       return protocol::encode(protocol::SimStatusPacket{});
+    if (what == "unread")
+      return protocol::frame(protocol::Bytes{0x9A, 0});
+    if (what == "serial") {
+      protocol::ConfigPacket set{.serial = "P3", .cycle = 50};
+      return protocol::encode(set);
+    }
     if (what == "reset")
       return protocol::frame(protocol::Bytes{0xFE});
     if (what == "half")
@@ -392,10 +427,11 @@ class Bridge : public saphira::test::LinePlayer {
   std::unique_ptr<Scene> s_ = std::make_unique<Scene>();
   DriveCommand late_;
   std::uint64_t asked_ = 0;
+  std::optional<Answer> answer_;  ///< to the newest request
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 71);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 79);
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 
-#include "broken_text.hpp"
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/command.hpp"
@@ -59,82 +59,37 @@ TEST(Parameters, EveryShippedFileLoadsAndItsSonarsLookOutward) {
   }
 }
 
-// Each subclass of ARIA's and Player's parameters: a robot of it connects with our file.
-struct Subclass {
-  const char* name;
-  double angle, distance, velocity, range, difference, vel2;
-  double max_velocity, max_rotation_velocity;
-  std::size_t sonars;
-  double radius;
-};
-
-class EverySubclass : public ::testing::TestWithParam<Subclass> {};
-
-TEST_P(EverySubclass, HasItsFile) {
-  const Subclass& s = GetParam();
-  const auto names = parameter_file_names("Pioneer", s.name);
-  const auto p = load_parameters(source("config/robots/" + names.at(0)));
-  EXPECT_EQ(p.robot_class, "Pioneer");
-  EXPECT_EQ(p.subclass, s.name);
-  EXPECT_NEAR(p.angle_unit, s.angle, 1e-6);
-  EXPECT_DOUBLE_EQ(p.distance_unit, s.distance * 1e-3);
-  EXPECT_DOUBLE_EQ(p.velocity_unit, s.velocity * 1e-3);
-  EXPECT_DOUBLE_EQ(p.range_unit, s.range * 1e-3);
-  EXPECT_NEAR(p.rotation_per_difference, s.difference * 1e3, 1e-9);
-  EXPECT_DOUBLE_EQ(p.vel2_unit, s.vel2 * 1e-3);
-  EXPECT_DOUBLE_EQ(p.max_velocity, s.max_velocity * 1e-3);
-  EXPECT_DOUBLE_EQ(p.max_rotation_velocity, radians(s.max_rotation_velocity));
-  EXPECT_EQ(p.sonars.size(), s.sonars);
-  EXPECT_DOUBLE_EQ(p.radius, s.radius * 1e-3);
-  const std::string_view name = s.name;
-  EXPECT_EQ(p.protocol, name.ends_with("-sh")                                  ? Protocol::kArcos
-                        : name.starts_with("psos") || name.starts_with("pion") ? Protocol::kPsos
-                                                                               : Protocol::kP2os);
-  EXPECT_EQ(p.move_command, p.protocol != Protocol::kPsos);
+TEST(Parameters, EachSubclassHasItsFile) {
+  const int subclasses =
+      test::each_line("bridge/protocol/test/subclasses.txt", '#', [](const std::string& line) {
+        std::istringstream in(line);
+        std::string name;
+        double angle, distance, velocity, range, difference, vel2, most, most_rotation, radius;
+        std::size_t sonars = 0;
+        ASSERT_TRUE(in >> name >> angle >> distance >> velocity >> range >> difference >> vel2 >>
+                    most >> most_rotation >> sonars >> radius);
+        const auto names = parameter_file_names("Pioneer", name);
+        const auto p = load_parameters(source("config/robots/" + names.at(0)));
+        EXPECT_EQ(p.robot_class, "Pioneer");
+        EXPECT_EQ(p.subclass, name);
+        EXPECT_NEAR(p.angle_unit, angle, 1e-6);
+        EXPECT_DOUBLE_EQ(p.distance_unit, distance * 1e-3);
+        EXPECT_DOUBLE_EQ(p.velocity_unit, velocity * 1e-3);
+        EXPECT_DOUBLE_EQ(p.range_unit, range * 1e-3);
+        EXPECT_NEAR(p.rotation_per_difference, difference * 1e3, 1e-9);
+        EXPECT_DOUBLE_EQ(p.vel2_unit, vel2 * 1e-3);
+        EXPECT_DOUBLE_EQ(p.max_velocity, most * 1e-3);
+        EXPECT_DOUBLE_EQ(p.max_rotation_velocity, radians(most_rotation));
+        EXPECT_EQ(p.sonars.size(), sonars);
+        EXPECT_DOUBLE_EQ(p.radius, radius * 1e-3);
+        EXPECT_EQ(p.protocol, name.ends_with("-sh") ? Protocol::kArcos
+                              : name.starts_with("psos") || name.starts_with("pion")
+                                  ? Protocol::kPsos
+                                  : Protocol::kP2os);
+        EXPECT_EQ(p.move_command, p.protocol != Protocol::kPsos);
+      });
+  EXPECT_EQ(subclasses, 29);
 }
-
-// GoogleTest's names have letters and digits only.
-std::string printable(const ::testing::TestParamInfo<Subclass>& subclass) {
-  std::string name = subclass.param.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  std::replace(name.begin(), name.end(), '+', 'p');
-  return name;
-}
-
-constexpr double kP2Angle = 2.0 * kPi / 4096.0;
-INSTANTIATE_TEST_SUITE_P(
-    Robots, EverySubclass,
-    ::testing::Values(
-        Subclass{"pion1m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
-        Subclass{"pion1x", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
-        Subclass{"psos1m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
-        Subclass{"psos1x", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
-        Subclass{"psos43m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
-        Subclass{"pionat", 0.0061359, 0.07, 2.5332, 0.1734, 0.00333333, 4, 500, 100, 7, 330},
-        Subclass{"p2dx", kP2Angle, 0.84, 1, 0.268, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p2de", kP2Angle, 0.969, 1, 0.268, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p2ce", kP2Angle, 0.826, 1, 0.268, 0.0057, 20, 2200, 500, 16, 250},
-        Subclass{"p2df", kP2Angle, 0.485, 1, 0.268, 0.006, 20, 2200, 500, 16, 250},
-        Subclass{"p2d8", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p2d8+", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p2at", kP2Angle, 1.32, 1, 0.268, 0.0034, 20, 1200, 300, 16, 500},
-        Subclass{"p2at8", kP2Angle, 1.32, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
-        Subclass{"p2at8+", kP2Angle, 0.465, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
-        Subclass{"p3dx", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p3dx-sh", kP2Angle, 1, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
-        Subclass{"p3at", kP2Angle, 0.465, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
-        Subclass{"p3at-sh", kP2Angle, 1, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
-        Subclass{"amigo", kP2Angle, 0.5083, 0.6154, 1, 0.011, 20, 1000, 300, 8, 180},
-        Subclass{"amigo-sh", kP2Angle, 1, 1, 1, 0.011, 20, 1000, 300, 8, 180},
-        Subclass{"p2pb", kP2Angle, 0.424, 1, 0.268, 0.0056, 20, 2200, 500, 24, 300},
-        Subclass{"p2pp", kP2Angle, 0.485, 1, 0.268, 0.006, 20, 2200, 500, 24, 300},
-        Subclass{"perfpb", kP2Angle, 0.485, 1, 1, 0.006, 20, 2200, 500, 32, 340},
-        Subclass{"perfpb+", kP2Angle, 0.485, 1, 1, 0.006, 20, 2200, 500, 32, 340},
-        Subclass{"peoplebot-sh", kP2Angle, 1, 1, 1, 0.006, 20, 2200, 500, 32, 340},
-        Subclass{"powerbot", kP2Angle, 0.5813, 1, 1, 0.00373, 20, 2000, 360, 32, 550},
-        Subclass{"powerbot-sh", kP2Angle, 1, 1, 1, 0.00373, 20, 2000, 360, 32, 550},
-        Subclass{"patrolbot-sh", kP2Angle, 1, 1, 1, 0.0056, 20, 2200, 500, 16, 250}),
-    printable);
 
 // The classes whose servers send no subclass (Table 5-7), and others by their class.
 TEST(Parameters, ClassesWithoutSubclass) {
@@ -301,52 +256,11 @@ TEST(CutFiles, OfTheManualAndOfAriaAreNoticed) {
   expect_no_silent_cut(kAriaForm);
 }
 
-using test::Broken;
-
-class BrokenParameters : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenParameters, SayWhereAndWhatWasExpected) {
-  test::expect_mistake(GetParam(), [](const char* text) { parse_parameters(text, "broken.p"); });
+TEST(Parameters, MistakesSayWhereAndWhatWasExpected) {
+  EXPECT_EQ(test::each_mistake("bridge/protocol/test/mistakes.txt",
+                               [](const std::string& text) { parse_parameters(text, "broken.p"); }),
+            36);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, BrokenParameters,
-    ::testing::Values(
-        Broken{"RobotRadius abc\n", 1, 13, "expected a number (RobotRadius in mm)"},
-        Broken{"RobotRadius\nSonarNum 0\n", 1, 12, "expected RobotRadius"},
-        Broken{"RobotRadius -5\n", 1, 13, "between"}, Broken{"RobotRadius 99 2\n", 1, 16, "end of"},
-        Broken{"RobotRadius nan\n", 1, 13, "expected a number"},
-        Broken{"MaxVelocity 400mm/s\n", 1, 13, "expected a number"},
-        Broken{"VelConvFactor 2,5\n", 1, 15, "expected a number"},
-        Broken{"Protocol psos5\n", 1, 10, "expected psos, p2os or arcos"},
-        Broken{"  Batery 12\n", 1, 3, "did you mean Battery?"},
-        Broken{"Radius 1\n", 1, 1, "expected a keyword"},
-        Broken{"RobotRadius 100\n\nrobotradius 200\n", 3, 1, "line 1"},
-        Broken{"SonarNum 2\nSonarUnit 0 1 2 3\n", 1, 10, "SonarUnit 1 is missing"},
-        Broken{"SonarNum 1.5\n", 1, 10, "whole number"}, Broken{"SonarNum 65\n", 1, 10, "between"},
-        Broken{"SonarUnit 0 1 2 3\n", 1, 18, "SonarNum"},
-        Broken{"", 1, 1, "expected also AngleConvFactor"}, Broken{";; P", 1, 1, "RobotRadius"},
-        Broken{"Class Pioneer\nRobotRadius 220 ; mm\n", 2, 16, "MaxVelocity, MaxRVelocity"},
-        Broken{"SonarNum 0\nRobotRadius 22", 2, 15, "expected a line break"},
-        Broken{"SonarNum 1\nSonarUnit 0 1 2\n", 2, 16, "bearing"},
-        Broken{"SonarNum 1\nSonarUnit 0 1 2 3\nSonarUnit 0 1 2 3\n", 3, 11, "once"},
-        Broken{"Class\n", 1, 6, "a word"}, Broken{"DistConvFactor 0\n", 1, 16, "between"},
-        Broken{"AngleConvFactor 0.0879\n", 1, 17, "radians a tick"},
-        Broken{"DistConvFactor 485\n", 1, 16, "in mm a tick"},
-        Broken{"MaxVelocity 0.4\n", 1, 13, "in mm/s"},
-        Broken{"TransAccel 0.3\n", 1, 12, "in mm/s2"}, Broken{"HeadReach 200\n", 1, 11, "between"},
-        Broken{"HeadReach 90\nHeadPulse 20\nAngleConvFactor 0.006\nDistConvFactor 1\n"
-               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
-               1, 1, "to be -300 to 3300"},
-        Broken{"Protocol arcos\nHeadReach 90\nAngleConvFactor 0.006\nDistConvFactor 1\n"
-               "VelConvFactor 1\nRangeConvFactor 1\nRobotRadius 220\nSonarNum 0\n",
-               2, 1, "do not show its servo"},
-        Broken{"HasGripper maybe\n", 1, 12, "true or false"},
-        Broken{"HasGripper\n", 1, 11, "true or false"},
-        Broken{"SwitchToBaudRate 12345\n", 1, 18, "38400"},
-        Broken{"NumFrontBumpers 8\n", 1, 17, "between"},
-        Broken{"Protocol\n", 1, 9, "psos, p2os or arcos"},
-        Broken{"FrontBuffer 201\n", 1, 13, "between"}));
 
 TEST(Parameters, AMissingFileIsNamed) {
   EXPECT_TRUE(test::has(test::trouble([] { load_parameters("/nowhere/x.p"); }), "/nowhere/x.p"));

@@ -2,7 +2,6 @@
 
 #include <poll.h>
 
-#include <atomic>
 #include <set>
 #include <thread>
 
@@ -389,103 +388,6 @@ TEST_P(Cycles, QuietBridgeIsSaid) {
   EXPECT_FALSE(next(milliseconds(1200)).has_value());
   EXPECT_EQ(service_->status().state, v1::SERVICE_WAITING);
   EXPECT_EQ(service_->status().reason, "waits for robot/state of cycle 2: nobody writes it");
-}
-
-// Two services that read each other and a bridge that waits for one of them, each in a thread: the
-// lockstep of the whole system, in any order of start.
-class Lockstep : public OnEachBus {
- protected:
-  static constexpr std::uint64_t kCycles = 50;
-
-  void run(int first);
-
-  template <class In, class Out>
-  std::thread service(const std::string& name, const Topic<In>& in, const Topic<Out>& out,
-                      std::vector<std::uint64_t>& seen) {
-    return std::thread([this, name, &in, &out, &seen] {
-      auto own = node(name, "", true);
-      Cycle cycle(*own);
-      auto& input = cycle.input(in);
-      auto writer = own->writer(out);
-      while (const auto step = cycle.next(stop_)) {
-        seen.push_back(step->robot.stamp.cycle * 1000 +
-                       (input.value() == nullptr ? 0 : input.value()->stamp.cycle));
-        Out sample;
-        sample.stamp = cycle.stamp();
-        writer.write(sample);
-        cycle.done();
-      }
-    });
-  }
-  std::thread bridge() {
-    return std::thread([this] {
-      auto own = node("bridge", "", true);
-      auto describes = own->writer(topics::kRobotDescription);
-      describes.write(description(9));
-      auto robot_writer = own->writer(topics::kRobotState);
-      auto reader = own->reader(topics::kBehaviors);
-      for (std::uint64_t number = 1; number <= kCycles; ++number) {
-        robot_writer.write(robot_state(9, number));
-        arrived_ = arrived_ && eventually(*own, [&] {
-                     bool there = false;
-                     for (const auto& sample : reader.take())
-                       there |= sample.data.stamp.cycle == number;
-                     return there;
-                   });
-      }
-      stop_.request();
-    });
-  }
-  static std::vector<std::uint64_t> expected() {
-    std::vector<std::uint64_t> result;
-    for (std::uint64_t number = 1; number <= kCycles; ++number)
-      result.push_back(number * 1000 + number - 1);
-    return result;
-  }
-
-  Stop stop_;
-  std::atomic<bool> arrived_{true};
-  std::vector<std::uint64_t> behaviors_;
-  std::vector<std::uint64_t> intentions_;
-};
-INSTANTIATE_TEST_SUITE_P(Over, Lockstep, testing::Values("memory", "dds"),
-                         [](const auto& bus) { return bus.param; });
-
-void Lockstep::run(int first) {
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 3; ++i) {
-    switch ((i + first) % 3) {
-      case 0:
-        threads.push_back(bridge());
-        break;
-      case 1:
-        threads.push_back(
-            service("behaviors", topics::kIntentions, topics::kBehaviors, behaviors_));
-        break;
-      default:
-        threads.push_back(
-            service("intentions", topics::kBehaviors, topics::kIntentions, intentions_));
-    }
-  }
-  for (auto& thread : threads)
-    thread.join();
-  EXPECT_TRUE(arrived_);
-  EXPECT_EQ(behaviors_, expected());
-  // Intentions may be stopped before its last step.
-  auto steps = expected();
-  ASSERT_GE(intentions_.size() + 1, steps.size());
-  steps.resize(intentions_.size());
-  EXPECT_EQ(intentions_, steps);
-}
-
-TEST_P(Lockstep, BridgeFirst) {
-  run(0);
-}
-TEST_P(Lockstep, BehaviorsFirst) {
-  run(1);
-}
-TEST_P(Lockstep, IntentionsFirst) {
-  run(2);
 }
 
 }  // namespace

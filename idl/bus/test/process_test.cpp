@@ -166,25 +166,6 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   EXPECT_TRUE(reads.take().empty());
 }
 
-TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {
-  auto states = node_->reader(topics::kRobotState);
-  for (int round = 0; round < 3; ++round) {
-    auto writer = peer("writer", {"--hz", "100"});
-    const auto start = Clock::now();
-    std::uint64_t epoch = 0;
-    ASSERT_TRUE(eventually(*node_, [&] {
-      for (const auto& sample : states.take())
-        epoch = sample.data.stamp.epoch;
-      return epoch != 0;
-    }));
-    // Usually 50 ms; a lost announcement costs a quarter of a second.
-    EXPECT_LT(seconds_since(start), 3.0);
-    writer.signal(SIGKILL);
-    writer.wait();
-    states.take();
-  }
-}
-
 TEST_F(Processes, TwelveFindEachOther) {
   auto states = node_->reader(topics::kRobotState);
   std::vector<saphira::test::Process> writers;

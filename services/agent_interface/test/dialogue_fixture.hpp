@@ -20,8 +20,6 @@ OFFICE (233) 7000, 4000, 0, 4000, 4000 "EJ-233"
 DOOR (1233) 7000, 2000, -90, 900 "EJ-233"
 DOOR (1235) 3000, 0, 90, 900
 )";
-inline constexpr const char* kNoAttic =
-    "I know no place called attic, but EJ-231, EJ-233, upper corridor. Which one?";
 
 /// A dialogue with the shipped grammar. The robot stands in the corridor of kMap.
 struct DialogueTest : testing::Test {

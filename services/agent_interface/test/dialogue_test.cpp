@@ -1,4 +1,4 @@
-// The dialogue: orders, tasks and their ends.
+// The dialogue where lines of dialogues.txt do not do.
 #include <cmath>
 
 #include "dialogue_fixture.hpp"
@@ -16,80 +16,6 @@ TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
   EXPECT_TRUE(restarted.hear(utterance, situation).goals.empty());
 }
 
-TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
-  EXPECT_EQ(said("Flakey, why are you standing?"), "I have nothing to do");
-  situation.goals = {{"go_to", "console", v1::GOAL_FAILED, "the way is blocked"}};
-  EXPECT_EQ(said("Flakey, why?"), "go_to of console failed: the way is blocked");
-  situation.goals.push_back({"drive", "mcp", v1::GOAL_UNDERWAY, ""});
-  EXPECT_EQ(said("Flakey, why?"), "drive of mcp is underway");
-  situation.goals.insert(situation.goals.begin(),
-                         {"explore", "", v1::GOAL_SUSPENDED, "drive is more important"});
-  EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
-}
-
-TEST_F(DialogueTest, TheReasonBeginsWithTheTaskAndItsOwner) {
-  hear("Flakey, take the mail from EJ-231 to Alice");
-  const std::uint64_t tag = last.goals.at(0).tag;
-  situation.goals = {{"deliver", "", v1::GOAL_UNDERWAY, "", tag}};
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway");
-  situation.goals[0].step = "through-door: passes a door or another opening";
-  EXPECT_EQ(said("Flakey, why?", "Bob"),
-            "the mail for Alice is underway: the robot passes a door or another opening");
-  situation.goals[0].step = "waits for a person";
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: waits for a person");
-  // The reason of the state goes before a note, and that before the step.
-  situation.goals[0].note = "was begun anew at its first step";
-  EXPECT_EQ(said("Flakey, why?"),
-            "the mail for Alice is underway: was begun anew at its first step");
-  situation.goals[0].reason = "changed by its requester";
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: changed by its requester");
-  situation.goals[0] = {"deliver", "", v1::GOAL_SUSPENDED, "drive is more important", tag};
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is suspended: drive is more important");
-}
-
-TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
-  const std::string failed = "the mail for Alice failed: nobody at EJ-231 gave the robot the mail";
-  hear("Flakey, take the mail from EJ-231 to John");
-  dialogue.ended({last.goals.at(0).tag, false, "nobody at EJ-231 gave the robot the mail"});
-  situation.goals = {{"deliver", "", v1::GOAL_FAILED, "nobody at EJ-231 gave the robot the mail"}};
-  EXPECT_EQ(said("Flakey, why?"), failed);
-  hear("Flakey, stop", "Bob");
-  const std::uint64_t stop = last.goals.at(0).tag;
-  situation.goals.push_back({"stop", "", v1::GOAL_UNDERWAY, "", stop});
-  EXPECT_EQ(said("Flakey, why?"), failed);
-  dialogue.ended({stop, true, "the robot is at rest"});
-  situation.goals.back() = {"stop", "", v1::GOAL_SUCCEEDED, "the robot is at rest"};
-  EXPECT_EQ(said("Flakey, why?"), failed);
-  // After a restart of the dialogue, too.
-  Dialogue restarted{grammar()};
-  EXPECT_EQ(restarted.hear({{9, 1}, "Alice", "Flakey, why?"}, situation).said.at(0).text,
-            "deliver failed: nobody at EJ-231 gave the robot the mail");
-  hear("Flakey, follow me", "Bob");
-  situation.goals.push_back(
-      {"follow-person", "", v1::GOAL_UNDERWAY, "waits for a person", last.goals.at(0).tag});
-  EXPECT_EQ(said("Flakey, why?"), "the walk for Bob is underway: waits for a person");
-  situation.goals.pop_back();
-  hear("Flakey, turn left");
-  dialogue.ended({last.goals.at(0).tag, true, "turned"});
-  situation.goals.push_back({"turn_to", "", v1::GOAL_SUCCEEDED, "turned"});
-  EXPECT_EQ(said("Flakey, why?"), "the turn for Alice is done: turned");
-  hear("Flakey, stop");
-  dialogue.ended({last.goals.at(0).tag, true, "at rest"});
-  situation.goals = {{"stop", "", v1::GOAL_SUCCEEDED, "at rest"}};
-  EXPECT_EQ(said("Flakey, why?"), "the stop for Alice is done: at rest");
-}
-
-TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
-  EXPECT_EQ(said("Flakey, what are you doing?"), "nothing that I was told");
-  hear("Flakey, go to EJ-233");
-  situation.goals = {{"go-to-place", "", v1::GOAL_SUSPENDED, ""},
-                     {"turn_to", "mcp", v1::GOAL_SUCCEEDED, ""},
-                     {"explore", "console", v1::GOAL_WAITING, ""},
-                     {"drive", "mcp", v1::GOAL_UNDERWAY, ""}};
-  EXPECT_EQ(said("Flakey, what are you doing?"),
-            "I go to EJ-233; for console: explore, which is waiting; for mcp: drive");
-}
-
 TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {
   std::string examples = said("Flakey, what can you do?");
   const std::string begin = "You can say, for example: ";
@@ -100,30 +26,6 @@ TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {
        examples.erase(0, end + 2))
     EXPECT_EQ(shipped.understand("flakey " + examples.substr(0, end)).meanings.size(), 1u)
         << examples;
-}
-
-TEST_F(DialogueTest, StopStopsWhateverFollows) {
-  hear("Flakey, go to EJ-233");
-  const std::uint64_t first = last.goals.at(0).tag;
-  EXPECT_EQ(said("Flakey, please stop going there!"), "I stop / I drop the way to EJ-233");
-  EXPECT_EQ(last.canceled, std::vector{first});
-  EXPECT_EQ(goals(), "stop");
-  EXPECT_TRUE(dialogue.ended({first, false, "withdrawn"}).said.empty());
-  EXPECT_EQ(said("Flakey, never stop"), "what?");
-  EXPECT_TRUE(last.goals.empty());
-}
-
-TEST_F(DialogueTest, AnUtteranceOfMoreThanAMinuteAgoIsNotActedOn) {
-  situation.now = now + 60.1;
-  EXPECT_EQ(said("Flakey, go forward"), "");
-  EXPECT_TRUE(last.goals.empty());
-  EXPECT_EQ(last.note, "not acted on, since it is older than a minute: \"Flakey, go forward\"");
-  situation.now = now + 59.9;
-  EXPECT_EQ(said("Flakey, go forward"), "I go forward 1 m");
-  EXPECT_EQ(last.note, "");
-  situation.now = now + 60.1;
-  now = 0.0;  // unknown
-  EXPECT_EQ(said("Flakey, stop"), "I stop / I drop the move");
 }
 
 TEST_F(DialogueTest, AnActivityIsHeardWhileTheDialogueHasAGoal) {
@@ -163,15 +65,6 @@ TEST_F(DialogueTest, AGoalWithAStatusIsTakenUpHoweverLongItLasts) {
   EXPECT_EQ(dialogue.without_status({tag}, 111.0).canceled, std::vector<std::uint64_t>{tag});
 }
 
-TEST(Goals, ThePersonBehindTheWordsIsNamed) {
-  WantedGoal goal;
-  EXPECT_EQ(goal.requester(), "");
-  goal.speaker = "Alice";
-  EXPECT_EQ(goal.requester(), "Alice (by words)");
-}
-
-// The dialogue: questions of the robot, and the replies to them.
-
 TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
   situation.asked_about = "answer";
   situation.asked_for = "Karen";
@@ -207,24 +100,6 @@ TEST_F(DialogueTest, SeveralMeaningsAreNamedInWords) {
             "what? That may mean \"karen is at bob\", or \"karen is at bob's office\"");
   EXPECT_EQ(said("flakey go EJ-231"), "what? That may mean several things");
   EXPECT_EQ(said("flakey roll EJ-231"), "what? That may mean several things");
-}
-
-// The dialogue: advice, and questions about it.
-
-TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
-  hear("Flakey, EJ-231 is Karen's office");
-  hear("Flakey, John usually knows where Karen is", "Bob");
-  EXPECT_EQ(said("Flakey, where is Karen?"),
-            "Alice said that EJ-231 is karen's office; Bob said that john knows where karen is");
-  const Dialogue::Outputs out = dialogue.forget(2);
-  EXPECT_EQ(out.answer, (Answer{AnswerCode::done, "forgotten"}));
-  EXPECT_EQ(out.claims.at(0).name, "knows-where-karen");
-  EXPECT_EQ(out.claims.at(0).value, "");
-  EXPECT_FALSE(dialogue.forget(2).changed);
-  EXPECT_EQ(
-      dialogue.forget(2).answer,
-      (Answer{AnswerCode::refused, "nothing is known under 2 (saphira knows lists the facts)"}));
-  EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
 }
 
 TEST_F(DialogueTest, OnlyAWholeNumberForgetsAdvice) {
@@ -287,8 +162,6 @@ TEST_F(DialogueTest, ALoadThatIsTakenOffIsGoneUntilTheRobotGetsItAnew) {
   EXPECT_EQ(claims(dialogue.claims()), "");
 }
 
-// Whose task it is, errands, and ways of several steps.
-
 TEST(Beliefs, TheOpenQuestionAndTheFindsAreHeeded) {
   Situation situation;
   situation.asked_about = "of before";
@@ -324,34 +197,6 @@ TEST(Claims, AValueIsWrittenInTheLanguageOfActivities) {
   EXPECT_EQ(literal(Claimed{"knows-where-karen", "john, bob", "", {"john", "bob"}}),
             "(\"john\" \"bob\")");
   EXPECT_EQ(literal(Claimed{"place-of-karen", "nil", "", {}, true}), "nil");
-}
-
-TEST_F(DialogueTest, AProgramThatLooksForAPersonGetsTheirPlace) {
-  EXPECT_EQ(dialogue.place_of("karen"),
-            (Answer{AnswerCode::refused, "nobody has told me where karen is"}));
-  hear("Flakey, EJ-231 is Karen's office");
-  EXPECT_EQ(dialogue.place_of("karen"), (Answer{AnswerCode::done, "", {text("place", "EJ-231")}}));
-}
-
-// Names, and the robot's questions back.
-
-// The dialogue: places, and those that it keeps out of.
-
-TEST_F(DialogueTest, WhatIsNamelessOnTheMapGetsAName) {
-  EXPECT_EQ(said("Flakey, this is the kitchen"), "on my map this is EJ-231");
-  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "on my map this is upper corridor");
-  situation.pose_in_map = Pose{3.0, 0.5, 0.0};
-  EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
-  ASSERT_EQ(last.namings.size(), 1u);
-  EXPECT_EQ(last.namings[0].id, 1235u);
-  EXPECT_EQ(last.namings[0].name, "Kitchen");
-  EXPECT_EQ(said("Flakey, this room is called EJ-233"), "my map has EJ-233 at another place");
-  EXPECT_TRUE(last.namings.empty());
-  for (maps::Feature& feature : situation.map.features)
-    if (feature.type == lps::PointType::corridor)
-      feature.name.clear();
-  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
-  EXPECT_EQ(last.namings.at(0).type, lps::PointType::corridor);
 }
 
 TEST(Naming, ANamedDoorwayIsPutOnTheMapAsItIs) {

@@ -9,6 +9,7 @@
 #include "dialogue_fixture.hpp"
 #include "lines.hpp"
 #include "saphira/base/archive.hpp"
+#include "saphira/idl/goal_words.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -55,7 +56,8 @@ class Conversation : public DialogueTest {
     Utterance utterance{{7, ++number}, speaker.substr(0, confidence), text};
     if (confidence != std::string::npos)
       utterance.confidence = std::stod(speaker.substr(confidence + 2));
-    utterance.time = situation.now = now;
+    utterance.time = knows_time_ ? now : 0.0;
+    situation.now = now + ago_;
     last = dialogue.hear(utterance, situation);
   }
   void use(Dialogue next) { std::swap(dialogue, next); }
@@ -86,9 +88,35 @@ class Conversation : public DialogueTest {
     std::getline(in >> std::ws, grant.stop_source);
     last = dialogue.granted(grant, 9);
   }
+  /// "own deliver underway; drive of mcp suspended the reason": the goals that there are, the
+  /// newest last; "own" is the dialogue's newest.
+  void know_goals(const std::string& text) {
+    situation.goals.clear();
+    std::istringstream all(text);
+    for (std::string one; std::getline(all >> std::ws, one, ';');) {
+      std::istringstream in(one);
+      KnownGoal goal;
+      std::string word;
+      in >> goal.functor;
+      if (goal.functor == "own") {
+        goal.tag = wanted_;
+        in >> goal.functor;
+      }
+      in >> word;
+      if (word == "of")
+        in >> goal.asker >> word;
+      for (goal.state = v1::GOAL_WAITING;
+           word_of(goal.state) != word && word_of(goal.state) != std::string("?");)
+        goal.state = static_cast<v1::GoalState>(goal.state + 1);
+      std::getline(in >> std::ws, goal.reason);
+      situation.goals.push_back(goal);
+    }
+  }
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
   std::uint64_t wanted_ = 0;  ///< the newest goal
+  double ago_ = 0.0;          ///< [s] since an utterance, when it is heard
+  bool knows_time_ = true;    ///< of utterances
   std::string map_ = kMap;
   std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
   const std::map<std::string, std::function<std::string()>> facts_{
@@ -105,6 +133,13 @@ class Conversation : public DialogueTest {
       {"answers", [this] { return std::to_string(last.said.at(0).answers.second); }},
       {"end", [this] { return yes(last.said.at(0).end); }},
       {"refused", [this] { return yes(last.said.at(0).refused); }},
+      {"note", [this] { return last.note; }},
+      {"changed", [this] { return yes(last.changed); }},
+      {"answer to the program",
+       [this] {
+         const Answer answer = dialogue.place_of("karen");
+         return answer.code == AnswerCode::done ? describe(answer.results) : answer.text;
+       }},
       {"facts", [this] { return std::to_string(dialogue.knowledge().all().size()); }},
       {"doorway", [this] { return std::to_string(dialogue.knowledge().all().at(0).artifact); }},
       {"place of karen", [this] { return dialogue.knowledge().place_of("karen"); }}};
@@ -132,6 +167,23 @@ class Conversation : public DialogueTest {
        [this](const auto& text) {
          situation.carried = {{text, "EJ-231"}};
        }},
+      {"goals are", [this](const auto& text) { know_goals(text); }},
+      {"its step", [this](const auto& text) { situation.goals.back().step = text; }},
+      {"its note", [this](const auto& text) { situation.goals.back().note = text; }},
+      {"its reason", [this](const auto& text) { situation.goals.back().reason = text; }},
+      {"seconds on the way", [this](const auto& text) { ago_ = std::stod(text); }},
+      {"without times", [this](const auto&) { knows_time_ = false; }},
+      {"forget",
+       [this](const auto& text) {
+         last = dialogue.forget(std::stod(text));
+         last.said = {{{}, "", last.answer.text}};
+       }},
+      {"nameless corridors",
+       [this](const auto&) {
+         for (maps::Feature& feature : situation.map.features)
+           if (feature.type == lps::PointType::corridor)
+             feature.name.clear();
+       }},
       {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
       {"emergency stop", [this](const auto& text) { situation.estop = text; }},
       {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
@@ -149,7 +201,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 81);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 90);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <thread>
 
 #include "node_options.hpp"
@@ -76,23 +75,6 @@ TEST_F(OnTheBus, ARequestIsRoutedAndWhatADeadAgentCouldDoIsForgotten) {
     stop.request();
   }
   EXPECT_EQ(ask_until(person, v1::ANSWER_NOBODY).text, "no agent can do \"place_of\"");
-}
-
-TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
-  bus::Node node(test::node_options("person", robot));
-  bus::Agent person(node, "ann", "a person that knows itself");
-  int asked = 0;
-  person.can(place_of(), [&](const v1::Request& request) {
-    ++asked;
-    return library(request);
-  });
-  ask_until(person, v1::ANSWER_DONE);
-  facilitator->signal(SIGKILL);
-  start();
-  const v1::Answer answer = person.ask(where_is_karen(), 20.0);
-  EXPECT_EQ(answer.code, v1::ANSWER_DONE) << "the first one: " << answer.text;
-  EXPECT_EQ(answer.service, "ann");
-  EXPECT_GE(asked, 2);
 }
 
 /// The facilitator with an agent and an asker, on a bus in memory, with a clock that the test

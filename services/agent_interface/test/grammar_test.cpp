@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lines.hpp"
 #include "process.hpp"
 #include "utterances.hpp"
 
@@ -278,33 +279,8 @@ TEST(Grammar, ParaphrasesFillTheSlots) {
 }
 
 TEST(Grammar, MistakesNameLineAndColumn) {
-  EXPECT_EQ(mistake(""), "0:1: expected a line such as \"keyword: flakey\" in the file");
-  EXPECT_EQ(
-      mistake("keyword: Flakey\n"),
-      "1:10: expected a word as it is heard: small letters, and \"karen 's\" for \"Karen's\"");
-  EXPECT_EQ(mistake("keyword: f\n  stop\n"),
-            "2:3: expected a functor such as stop() before the words that mean it");
-  EXPECT_EQ(mistake("keyword: f\nstop()\nhalt()\n  halt\n"),
-            "2:1: expected a line with words below stop");
-  EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now | \n"), "3:15: expected a word");
-  EXPECT_EQ(mistake("keyword: f\nurgent\n  stop\n"), "2:7: expected a functor");
-  EXPECT_EQ(mistake("keyword: f\nurgent stop()\n"), "2:1: expected a line with words below stop");
-  EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now\n"), "3:12: expected )");
-  EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <side:degrees>\n"),
-            "3:9: there is no list \"side\" above this line");
-  EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <number:angle>\n"),
-            "3:16: the functor turn has no slot \"angle\"");
-  EXPECT_EQ(mistake("keyword: f\ntell(x)\n  tell {x ...} now\n"),
-            "3:16: expected the end of the line after {x ...}");
-  EXPECT_EQ(mistake("keyword: f\ntell(x)\n  tell (a {x ...} | b) c\n"),
-            "3:19: expected the end of the line after {x ...}");
-  EXPECT_EQ(mistake("keyword: f\nstop( \"I stop\"\n  stop\n"), "2:7: expected the name of a slot");
-  EXPECT_EQ(mistake("keyword: f\nsteps: trun\nturn()\n  turn\n"),
-            "2:8: there is no functor \"trun\": did you mean turn?");
-  EXPECT_EQ(mistake("keyword: f\nturn(side) \"I turn $sid\"\n  turn\n"),
-            "2:20: the functor turn has no slot \"sid\"");
-  EXPECT_EQ(mistake("keyword: f\nlist a: b\nlist a: c\n"),
-            "3:6: the list \"a\" stands above already");
+  const auto parse = [](const std::string& text) { Grammar(text, "f"); };
+  EXPECT_EQ(test::each_mistake("services/agent_interface/test/mistakes.txt", parse), 16);
   EXPECT_EQ(mistake("keyword: f\nstop()\n  " + std::string(20'000, '(')),
             "3:54: expected no more than 50 brackets within each other");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lines.hpp"
 #include "process.hpp"
 #include "saphira/behaviors/executive.hpp"
 
@@ -238,68 +239,19 @@ TEST(Language, TellsWhatIsNotANumberAndDoesNotDriveByIt) {
 }
 
 TEST(Language, MistakesAreShownWhereTheyAre) {
-  const auto rule = [](const std::string& text) { return with_update("x = 1; v = 1;", text); };
-  const auto update = [](const std::string& text) { return with_update("x = 1; v = 1;\n" + text); };
-  struct Case {
-    std::string text;
-    int line;
-    int column;
-    std::string expected;
-  };
-  const Case cases[] = {
-      {"", 1, 1, "there is no behavior in this file"},
-      {"Hello", 1, 1, "expected \"BeginBehavior\", found \"Hello\""},
-      {"BeginBehavior 7", 1, 15, "expected the name of the behavior, found \"7\""},
-      {"BeginBehavior X\nRules\n", 2, 1, "expected \"Params\", found \"Rules\""},
-      {rule("If y Then Speed v"), 7, 6, "unknown variable \"y\""},
-      {rule("If x Speed v"), 7, 8, "expected \"Then\", \"And\" or \"Or\", found \"Speed\""},
-      {rule("If x Then Turn Up"), 7, 18, "unknown variable \"Up\""},
-      {rule("If x Then Turn Left Very Fast"), 7, 28, "expected \"Slowly\" or \"Sharply\""},
-      {rule("If x And Then Speed v"), 7, 12, "expected a fuzzy variable"},
-      {rule("If (x Then Speed v"), 7, 9, "expected \")\", \"And\" or \"Or\""},
-      {rule("If 1.5 Then Speed v"), 7, 6, "expected a fuzzy value from 0 to 1"},
-      {rule("If x Then Speed"), 8, 1, "expected a variable or a number, found \"Update\""},
-      {rule("If a Then Speed v"), 7, 6, "expected a number, and \"a\" is a point"},
-      {rule("r If x Then Speed v r If x Then Speed v"), 7, 23, "the rule \"r\" is there twice"},
-      {update("float q = p + sdie;"), 10, 15, "unknown variable \"sdie\": did you mean side?"},
-      {update("float q = sqrt(a);"), 10, 16,
-       "argument 1 of sqrt: expected a number, found a point"},
-      {update("float q = sfPointPhi(p);"), 10, 22, "expected a point, found a number"},
-      {update("float q = sfPointPhy(a);"), 10, 11, "did you mean sfPointPhi?"},
-      {update("x = zzz(1);"), 10, 5, "unknown function \"zzz\": expected one of sfPointPhi, "},
-      {update("float q = sqrt(1, 2);"), 10, 11, "expected 1 argument of sqrt, found 2"},
-      {update("float q = 1 +;"), 10, 14, "expected a number, a variable, a call or \"(\""},
-      {update("float q = (1;"), 10, 13, "expected \")\" or an operator"},
-      {update("float q = 1\nx = 2;"), 11, 1, "expected \";\", \",\" or \"=\", found \"x\""},
-      {update("float v;"), 10, 7, "\"v\" is declared twice; before in line 9"},
-      {update("p = 3;"), 10, 1, "\"p\" is a parameter: it cannot be set"},
-      {update("while (x) x = 1;"), 10, 1, "there is no \"while\" in this language"},
-      {update("x + 1;"), 10, 1, "expected an assignment or a call"},
-      {update("x = sfSetGoal(1, 2);"), 10, 5, "this call gives nothing"},
-      {update("x = a;"), 10, 5, "expected a number, found a point"},
-      {update("x = side == \"up\";"), 10, 13, "expected \"auto\" or \"left\", found \"up\""},
-      {update("x = side;"), 10, 5, "can only be compared with a text"},
-      {update("x = a.z;"), 10, 5, "expected the field x, y or th"},
-      {update("x = 1 / 0;"), 10, 7, "expected another number to divide by"},
-      {update("x = $;"), 10, 5, "expected a name, a number or a sign"},
-      {update("x = 1e99;"), 10, 5, "expected a number of at most 1e12"},
-      {update("float sqrt = 1;"), 10, 7, "expected another name"},
-      {update("/* no end"), 10, 1, "expected \"*/\""},
-      {with_update("x = 1; v = 1;") + "BeginBehavior Test", 13, 15,
-       "the behavior \"Test\" is there twice"},
-  };
-  for (const Case& one : cases) {
-    const Compiled compiled = compile(one.text, "m.beh");
+  const auto parse = [](const std::string& text) {
+    const std::string good = with_update("x = 1; v = 1;");
+    const Compiled compiled =
+        compile(text.starts_with("rule ")     ? with_update("x = 1; v = 1;", text.substr(5))
+                : text.starts_with("update ") ? with_update("x = 1; v = 1;\n" + text.substr(7))
+                : text == "twice"             ? good + "BeginBehavior Test"
+                                              : text,
+                "m.beh");
     EXPECT_TRUE(compiled.schemas.empty());
-    ASSERT_FALSE(compiled.errors.empty()) << one.text;
-    bool seen = false;
-    for (const FileError& error : compiled.errors)
-      seen = seen || (error.line() == one.line && error.column() == one.column &&
-                      std::string(error.what()).find(one.expected) != std::string::npos);
-    EXPECT_TRUE(seen) << one.line << ":" << one.column << " " << one.expected << "\n"
-                      << one.text << "\n"
-                      << all(compiled.errors);
-  }
+    if (!compiled.errors.empty())
+      throw compiled.errors.front();
+  };
+  EXPECT_EQ(test::each_mistake("services/behaviors/test/mistakes.txt", parse), 38);
 }
 
 TEST(Language, AFileOfAnotherKindGivesOneMessage) {

@@ -103,33 +103,8 @@ TEST_P(ShellTest, CommandsWhatIsIntended) {
   EXPECT_TRUE(told.behaviors.empty());
 }
 
-TEST_P(ShellTest, ANewEpochBeginsAnew) {
-  describe();
-  one({behavior("ConstantVelocity", 2)});
-  one({behavior("ConstantVelocity", 2)});
-  EXPECT_TRUE(command.active);
-  epoch = 78;
-  cycle = 0;
-  describe();
-  one({behavior("Stop", 2)});
-  EXPECT_FALSE(command.active);
-  one({});
-  EXPECT_TRUE(command.active);
-  EXPECT_EQ(told.behaviors.at(0).schema, "Stop");
-}
-
 class LiveShellTest : public ShellTest {};
 INSTANTIATE_TEST_SUITE_P(Live, LiveShellTest, testing::Values(false));
-
-TEST_P(LiveShellTest, ReleasesWhenTheIntentIsOld) {
-  describe();
-  one({behavior("ConstantVelocity", 2)});
-  for (int age = 1; age <= 4; ++age) {
-    state();
-    step();
-    EXPECT_EQ(command.active, age <= 2) << age;
-  }
-}
 
 TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   bus::Reader<v1::ServiceStatus> statuses{bridge.reader(bus::topics::kStatus)};

@@ -1,8 +1,8 @@
 // The activities of activities.txt.
-#include <cctype>
 #include <memory>
 #include <sstream>
 
+#include "arguments.hpp"
 #include "language_bench.hpp"
 #include "lines.hpp"
 #include "saphira/base/text.hpp"
@@ -24,7 +24,7 @@ std::string digits(double value) {
 }
 
 /// One case.
-class Script {
+class Script : public test::LinePlayer {
  public:
   /// A line of the activities; or, behind them, an event or an expectation.
   void take(const std::string& line) {
@@ -42,8 +42,8 @@ class Script {
       happen(verb, in);
       return;
     }
-    EXPECT_EQ(fact(line.substr(0, colon), verb, in),
-              line.size() > colon + 2 ? line.substr(colon + 2) : "");
+    expect_like(fact(line.substr(0, colon), verb, in),
+                line.size() > colon + 2 ? line.substr(colon + 2) : "");
   }
 
  private:
@@ -58,6 +58,12 @@ class Script {
       return stage_->messages.back();
     if (what == "sentences")
       return std::to_string(stage_->messages.size());
+    if (what == "nodes")
+      return std::to_string(stage_->out.nodes.size());
+    if (what == "first behavior") {
+      const IntendedBehavior& first = stage_->out.behaviors.at(0);
+      return first.schema + "/" + std::to_string(first.priority) + " " + describe(first.parameters);
+    }
     if (what == "behavior control")
       return stage_->out.behavior_control ? "yes" : "no";
     std::string name;
@@ -71,6 +77,7 @@ class Script {
            : verb == "step"     ? status.step
            : verb == "progress" ? digits(status.progress)
            : verb == "level"    ? digits(status.level)
+           : verb == "trend"    ? digits(status.trend)
                                 : "no such fact: " + what;
   }
 
@@ -83,15 +90,10 @@ class Script {
     if (verb == "begin" && in >> id >> name >> cycles) {
       stage_->begin(id, name, cycles);
     } else if (verb == "ask" && in >> id >> name) {
-      Arguments arguments;
-      int priority = 0;
-      while (in >> more) {
-        if (more == "priority")
-          in >> priority;
-        else
-          arguments.push_back(argument(more));
-      }
-      stage_->ask(id, name, arguments, priority);
+      std::getline(in, more);
+      const std::size_t at = std::min(more.find(" priority "), more.size());
+      stage_->ask(id, name, test::arguments_of(more.substr(0, at)),
+                  at < more.size() ? std::stoi(more.substr(at + 10)) : 0);
     } else if (verb == "step" && in >> cycles) {
       stage_->step(cycles);
     } else if (verb == "withdraw" && in >> id) {
@@ -105,6 +107,25 @@ class Script {
       stage_->satisfy(name, level, cycles);
     } else if (verb == "claim" && in >> name >> more) {
       claim(*stage_, name, more == "t");
+    } else if (verb == "say" && in >> name && std::getline(in >> std::ws, more)) {
+      stage_->inputs.claims.push_back(
+          {ClaimEvent::Kind::kSaid, {9, ++claims_}, "a person", name, Value(more)});
+    } else if (verb == "keep" && in >> name >> id) {
+      kept_[name] = stage_->out.nodes.at(id).id;
+    } else if ((verb == "interrupt" || verb == "not-interrupt") && in >> name) {
+      EXPECT_EQ(stage_->executor->interrupt(kept_.at(name)), verb == "interrupt");
+    } else if ((verb == "resume" || verb == "not-resume") && in >> name) {
+      EXPECT_EQ(stage_->executor->resume(kept_.at(name)), verb == "resume");
+    } else if (verb == "level" && in >> level) {
+      stage_->level = level;
+    } else if (verb == "odom" && in >> id) {
+      stage_->inputs.robot.odom = id;
+    } else if (verb == "at" && std::getline(in, more)) {
+      stage_->inputs.robot.pose_in_odom = test::pose_of(more);
+    } else if (verb == "odom-in-map" && std::getline(in, more)) {
+      stage_->inputs.robot.odom_in_map = test::pose_of(more);
+    } else if (verb == "lost") {
+      stage_->inputs.robot.odom_in_map.reset();
     } else if (verb == "trouble" && std::getline(in >> std::ws, more)) {
       stage_->inputs.troubles = {{stage_->out.behaviors.at(0).name, more}};
     } else {
@@ -112,21 +133,14 @@ class Script {
     }
   }
 
-  /// Of "n=2" or "what=b".
-  static Argument argument(const std::string& text) {
-    const std::size_t at = text.find('=');
-    const std::string value = text.substr(at + 1);
-    return std::isdigit(static_cast<unsigned char>(value[0])) != 0
-               ? number(text.substr(0, at), std::stod(value))
-               : saphira::text(text.substr(0, at), value);
-  }
-
   std::string activities_;
   std::unique_ptr<Stage> stage_;
+  std::map<std::string, std::uint32_t> kept_{{"nobody", 4711}};  ///< intentions by a name
+  std::uint64_t claims_ = 0;
 };
 
 TEST(ActivitiesInWords, DoAsWritten) {
-  EXPECT_EQ(test::play<Script>("services/intentions/test/activities.txt", ';'), 41);
+  EXPECT_EQ(test::play<Script>("services/intentions/test/activities.txt", ';'), 57);
 }
 
 }  // namespace

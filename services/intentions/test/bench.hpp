@@ -11,6 +11,30 @@
 
 namespace saphira::intentions {
 
+/// "BLOCKED" of CODE_BLOCKED.
+inline std::string code_name(GoalCode code) {
+  static const std::map<GoalCode, std::string> kNames{{v1::CODE_UNKNOWN_FUNCTOR, "UNKNOWN_FUNCTOR"},
+                                                      {v1::CODE_BAD_ARGUMENT, "BAD_ARGUMENT"},
+                                                      {v1::CODE_CHANGED, "CHANGED"},
+                                                      {v1::CODE_DEADLINE, "DEADLINE"},
+                                                      {v1::CODE_NO_ROBOT, "NO_ROBOT"},
+                                                      {v1::CODE_NO_ROUTE, "NO_ROUTE"},
+                                                      {v1::CODE_APPROVAL, "APPROVAL"},
+                                                      {v1::CODE_DISPOSED, "DISPOSED"},
+                                                      {v1::CODE_WRITER_LOST, "WRITER_LOST"},
+                                                      {v1::CODE_PREEMPTED, "PREEMPTED"},
+                                                      {v1::CODE_STOPPED, "STOPPED"},
+                                                      {v1::CODE_BLOCKED, "BLOCKED"},
+                                                      {v1::CODE_NO_POSITION, "NO_POSITION"},
+                                                      {v1::CODE_TIMEOUT, "TIMEOUT"}};
+  const auto found = kNames.find(code);
+  return found == kNames.end() ? std::to_string(code) : found->second;
+}
+/// Of "7:1".
+inline v1::StopId stop_of(const std::string& text) {
+  return {std::stoull(text), std::stoull(text.substr(text.find(':') + 1))};
+}
+
 /// An executor with a scripted robot, stepped by hand.
 class Bench {
  public:

@@ -119,10 +119,6 @@ class RegistrationShell : public testing::Test {
     EXPECT_EQ(answer->number, number);
     return from_bus(*answer);
   }
-  bool done(const Request& asked) { return ask(asked).code == AnswerCode::done; }
-  static Request load(const std::string& name, const std::string& text) {
-    return {"load", {{"name", name}, {"text", text}}};
-  }
   static Request put(const char* type, const Pose& pose_in_map, double size) {
     return {"put",
             {{"type", std::string(type)},
@@ -247,24 +243,6 @@ TEST_F(RegistrationShell, AThingThatIsNotThereIsTakenFromTheMapOfAPerson) {
   // And the crate is not put onto it.
   ASSERT_TRUE(drive.scene().set_box("crate", {5.0, 7.7, 0.0}));
   EXPECT_FALSE(tour_until([&] { return crate() != nullptr; }, 1200));
-}
-
-TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
-  const Options options{map_path("office"), "start", folder.path("memory")};
-  start(options);
-  ASSERT_TRUE(drive.scene().set_door("n2", false));
-  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors.empty(); }, 1200));
-  EXPECT_EQ(registration.closed_doors, std::vector<std::uint32_t>{112});
-  restart(options);
-  EXPECT_EQ(registration.closed_doors, std::vector<std::uint32_t>{112});
-  ASSERT_TRUE(drive.scene().set_door("n2", true));
-  EXPECT_TRUE(tour_until([&] { return registration.closed_doors.empty(); }, 1200));
-  EXPECT_NE(maps::find(known_map(), 112), nullptr);
-  // On another map it is another door.
-  ASSERT_TRUE(drive.scene().set_door("n2", false));
-  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors.empty(); }, 1200));
-  EXPECT_TRUE(done(load("another", read_file(map_path("office")))));
-  EXPECT_TRUE(registration.closed_doors.empty());
 }
 
 TEST_F(RegistrationShell, ABadMemoryIsNone) {

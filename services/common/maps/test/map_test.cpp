@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "broken_text.hpp"
+#include "lines.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/topology.hpp"
@@ -182,37 +182,11 @@ TEST(Map, WhatNoFileHoldsIsNotWritten) {
     EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
 }
 
-using test::Broken;
-
-class BrokenMap : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenMap, SaysWhereAndWhatWasExpected) {
-  test::expect_mistake(GetParam(), [](const char* text) { parse_map(text, "broken.map"); });
+TEST(MapFile, MistakesSayWhereAndWhatWasExpected) {
+  EXPECT_EQ(test::each_mistake("services/common/maps/test/mistakes.txt",
+                               [](const std::string& text) { parse_map(text, "broken.map"); }),
+            20);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, BrokenMap,
-    ::testing::Values(
-        Broken{"\nHALL (1) 0, 0, 0, 1000, 2000\n", 2, 1, "POS, found \"HALL\""},
-        Broken{"DOOR 0, 0, 0, 900\n", 1, 6, "the id of the DOOR in parentheses"},
-        Broken{"DOOR\n", 1, 5, "the id of the DOOR in parentheses"},
-        Broken{"WALL (1) 0, 0, 0, 900\n", 1, 6, "a WALL has no id"},
-        Broken{"DOOR (0) 0, 0, 0, 900\n", 1, 7, "between 1 and"},
-        Broken{"DOOR (1.5) 0, 0, 0, 900\n", 1, 7, "whole number"},
-        Broken{"DOOR (1 0, 0, 0, 900\n", 1, 9, "closing parenthesis"},
-        Broken{"DOOR (1) 0, 0, 0, 900\nDOOR (1) 5, 5, 0, 900\n", 2, 7, "line 1 has 1"},
-        Broken{"DOOR (1) 0, 0, 0\n", 1, 17, "the width in mm, found the end"},
-        Broken{"DOOR (1) 0, 0, 0, ; 900\n", 1, 19, "the width in mm, found the end"},
-        Broken{"DOOR (1) 0, zero, 0, 900\n", 1, 13, "y in mm"},
-        Broken{"DOOR (1) 0,, 0, 900\n", 1, 12, "y in mm"},
-        Broken{"DOOR (1) 0, 0, 0, -900\n", 1, 19, "between 1 and"},
-        Broken{"WALL 0, 0, 4000, 900\n", 1, 12, "theta in degrees between -3600"},
-        Broken{"WALL 0, 0, 0, 900, 5\n", 1, 18, "a name in quotation marks or the end"},
-        Broken{"POS (1) 0, 0, 0 \"a\" \"b\"\n", 1, 21, "the end of the line"},
-        Broken{"POS (1) 0, 0, 0 \"a\n", 1, 17, "closing \""},
-        Broken{"POS (1) 0, 0, 0 \"\"\n", 1, 17, "a name between"},
-        Broken{"POS (1) 0, 0, 0 \"a\rb\"\n", 1, 17, "without control characters"},
-        Broken{"POS (1) 0, 0, nan\n", 1, 15, "a number (theta"}));
 
 TEST(MapFile, ThatIsUnlikelyIsRefused) {
   const std::string path =
