@@ -60,6 +60,15 @@ double resident_mb(pid_t pid) {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
+double proportional_mb(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/smaps_rollup");
+  double kilobytes = 0.0;
+  for (std::string word; in >> word;)
+    if (word == "Pss:")
+      in >> kilobytes;
+  return kilobytes * 1024.0 / 1e6;
+}
+
 std::vector<pid_t> family(pid_t pid) {
   std::vector<pid_t> all{pid};
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -23,6 +23,8 @@ std::string output_of(const std::vector<std::string>& argv);
 /// CPU seconds of a process, and its resident memory [MB]. 0 when it is gone.
 double cpu_seconds(pid_t pid);
 double resident_mb(pid_t pid);
+/// [MB] The proportional set size of a process; 0 when it is gone.
+double proportional_mb(pid_t pid);
 /// The process and all its descendants.
 std::vector<pid_t> family(pid_t pid);
 
