@@ -150,6 +150,7 @@ TEST(FollowTrail, GoesAroundTheSameCornerAndToItsEnd) {
   for (int i = 0; i < 300; ++i) {
     const Pose place = person(bench.cycle + 1);
     bench.things[0].pose_in_odom = place;
+    bench.things[0].velocity_in_odom = place.x < 3.0 ? Vec2(0.5, 0.0) : Vec2(0.0, 0.5);
     if (place.y < 2.0)
       bench.things[0].seen = bench.cycle + 1;
     bench.step();
@@ -164,6 +165,33 @@ TEST(FollowTrail, GoesAroundTheSameCornerAndToItsEnd) {
   EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY);
   EXPECT_EQ(bench.status(1).step, "going where it saw a person last");
   EXPECT_NEAR(find(bench.out.behaviors[0].parameters, "goal")->point.y, 1.95, 0.1);
+  // A forgotten person: it faces where they went, and stands.
+  bench.things.clear();
+  bench.step();
+  const Arguments& faces = bench.out.behaviors[0].parameters;
+  EXPECT_NEAR(find(faces, "goal")->point.x, 3.0, 0.1);
+  EXPECT_NEAR(find(faces, "goal")->point.y, 1.95 + 5.0, 0.1);
+  EXPECT_EQ(find(faces, "radius")->number, 10.0);
+}
+
+TEST(FollowTrail, IsAsFastAsThePersonAtTheDistanceAndFasterBeyondIt) {
+  const auto speed = [](double away, double leaves) {
+    Bench bench;
+    bench.things.resize(1);
+    bench.things[0].id = 7;
+    bench.things[0].pose_in_odom = {away, 0.0, 0.0};
+    bench.things[0].velocity_in_odom = {leaves, 0.0};
+    bench.things[0].seen = bench.cycle + 1;
+    bench.begin(1, "follow-trail", {number("distance", 1.2), number("speed", 0.8)});
+    const Arguments& intended = bench.out.behaviors.at(0).parameters;
+    return find(intended, "radius")->number == 10.0 ? 0.0 : find(intended, "speed")->number;
+  };
+  EXPECT_EQ(speed(1.19, 0.3), 0.0);
+  EXPECT_NEAR(speed(1.21, 0.3), 0.31, 1e-9);
+  EXPECT_NEAR(speed(1.5, 0.3), 0.6, 1e-9);
+  EXPECT_NEAR(speed(1.5, 0.0), 0.3, 1e-9);
+  EXPECT_NEAR(speed(1.5, -0.5), 0.05, 1e-9) << "who comes is let come";
+  EXPECT_NEAR(speed(3.0, 0.3), 0.8, 1e-9);
 }
 
 // Some robots do not report that their motors are off.

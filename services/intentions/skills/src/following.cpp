@@ -14,10 +14,20 @@ namespace saphira::intentions {
 namespace {
 
 constexpr double kStride = 0.2;     // [m] between places of a trail
-constexpr double kLookAhead = 0.8;  // [m] to the place of the trail that the robot heads for
+constexpr double kLookAhead = 0.8;  // [m] to the place of the trail that the robot heads for...
+constexpr double kAlong = 1.0;      // [m] ...where the person in sight has walked straight on
+constexpr double kBefore = 0.5;     // of the distance to the person: it is that far before them
 constexpr double kAtEnd = 0.3;      // [m]
+constexpr double kFast = 0.05;      // [m] radius of a place to which the robot does not slow down
+constexpr double kStands = 10.0;    // [m] radius of a place that it only faces
 constexpr double kPlaced = 0.3;     // [s] since the person was seen: a place, not a guess
-constexpr double kKeeps = 0.8;      // of the distance to the person: there AttendAtPos stands
+constexpr double kFollowed = 1.0;   // [s] since then
+constexpr double kInPicture = radians(15.0);  // from straight ahead, of the 30 that cameras see
+
+/// [rad] From the robot, between two places.
+double between(const Vec2& one, const Vec2& other) {
+  return std::abs(norm2_angle(std::atan2(one.y(), one.x()) - std::atan2(other.y(), other.x())));
+}
 
 class Follow : public Activity {
  public:
@@ -35,7 +45,7 @@ class Follow : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const World& world = self.world();
-    auto& [who, trail] = now_;
+    auto& [who, trail, went] = now_;
     const std::size_t places = trail.places();
     if (!who)
       if (const std::optional<Value> found =
@@ -45,22 +55,40 @@ class Follow : public Activity {
         if (const Reference* const person = found->reference())
           who = person->id;
     const lps::SeenThing* const thing = who ? seen_thing(world, *who) : nullptr;
-    const bool in_sight = thing != nullptr && seconds_unseen(world, *thing) <= kPlaced;
-    if (in_sight)
+    const double unseen = thing == nullptr ? kFollowed + 1.0 : seconds_unseen(world, *thing);
+    const bool in_sight = unseen <= kFollowed;
+    if (unseen <= kPlaced) {
       trail.add(thing->pose_in_odom.position());
-    trail.reach(self.robot().pose_in_odom.position());
+      went = thing->velocity_in_odom;
+    }
+    const Vec2 robot = self.robot().pose_in_odom.position();
+    trail.reach(robot);
     const double left = trail.length();
+    const Vec2 to_end = trail.at(left) - robot;
     const double near = in_sight ? distance_ : kAtEnd;
     // The trail of a person who comes back is longer than the straight way.
-    const bool there =
-        left <= near ||
-        (in_sight && (trail.at(left) - self.robot().pose_in_odom.position()).norm() <= near);
-    const Vec2 goal = trail.at(there ? left : std::min(left, kLookAhead));
-    self.intend_behavior(
-        "track", "AttendAtPos", kTask,
-        {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
-         number("radius", there ? near : kAtEnd),
-         number("speed", std::min(speed_, kSlow + std::max(0.0, left - kKeeps * near)))});
+    const bool there = left <= near || (in_sight && to_end.norm() <= near);
+    const bool straight = in_sight && between(trail.at(kLookAhead) - robot,
+                                              trail.at(2.0 * kLookAhead) - robot) < kInPicture;
+    // KeepOff steers around what is before the goal: so the goal is before the person.
+    double ahead = in_sight ? std::min(straight ? kAlong : kLookAhead, left - kBefore * distance_)
+                            : std::min(left, kLookAhead);
+    // Fixed cameras keep a person in the picture who walks around a corner.
+    while (in_sight && world.around.head_reach == 0.0 && ahead < left &&
+           between(trail.at(ahead) - robot, to_end) > kInPicture)
+      ahead += kStride;
+    Vec2 goal = trail.at(there ? left : ahead);
+    // At the end of the trail the robot faces where the person has gone.
+    if (there && !in_sight)
+      goal = thing != nullptr ? thing->pose_in_odom.position() : Vec2(goal + kStands * went);
+    const double pace =
+        in_sight ? thing->velocity_in_odom.dot(to_end.normalized()) + left - near : left;
+    self.intend_behavior("track", "AttendAtPos", kTask,
+                         {point("goal", {goal.x(), goal.y(), 0.0}, Frame::odom),
+                          number("radius", there      ? kStands
+                                           : straight ? kFast
+                                                      : kAtEnd),
+                          number("speed", std::min(speed_, std::max(kSlow, pace)))});
     self.level(there ? 1.0 : 0.0);
     self.say(in_sight ? "following a person" : "going where it saw a person last");
     if (trail.places() != places)
@@ -83,6 +111,7 @@ class Follow : public Activity {
   struct Now {
     std::optional<std::uint64_t> who;
     Trail trail;
+    Vec2 went{0.0, 0.0};  ///< [m/s] where the person was seen last
   };
   Now now_;
 };
@@ -144,7 +173,7 @@ Schema follow_trail() {
   place.name = "place";
   place.kind = ArgumentKind::point;
   follow.parameters = {place, quantity("distance", "m", 0.5, 5.0, 1.2),
-                       quantity("speed", "m/s", 0.05, 1.0, 0.8)};
+                       quantity("speed", "m/s", 0.05, 1.0, 1.0)};
   follow.make = [](const Arguments& arguments) -> std::unique_ptr<Activity> {
     return std::make_unique<Follow>(arguments);
   };
