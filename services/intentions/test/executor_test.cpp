@@ -16,7 +16,7 @@ TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   bench.begin(1, "go_to", wrong);
   const std::string whole = bench.status(1).reason;
   ASSERT_GT(whole.size(), kLongestReason);
-  Bench again(bench.memory());
+  Bench again(bench.memory);
   again.begin(1, "go_to", wrong);
   EXPECT_EQ(again.state(1), v1::GOAL_REFUSED);
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
