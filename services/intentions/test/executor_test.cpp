@@ -52,6 +52,19 @@ TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
   }
 }
 
+// Killed after it wrote the ending, and before it wrote its work.
+TEST(Executor, AnEndedGoalIsNotTakenUpAgain) {
+  Bench before;
+  before.begin(1, "drive", kSlow);
+  ASSERT_EQ(before.memory.work.goals.size(), 1U);
+  before.memory.endings = {{{1, 1}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "done"}};
+  Bench bench(before.memory);
+  bench.begin(1, "drive", kSlow);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  EXPECT_TRUE(bench.memory.work.goals.empty());
+}
+
 TEST(Executor, ARepetitionChangesNothing) {
   Bench bench;
   bench.world.held = true;

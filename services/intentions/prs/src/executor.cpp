@@ -13,6 +13,8 @@ namespace {
 
 /// The longest wait for the place of the robot, after a restart.
 constexpr Ticks kFindsPlace = 50;
+/// A goal from before a restart that is not heard for so long has been withdrawn.
+constexpr Ticks kUnheard = 6000;
 /// The publishing period of the status of an open goal.
 constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
@@ -238,6 +240,8 @@ void Executor::pass_time(const Inputs& inputs) {
   awake_ += std::min(passed, kLongestStep);
   epoch_ = inputs.epoch;
   cycle_ = inputs.cycle;
+  if (awake_ - recalled_ > kUnheard)
+    unheard_.clear();
 }
 
 // --- goals from the bus

@@ -22,8 +22,8 @@ constexpr std::size_t kMostRemembered = 256;
 struct Forest::Tree {
   Forest& forest;
   const MakeRoot& make_root;
-  std::vector<std::uint32_t> ids;                                    ///< parents first
-  std::map<std::string, std::pair<std::uint32_t, Value>> beliefs{};  ///< that end with a node
+  std::vector<std::uint32_t> ids;                                     ///< parents first
+  std::map<std::string, std::pair<std::uint32_t, Belief>> beliefs{};  ///< that end with a node
   bool control_off = false;
 
   void archive(Archive& a) {
@@ -44,7 +44,7 @@ Saved Forest::save(std::uint32_t root) {
   Tree tree{*this, {}, {ids.begin(), ids.end()}};
   for (const auto& [name, id] : whiles_)
     if (const Belief* const belief = beliefs_->stored(name); ids.contains(id) && belief != nullptr)
-      tree.beliefs[name] = {id, belief->value};
+      tree.beliefs[name] = {id, *belief};
   tree.control_off = control_off_.contains(root);
   return {saved(tree)};
 }
@@ -63,10 +63,9 @@ void Forest::restore(std::uint32_t root, const Saved& saved, const MakeRoot& mak
     throw;
   }
   roots_.push_back(root);
-  for (const auto& [name, belief] : tree.beliefs) {
-    const auto& [id, value] = belief;
-    whiles_[name] = id;
-    beliefs_->set(name, value, at(id)->shown.schema, now_);
+  for (const auto& [name, own] : tree.beliefs) {
+    whiles_[name] = own.first;
+    beliefs_->set(own.second.name, own.second.value, own.second.said_by, own.second.since);
   }
   if (tree.control_off) {
     control_off_.insert(root);
