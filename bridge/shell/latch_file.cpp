@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::bridge {
 namespace {
@@ -26,16 +26,17 @@ authority::Latches LatchFile::read() const {
   std::error_code error;
   if (path_.empty() || (!std::filesystem::exists(path_, error) && !error))
     return {};
-  // The file exists because of a latch: an empty one is as bad as a damaged one.
-  std::ostringstream content;
-  content << std::ifstream(path_).rdbuf();
-  return authority::latches_from_text(content.str().empty() ? "?" : content.str());
+  try {
+    return restored<authority::Latches>(unsealed(read_bytes(path_), path_));
+  } catch (const std::exception&) {  // the file exists because of a latch
+    return {true, "unknown: the saved emergency stop cannot be read", authority::Wait::driven};
+  }
 }
 
 std::string LatchFile::write(const authority::Latches& latches) {
   if (path_.empty())
     return {};
-  unkept_ = authority::to_text(latches);
+  unkept_ = latches == authority::Latches{} ? "" : sealed(saved(latches));
   if (!keep(*unkept_))
     return path_ + ": " + std::strerror(errno);
   unkept_.reset();

@@ -14,7 +14,8 @@ namespace saphira::cli {
 class Bridges {
  public:
   explicit Bridges(bus::Node& node)
-      : census_(node),
+      : node_(node),
+        census_(node),
         grants_(node.reader(bus::topics::kGrant)),
         roll_(std::chrono::duration<double>(listening_time(node)).count()),
         robot_(node.options().robot),
@@ -28,10 +29,11 @@ class Bridges {
     for (const bus::WriterId& lost : grants_.take_lost())
       heard_.erase(lost);
     std::erase_if(heard_, [](const auto& one) { return seconds_since(one.second.came) > kSilent; });
-    std::vector<bus::Announcer> announced = census_.announcers();
+    std::vector<bus::ProgramEntry> announced = bus::found_programs(node_);
     // With --robot NAME a program of every robot is met as well.
-    std::erase_if(announced,
-                  [&](const bus::Announcer& one) { return !every_robot_ && one.robot != robot_; });
+    std::erase_if(announced, [&](const bus::ProgramEntry& one) {
+      return one.silent || one.refused || (!every_robot_ && one.robot != robot_);
+    });
     roll_.update(announced, heard(), now());
   }
   std::size_t count() const { return roll_.count(); }
@@ -95,6 +97,7 @@ class Bridges {
     return writers;
   }
 
+  bus::Node& node_;
   bus::Census census_;
   bus::Reader<v1::Grant> grants_;
   watch::Roll roll_;

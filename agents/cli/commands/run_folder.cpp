@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/archive.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -248,7 +249,7 @@ std::vector<Running> running_deployments() {
 }
 
 FoundBus::FoundBus(const RunningBus& bus) {
-  const std::string text = to_text(bus);
+  const std::string text = saved(bus) + "\n";
   for (const std::string& folder : {chosen_folder(), memory_folder(getuid())}) {
     // Readable for others on this machine: a service has another user than the people who command
     // it.
@@ -300,8 +301,11 @@ std::vector<RunningBus> running_buses() {
         unlink(path.c_str());
         continue;
       }
-      if (auto bus = parse_running_bus(text))
-        found.push_back({entry.last_write_time(none), std::move(*bus)});
+      try {
+        found.push_back({entry.last_write_time(none), restored<RunningBus>(text)});
+      } catch (const std::runtime_error&) {  // of another version, or not whole yet
+        continue;
+      }
     }
   std::ranges::sort(found, [](const Found& one, const Found& other) { return one.at > other.at; });
   std::vector<RunningBus> buses;

@@ -1,34 +1,8 @@
 #include "saphira/cli/running_bus.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "saphira/bus/node.hpp"
 
 namespace saphira::cli {
-
-std::string to_text(const RunningBus& bus) {
-  return nlohmann::json{{"what", bus.what},
-                        {"robot", bus.robot},
-                        {"domain", bus.domain},
-                        {"profile", bus.profile},
-                        {"peers", bus.peers},
-                        {"interface", bus.interface},
-                        {"deployment", bus.deployment},
-                        {"security", bus.security}}
-             .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-         "\n";
-}
-
-std::optional<RunningBus> parse_running_bus(std::string_view text) {
-  try {
-    const nlohmann::json json = nlohmann::json::parse(text);
-    return RunningBus{json.at("what"),       json.at("robot"),          json.at("domain"),
-                      json.at("profile"),    json.at("peers"),          json.at("interface"),
-                      json.at("deployment"), json.value("security", "")};
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;
-  }
-}
 
 std::optional<RunningBus> bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running,
                                     const GivenOptions& given) {

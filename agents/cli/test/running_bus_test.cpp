@@ -10,15 +10,6 @@ const RunningBus kDemo{"the demo", "demo-17", 77, "host", {}, "", false};
 const RunningBus kLaptop{"the deployment laptop",  "pioneer",  0,   "wan",
                          {"10.0.0.2", "10.0.0.3"}, "10.0.0.1", true};
 
-TEST(RunningBus, IsKeptAsText) {
-  const auto read = parse_running_bus(to_text(kLaptop));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(to_text(*read), to_text(kLaptop));
-  EXPECT_EQ(read->peers.size(), 2U);
-  for (const char* const text : {"", "{", "[]", "{\"what\":1}", "pioneer 0"})
-    EXPECT_FALSE(parse_running_bus(text)) << text;
-}
-
 std::string meant(const std::vector<RunningBus>& running, const RunningBus& usual = kUsual,
                   const GivenOptions& given = {}) {
   const auto bus = bus_meant(usual, running, given);
@@ -79,14 +70,6 @@ TEST(RunningBus, CredentialsAreThePersonsOwn) {
   person.security = "none";
   ASSERT_TRUE(bus_meant(person, {secured}));
   EXPECT_EQ(bus_meant(person, {secured})->security, secured.security);
-}
-
-TEST(RunningBus, ATextWithoutCredentialsLeavesThemOpen) {
-  const auto read = parse_running_bus(
-      R"({"what":"","robot":"fresh","domain":0,"profile":"host","peers":[],"interface":"",)"
-      R"("deployment":true})");
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->security, "");
 }
 
 TEST(RunningBus, SaysTheOptionsThatAPersonWouldGive) {

@@ -10,20 +10,20 @@ Roll::Id Roll::id_of(const bus::WriterId& writer) {
   return id;
 }
 
-void Roll::update(const std::vector<bus::Announcer>& announced,
+void Roll::update(const std::vector<bus::ProgramEntry>& announced,
                   const std::set<bus::WriterId>& writers, double now) {
   std::set<Id> programs;
   std::set<Id> bridges;
   std::map<Id, std::string> robots;
   for (const bus::WriterId& writer : writers)
     bridges.insert(id_of(writer));
-  for (const bus::Announcer& one : announced) {
+  for (const bus::ProgramEntry& one : announced) {
     robots[one.id] = one.robot;
-    if (one.program == "bridge")
+    if ((one.program.empty() ? one.name : one.program) == "bridge")
       bridges.insert(one.id);
   }
   programs = bridges;
-  for (const bus::Announcer& one : announced)
+  for (const bus::ProgramEntry& one : announced)
     programs.insert(one.id);
   if (!began_)
     began_ = now;

@@ -7,9 +7,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-bus::Announcer announcer(std::uint8_t number, const std::string& robot,
-                         const std::string& program = "bridge") {
-  return {.id = {number}, .robot = robot, .program = program};
+bus::ProgramEntry announcer(std::uint8_t number, const std::string& robot,
+                            const std::string& program = "bridge") {
+  return {.id = {number}, .name = program, .robot = robot};
 }
 
 bus::WriterId writer_of(std::uint8_t number) {
@@ -21,7 +21,7 @@ bus::WriterId writer_of(std::uint8_t number) {
 TEST(Roll, IsCompleteAfterAQuietTime) {
   Roll roll(1.0);
   EXPECT_FALSE(roll.complete(100.0));
-  std::vector<bus::Announcer> all{announcer(1, "ant")};
+  std::vector<bus::ProgramEntry> all{announcer(1, "ant")};
   roll.update(all, {}, 100.0);
   EXPECT_FALSE(roll.complete(100.9));
   // Any new program: where one is found, others may be on their way.

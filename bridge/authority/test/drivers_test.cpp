@@ -4,7 +4,6 @@
 #include "lines.hpp"
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/base/format.hpp"
-#include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::authority {
@@ -72,7 +71,7 @@ class Drivers : public saphira::test::LinePlayer {
                 }},
                {"restart",
                 [this](auto&) {
-                  const Latches latches = latches_from_text(to_text(s_.arbiter.latches()));
+                  const Latches latches = s_.arbiter.latches();
                   s_ = Scene();
                   s_.arbiter.restore(latches);
                 }},
@@ -202,29 +201,6 @@ TEST(Arbiter, RefusalsAreToldOnceAndBounded) {
   EXPECT_EQ(s.arbiter.take_refused().size(), 16U);
   EXPECT_EQ(s.arbiter.take_refused().size(), 0U);
   EXPECT_EQ(s.arbiter.refused_count(), 198U);
-}
-
-TEST(Latches, AreTheSameAfterTheirText) {
-  EXPECT_EQ(to_text({}), "");
-  EXPECT_EQ(latches_from_text(""), Latches{});
-  for (const Wait wait : {Wait::none, Wait::driven, Wait::reset}) {
-    for (const Latches& latches : {Latches{true, "a button\tof\nthe lab", wait},
-                                   Latches{true, "", wait}, Latches{false, "", wait}})
-      EXPECT_EQ(latches_from_text(to_text(latches)), latches);
-  }
-}
-
-TEST(Latches, WhatCannotBeReadIsAnEmergencyStop) {
-  const std::string whole = to_text({true, "button", Wait::driven});
-  for (std::size_t size = 1; size < whole.size(); ++size)
-    EXPECT_TRUE(latches_from_text(whole.substr(0, size)).estopped) << size;
-  Random random(1);
-  for (int i = 0; i < 10000; ++i) {
-    std::string text = whole;
-    text[random.next() % text.size()] ^= static_cast<char>(1U << (random.next() % 8));
-    const Latches latches = latches_from_text(text);
-    EXPECT_TRUE(latches.estopped) << text;
-  }
 }
 
 }  // namespace

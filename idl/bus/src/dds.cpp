@@ -492,7 +492,6 @@ class DdsTransport : public Transport {
   }
   std::vector<EndpointEntry> endpoints() const override { return from_each(&Discovery::endpoints); }
   std::vector<ProgramEntry> programs() const override { return from_each(&Discovery::programs); }
-  std::vector<Announcer> announcers() const override { return from_each(&Discovery::announcers); }
   std::vector<OtherProgram> others() const override { return bus_->others(); }
   std::vector<std::string> take_troubles() override { return from_each(&Discovery::take_troubles); }
   Refusals take_refusals() override {

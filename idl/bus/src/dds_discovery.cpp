@@ -350,29 +350,21 @@ std::vector<ProgramEntry> Discovery::programs() const {
     const auto of_it = [&prefix = prefix](const auto& item) {
       return item.first.guidPrefix == prefix;
     };
-    result.push_back({.name = program.name,
+    const Peers::Program id = program_of(prefix);
+    result.push_back({.id = id,
+                      .name = program.name,
+                      .program = program.program,
                       .host = program.host,
                       .pid = program.pid,
                       .robot = program.robot,
                       .contract = program.contract,
                       .subject = program.subject,
                       .let_in = !entrance_ || entrance_->is_in(Entrance::prefix_at(prefix.value)),
-                      .silent = peers_.absent(program_of(prefix)),
+                      .refused = entrance_ && entrance_->is_refused(id),
+                      .silent = peers_.absent(id),
                       .known = std::chrono::duration<double>(Clock::now() - program.found).count(),
                       .endpoints = static_cast<std::size_t>(
                           std::count_if(endpoints_.begin(), endpoints_.end(), of_it))});
-  }
-  return result;
-}
-
-std::vector<Announcer> Discovery::announcers() const {
-  const std::scoped_lock lock(mutex_);
-  std::vector<Announcer> result;
-  for (const auto& [prefix, program] : programs_) {
-    const Peers::Program id = program_of(prefix);
-    if (!peers_.absent(id) && !(entrance_ && entrance_->is_refused(id)))
-      result.push_back(
-          {id, program.robot, program.program.empty() ? program.name : program.program});
   }
   return result;
 }

@@ -69,7 +69,6 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
   std::vector<ProgramEntry> programs() const;
-  std::vector<Announcer> announcers() const;
   std::vector<std::string> take_troubles();
   Refusals take_refusals();
   void watch(bool on) { watched_ = on; }

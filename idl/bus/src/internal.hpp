@@ -80,9 +80,7 @@ class Transport {
   virtual std::vector<EndpointEntry> endpoints() const = 0;
   /// As found_programs() has them. None on the bus in memory.
   virtual std::vector<ProgramEntry> programs() const { return {}; }
-  /// As Census has it.
   /// As Census has them.
-  virtual std::vector<Announcer> announcers() const { return {}; }
   virtual std::vector<OtherProgram> others() const { return {}; }
   /// Endpoints that did not match one of this node's since the last call, one text each.
   virtual std::vector<std::string> take_troubles() = 0;

@@ -122,12 +122,6 @@ std::vector<ProgramEntry> found_programs(Node& node) {
   return result;
 }
 
-std::vector<Announcer> Census::announcers() const {
-  auto result = internal::transport_of(*node_).announcers();
-  std::sort(result.begin(), result.end());
-  return result;
-}
-
 std::vector<OtherProgram> Census::others() const {
   return internal::transport_of(*node_).others();
 }

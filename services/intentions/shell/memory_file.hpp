@@ -3,22 +3,22 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saphira/base/durable.hpp"
-#include "saphira/intentions/journal.hpp"
+#include "saphira/intentions/work.hpp"
 
 namespace saphira::intentions {
 
-/// The journal on a disk, with the progress of the open goals (FILE.work) and the journal's number
-/// of lines (FILE.lines), which reveals a truncated journal. A killed service loses nothing; a
-/// power cut may lose the last few lines, since nothing waits for the disk.
+/// The endings of goals on a disk, a line each, with the progress of the open goals (FILE.work),
+/// which names the newest ending: that reveals a list without its end. A killed service loses
+/// nothing; a power cut may lose the last few lines, since nothing waits for the disk.
 class MemoryFile {
  public:
-  /// Reads the file and begins it anew, without superseded lines and with the newest `most`
-  /// endings. A damaged file is set aside; its readable lines count. An empty path saves nothing.
-  /// std::runtime_error where it cannot be written, std::invalid_argument where it is another
-  /// file.
+  /// Reads the file and begins it anew, with the newest `most` endings. A damaged file is set
+  /// aside; its readable lines count. An empty path saves nothing. std::runtime_error where it
+  /// cannot be written, std::invalid_argument where it is another file.
   explicit MemoryFile(std::string path, std::size_t most = kMostEndings,
                       Files files = Files::kChange);
 
@@ -31,23 +31,20 @@ class MemoryFile {
   /// False where it could not be written: then none of it is there. A file of more than twice
   /// `most` lines is begun anew as at the start: a service that runs for months does not fill the
   /// disk.
-  bool append(const std::string& lines);
+  bool append(const std::vector<Ending>& endings);
 
  private:
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
-  /// Writes the lines to keep to a new file and replaces the old one.
-  bool begin(Memory& memory);
-  void begin_anew();
-  bool keep_count(std::size_t lines) const;
+  void read_endings(std::string_view content);
+  /// Replaces the file by one of the newest endings.
+  bool begin();
 
   std::string path_;
   std::size_t most_;
   Files files_;
-  std::size_t lines_ = 0;
-  std::size_t begin_anew_at_ = 0;  ///< lines
   Memory memory_;
   std::vector<std::string> troubles_;
   std::unique_ptr<std::FILE, Close> file_;

@@ -282,13 +282,8 @@ void Service::check_files() {
 }
 
 void Service::remember(const GoalUpdates& updates) {
-  std::string lines;
-  for (const Placement& placement : updates.placed)
-    lines += write_line(placement);
-  for (const Ending& ending : updates.endings)
-    lines += write_line(ending);
   Notes notes;
-  if (!lines.empty() && !memory_.append(lines))
+  if (!updates.endings.empty() && !memory_.append(updates.endings))
     notes.warn(cannot_be("the memory file", "written") +
                "; a restart may do a finished goal again");
   if (updates.work && !memory_.keep(*updates.work))

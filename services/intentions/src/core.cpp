@@ -204,10 +204,7 @@ Core::BetweenOutputs Core::between(const Received& received, double silence) {
     };
     append(told.updates.changed, gone.changed);
     append(told.updates.withdrawn, gone.withdrawn);
-    append(told.updates.placed, gone.placed);
     append(told.updates.endings, gone.endings);
-    if (gone.work)
-      told.updates.work = std::move(gone.work);
   }
   report(told.updates, told.notes);
   return told;

@@ -38,8 +38,8 @@ inline v1::StopId stop_of(const std::string& text) {
 /// An executor with a scripted robot, stepped by hand.
 class Bench {
  public:
-  explicit Bench(const Memory& memory = {}, ExecutorOptions options = {})
-      : executor(built_in(), memory, options) {}
+  explicit Bench(const Memory& before = {}, ExecutorOptions options = {})
+      : executor(built_in(), before, remembering(std::move(options))), memory(before) {}
 
   static Goal goal(std::uint64_t number, std::string functor, Arguments arguments,
                    int priority = 0) {
@@ -99,16 +99,9 @@ class Bench {
     }
     for (const GoalId& id : updates.withdrawn)
       statuses.erase(id.number);
-    for (const Placement& each : updates.placed)
-      journal += write_line(each);
-    for (const Ending& each : updates.endings)
-      journal += write_line(each);
-  }
-
-  /// The memory of a newly started service.
-  Memory memory() const {
-    std::vector<FileError> damaged;
-    return read_journal("memory", journal, damaged);
+    memory.endings.insert(memory.endings.end(), updates.endings.begin(), updates.endings.end());
+    if (updates.work)
+      memory.work = *updates.work;
   }
 
   const GoalStatus& status(std::uint64_t number) const { return statuses.at(number); }
@@ -130,9 +123,13 @@ class Bench {
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
   std::size_t published = 0;
-  std::string journal;
+  Memory memory;  ///< of a newly started service
 
  private:
+  static ExecutorOptions remembering(ExecutorOptions options) {
+    options.remembers_work = true;
+    return options;
+  }
   void event(GoalEvent::Kind kind, std::uint64_t number) {
     GoalEvent made;
     made.kind = kind;

@@ -397,7 +397,6 @@ TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
 TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
   Memory memory;
   const auto remember = [&](const GoalUpdates& updates) {
-    memory.placements.insert(memory.placements.end(), updates.placed.begin(), updates.placed.end());
     memory.endings.insert(memory.endings.end(), updates.endings.begin(), updates.endings.end());
     if (updates.work)
       memory.work = *updates.work;
@@ -451,7 +450,6 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
     const Core::Outputs b = step(other);
     EXPECT_EQ(a.intended.behaviors, b.intended.behaviors) << i;
     EXPECT_EQ(a.intended.updates.changed, b.intended.updates.changed) << i;
-    EXPECT_EQ(a.intended.updates.placed, b.intended.updates.placed) << i;
     EXPECT_EQ(a.intended.updates.endings, b.intended.updates.endings) << i;
     EXPECT_EQ(a.notes.lines(), b.notes.lines()) << i;
   }

@@ -16,7 +16,7 @@ TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   bench.begin(1, "go_to", wrong);
   const std::string whole = bench.status(1).reason;
   ASSERT_GT(whole.size(), kLongestReason);
-  Bench again(bench.memory());
+  Bench again(bench.memory);
   again.begin(1, "go_to", wrong);
   EXPECT_EQ(again.state(1), v1::GOAL_REFUSED);
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
@@ -50,6 +50,19 @@ TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
     bench.step();
     EXPECT_EQ(bench.state(1) == v1::GOAL_UNDERWAY, now == kFirst);
   }
+}
+
+// Killed after it wrote the ending, and before it wrote its work.
+TEST(Executor, AnEndedGoalIsNotTakenUpAgain) {
+  Bench before;
+  before.begin(1, "drive", kSlow);
+  ASSERT_EQ(before.memory.work.goals.size(), 1U);
+  before.memory.endings = {{{1, 1}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "done"}};
+  Bench bench(before.memory);
+  bench.begin(1, "drive", kSlow);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  EXPECT_TRUE(bench.memory.work.goals.empty());
 }
 
 TEST(Executor, ARepetitionChangesNothing) {

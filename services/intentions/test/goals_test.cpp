@@ -134,7 +134,7 @@ class Desk : public test::LinePlayer {
   void restart() {
     const ScriptedRobot world = bench_->world;
     const std::uint64_t cycle = bench_->cycle;
-    bench_ = std::make_unique<Bench>(bench_->memory());
+    bench_ = std::make_unique<Bench>(bench_->memory);
     bench_->world = world;
     bench_->cycle = cycle;
   }

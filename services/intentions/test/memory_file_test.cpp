@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "process.hpp"
+#include "saphira/base/archive.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
@@ -18,9 +19,13 @@ namespace {
 
 const Ending kEnding{{1, 2}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"};
 
+std::string line(const Ending& ending) {
+  return sealed(saved(ending));
+}
+
 TEST(MemoryFile, WithoutAPathNothingIsRemembered) {
   MemoryFile memory("");
-  EXPECT_TRUE(memory.append("anything\n"));
+  EXPECT_TRUE(memory.append({kEnding}));
   EXPECT_EQ(memory.memory(), Memory{});
   EXPECT_EQ(memory.memory().condition, Memory::Condition::kNone);
 }
@@ -30,17 +35,15 @@ TEST(MemoryFile, RemembersOverARestart) {
   const std::string path = dir.path("goals.memory");
   {
     MemoryFile memory(path);
-    EXPECT_TRUE(memory.append(write_line(Placement{{1, 2}, 3, 4, 5, {}})));
-    EXPECT_TRUE(memory.append(write_line(Placement{{6, 7}, 3, 4, 5, {}})));
-    EXPECT_TRUE(memory.append(write_line(kEnding)));
+    EXPECT_EQ(memory.memory().condition, Memory::Condition::kNone);
+    Ending ending = kEnding;
+    ending.reason = "two\nlines";
+    EXPECT_TRUE(memory.append({kEnding, ending}));
   }
-  {
-    MemoryFile memory(path);
-    EXPECT_EQ(memory.memory().endings, std::vector{kEnding});
-    ASSERT_EQ(memory.memory().placements.size(), 1U);
-    // Entries that the ending superseded are not written again.
-    EXPECT_EQ(memory.memory().placements[0].id, (GoalId{6, 7}));
-  }
+  const MemoryFile memory(path);
+  EXPECT_EQ(memory.memory().condition, Memory::Condition::kWhole);
+  ASSERT_EQ(memory.memory().endings.size(), 2U);
+  EXPECT_EQ(memory.memory().endings[1].reason, "two\nlines");
 }
 
 TEST(MemoryFile, OneThatWasCutIsDamaged) {
@@ -50,7 +53,8 @@ TEST(MemoryFile, OneThatWasCutIsDamaged) {
     {
       MemoryFile memory(path);
       for (std::uint64_t i = 1; i <= 4; ++i)
-        memory.append(write_line(Ending{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "there"}));
+        memory.append({{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "there"}});
+      memory.keep({.ended = GoalId{1, 4}});
     }
     cut(path);
     const MemoryFile memory(path);
@@ -73,7 +77,7 @@ TEST(MemoryFile, OneThatWasCutIsDamaged) {
   EXPECT_EQ(after([](const std::string& path) { std::filesystem::remove(path); }),
             std::pair(Condition::kDamaged, std::size_t{0}));
   EXPECT_EQ(after([](const std::string& path) {
-              for (const char* const end : {"", ".lines", ".work"})
+              for (const char* const end : {"", ".work"})
                 std::filesystem::remove(path + end);
             }),
             std::pair(Condition::kNone, std::size_t{0}));
@@ -82,10 +86,10 @@ TEST(MemoryFile, OneThatWasCutIsDamaged) {
 TEST(MemoryFile, GoesOnAfterATornLine) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  std::ofstream(path) << write_line(kEnding) << write_line(kEnding).substr(0, 40);
+  std::ofstream(path) << line(kEnding) << line(kEnding).substr(0, 40);
   Ending next = kEnding;
   next.id.number = 4;
-  EXPECT_TRUE(MemoryFile(path).append(write_line(next)));
+  EXPECT_TRUE(MemoryFile(path).append({next}));
   EXPECT_EQ(MemoryFile(path).memory().endings, (std::vector{kEnding, next}));
 }
 
@@ -96,20 +100,20 @@ TEST(MemoryFile, WhatIsWrittenHalfIsTakenBack) {
   Ending next = kEnding;
   next.id.number = 4;
   MemoryFile memory(path);
-  ASSERT_TRUE(memory.append(write_line(kEnding)));
+  ASSERT_TRUE(memory.append({kEnding}));
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit full = before;
-  full.rlim_cur = write_line(kEnding).size() + 10;
+  full.rlim_cur = line(kEnding).size() + 10;
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
-  const bool written = memory.append(write_line(next));
+  const bool written = memory.append({next});
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_FALSE(written);
-  EXPECT_EQ(read_file(path), write_line(kEnding));
+  EXPECT_EQ(read_file(path), line(kEnding));
   next.id.number = 5;
-  EXPECT_TRUE(memory.append(write_line(next)));
+  EXPECT_TRUE(memory.append({next}));
   EXPECT_EQ(MemoryFile(path).memory().endings, (std::vector{kEnding, next}));
 }
 
@@ -117,24 +121,21 @@ TEST(MemoryFile, DoesNotGrowForEver) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
   MemoryFile memory(path, 10);
-  ASSERT_TRUE(memory.append(write_line(Placement{{1, 1000}, 3, 4, 5, {}})));
   std::size_t longest = 0;
   for (std::uint64_t i = 1; i <= 200; ++i) {
-    ASSERT_TRUE(
-        memory.append(write_line(Ending{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"})));
+    ASSERT_TRUE(memory.append({{{1, i}, v1::GOAL_SUCCEEDED, v1::CODE_NONE, "arrived"}}));
     longest = std::max(longest, read_file(path).size());
   }
-  EXPECT_LT(longest, 23 * write_line(kEnding).size() + 60);
+  EXPECT_LT(longest, 23 * line(kEnding).size() + 60);
   const Memory kept = MemoryFile(path, 10).memory();
   EXPECT_EQ(kept.endings.size(), 10U);
   EXPECT_EQ(kept.endings.back().id.number, 200U);
-  EXPECT_EQ(kept.placements.size(), 1U) << "that goal has not ended";
 }
 
 TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  const std::string content = write_line(kEnding) + "something else\n";
+  const std::string content = line(kEnding) + "something else\n";
   std::ofstream(path) << content;
   const MemoryFile memory(path);
   EXPECT_EQ(memory.memory().endings, std::vector{kEnding});
@@ -142,19 +143,35 @@ TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   EXPECT_NE(memory.troubles()[0].find("goals.memory.damaged"), std::string::npos)
       << memory.troubles()[0];
   EXPECT_EQ(read_file(path + ".damaged"), content);
-  EXPECT_EQ(read_file(path), write_line(kEnding));
+  EXPECT_EQ(read_file(path), line(kEnding));
   EXPECT_TRUE(MemoryFile(path).troubles().empty());
   EXPECT_THROW(MemoryFile{dir.path("no/such/folder")}, std::runtime_error);
+}
+
+// Each bit of a line flipped: no remaining entry is wrong.
+TEST(MemoryFile, AWrongBitIsToldAndTheRestCounts) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  const std::string whole = line(kEnding) + line(kEnding);
+  for (std::size_t i = line(kEnding).size(); i < whole.size(); ++i)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string content = whole;
+      content[i] = static_cast<char>(content[i] ^ (1 << bit));
+      std::ofstream(path) << content;
+      const MemoryFile memory(path);
+      EXPECT_EQ(memory.memory().endings, std::vector{kEnding}) << i << " " << bit;
+      EXPECT_EQ(memory.troubles().size(), 1U) << i << " " << bit;
+    }
 }
 
 TEST(MemoryFile, ADryRunChangesNoFile) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  const std::string content = write_line(kEnding) + "something else\n";
+  const std::string content = line(kEnding) + "something else\n";
   std::ofstream(path) << content;
   MemoryFile memory(path, kMostEndings, Files::kStay);
   EXPECT_EQ(memory.troubles().size(), 1U);
-  EXPECT_TRUE(memory.append(write_line(kEnding)));
+  EXPECT_TRUE(memory.append({kEnding}));
   EXPECT_TRUE(memory.keep({}));
   EXPECT_EQ(read_file(path), content);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
@@ -175,12 +192,9 @@ TEST(MemoryFile, AnotherFileIsRefusedAndStays) {
 TEST(MemoryFile, RemembersTheWorkAndSetsAsideWhatIsDamagedOfIt) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  const Work work{0xfedcba9876543210ULL,
-                  12,
-                  2,
-                  77,
-                  {{{0xfedcba9876543210ULL, 7}, "about-turn", {}, false, {"[1.5,\"a b\"]"}}},
-                  {{"*speed*", Value(0.3), "patrol", -4}}};
+  Work work{.epoch = 0xfedcba9876543210ULL, .now = 77};
+  work.goals[{0xfedcba9876543210ULL, 7}].tree = {"[1.5,\"a b\"]"};
+  work.beliefs = {{"*speed*", Value(0.3), "patrol", -4}};
   EXPECT_TRUE(MemoryFile(path).keep(work));
   EXPECT_EQ(MemoryFile(path).memory().work, work);
   const std::string whole = read_file(path + ".work");

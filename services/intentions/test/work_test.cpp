@@ -37,11 +37,7 @@ class Site {
     EXPECT_TRUE(loaded.ok());
     for (const Schema& schema : loaded.schemas)
       registry.add(schema);
-    std::vector<FileError> damaged;
-    Memory memory = read_journal("journal", journal, damaged);
-    EXPECT_TRUE(damaged.empty());
-    if (!work.empty())
-      memory.work = restored<Work>(work);
+    const auto memory = restored<Memory>(disk);
     executor_ = std::make_unique<Executor>(
         std::move(registry), memory,
         ExecutorOptions{.remembers_work = true, .functions = functions_});
@@ -78,12 +74,12 @@ class Site {
     const Outputs out = executor_->step(inputs);
     for (const GoalStatus& each : out.updates.changed)
       status = each;
-    for (const Placement& each : out.updates.placed)
-      journal += write_line(each);
+    auto memory = restored<Memory>(disk);
     for (const Ending& each : out.updates.endings)
-      journal += write_line(each);
+      memory.endings.push_back(each);
     if (out.updates.work)
-      work = saved(*out.updates.work);
+      memory.work = *out.updates.work;
+    disk = saved(memory);
     for (const SpokenText& each : out.said)
       said += each.text + "\n";
     const Pose before = world.robot.pose_in_odom;
@@ -97,8 +93,7 @@ class Site {
   bool needs_approval = false;  ///< the goal, from the next time on that it is heard
   std::uint64_t epoch = 100;
   std::uint64_t cycle = 0;
-  std::string journal;  ///< the content of the disk
-  std::string work;
+  std::string disk = saved(Memory{});
   GoalStatus status;
   std::string said;
   double turned = 0.0;  ///< [rad]
@@ -139,26 +134,6 @@ constexpr const char* kErrand =
     "  (INTEND :GoToPos ((goal . (offset (robot) far 0)) (speed . 0.2) (radius . 0.05))))"
     " (EXECUTE (say \"~a cm on\" (floor (+ 0.5 (* 100 (distance was))))))"
     " (WAIT-FOR at-rest :timeout 5s)))";
-
-TEST(Work, ReadsWhatItWrote) {
-  const Work work{
-      0x8000000000000001ULL,
-      12,
-      3,
-      77,
-      {{{0xfedcba9876543210ULL, 7},
-        "about-turn",
-        {number("far", 1.0 / 3.0), text("what", "a \"b\""), point("to", {1, 2, 3}, Frame::map)},
-        true,
-        {"[1]"}}},
-      {{"*speed*",
-        Value(Value::List{Value(1.0 / 3.0), Value("a \"b\" ; c"), Value(), Value::truth(true),
-                          Value(Point{{1.5, -2.0, 3.0}, Frame::map}),
-                          Value(Value::List{Value(-4.0), Value(Reference{})})}),
-        "patrol", -17}},
-      {~0ULL, 5}};
-  EXPECT_EQ(restored<Work>(saved(work)), work);
-}
 
 TEST(Work, AHalfTurnIsAHalfTurnHoweverOftenTheServiceIsKilled) {
   Site site(kAboutTurn, "about-turn");
@@ -269,7 +244,6 @@ TEST(Work, WhatCannotBeTakenUpIsTold) {
              "0)) (success_angle . 0.2)))))");
        },
        "is another than it was"},
-      {"the file is gone", [](Site& site) { site.work.clear(); }, "is not remembered"},
       {"another odom frame", [](Site& site) { site.world.robot.odom = 2; },
        "dead reckoning has begun anew"},
   };

@@ -143,8 +143,9 @@ Core::Core(Settings settings, std::optional<Remembered> remembered) {
 
 void Core::take_up(Remembered remembered) {
   check(remembered.map);
-  if (const auto why = maps::problem(remembered.memory.pose_in_map))
-    throw std::invalid_argument(*why);
+  if (const auto& filter = remembered.memory.filter)
+    if (const auto why = maps::problem(filter->pose()))
+      throw std::invalid_argument(*why);
   if (remembered.source != now_.source)
     now_.start.reset();
   now_.editor.replace(remembered.map);
@@ -169,7 +170,7 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars) {
   now_.remembered.reset();
   // Later the robot may be anywhere.
   registration_.emplace(settings, now_.editor.map(), first ? now_.start : std::nullopt);
-  if (memory && memory->placed)
+  if (memory && memory->filter)
     registration_->restore(*memory, first ? now_.start : std::nullopt);
   registration_->recall_closed(std::move(closed));
   if (!now_.builder)
@@ -488,9 +489,9 @@ std::optional<Remembered> Core::remembered() const {
   if (now_.building) {
     const std::vector<std::uint32_t> closed = now_.builder->closed();
     now.closed_doors = {closed.begin(), closed.end()};
-    now.memory.placed = true;
+    now.memory.filter.emplace(now_.pose_in_map, Eigen::Matrix3d::Zero(), 0.0, 0.0,
+                              ReckoningErrors{});
     now.memory.odom = now_.odom;
-    now.memory.pose_in_map = now_.pose_in_map;
     now.memory.pose_in_odom = now_.pose_in_odom;
   }
   return now;

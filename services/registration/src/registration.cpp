@@ -232,24 +232,19 @@ Memory Registration::Self::save() const {
   Memory memory;
   memory.odom = now_.doubted ? kNoFrame : now_.odom.value_or(kNoFrame);
   memory.pose_in_odom = now_.pose_in_odom;
-  memory.placed = now_.filter.has_value() && (now_.state != v1::REGISTRATION_LOST || now_.doubted);
-  if (now_.filter) {
-    memory.pose_in_map = now_.filter->pose();
-    memory.covariance = now_.filter->covariance();
-    memory.drift = now_.filter->drift();
-    memory.confidence = now_.output.confidence;
-  }
+  if (now_.state != v1::REGISTRATION_LOST || now_.doubted)
+    memory.filter = now_.filter;
+  memory.confidence = now_.output.confidence;
   memory.carried = now_.carried;
   return memory;
 }
 
 void Registration::Self::restore(const Memory& memory, const std::optional<Pose>& start) {
   now_.start = start;
-  if (!memory.placed)
+  if (!memory.filter)
     return;
-  place(memory.pose_in_map, memory.covariance.topLeftCorner<3, 3>(), memory.drift,
-        memory.covariance(3, 3), memory.confidence);
-  now_.filter->set_covariance(memory.covariance);
+  place(memory.filter->pose(), memory.filter->pose_covariance(), 0.0, 0.0, memory.confidence);
+  now_.filter = memory.filter;
   now_.carried = memory.carried;
   now_.odom = memory.odom;
   now_.pose_in_odom = memory.pose_in_odom;

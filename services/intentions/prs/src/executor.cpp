@@ -13,6 +13,8 @@ namespace {
 
 /// The longest wait for the place of the robot, after a restart.
 constexpr Ticks kFindsPlace = 50;
+/// A goal from before a restart that is not heard for so long has been withdrawn.
+constexpr Ticks kUnheard = 6000;
 /// The publishing period of the status of an open goal.
 constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
@@ -61,20 +63,6 @@ bool to_be_placed(const Argument& argument) {
   return argument.kind == ArgumentKind::point && argument.frame != Frame::map;
 }
 
-/// True where the placement is of these arguments, as they were written.
-bool is_of(const Placement& placement, const Arguments& arguments) {
-  auto point = placement.points.begin();
-  for (const Argument& argument : arguments) {
-    if (!to_be_placed(argument))
-      continue;
-    if (point == placement.points.end() || point->name != argument.name ||
-        point->given != argument.point)
-      return false;
-    ++point;
-  }
-  return point == placement.points.end();
-}
-
 /// To the saved length. Characters of more than one byte stay whole.
 std::string shortened(const std::string& reason) {
   if (reason.size() <= kLongestReason)
@@ -93,24 +81,36 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
     options_.functions = std::make_shared<const Functions>(core_functions());
   beliefs_ = std::make_shared<Beliefs>(options_.functions.get());
   forest_ = Forest(registry_, beliefs_, options_.forest);
-  for (const Placement& placement : memory.placements)
-    remembered_places_[placement.id] = placement;
-  remembered_work_ = memory.work;
-  heeds_ = saved_heeds_ = memory.work.heeds;
   for (const Ending& ending : memory.endings)
     remember(ending);
+  const Work& work = memory.work;
+  heeds_ = saved_heeds_ = work.heeds;
+  if (work.epoch == 0)
+    return;
+  epoch_ = work.epoch;
+  cycle_ = work.cycle;
+  odom_ = work.odom;
+  now_ = work.now;
+  awake_ = recalled_ = work.awake;
+  was_placed_ = work.placed;
+  forest_.begin_after(work.last_intention, awake_);
+  unheard_ = work.goals;
+  std::erase_if(unheard_, [&](const auto& each) { return remembered_.contains(each.first); });
+  for (const auto& [id, entry] : unheard_)
+    next_order_ = std::max(next_order_, entry.order + 1);
+  for (const Belief& belief : work.beliefs)
+    beliefs_->set(belief.name, belief.value, belief.said_by, belief.since);
 }
 
 void Executor::archive(Archive& a) {
-  a("beliefs", *beliefs_)("entries", entries_)("remembered_places", remembered_places_)(
-      "remembered_work", remembered_work_)("set_revision", set_revision_)(
-      "remembered", remembered_)("remembered_order", remembered_order_)(
-      "ended_order", ended_order_)("next_order", next_order_)("now", now_)("awake", awake_)(
-      "epoch", epoch_)("cycle", cycle_)("robot_here", robot_here_)("on_map", on_map_)(
-      "recalled", recalled_)("person", person_)("heeds", heeds_)("saved_heeds", saved_heeds_)(
-      "seen_stop", seen_stop_)("own_stops", own_stops_)("stop_by", stop_by_)(
-      "stop_asked", stop_asked_)("odom", odom_)("withdrawn", withdrawn_)("placed", placed_)(
-      "endings", endings_);
+  a("beliefs", *beliefs_)("entries", entries_)("unheard", unheard_)("was_placed", was_placed_)(
+      "set_revision", set_revision_)("remembered", remembered_)(
+      "remembered_order", remembered_order_)("ended_order", ended_order_)(
+      "next_order", next_order_)("now", now_)("awake", awake_)("epoch", epoch_)("cycle", cycle_)(
+      "robot_here", robot_here_)("on_map", on_map_)("recalled", recalled_)("person", person_)(
+      "heeds", heeds_)("saved_heeds", saved_heeds_)("seen_stop", seen_stop_)(
+      "own_stops", own_stops_)("stop_by", stop_by_)("stop_asked", stop_asked_)("odom", odom_)(
+      "withdrawn", withdrawn_)("endings", endings_);
   if (a.restores())
     for (auto& [id, entry] : entries_) {
       entry.schema = registry_->share(entry.goal.functor);
@@ -207,14 +207,14 @@ Outputs Executor::step(const Inputs& inputs) {
         awake_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle + inputs.intent_age));
   forest_.hear(inputs.troubles);
   if (robot_here_) {
-    arbitrate(world);
-    begin_concurrent(world);
+    arbitrate();
+    begin_concurrent();
   }
   forest_.step(world);
   // The next goal begins in the cycle in which the one before it ends: a gap in the intent would
   // release the robot.
   for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
-    if (const Entry* const next = arbitrate(world))
+    if (const Entry* const next = arbitrate())
       forest_.begin(next->node, world);
   }
   forget_ended();
@@ -223,7 +223,7 @@ Outputs Executor::step(const Inputs& inputs) {
   Outputs outputs{forest_.behaviors(),        forest_.nodes(),     take_updates(),
                   forest_.behavior_control(), forest_.take_said(), forest_.take_requests(),
                   forest_.take_questions()};
-  outputs.updates.work = take_work();
+  outputs.updates.work = take_work(!outputs.updates.changed.empty());
   const Ticks since = now_ - stop_asked_;
   if (stop_by_ && (since == 0 || (inputs.confirms_stops && since % kAskAgain == 0)))
     outputs.stop = stop_by_;
@@ -232,16 +232,16 @@ Outputs Executor::step(const Inputs& inputs) {
 
 void Executor::pass_time(const Inputs& inputs) {
   Ticks passed = 0;
-  if (epoch_ == 0)
-    recall(inputs);
-  else if (inputs.epoch != epoch_)
-    passed = 1;
+  if (inputs.epoch != epoch_)
+    passed = epoch_ == 0 ? 0 : 1;
   else if (inputs.cycle > cycle_)
     passed = static_cast<Ticks>(inputs.cycle - cycle_);
   now_ += passed;
   awake_ += std::min(passed, kLongestStep);
   epoch_ = inputs.epoch;
   cycle_ = inputs.cycle;
+  if (awake_ - recalled_ > kUnheard)
+    unheard_.clear();
 }
 
 // --- goals from the bus
@@ -268,7 +268,9 @@ void Executor::take_in(const GoalEvent& event) {
 
 void Executor::take_written(const GoalEvent& event) {
   const Goal& goal = event.goal;
-  const auto found = entries_.find(goal.id);
+  auto found = entries_.find(goal.id);
+  if (found == entries_.end() && event.forgotten.empty())
+    found = take_up(goal.id);
   if (found != entries_.end()) {
     Entry& entry = found->second;
     if (!open(entry.status))
@@ -312,12 +314,8 @@ void Executor::take_written(const GoalEvent& event) {
     return;
   }
   put_up(entry, goal, std::move(complete));
-  // A stop is anybody's at once. Begun work was approved before a restart of the service, as it was
-  // asked for then.
-  entry.unapproved =
-      event.needs_approval && !entry.schema->replaces &&
-      std::none_of(remembered_work_.goals.begin(), remembered_work_.goals.end(),
-                   [&](const GoalWork& work) { return work.is_of(goal) && !work.unapproved; });
+  // A stop is anybody's at once.
+  entry.unapproved = event.needs_approval && !entry.schema->replaces;
   if (!robot_here_)
     wait(entry, v1::CODE_NO_ROBOT, "accepted; waits for the robot");
   else
@@ -332,17 +330,17 @@ void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
   entry.placed = false;
   entry.odom.reset();
   // Places in odom are in the frame that their writer knew.
-  if (odom_ && depends_on_odom(entry, false))
+  if (odom_ && depends_on_odom(entry))
     entry.odom = odom_;
   entry.status.requester = goal.requester;
   entry.status.functor = goal.functor;
 }
 
 /// True where another odom frame would change the meaning of the arguments.
-bool Executor::depends_on_odom(const Entry& entry, bool placed) {
+bool Executor::depends_on_odom(const Entry& entry) {
   return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
     if (argument.kind == ArgumentKind::point)
-      return argument.frame == Frame::odom || (placed && argument.frame == Frame::robot);
+      return argument.frame == Frame::odom;
     const auto& known = entry.schema->parameters;
     return std::any_of(known.begin(), known.end(), [&](const Parameter& parameter) {
       return parameter.in_odom && parameter.name == argument.name;
@@ -373,7 +371,6 @@ void Executor::change(Entry& entry, const GoalEvent& event) {
     entry.replaced = false;
   }
   if (arguments) {
-    remembered_places_.erase(goal.id);
     put_up(entry, goal, std::move(complete));
     entry.changed = entry.node != 0;
     entry.unapproved = event.needs_approval && !entry.schema->replaces;
@@ -442,7 +439,6 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
   if (state == v1::GOAL_SUCCEEDED)
     entry.status.progress = 1.0;
   const Ending ending{entry.goal.id, state, code, shortened(entry.status.reason)};
-  remembered_places_.erase(ending.id);
   remember(ending);
   endings_.push_back(ending);
 }
@@ -460,79 +456,54 @@ void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
 
 void Executor::lose_robot(const std::string& hold) {
   robot_here_ = false;
+  for (auto& [id, entry] : entries_)
+    lose_robot(entry, hold);
+}
+
+void Executor::lose_robot(Entry& entry, const std::string& hold) {
   const GoalCode code = hold.empty() ? v1::CODE_NO_ROBOT : v1::CODE_NONE;
-  for (auto& [id, entry] : entries_) {
-    if (entry.status.state == v1::GOAL_WAITING)
-      wait(entry, code, hold.empty() ? "waits for the robot" : hold);
-    else if (open(entry.status))
-      suspend(entry, code, hold.empty() ? "the robot is not heard; goes on when it is" : hold);
-  }
+  if (entry.status.state == v1::GOAL_WAITING)
+    wait(entry, code, hold.empty() ? "waits for the robot" : hold);
+  else if (open(entry.status))
+    suspend(entry, code, hold.empty() ? "the robot is not heard; goes on when it is" : hold);
 }
 
 void Executor::meet_odom(std::uint64_t odom) {
   if (odom_ && *odom_ != odom) {
-    for (auto& [id, entry] : entries_) {
-      if (open(entry.status) && entry.odom && *entry.odom != odom)
-        end(entry, v1::GOAL_FAILED, v1::CODE_NO_ROBOT, kPositionLost);
-      // Its memory has places in the earlier odom: it begins anew.
-      if (open(entry.status) && entry.node != 0 && entry.schema->program) {
-        forest_.remove(entry.node);
-        entry.node = 0;
-        entry.status.note =
-            "was begun anew at its first step: the robot's dead reckoning has begun anew";
-      }
-    }
+    for (auto& [id, entry] : entries_)
+      meet_odom(entry, odom);
+    // A text is no place in the earlier frame.
+    for (const Belief& belief : lasting_beliefs())
+      if (belief.value.text() == nullptr)
+        beliefs_->unset(belief.name);
   }
   odom_ = odom;
 }
 
-/// Of the arguments in odom, from the robot's place.
-Placement Executor::placement_of(const Entry& entry, const Robot& robot) const {
-  Placement placement{entry.goal.id, epoch_, cycle_, robot.odom, {}};
-  for (const Argument& argument : entry.arguments) {
-    if (to_be_placed(argument))
-      placement.points.push_back({argument.name, argument.point,
-                                  argument.frame == Frame::robot
-                                      ? compose(robot.pose_in_odom, argument.point)
-                                      : argument.point});
+void Executor::meet_odom(Entry& entry, std::uint64_t odom) {
+  if (open(entry.status) && entry.odom && *entry.odom != odom)
+    end(entry, v1::GOAL_FAILED, v1::CODE_NO_ROBOT, kPositionLost);
+  // Its memory has places in the earlier odom: it begins anew.
+  if (open(entry.status) && entry.node != 0 && entry.schema->program) {
+    forest_.remove(entry.node);
+    entry.node = 0;
+    entry.status.note =
+        "was begun anew at its first step: the robot's dead reckoning has begun anew";
   }
-  return placement;
 }
 
-/// Fixes the arguments in odom, from the robot's place; after a restart of the service, as they
-/// were fixed before it.
+/// Fixes the arguments in odom, from the robot's place.
 void Executor::place(Entry& entry, const Robot& robot) {
   entry.placed = true;
-  const auto found = remembered_places_.find(entry.goal.id);
-  const bool before = found != remembered_places_.end() && is_of(found->second, entry.arguments);
-  Placement placement;
-  entry.before = before;
-  if (before) {
-    placement = found->second;
-    if (placement.epoch == epoch_ && placement.cycle <= cycle_)
-      entry.accepted = now_ - static_cast<Ticks>(cycle_ - placement.cycle);
-    entry.status.elapsed = seconds(now_ - entry.accepted);
-  } else {
-    placement = placement_of(entry, robot);
-  }
-  auto point = placement.points.begin();
   for (Argument& argument : entry.arguments) {
     if (!to_be_placed(argument))
       continue;
-    argument.point = (point++)->in_odom;
+    if (argument.frame == Frame::robot)
+      argument.point = compose(robot.pose_in_odom, argument.point);
     argument.frame = Frame::odom;
   }
-  if (depends_on_odom(entry, true)) {
-    entry.odom = placement.odom;
-    if (placement.odom != robot.odom) {
-      end(entry, v1::GOAL_FAILED, v1::CODE_NO_ROBOT, kPositionLost);
-      return;
-    }
-  }
-  if (!before) {
-    remembered_places_[entry.goal.id] = placement;
-    placed_.push_back(std::move(placement));
-  }
+  if (depends_on_odom(entry))
+    entry.odom = robot.odom;
 }
 
 /// Passes changed arguments to the running activities.
@@ -662,7 +633,7 @@ std::string Executor::why_to_wait(const Entry& entry) const {
   if (entry.unapproved)
     return "waits for a person's approval: saphira goal approve " + describe(entry.goal.id);
   // After a restart registration is heard some cycles later.
-  if (entry.before && remembered_work_.placed && !on_map_ && awake_ < recalled_ + kFindsPlace)
+  if (entry.before && was_placed_ && !on_map_ && awake_ < recalled_ + kFindsPlace)
     return "waits until it is known where the robot is";
   return drives(entry) ? person_ : std::string();
 }
@@ -681,7 +652,7 @@ Executor::Entry* Executor::best() {
 }
 
 /// Gives the robot to the best goal; returns the goal that is underway now, nullptr: none.
-Executor::Entry* Executor::arbitrate(const World& world) {
+Executor::Entry* Executor::arbitrate() {
   for (auto& [id, entry] : entries_) {
     const std::string why = open(entry.status) ? why_to_wait(entry) : std::string();
     if (why.empty())
@@ -700,7 +671,7 @@ Executor::Entry* Executor::arbitrate(const World& world) {
         why_to_wait(entry).empty())
       queue(entry, chosen->goal);
   }
-  begin(*chosen, world);
+  begin(*chosen);
   return chosen;
 }
 
@@ -723,7 +694,8 @@ void Executor::queue(Entry& entry, const Goal& front) {
   entry.status.waits_for = front.id;
 }
 
-void Executor::begin(Entry& entry, const World& world) {
+void Executor::begin(Entry& entry) {
+  entry.before = false;
   if (entry.status.state != v1::GOAL_UNDERWAY) {
     become(entry, v1::GOAL_UNDERWAY, v1::CODE_NONE, {});
     if (entry.node != 0)
@@ -734,85 +706,76 @@ void Executor::begin(Entry& entry, const World& world) {
   entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
                              entry.schema->make(entry.arguments), entry.schema->priority,
                              entry.schema->timeout, entry.schema->concurrent);
-  if (std::exchange(entry.before, false))
-    take_up(entry, world);
 }
 
-/// Continues a goal from its progress before the restart of the service.
-void Executor::take_up(Entry& entry, const World& world) {
-  const auto done = std::find_if(remembered_work_.goals.begin(), remembered_work_.goals.end(),
-                                 [&](const GoalWork& work) { return work.id == entry.goal.id; });
-  std::string why;
+/// Takes up a goal from before the restart of the service, which is heard again; end(): there is
+/// none that can go on.
+Executor::Entries::iterator Executor::take_up(const GoalId& id) {
+  auto known = unheard_.extract(id);
+  if (!known)
+    return entries_.end();
+  Entry& entry = known.mapped();
+  entry.schema = registry_->share(entry.goal.functor);
+  Arguments complete;
+  if (!entry.schema || !check_arguments(*entry.schema, entry.arguments, complete).empty())
+    return entries_.end();
+  entry.before = true;
   try {
-    if (remembered_work_.epoch == 0)
-      throw ActivityError("what had been done of it is not remembered");
-    if (done == remembered_work_.goals.end() || done->functor != entry.goal.functor)
-      return;  // it had not begun
-    if (!done->is_of(entry.goal))
-      throw ActivityError("it was changed meanwhile");
-    if (remembered_work_.odom != world.robot.odom)
-      throw ActivityError("the robot's dead reckoning has begun anew");
-    forest_.restore(entry.node, done->intentions, world);
-    return;
+    if (entry.node != 0)
+      forest_.restore(entry.node, std::exchange(entry.tree, {}),
+                      [&](std::uint32_t) { return entry.schema->make(entry.arguments); });
   } catch (const std::runtime_error& error) {
-    why = error.what();
+    entry.node = 0;
+    // A built-in only needs its arguments, which are places and headings.
+    if (entry.schema->program)
+      entry.status.note =
+          std::string("was begun anew at its first step: intentions was restarted, and ") +
+          error.what();
   }
-  // A built-in only needs its arguments, which are places and headings.
-  if (entry.schema->program)
-    entry.status.note = "was begun anew at its first step: intentions was restarted, and " + why;
+  lose_robot(entry, robot_here_ ? "goes on" : "");
+  if (odom_ && entry.frame != *odom_)
+    meet_odom(entry, *odom_);
+  return entries_.insert(std::move(known)).position;
 }
 
-/// Continues from before a restart of the service: the clock, and the values set by activities.
-void Executor::recall(const Inputs& inputs) {
-  const Work& work = remembered_work_;
-  if (work.epoch == 0)
-    return;
-  const bool same = work.epoch == inputs.epoch && inputs.cycle >= work.cycle;
-  now_ = awake_ = recalled_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
-  for (auto& [id, entry] : entries_) {  // heard before the first step
-    entry.accepted += now_;
-    entry.ended += now_;
-    entry.published_at += now_;
-  }
-  // A text is no place in an earlier odom frame.
-  for (const Belief& belief : work.beliefs)
-    if (work.odom == inputs.robot.odom || belief.value.text() != nullptr)
-      beliefs_->set(belief.name, belief.value, belief.said_by, belief.since);
+/// That activities have set, without those that end with an intention: they are saved with it.
+std::vector<Belief> Executor::lasting_beliefs() const {
+  std::vector<Belief> beliefs = beliefs_->set_by_activities();
+  std::erase_if(beliefs, [&](const Belief& belief) {
+    return normal(belief.name) == kBehaviorControl || forest_.ends_with_intention(belief.name);
+  });
+  return beliefs;
 }
 
-std::optional<Work> Executor::take_work() {
-  const bool changed = forest_.take_changed();
+std::optional<Work> Executor::take_work(bool changed) {
+  changed = forest_.take_changed() || changed;
   const bool set = set_revision_ != beliefs_->set_revision();
   set_revision_ = beliefs_->set_revision();
   const bool stopped = std::exchange(saved_heeds_, heeds_) != heeds_;
   if (!options_.remembers_work || !odom_ || !(changed || set || stopped))
     return std::nullopt;
-  Work work{epoch_, cycle_, *odom_, awake_, {}, {}};
+  Work work{epoch_, cycle_, *odom_, now_, awake_, forest_.last_id(), unheard_, lasting_beliefs()};
   work.heeds = heeds_;
-  work.placed = on_map_ || remembered_work_.placed;
-  work.beliefs = beliefs_->set_by_activities();
-  // Its setter saves that with its own progress.
-  std::erase_if(work.beliefs, [&](const Belief& belief) {
-    return normal(belief.name) == kBehaviorControl || forest_.ends_with_intention(belief.name);
-  });
-  for (const auto& [id, entry] : entries_)
+  work.placed = on_map_ || was_placed_;
+  if (!remembered_order_.empty())
+    work.ended = remembered_order_.back();
+  for (const auto& [id, entry] : entries_) {
+    if (!open(entry.status))
+      continue;
+    Entry& saved = work.goals[id] = entry;
+    saved.published.reset();
+    saved.frame = *odom_;
     if (entry.node != 0)
-      work.goals.push_back({id, entry.goal.functor, entry.goal.arguments, entry.unapproved,
-                            forest_.save(entry.node)});
-  // The saved work of a goal that is not continued yet is still valid.
-  for (const GoalWork& done : remembered_work_.goals) {
-    const auto entry = entries_.find(done.id);
-    if (!remembered_.contains(done.id) && (entry == entries_.end() || entry->second.before))
-      work.goals.push_back(done);
+      saved.tree = forest_.save(entry.node);
   }
   return work;
 }
 
 /// Goals underway beside the driving one, from the cycle of their arrival on.
-void Executor::begin_concurrent(const World& world) {
+void Executor::begin_concurrent() {
   for (auto& [id, entry] : entries_) {
     if (open(entry.status) && entry.schema->concurrent && !entry.unapproved)
-      begin(entry, world);
+      begin(entry);
   }
 }
 
@@ -922,7 +885,6 @@ GoalUpdates Executor::take_updates() {
     updates.changed.push_back(status);
   }
   updates.withdrawn = std::exchange(withdrawn_, {});
-  updates.placed = std::exchange(placed_, {});
   updates.endings = std::exchange(endings_, {});
   return updates;
 }

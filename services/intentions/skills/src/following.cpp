@@ -97,10 +97,7 @@ class Follow : public Activity {
   void archive(Archive& a) override {
     a("distance", distance_)("speed", speed_)("place", place_)("now", now_);
   }
-  Saved save() const override { return {saved(now_)}; }
-  void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>&) override {
-    now_ = restored<Now>(saved.text);
-  }
+  bool keeps_progress() const override { return true; }
 
  private:
   static constexpr double kSlow = 0.05;  // [m/s]

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace saphira::cli {
@@ -27,10 +26,6 @@ struct GivenOptions {
   bool network = false;  ///< profile, peers or interface
   bool security = false;
 };
-
-/// The form in files. An incomplete text reads as nothing.
-std::string to_text(const RunningBus& bus);
-std::optional<RunningBus> parse_running_bus(std::string_view text);
 
 /// The bus that a command joins. `usual`: its own options; `running`: newest first. A given robot
 /// or domain selects among these. Of several the usual bus comes first, then the newest deployment,

@@ -20,8 +20,8 @@ class Roll {
 
   /// announced: of this moment; writers: of topics that bridges alone write, and that are there,
   /// for bridges that do not announce their program. now: [s] of a clock that never goes back.
-  void update(const std::vector<bus::Announcer>& announced, const std::set<bus::WriterId>& writers,
-              double now);
+  void update(const std::vector<bus::ProgramEntry>& announced,
+              const std::set<bus::WriterId>& writers, double now);
   bool complete(double now) const {
     return changed_ && (now - *changed_ >= quiet_ || now - *began_ >= kMost);
   }
@@ -34,7 +34,7 @@ class Roll {
   static constexpr double kMost = 10.0;  ///< [s] where programs come and go all the time
 
  private:
-  using Id = decltype(bus::Announcer::id);
+  using Id = decltype(bus::ProgramEntry::id);
   static Id id_of(const bus::WriterId& writer);
 
   const double quiet_;

@@ -19,9 +19,4 @@ struct Latches {
   bool operator==(const Latches&) const = default;
 };
 
-/// A sealed line. Empty where nothing is latched.
-std::string to_text(const Latches& latches);
-/// Reads to_text(). An unreadable text counts as an emergency stop, since there may have been one.
-Latches latches_from_text(const std::string& text);
-
 }  // namespace saphira::authority

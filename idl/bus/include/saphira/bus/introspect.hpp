@@ -93,14 +93,18 @@ struct EndpointEntry {
 };
 
 /// A program that discovery has found: of this robot, or of all where the node meets the others.
+/// Its endpoints are discovered after it.
 struct ProgramEntry {
+  std::array<std::uint8_t, 12> id{};  ///< the beginning of its WriterIds
   std::string name;
+  std::string program{};   ///< such as bridge, whatever its name; empty where it does not say it
   std::string host{};      ///< empty where it does not say it
   std::uint32_t pid = 0;   ///< 0: not built on this library
   std::string robot{};     ///< empty where it does not say it
   std::string contract{};  ///< as in version(); empty where it does not say it
   std::string subject{};   ///< of the certificate that it announces; empty: it has none
   bool let_in = true;      ///< false: it has not proved that it is a member of the site
+  bool refused = false;    ///< it has failed to prove it
   bool silent = false;     ///< its presence is not heard
   double known = 0.0;      ///< [s] since it was found
   std::size_t endpoints = 0;
@@ -111,14 +115,6 @@ struct OtherProgram {
   std::string robot;
   std::string name;
   auto operator<=>(const OtherProgram&) const = default;
-};
-
-/// A program that announced itself. Its endpoints are discovered after it.
-struct Announcer {
-  std::array<std::uint8_t, 12> id{};  ///< the beginning of its WriterIds
-  std::string robot;                  ///< empty where it does not say it
-  std::string program;                ///< such as bridge, whatever its name
-  auto operator<=>(const Announcer&) const = default;
 };
 
 /// Two endpoints of one topic and one robot that do not hear each other.
@@ -138,8 +134,6 @@ class Census {
 
   /// Sorted by topic, writers first, then program.
   std::vector<EndpointEntry> endpoints() const;
-  /// The programs that this node meets and that are there. Sorted.
-  std::vector<Announcer> announcers() const;
   /// The programs of other robots that announced themselves lately, for a node that notes them.
   /// Sorted.
   std::vector<OtherProgram> others() const;

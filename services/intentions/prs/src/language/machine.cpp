@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <list>
-#include <map>
 #include <utility>
 
 #include "language/program.hpp"
@@ -64,8 +63,6 @@ class Machine : public Activity {
 
   void child_ended(Self& self) override { go_on(self); }
 
-  Saved save() const override { return {saved(*this)}; }
-  void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) override;
   void archive(Archive& a) override;
 
   const Value* variable(std::string_view name) const override {
@@ -727,25 +724,8 @@ void Machine::archive(Archive& a) {
   a("shown_at", shown_at_)("shown_waiting", shown_waiting_);
   a.expect(locals_.size() == program_->locals.size() && !threads_.empty(),
            "the progress of " + program_->name);
-}
-
-void Machine::restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
-  Machine next(program_, {});
-  saphira::restore(saved.text, next);
-  const auto now = [&](std::uint32_t& child) {
-    const auto found = children.find(child);
-    child = found == children.end() ? 0 : found->second;
-  };
-  for (Thread& thread : next.threads_) {
-    if (thread.at >= program_->steps.size())
-      throw ActivityError("the saved state of " + program_->name + " is incomplete");
-    now(thread.child);
-    for (Child& child : thread.children)
-      now(child.id);
-    std::erase_if(thread.children, [](const Child& child) { return child.id == 0; });
-  }
-  next.shown_at_ = kNowhere;
-  *this = std::move(next);
+  for (const Thread& thread : threads_)
+    a.expect(thread.at < program_->steps.size(), "the progress of " + program_->name);
 }
 
 }  // namespace

@@ -25,8 +25,6 @@ struct Remembered {
   bool changed = false;  ///< since its origin
   maps::Map map;
   std::set<std::uint32_t> closed_doors;
-
-  bool operator==(const Remembered&) const = default;
 };
 
 /// The pose of `start` on the map: the name of a POS of it, "x,y,th" [m, rad], or "unknown";

@@ -43,7 +43,6 @@ class PoseFilter {
   const Covariance& covariance() const { return covariance_; }
   Eigen::Matrix3d pose_covariance() const { return covariance_.topLeftCorner<3, 3>(); }
   double sigma_position() const;  ///< [m] along the worst direction
-  void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
 

@@ -18,6 +18,7 @@
 #include "saphira/registration/matching.hpp"
 #include "saphira/registration/object_finder.hpp"
 #include "saphira/registration/particle_cloud.hpp"
+#include "saphira/registration/pose_filter.hpp"
 #include "saphira/registration/presence.hpp"
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
@@ -117,14 +118,9 @@ struct Output {
 struct Memory {
   std::uint64_t odom = 0;
   Pose pose_in_odom;
-  Pose pose_in_map;
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< x, y, th, drift
-  double drift = 0.0;                                    ///< [rad/m] of dead reckoning
+  std::optional<PoseFilter> filter;  ///< none: its place is unknown
   double confidence = 0.0;
-  bool placed = false;
   bool carried = false;  ///< as it seemed, and nothing has confirmed the pose since
-
-  bool operator==(const Memory&) const = default;
 };
 
 struct RegistrationState;

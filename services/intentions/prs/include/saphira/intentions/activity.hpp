@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -133,7 +132,7 @@ class Self {
 
   /// The present step, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;
-  /// Reports that Activity::save() has changed.
+  /// Reports that its progress has changed.
   virtual void moved_on() = 0;
   virtual void progress(double done) = 0;  ///< [0..1]
   virtual void succeed(std::string reason) = 0;
@@ -160,16 +159,11 @@ class Activity {
   /// True: interruption and resumption apply to its children as well. False: its children are
   /// removed.
   virtual bool keeps_children() const { return false; }
-  /// The progress, for a restart of the service; none: the arguments are enough.
+  /// True: it goes on where it was after a restart of the service. It reports its progress
+  /// (Self::moved_on). False: its arguments are enough.
+  virtual bool keeps_progress() const { return keeps_children(); }
   /// Its whole state, to go on at the same place in the same forest.
   virtual void archive(Archive& a) { static_cast<void>(a); }
-  virtual Saved save() const { return {}; }
-  /// Continues from save(). `children`: their new numbers by the old ones. std::runtime_error where
-  /// it cannot: then it is unchanged.
-  virtual void restore(const Saved& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
-    static_cast<void>(saved);
-    static_cast<void>(children);
-  }
   /// The value of a parameter or variable of its own; nullptr where it has none of that name.
   virtual const Value* variable(std::string_view name) const {
     static_cast<void>(name);

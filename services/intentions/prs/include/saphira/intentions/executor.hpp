@@ -16,8 +16,8 @@
 #include "saphira/intentions/forest.hpp"
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/goal.hpp"
-#include "saphira/intentions/journal.hpp"
 #include "saphira/intentions/schema.hpp"
+#include "saphira/intentions/work.hpp"
 
 namespace saphira::intentions {
 
@@ -62,7 +62,6 @@ struct Inputs {
 struct GoalUpdates {
   std::vector<GoalStatus> changed;  ///< to be published, in order
   std::vector<GoalId> withdrawn;    ///< ended long ago: withdraw their status
-  std::vector<Placement> placed;    ///< to be saved
   std::vector<Ending> endings;      ///< to be saved
   /// To be saved in place of the earlier work; none: unchanged.
   std::optional<Work> work;
@@ -149,44 +148,14 @@ class Executor {
   void archive(Archive& a);
 
  private:
-  struct Entry {
-    Goal goal;            ///< as written, to tell a change from a repetition
-    Arguments arguments;  ///< complete; points in odom once `placed`
-    std::shared_ptr<const Schema> schema;
-    bool fresh = true;  ///< no step since it was heard: acceptance counts from the next step
-    bool placed = false;
-    bool changed = false;               ///< begun, and its activity does not know yet
-    bool replaced = false;              ///< the goals that it replaces have been ended
-    bool unapproved = false;            ///< waits for approve()
-    std::optional<std::uint64_t> odom;  ///< the frame of its points; none: it has no points
-    std::uint64_t order = 0;
-    Ticks accepted = 0;
-    Ticks ended = 0;
-    std::uint32_t node = 0;  ///< root of its tree; 0: not begun
-    GoalStatus status;
-    bool before = false;  ///< it was accepted before a restart of the service
-    std::string refusal;  ///< of the newest change, which was rejected; empty: none
-    GoalCode refusal_code = v1::CODE_NONE;
-    std::optional<GoalStatus> published;
-    Ticks published_at = 0;
-    std::deque<double> levels;  ///< of the last cycles, for the trend
-
-    template <class Archive>
-    void archive(Archive& a) {
-      a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
-          "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
-          "accepted", accepted)("ended", ended)("node", node)("status", status)("before", before)(
-          "refusal", refusal)("refusal_code", refusal_code)("published", published)(
-          "published_at", published_at)("levels", levels);
-    }
-  };
+  using Entry = GoalEntry;
   using Entries = std::map<GoalId, Entry>;
 
   void pass_time(const Inputs& inputs);
   void take_in(const GoalEvent& event);
   void take_written(const GoalEvent& event);
   void put_up(Entry& entry, const Goal& goal, Arguments complete);
-  static bool depends_on_odom(const Entry& entry, bool placed);
+  static bool depends_on_odom(const Entry& entry);
   void change(Entry& entry, const GoalEvent& event);
   std::string complaint(const GoalEvent& event, GoalCode& code, Arguments& complete) const;
   bool is_place(const std::string& functor) const;
@@ -197,8 +166,9 @@ class Executor {
   static void wait(Entry& entry, GoalCode code, std::string reason);
   void suspend(Entry& entry, GoalCode code, std::string reason);
   void lose_robot(const std::string& hold = {});
+  void lose_robot(Entry& entry, const std::string& hold);
   void meet_odom(std::uint64_t odom);
-  Placement placement_of(const Entry& entry, const Robot& robot) const;
+  void meet_odom(Entry& entry, std::uint64_t odom);
   void place(Entry& entry, const Robot& robot);
   void pass_changes();
   void check_deadlines(const Robot& robot);
@@ -209,13 +179,13 @@ class Executor {
   static bool drives(const Entry& entry);
   std::string why_to_wait(const Entry& entry) const;
   Entry* best();
-  Entry* arbitrate(const World& world);
+  Entry* arbitrate();
   void queue(Entry& entry, const Goal& front);
-  void begin(Entry& entry, const World& world);
-  void take_up(Entry& entry, const World& world);
-  void begin_concurrent(const World& world);
-  void recall(const Inputs& inputs);
-  std::optional<Work> take_work();
+  void begin(Entry& entry);
+  Entries::iterator take_up(const GoalId& id);
+  void begin_concurrent();
+  std::vector<Belief> lasting_beliefs() const;
+  std::optional<Work> take_work(bool changed);
   void measure(Entry& entry);
   bool collect();
   static std::optional<GoalStatus> refused_change(const Entry& entry);
@@ -227,8 +197,8 @@ class Executor {
   std::shared_ptr<Beliefs> beliefs_;
   Forest forest_;
   Entries entries_;
-  std::map<GoalId, Placement> remembered_places_;
-  Work remembered_work_;
+  Entries unheard_;          ///< from before a restart
+  bool was_placed_ = false;  ///< before a restart it was known where the robot is on the map
   std::uint64_t set_revision_ = 0;
   std::map<GoalId, Ending> remembered_;
   std::deque<GoalId> remembered_order_;
@@ -240,7 +210,7 @@ class Executor {
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
   bool on_map_ = false;  ///< it is known where the robot is on the map
-  Ticks recalled_ = 0;   ///< time of the start, with remembered work
+  Ticks recalled_ = 0;   ///< time of the start
   std::string person_;   ///< of the newest inputs
   v1::StopId heeds_;
   v1::StopId saved_heeds_;
@@ -250,7 +220,6 @@ class Executor {
   Ticks stop_asked_ = 0;
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
   std::vector<GoalId> withdrawn_;
-  std::vector<Placement> placed_;
   std::vector<Ending> endings_;
 };
 

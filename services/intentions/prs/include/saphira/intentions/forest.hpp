@@ -87,15 +87,21 @@ class Forest {
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
                       std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
                       bool concurrent = false);
+  /// Makes the activity of a root, to be restored.
+  using MakeRoot = std::function<std::unique_ptr<Activity>(std::uint32_t)>;
   /// The progress in the tree of a root, for a restart of the service; none where it is too large.
-  Saved save(std::uint32_t root) const;
-  /// Restores a newly planted tree from save(). std::runtime_error where that is impossible
-  /// (another version of the schema, an object that is not seen any more): the tree is then as it
-  /// was planted.
-  void restore(std::uint32_t root, const Saved& saved, const World& world);
-  /// The whole forest. `make_root` makes the activity of a root, to be restored.
-  void archive(Archive& a,
-               const std::function<std::unique_ptr<Activity>(std::uint32_t)>& make_root);
+  Saved save(std::uint32_t root);
+  /// Restores the tree of a root under its old number. std::runtime_error where that is impossible
+  /// (another version of the schema): then nothing has changed.
+  void restore(std::uint32_t root, const Saved& saved, const MakeRoot& make_root);
+  /// The whole forest.
+  void archive(Archive& a, const MakeRoot& make_root);
+  /// The newest number of an intention: after a restart later ones follow it.
+  std::uint32_t last_id() const { return last_id_; }
+  void begin_after(std::uint32_t last_id, Ticks now) {
+    last_id_ = last_id;
+    now_ = now;
+  }
   /// True where save() may have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
 
@@ -146,8 +152,7 @@ class Forest {
 
  private:
   struct Node;
-  struct SavedNode;
-  struct SavedTree;
+  struct Tree;
   class Handle;
   using Nodes = std::map<std::uint32_t, std::unique_ptr<Node>>;
 
@@ -158,8 +163,7 @@ class Forest {
   std::uint32_t start(Node& parent, const Start& start, const World& world);
   void make_behavior(Node& node, const Start& start, const World& world);
   std::uint64_t ask(Request request);
-  SavedNode save_one(const Node& node) const;
-  Node& restore_one(Node& parent, SavedNode saved, const World& world);
+  void archive(Archive& a, std::vector<std::uint32_t>& ids, const MakeRoot& make_root, bool whole);
   void watch(Node& node, const World& world);
   void remove_children(Node& parent);
   void drop(std::uint32_t id);

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,22 +13,45 @@
 #include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/schema.hpp"
 
 namespace saphira::intentions {
 
-/// The progress of a begun goal.
-struct GoalWork {
-  GoalId id;
-  std::string functor;
-  Arguments arguments;      ///< as written
-  bool unapproved = false;  ///< changed since, and waits for a person's approval
-  Saved intentions;         ///< of the Forest
+/// A goal of the executor.
+struct GoalEntry {
+  Goal goal;            ///< as written, to tell a change from a repetition
+  Arguments arguments;  ///< complete; points in odom once `placed`
+  std::shared_ptr<const Schema> schema;
+  bool fresh = true;  ///< no step since it was heard: acceptance counts from the next step
+  bool placed = false;
+  bool changed = false;               ///< begun, and its activity does not know yet
+  bool replaced = false;              ///< the goals that it replaces have been ended
+  bool unapproved = false;            ///< waits for Executor::approve()
+  std::optional<std::uint64_t> odom;  ///< the frame of its points; none: it has no points
+  std::uint64_t order = 0;
+  Ticks accepted = 0;
+  Ticks ended = 0;
+  std::uint32_t node = 0;  ///< root of its tree; 0: not begun
+  GoalStatus status;
+  bool before = false;  ///< it was accepted before a restart of the service
+  std::string refusal;  ///< of the newest change, which was rejected; empty: none
+  GoalCode refusal_code = v1::CODE_NONE;
+  std::optional<GoalStatus> published;
+  Ticks published_at = 0;
+  std::deque<double> levels;  ///< of the last cycles, for the trend
+  // For a restart.
+  std::uint64_t frame = 0;  ///< the odom frame of its tree
+  Saved tree;               ///< of the Forest
 
-  bool operator==(const GoalWork&) const = default;
+  bool operator==(const GoalEntry&) const = default;
 
-  /// True while the goal has the functor and the arguments with which the work began.
-  bool is_of(const Goal& goal) const {
-    return id == goal.id && functor == goal.functor && arguments == goal.arguments;
+  template <class Archive>
+  void archive(Archive& a) {
+    a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
+        "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
+        "accepted", accepted)("ended", ended)("node", node)("status", status)("before", before)(
+        "refusal", refusal)("refusal_code", refusal_code)("published", published)(
+        "published_at", published_at)("levels", levels)("frame", frame)("tree", tree);
   }
 };
 
@@ -33,13 +61,46 @@ struct Work {
   std::uint64_t epoch = 0;  ///< time of this state; 0: unknown
   std::uint64_t cycle = 0;
   std::uint64_t odom = 0;
-  Ticks now = 0;  ///< the clock continues as well: activities may remember times
-  std::vector<GoalWork> goals;
-  std::vector<Belief> beliefs;
-  v1::StopId heeds{};   ///< the newest stop that has ended goals
-  bool placed = false;  ///< it was known where the robot is on the map
+  Ticks now = 0;  ///< the clocks continue as well: activities may remember times
+  Ticks awake = 0;
+  std::uint32_t last_intention = 0;  ///< the newest number
+  std::map<GoalId, GoalEntry> goals{};
+  std::vector<Belief> beliefs{};
+  v1::StopId heeds{};             ///< the newest stop that has ended goals
+  bool placed = false;            ///< it was known where the robot is on the map
+  std::optional<GoalId> ended{};  ///< the newest ending: a list without it has lost its end
 
   bool operator==(const Work&) const = default;
+};
+
+/// The end of a goal, saved over a restart so that the service never does a goal twice.
+struct Ending {
+  GoalId id;
+  GoalState state = v1::GOAL_SUCCEEDED;
+  GoalCode code = v1::CODE_NONE;
+  std::string reason;
+
+  bool operator==(const Ending&) const = default;
+};
+
+/// Letters of an ending's reason that are saved: thousands of goals may be refused with a list of
+/// all possible requests.
+inline constexpr std::size_t kLongestReason = 120;
+/// Endings that are saved; the oldest are dropped.
+inline constexpr std::size_t kMostEndings = 8192;
+
+/// The state that the service saves over a restart.
+struct Memory {
+  enum class Condition {
+    kNone,     ///< nothing saved: a first start, or the file was removed
+    kDamaged,  ///< a part may be missing
+    kWhole
+  };
+  Condition condition = Condition::kNone;
+  std::vector<Ending> endings;  ///< oldest first
+  Work work;                    ///< of the other goals
+
+  bool operator==(const Memory&) const = default;
 };
 
 }  // namespace saphira::intentions
