@@ -19,7 +19,7 @@ void Roll::update(const std::vector<bus::ProgramEntry>& announced,
     bridges.insert(id_of(writer));
   for (const bus::ProgramEntry& one : announced) {
     robots[one.id] = one.robot;
-    if ((one.program.empty() ? one.name : one.program) == "bridge")
+    if (one.kind() == "bridge")
       bridges.insert(one.id);
   }
   programs = bridges;
@@ -32,8 +32,8 @@ void Roll::update(const std::vector<bus::ProgramEntry>& announced,
   programs_ = std::move(programs);
   bridges_.clear();
   bridgeless_.clear();
-  for (const bus::Announcer& one : announced)
-    if (one.program == "behaviors" && !one.robot.empty())
+  for (const bus::ProgramEntry& one : announced)
+    if (one.kind() == "behaviors" && !one.robot.empty())
       bridgeless_.insert(one.robot);
   for (const Id& id : bridges) {
     bridges_[id] = robots[id].empty() ? "a robot without a name" : robots[id];

@@ -55,7 +55,7 @@ TEST(Roll, NamesTheRobotsThatAreMissing) {
 
 TEST(Roll, MissesARobotWhoseBridgeIsNotFound) {
   Roll roll(1.0);
-  std::vector<bus::Announcer> all{announcer(1, "ant"), announcer(2, "bee", "behaviors")};
+  std::vector<bus::ProgramEntry> all{announcer(1, "ant"), announcer(2, "bee", "behaviors")};
   roll.update(all, {}, 0.0);
   EXPECT_EQ(roll.without({writer_of(1)}), Names{"bee"});
   EXPECT_EQ(roll.count(), 2U);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "internal.hpp"
 #include "neighbours.hpp"
+#include "saphira/bus/introspect.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -19,10 +19,9 @@ struct Namesakes::Impl {
   bool may_serve() const {
     if (acted || Clock::now() - made > kAwaited)
       return false;
-    const auto announced = internal::transport_of(node).announcers();
-    return std::ranges::any_of(announced, [&](const Announcer& other) {
-      return other.robot == node.options().robot && other.program == node.status().name &&
-             !neighbours.knows(other.id);
+    return std::ranges::any_of(found_programs(node), [&](const ProgramEntry& other) {
+      return other.robot == node.options().robot && other.kind() == node.status().name &&
+             !other.silent && !other.refused && !neighbours.knows(other.id);
     });
   }
 

@@ -108,6 +108,9 @@ struct ProgramEntry {
   bool silent = false;     ///< its presence is not heard
   double known = 0.0;      ///< [s] since it was found
   std::size_t endpoints = 0;
+
+  /// Its kind, such as bridge: its name where it does not say it.
+  const std::string& kind() const { return program.empty() ? name : program; }
 };
 
 /// A program of another robot.
