@@ -211,6 +211,11 @@ void DialogueShell::adopt(std::uint64_t tag, const v1::GoalId& id) {
 
 void DialogueShell::take_goals(double seconds) {
   goals_.poll();
+  for (const auto& sample : wanted_.take())
+    if (sample.info.disposed)
+      others_.erase(sample.data.id);
+    else if (sample.data.id.writer != node_.instance())
+      others_[sample.data.id] = sample.data;
   std::vector<Outcome> ended;
   std::vector<std::uint64_t> without_status;
   for (const auto& [tag, id] : asked_) {
@@ -227,6 +232,7 @@ void DialogueShell::take_goals(double seconds) {
     perform(dialogue_.ended(outcome));
   }
   perform(dialogue_.without_status(without_status, seconds));
+  situation_.goals = known_goals();
 }
 
 void DialogueShell::take_beliefs() {
@@ -267,19 +273,27 @@ void DialogueShell::take_places() {
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : goals_.statuses()) {
+    const bool held = status.waits_for == v1::GoalId{} &&
+                      (status.state == v1::GOAL_WAITING || status.state == v1::GOAL_SUSPENDED);
     KnownGoal& goal = goals.emplace_back(KnownGoal{.functor = status.functor,
                                                    .asker = {},
                                                    .state = status.state,
                                                    .reason = status.reason,
                                                    .tag = 0,
                                                    .note = status.note,
-                                                   .step = status.step});
+                                                   .step = status.step,
+                                                   .elapsed = status.elapsed,
+                                                   .queued = !held});
+    if (const auto asked = others_.find(status.id); asked != others_.end()) {
+      goal.arguments = saphira::from_bus(asked->second.arguments);
+      goal.priority = asked->second.priority;
+    }
     const auto mine =
         std::ranges::find_if(asked_, [&](const auto& one) { return one.second == status.id; });
     if (mine != asked_.end())
       goal.tag = mine->first;
     else if (status.id.writer != node_.instance())
-      goal.asker = status.requester;
+      goal.asker = status.requester.empty() ? "somebody" : status.requester;
   }
   return goals;
 }
@@ -301,7 +315,6 @@ void DialogueShell::take_utterances() {
         first_letters(unnamed ? utterance.person->name : sample.data.speaker, kLongestName);
     if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;
-    situation_.goals = known_goals();
     perform(dialogue_.hear(utterance, situation_));
   }
   for (const bus::WriterId& writer : lost)

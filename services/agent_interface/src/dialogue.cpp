@@ -370,6 +370,8 @@ Dialogue::Outputs Dialogue::granted(const v1::Grant& grant, std::uint64_t self) 
 
 Dialogue::Outputs Dialogue::come_due(const Situation& situation) {
   Outputs out;
+  tasks_.heed(front(situation));
+  tell_of_waiting(situation, out);
   for (Tasks::Later& one : tasks_.take_due(situation.now)) {
     one.order.time = situation.now;
     std::string why;
@@ -425,6 +427,7 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.changed = true;
   }
+  tasks_.heed(front(situation));
   const bool asked = !situation.asked_about.empty();
   const Question* const question = question_for(utterance);
   const bool answers = question != nullptr && question->asked;

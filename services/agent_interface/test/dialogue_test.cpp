@@ -19,9 +19,9 @@ TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
 TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
   EXPECT_EQ(said("Flakey, why are you standing?"), "I have nothing to do");
   situation.goals = {{"go_to", "console", v1::GOAL_FAILED, "the way is blocked"}};
-  EXPECT_EQ(said("Flakey, why?"), "go_to of console failed: the way is blocked");
+  EXPECT_EQ(said("Flakey, why?"), "go_to for console failed: the way is blocked");
   situation.goals.push_back({"drive", "mcp", v1::GOAL_UNDERWAY, ""});
-  EXPECT_EQ(said("Flakey, why?"), "drive of mcp is underway");
+  EXPECT_EQ(said("Flakey, why?"), "drive for mcp is underway");
   situation.goals.insert(situation.goals.begin(),
                          {"explore", "", v1::GOAL_SUSPENDED, "drive is more important"});
   EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
@@ -87,7 +87,7 @@ TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
                      {"explore", "console", v1::GOAL_WAITING, ""},
                      {"drive", "mcp", v1::GOAL_UNDERWAY, ""}};
   EXPECT_EQ(said("Flakey, what are you doing?"),
-            "I go to EJ-233; for console: explore, which is waiting; for mcp: drive");
+            "for mcp: drive; I go to EJ-233; for console: explore, which is waiting");
 }
 
 TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {

@@ -86,6 +86,38 @@ class Conversation : public DialogueTest {
     std::getline(in >> std::ws, grant.stop_source);
     last = dialogue.granted(grant, 9);
   }
+  /// The state of the newest goal, the seconds since it was accepted, and the reason.
+  void own_goal(const std::string& text) {
+    std::istringstream in(text);
+    KnownGoal goal = known_goal(in);
+    goal.tag = wanted_;
+    in >> goal.elapsed;
+    std::getline(in >> std::ws, goal.reason);
+    goal.queued = goal.reason.empty();
+    std::erase_if(situation.goals, [&](const KnownGoal& one) { return one.tag == wanted_; });
+    situation.goals.push_back(goal);
+  }
+  /// The state, priority, functor, place and asker of a goal of another program.
+  void others_goal(const std::string& text) {
+    std::istringstream in(text);
+    KnownGoal goal = known_goal(in);
+    std::string place;
+    in >> goal.priority >> goal.functor >> place;
+    std::getline(in >> std::ws, goal.asker);
+    if (place != "-")
+      goal.arguments = {saphira::text("place", place)};
+    goal.elapsed = 10.0;
+    situation.goals.push_back(goal);
+  }
+  static KnownGoal known_goal(std::istringstream& in) {
+    std::string state;
+    in >> state;
+    KnownGoal goal;
+    goal.state = state == "waiting"     ? v1::GOAL_WAITING
+                 : state == "suspended" ? v1::GOAL_SUSPENDED
+                                        : v1::GOAL_UNDERWAY;
+    return goal;
+  }
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
   std::uint64_t wanted_ = 0;  ///< the newest goal
@@ -133,6 +165,9 @@ class Conversation : public DialogueTest {
          situation.carried = {{text, "EJ-231"}};
        }},
       {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
+      {"its goal", [this](const auto& text) { own_goal(text); }},
+      {"goal of another", [this](const auto& text) { others_goal(text); }},
+      {"no goals", [this](const auto&) { situation.goals.clear(); }},
       {"emergency stop", [this](const auto& text) { situation.estop = text; }},
       {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
       {"at", [this](const auto& text) { situation.pose_in_map = pose_of(text); }},
@@ -149,7 +184,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 81);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 86);
 }
 
 }  // namespace
