@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -26,8 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
-constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
+constexpr const char* kConsole = "console";  // its messages are about its files
+constexpr double kConfirmsWithin = 2.0;      // [s] the bridge, a stop
+constexpr std::size_t kLongestName = 31;     // [bytes] of a speaker
 
 }  // namespace
 
@@ -101,13 +103,19 @@ void DialogueShell::reload() {
 void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
   v1::Request request = bus::request("stop", {bus::text("by", wanted.requester())});
   request.person = bus::to_bus(wanted.person);
-  const auto hear = [this, tag = wanted.tag](const v1::Answer& answer) {
-    const bool nobody = answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
-    if (bus::ended(answer.code))
-      perform(
-          dialogue_.ended({tag, bus::well(answer.code),
-                           nobody ? "no bridge has confirmed the stop: press the robot's own switch"
-                                  : answer.text}));
+  const auto confirmed = std::make_shared<std::string>();
+  const auto hear = [this, tag = wanted.tag, confirmed](const v1::Answer& answer) {
+    const bool silent = answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
+    if (!bus::ended(answer.code)) {
+      *confirmed = answer.text;
+      return;
+    }
+    const std::string missing = confirmed->empty()
+                                    ? "no bridge has confirmed the stop"
+                                    : "the bridge has confirmed the stop (" + *confirmed +
+                                          "), but the robot was not seen at rest";
+    perform(dialogue_.ended({tag, bus::well(answer.code),
+                             silent ? missing + ": press the robot's own switch" : answer.text}));
   };
   stops_.send(std::move(request), hear, kConfirmsWithin);
 }
@@ -340,7 +348,7 @@ void DialogueShell::step(double seconds, double now) {
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())
-    if (!sample.info.disposed)
+    if (!sample.info.disposed && sample.data.source != kConsole)
       perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
   perform(dialogue_.come_due(situation_));

@@ -263,7 +263,9 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   EXPECT_EQ(asked[1].data.writer_lost, v1::WRITER_LOST_CANCEL);
   writer.reset();
   dialogue->step();
-  EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
+  EXPECT_EQ(
+      answers(),
+      "I drop the delivery of the mail: the program that wanted it has left or taken it back");
   const auto ended = test::only(goals.take());
   EXPECT_EQ(ended.data.withdrawn, "the program that wanted it has left or taken it back");
   EXPECT_EQ(ended.data.id, asked[1].data.id);
@@ -289,8 +291,9 @@ TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBef
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].data.priority, 0);
   const v1::GoalId first = asked[0].data.id;
-  EXPECT_EQ(say("Flakey, turn left", "Bob"),
-            "I turn 90 degrees to the left, and then I go on with the mail for Alice");
+  EXPECT_EQ(
+      say("Flakey, turn left", "Bob"),
+      "I turn 90 degrees to the left, and then I go on with the delivery of the mail for Alice");
   asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].data.withdrawn, "");
@@ -479,6 +482,15 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   EXPECT_EQ(answers(), "");
   dialogue->step(103.0);
   EXPECT_TRUE(answers().starts_with("I could not: no bridge has confirmed the stop"));
+
+  say("Flakey, stop");
+  request = stops.take_newest();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(answer(*request, v1::ANSWER_UNDERWAY), "");
+  dialogue->step(1000.0);
+  EXPECT_EQ(answers(),
+            "I could not: the bridge has confirmed the stop (stopped: a program (direct)), but the "
+            "robot was not seen at rest: press the robot's own switch");
 }
 
 // The bus says who speaks; what speakers call themselves is not checked.

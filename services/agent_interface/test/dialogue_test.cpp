@@ -31,24 +31,29 @@ TEST_F(DialogueTest, TheReasonBeginsWithTheTaskAndItsOwner) {
   hear("Flakey, take the mail from EJ-231 to Alice");
   const std::uint64_t tag = last.goals.at(0).tag;
   situation.goals = {{"deliver", "", v1::GOAL_UNDERWAY, "", tag}};
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway");
+  EXPECT_EQ(said("Flakey, why?"), "the delivery of the mail for Alice is underway");
   situation.goals[0].step = "through-door: passes a door or another opening";
-  EXPECT_EQ(said("Flakey, why?", "Bob"),
-            "the mail for Alice is underway: the robot passes a door or another opening");
+  EXPECT_EQ(
+      said("Flakey, why?", "Bob"),
+      "the delivery of the mail for Alice is underway: the robot passes a door or another opening");
   situation.goals[0].step = "waits for a person";
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: waits for a person");
+  EXPECT_EQ(said("Flakey, why?"),
+            "the delivery of the mail for Alice is underway: waits for a person");
   // The reason of the state goes before a note, and that before the step.
   situation.goals[0].note = "was begun anew at its first step";
   EXPECT_EQ(said("Flakey, why?"),
-            "the mail for Alice is underway: was begun anew at its first step");
+            "the delivery of the mail for Alice is underway: was begun anew at its first step");
   situation.goals[0].reason = "changed by its requester";
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is underway: changed by its requester");
+  EXPECT_EQ(said("Flakey, why?"),
+            "the delivery of the mail for Alice is underway: changed by its requester");
   situation.goals[0] = {"deliver", "", v1::GOAL_SUSPENDED, "drive is more important", tag};
-  EXPECT_EQ(said("Flakey, why?"), "the mail for Alice is suspended: drive is more important");
+  EXPECT_EQ(said("Flakey, why?"),
+            "the delivery of the mail for Alice is suspended: drive is more important");
 }
 
 TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
-  const std::string failed = "the mail for Alice failed: nobody at EJ-231 gave the robot the mail";
+  const std::string failed =
+      "the delivery of the mail for Alice failed: nobody at EJ-231 gave the robot the mail";
   hear("Flakey, take the mail from EJ-231 to John");
   dialogue.ended({last.goals.at(0).tag, false, "nobody at EJ-231 gave the robot the mail"});
   situation.goals = {{"deliver", "", v1::GOAL_FAILED, "nobody at EJ-231 gave the robot the mail"}};

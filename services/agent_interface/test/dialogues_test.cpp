@@ -121,6 +121,7 @@ class Conversation : public DialogueTest {
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
   std::uint64_t wanted_ = 0;  ///< the newest goal
+  std::uint64_t said_ = 0;    ///< activities' messages
   std::string map_ = kMap;
   std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
   const std::map<std::string, std::function<std::string()>> facts_{
@@ -148,6 +149,10 @@ class Conversation : public DialogueTest {
       {"failed",
        [this](const auto& text) {
          last = dialogue.ended({wanted_, false, text});
+       }},
+      {"activity",
+       [this](const auto& text) {
+         last = dialogue.says(text, {3, ++said_});
        }},
       {"seconds pass",
        [this](const auto& text) {
@@ -184,7 +189,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 86);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 90);
 }
 
 }  // namespace

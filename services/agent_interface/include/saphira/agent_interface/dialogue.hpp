@@ -317,7 +317,8 @@ class Dialogue {
 
   std::vector<Gone> gone_;
   std::optional<Ended> ended_;
-  std::uint64_t stop_ = 0;                  ///< the tag of the newest stop
+  UtteranceId unclear_{};   ///< the newest utterance, which was no answer; 0, 0: it was one
+  std::uint64_t stop_ = 0;  ///< the tag of the newest stop
   std::optional<v1::StopId> known_stop_{};  ///< the newest of anybody
   Tasks tasks_;
   std::map<std::uint64_t, double> without_status_;  ///< goals, since when [s]
