@@ -102,7 +102,10 @@ std::optional<Tasks::Front> Dialogue::front(const Situation& situation) const {
       first = &goal;
   if (first == nullptr)
     return std::nullopt;
-  const Task* const task = tasks_.task();
+  const Task* task = tasks_.task();
+  for (const Task& one : tasks_.open())
+    if (task == nullptr && one.goal.functor != "stop")
+      task = &one;
   return Tasks::Front{named_goal(*first, Grammar::Form::task) + " for " + first->asker,
                       first->priority,
                       task == nullptr || goes_before(*first, goal_of(*task, situation.goals))};
