@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -26,8 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
-constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
+constexpr const char* kConsole = "console";  // its messages are about its files
+constexpr double kConfirmsWithin = 2.0;      // [s] the bridge, a stop
+constexpr std::size_t kLongestName = 31;     // [bytes] of a speaker
 
 }  // namespace
 
@@ -101,13 +103,19 @@ void DialogueShell::reload() {
 void DialogueShell::ask_to_stop(const WantedGoal& wanted) {
   v1::Request request = bus::request("stop", {bus::text("by", wanted.requester())});
   request.person = bus::to_bus(wanted.person);
-  const auto hear = [this, tag = wanted.tag](const v1::Answer& answer) {
-    const bool nobody = answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
-    if (bus::ended(answer.code))
-      perform(
-          dialogue_.ended({tag, bus::well(answer.code),
-                           nobody ? "no bridge has confirmed the stop: press the robot's own switch"
-                                  : answer.text}));
+  const auto confirmed = std::make_shared<std::string>();
+  const auto hear = [this, tag = wanted.tag, confirmed](const v1::Answer& answer) {
+    const bool silent = answer.code == v1::ANSWER_NOBODY || answer.code == v1::ANSWER_TOO_LATE;
+    if (!bus::ended(answer.code)) {
+      *confirmed = answer.text;
+      return;
+    }
+    const std::string missing = confirmed->empty()
+                                    ? "no bridge has confirmed the stop"
+                                    : "the bridge has confirmed the stop (" + *confirmed +
+                                          "), but the robot was not seen at rest";
+    perform(dialogue_.ended({tag, bus::well(answer.code),
+                             silent ? missing + ": press the robot's own switch" : answer.text}));
   };
   stops_.send(std::move(request), hear, kConfirmsWithin);
 }
@@ -211,6 +219,11 @@ void DialogueShell::adopt(std::uint64_t tag, const v1::GoalId& id) {
 
 void DialogueShell::take_goals(double seconds) {
   goals_.poll();
+  for (const auto& sample : wanted_.take())
+    if (sample.info.disposed)
+      others_.erase(sample.data.id);
+    else if (sample.data.id.writer != node_.instance())
+      others_[sample.data.id] = sample.data;
   std::vector<Outcome> ended;
   std::vector<std::uint64_t> without_status;
   for (const auto& [tag, id] : asked_) {
@@ -227,6 +240,7 @@ void DialogueShell::take_goals(double seconds) {
     perform(dialogue_.ended(outcome));
   }
   perform(dialogue_.without_status(without_status, seconds));
+  situation_.goals = known_goals();
 }
 
 void DialogueShell::take_beliefs() {
@@ -267,19 +281,27 @@ void DialogueShell::take_places() {
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<KnownGoal> goals;
   for (const v1::GoalStatus& status : goals_.statuses()) {
+    const bool held = status.waits_for == v1::GoalId{} &&
+                      (status.state == v1::GOAL_WAITING || status.state == v1::GOAL_SUSPENDED);
     KnownGoal& goal = goals.emplace_back(KnownGoal{.functor = status.functor,
                                                    .asker = {},
                                                    .state = status.state,
                                                    .reason = status.reason,
                                                    .tag = 0,
                                                    .note = status.note,
-                                                   .step = status.step});
+                                                   .step = status.step,
+                                                   .elapsed = status.elapsed,
+                                                   .queued = !held});
+    if (const auto asked = others_.find(status.id); asked != others_.end()) {
+      goal.arguments = saphira::from_bus(asked->second.arguments);
+      goal.priority = asked->second.priority;
+    }
     const auto mine =
         std::ranges::find_if(asked_, [&](const auto& one) { return one.second == status.id; });
     if (mine != asked_.end())
       goal.tag = mine->first;
     else if (status.id.writer != node_.instance())
-      goal.asker = status.requester;
+      goal.asker = status.requester.empty() ? "somebody" : status.requester;
   }
   return goals;
 }
@@ -301,7 +323,6 @@ void DialogueShell::take_utterances() {
         first_letters(unnamed ? utterance.person->name : sample.data.speaker, kLongestName);
     if (sample.data.means == v1::UTTERANCE_PROGRAM)
       utterance.program = sample.info.writer;
-    situation_.goals = known_goals();
     perform(dialogue_.hear(utterance, situation_));
   }
   for (const bus::WriterId& writer : lost)
@@ -327,7 +348,7 @@ void DialogueShell::step(double seconds, double now) {
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())
-    if (!sample.info.disposed)
+    if (!sample.info.disposed && sample.data.source != kConsole)
       perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
   perform(dialogue_.come_due(situation_));

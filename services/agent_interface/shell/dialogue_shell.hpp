@@ -11,6 +11,7 @@
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/held.hpp"
+#include "saphira/idl/goal_words.hpp"
 
 namespace saphira::agent_interface {
 
@@ -60,6 +61,7 @@ class DialogueShell {
   bus::RequestClient registration_;
   bus::RequestClient stops_;
   bus::Reader<v1::Utterance> heard_ = node_.reader(bus::topics::kHeard);
+  bus::Reader<v1::Goal> wanted_ = node_.reader(bus::topics::kGoals);
   bus::Reader<v1::Message> messages_ = node_.reader(bus::topics::kMessages);
   bus::Reader<v1::BeliefSet> beliefs_ = node_.reader(bus::topics::kBeliefs);
   bus::Reader<v1::Registration> registrations_ = node_.reader(bus::topics::kRegistration);
@@ -75,6 +77,7 @@ class DialogueShell {
   Situation situation_;
   v1::Vision seen_;                                 ///< the newest
   std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
+  std::map<v1::GoalId, v1::Goal> others_;           ///< the goals of other programs
   std::map<std::uint64_t, std::string> orphans_;    ///< goals of before the restart, by tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;

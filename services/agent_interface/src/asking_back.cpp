@@ -31,6 +31,13 @@ std::string with_words(std::string text, const std::string& from, const std::str
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// The meaning with a place instead of that of an owner.
+Meaning with_place(Meaning meaning, const std::string& place) {
+  meaning.slots["owner"] = "";
+  meaning.slots[meaning.slots.contains("to") ? "to" : "place"] = place;
+  return meaning;
+}
+
 /// Puts a name in the place of another in all steps.
 void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
   for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
@@ -191,9 +198,14 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
       for (const std::string_view name : kNamed) {
         const std::string value = slot(was, std::string(name));
         const bool any = name == "from" || name == "to" || !fits;
+        const bool office = name == "owner" && is_place;
         const bool meant = wrong.empty() || value == wrong ||
                            (!wrong_place.empty() && place(value, situation) == wrong_place);
-        if (!value.empty() && value != "this" && meant && (any || (name == "place") == is_place))
+        if (value.empty() || value == "this" || !meant)
+          continue;
+        if (office)
+          found.emplace_back(with_place(was, words), with_words(text, value + "'s office", words));
+        else if (any || (name == "place") == is_place)
           found.emplace_back(with(was, std::string(name), words), with_words(text, value, words));
       }
       if (!found.empty())
@@ -346,6 +358,12 @@ bool Dialogue::answered(Question question, const Grammar::Understood& understood
           same_person(one.speaker, utterance.speaker))
         withdraw(one.number, out);
   carry_out(std::move(next), again, situation, out);
+  // The task that was to be corrected goes on.
+  const std::string present = tasks_.going_on(utterance.speaker);
+  const Question* const back = question_for(utterance);
+  if (!question.asked && !out.said.empty() && out.said.back().refused && out.goals.empty() &&
+      !present.empty() && (back == nullptr || !back->asked))
+    out.said.back().text += "." + present.substr(1) + "; say stop to end it";
   return true;
 }
 

@@ -251,12 +251,15 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
       return true;
   }
   const bool takes = situation.asked_about == "taken";
+  if (meaning.functor == "gives" && !holder && situation.asked_about != "given")
+    return true;
   if (holder && meaning.functor == "other_has") {
     refuse(utterance, "who is that? Say the name", out);
     return true;
   }
-  if (meaning.functor == "yes" || meaning.functor == "handed" || meaning.functor == "other_has") {
-    const bool own = takes ? meaning.functor != "other_has" : holder && meaning.functor == "handed";
+  const bool handed = meaning.functor == "handed" || meaning.functor == "gives";
+  if (meaning.functor == "yes" || handed || meaning.functor == "other_has") {
+    const bool own = takes ? meaning.functor != "other_has" : holder && handed;
     value = own && !utterance.speaker.empty() ? lowered(utterance.speaker) : "yes";
     if (value == "yes")
       told.about.clear();
@@ -370,6 +373,8 @@ Dialogue::Outputs Dialogue::granted(const v1::Grant& grant, std::uint64_t self) 
 
 Dialogue::Outputs Dialogue::come_due(const Situation& situation) {
   Outputs out;
+  tasks_.heed(front(situation));
+  tell_of_waiting(situation, out);
   for (Tasks::Later& one : tasks_.take_due(situation.now)) {
     one.order.time = situation.now;
     std::string why;
@@ -425,6 +430,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.changed = true;
   }
+  tasks_.heed(front(situation));
+  unclear_ = {};
   const bool asked = !situation.asked_about.empty();
   const Question* const question = question_for(utterance);
   const bool answers = question != nullptr && question->asked;
@@ -475,9 +482,11 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   }
   // A word alone may be to somebody else.
   if (asked && understood.meanings.empty() && utterance.confidence >= kSure &&
-      words_of(utterance.text).size() > 1)
+      words_of(utterance.text).size() > 1) {
+    unclear_ = utterance.id;
     out.claims.push_back({kNotUnderstood, named_person(utterance.speaker) + ": " + utterance.text,
                           claim_source(utterance)});
+  }
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   if (!asked && denies && understood.bare.size() == 1 && understood.meanings.empty() &&
@@ -568,7 +577,10 @@ Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) 
     return out;
   said_ = when;
   out.changed = true;
-  out.said.push_back({tasks_.spoken_for(), {}, text, false});
+  // The activity speaks first of a reply that was no answer.
+  const UtteranceId unclear = std::exchange(unclear_, {});
+  const bool back = unclear != UtteranceId{};
+  out.said.push_back({back ? unclear : tasks_.spoken_for(), {}, text, back, back});
   return out;
 }
 

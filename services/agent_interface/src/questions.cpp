@@ -57,15 +57,103 @@ std::string state_of(const KnownGoal& goal) {
   return state_in_words(goal.state) + (detail.empty() ? "" : ": " + detail);
 }
 
+/// The order in which goals are done.
+bool goes_before(const KnownGoal& a, const KnownGoal& b) {
+  const auto rank = [](const KnownGoal& goal) {
+    return std::tuple(goal.state != v1::GOAL_UNDERWAY, !goal.queued, -goal.priority, -goal.elapsed);
+  };
+  return rank(a) < rank(b);
+}
+
+const KnownGoal* of_tag(const std::vector<KnownGoal>& goals, std::uint64_t tag) {
+  const auto found = std::ranges::find(goals, tag, &KnownGoal::tag);
+  return found == goals.end() ? nullptr : &*found;
+}
+
+/// The goal of a task. Before it has a status, it goes behind all others of its priority.
+KnownGoal goal_of(const Task& task, const std::vector<KnownGoal>& goals) {
+  const KnownGoal* const known = of_tag(goals, task.goal.tag);
+  KnownGoal goal = known != nullptr ? *known : KnownGoal{};
+  if (known == nullptr) {
+    goal.state = task.waits ? v1::GOAL_WAITING : v1::GOAL_UNDERWAY;
+    goal.elapsed = -1.0;
+  }
+  goal.priority = task.goal.priority;
+  return goal;
+}
+
 }  // namespace
 
+std::string Dialogue::named_goal(const KnownGoal& goal, Grammar::Form form) const {
+  const Argument* const place = find(goal.arguments, "place");
+  std::string words;
+  if (goal.functor == "go-to-place" && place != nullptr)
+    words = grammar_.paraphrase({"go_to", {{"place", place->text}, {"owner", ""}}}, form);
+  if (const std::string arguments = describe(goal.arguments); words.empty())
+    words = goal.functor + (arguments.empty() ? "" : " " + arguments);
+  return words;
+}
+
+std::optional<Tasks::Front> Dialogue::front(const Situation& situation) const {
+  const KnownGoal* first = nullptr;
+  for (const KnownGoal& goal : situation.goals)
+    if (!v1::ended(goal.state) && !goal.asker.empty() && goal.queued && goal.functor != "look" &&
+        goal.functor != "stop" && (first == nullptr || goes_before(goal, *first)))
+      first = &goal;
+  if (first == nullptr)
+    return std::nullopt;
+  const Task* task = tasks_.task();
+  for (const Task& one : tasks_.open())
+    if (task == nullptr && one.goal.functor != "stop")
+      task = &one;
+  return Tasks::Front{named_goal(*first, Grammar::Form::task) + " for " + first->asker,
+                      first->priority,
+                      task == nullptr || goes_before(*first, goal_of(*task, situation.goals))};
+}
+
 std::string Dialogue::doing(const Situation& situation) const {
-  std::string text = tasks_.doing();
+  std::vector<std::pair<KnownGoal, std::string>> all;
+  const std::vector<Task>& open = tasks_.open();
+  for (auto one = open.rbegin(); one != open.rend(); ++one)
+    all.emplace_back(goal_of(*one, situation.goals), whole_text(*one));
   for (const KnownGoal& goal : situation.goals)
     if (!v1::ended(goal.state) && !goal.asker.empty())
-      text += (text.empty() ? "" : "; ") + ("for " + goal.asker) + ": " + goal.functor +
-              (goal.state == v1::GOAL_UNDERWAY ? "" : ", which " + state_in_words(goal.state));
+      all.emplace_back(
+          goal,
+          "for " + goal.asker + ": " + named_goal(goal, Grammar::Form::announced) +
+              (goal.state == v1::GOAL_UNDERWAY ? "" : ", which " + state_in_words(goal.state)));
+  std::ranges::stable_sort(
+      all, [](const auto& a, const auto& b) { return goes_before(a.first, b.first); });
+  std::string text;
+  bool others = false;  // before it
+  for (const auto& [goal, words] : all) {
+    const bool own = goal.asker.empty();
+    const bool waits = own && goal.state != v1::GOAL_UNDERWAY;
+    text += (text.empty() ? "" : "; ") +
+            std::string(waits && goal.queued && others ? "after that, " : "") + words +
+            (waits && !goal.queued ? ", which " + state_of(goal) : "");
+    others = others || !own;
+  }
+  if (const std::string later = tasks_.doing_later(); !later.empty())
+    text += (text.empty() ? "" : "; ") + later;
   return text.empty() ? "nothing that I was told" : text;
+}
+
+/// A task for which another program or person has to be waited was announced as if it began.
+void Dialogue::tell_of_waiting(const Situation& situation, Outputs& out) {
+  constexpr double kSoon = 0.5;  // [s] after which a goal begins that need not wait
+  for (const KnownGoal& goal : situation.goals) {
+    const Task* const task = tasks_.find(goal.tag);
+    if (task == nullptr || goal.state != v1::GOAL_WAITING || goal.elapsed < kSoon ||
+        !tasks_.note_waiting(goal.tag))
+      continue;
+    const auto front = this->front(situation);
+    const std::string name = named_task(*task, task->goal.speaker);
+    out.said.push_back(
+        {task->answers, task->goal.speaker,
+         name + (goal.queued && front ? " waits for " + front->name : " " + state_of(goal)),
+         false});
+  }
 }
 
 std::string Dialogue::why(const Situation& situation) const {
@@ -77,7 +165,8 @@ std::string Dialogue::why(const Situation& situation) const {
     return "I have nothing to do";
   const Task* const own = tasks_.find(goal->tag);
   return (own != nullptr ? named_task(*own, "")
-                         : goal->functor + (goal->asker.empty() ? "" : " of " + goal->asker)) +
+                         : named_goal(*goal, Grammar::Form::task) +
+                               (goal->asker.empty() ? "" : " for " + goal->asker)) +
          " " + state_of(*goal);
 }
 

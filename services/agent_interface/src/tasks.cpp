@@ -13,13 +13,6 @@ bool is_stop(const Task& task) {
   return task.goal.functor == "stop";
 }
 
-std::string whole_text(const Task& task) {
-  std::string text = task.what;
-  for (const Task& step : task.then)
-    text += ", and then " + step.what;
-  return text;
-}
-
 /// "at 05:00 I go home, and then I wait there"
 std::string whole_text(const Tasks::Later& later) {
   std::string text = time_text(later.time);
@@ -39,14 +32,34 @@ void cancel(const Task& task, const std::string& by, const std::string& why, Tas
 
 }  // namespace
 
+std::string whole_text(const Task& task) {
+  std::string text = task.what;
+  for (const Task& step : task.then)
+    text += ", and then " + step.what;
+  return text;
+}
+
 const Task* Tasks::task() const {
   const auto found =
       std::find_if(open_.begin(), open_.end(), [](const Task& one) { return !one.brief; });
   return found == open_.end() ? nullptr : &*found;
 }
 
+/// Steps of a sequence go before the hold that stands between them.
+int Tasks::priority_of(const Task& next) const {
+  const bool interrupts = next.brief && task() != nullptr;
+  return !interrupts ? 0 : hold_ == 0 && next.then.empty() ? 1 : 2;
+}
+
+std::string Tasks::after_others(const Task& next) const {
+  const bool beside = next.goal.functor == "look" || is_stop(next);
+  return front_ && !beside && front_->priority >= priority_of(next) ? "after " + front_->name + ", "
+                                                                    : std::string();
+}
+
 void Tasks::begin(Task task, Outputs& out) {
   const bool interrupts = task.brief && this->task() != nullptr;
+  task.waits = !after_others(task).empty();
   if (interrupts && !task.then.empty() && hold_ == 0) {
     hold_ = ++tag_;
     WantedGoal hold{hold_, "pause", {number("seconds", kLongestHold)}};
@@ -56,7 +69,7 @@ void Tasks::begin(Task task, Outputs& out) {
     out.goals.push_back(std::move(hold));
   }
   task.goal.tag = ++tag_;
-  task.goal.priority = !interrupts ? 0 : hold_ == 0 ? 1 : 2;
+  task.goal.priority = priority_of(task);
   out.goals.push_back(task.goal);
   open_.push_back(std::move(task));
 }
@@ -179,20 +192,26 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance, 
   if (!stop && !brief && !drops && other != nullptr &&
       !same_person(other->goal.speaker, utterance.speaker)) {
     const std::string owner = named_person(other->goal.speaker);
-    out.said.push_back({utterance.id, utterance.speaker,
-                        (other->doing.empty() ? "I am at work for " + owner + ": " + other->what
-                                              : "I am " + other->doing + " for " + owner) +
-                            ". Shall I drop that?",
-                        true, true});
+    out.said.push_back(
+        {utterance.id, utterance.speaker,
+         (front_ && front_->before_task
+              ? "I have an order of " + owner + ": after " + front_->name + ", " + other->what
+          : other->doing.empty() ? "I am at work for " + owner + ": " + other->what
+                                 : "I am " + other->doing + " for " + owner) +
+             ". Shall I drop that?",
+         true, true});
     out.asks = std::move(steps);
     return out;
   }
   Task first = std::move(steps.front());
   first.then.assign(std::make_move_iterator(steps.begin() + 1),
                     std::make_move_iterator(steps.end()));
-  std::string text = whole_text(first);
+  const std::string after = after_others(first);
+  std::string text = after + whole_text(first);
   if (brief && other != nullptr)
-    text += ", and then I go on with " + named_task(*other, utterance.speaker);
+    text += ", and then I go on with " + (after.empty() && front_ && front_->before_task
+                                              ? front_->name
+                                              : named_task(*other, utterance.speaker));
   const Said announced{utterance.id, utterance.speaker, text, false};
   if (stop && other != nullptr) {
     stopped_ = {*other};
@@ -225,10 +244,9 @@ Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
     Outputs out = ended({tag, true, "I was told to go on"});
     out.canceled.push_back(tag);
     out.why = claim_source(utterance);
+    const std::string present = going_on(utterance.speaker);
     out.said.push_back(
-        {utterance.id, utterance.speaker,
-         task() == nullptr ? "I go on" : "I go on with " + named_task(*task(), utterance.speaker),
-         true});
+        {utterance.id, utterance.speaker, present.empty() ? "I go on" : present.substr(2), true});
     return out;
   }
   if (task() == nullptr && !stopped_.empty())
@@ -241,6 +259,8 @@ Tasks::Outputs Tasks::go_on(const Utterance& utterance) {
 }
 
 std::string Tasks::going_on(const std::string& listener) const {
+  if (front_ && front_->before_task)
+    return ": I go on with " + front_->name;
   const Task* other = task();
   for (const Task& one : open_)
     if (other == nullptr && !is_stop(one))
@@ -275,7 +295,7 @@ Tasks::Outputs Tasks::ended(const Outcome& outcome) {
   Task next = std::move(task.then.front());
   next.then.assign(std::make_move_iterator(task.then.begin() + 1),
                    std::make_move_iterator(task.then.end()));
-  out.said.push_back({next.answers, next.goal.speaker, next.what, false});
+  out.said.push_back({next.answers, next.goal.speaker, after_others(next) + next.what, false});
   begin(std::move(next), out);
   return out;
 }
@@ -302,10 +322,15 @@ std::vector<LastingGoal> Tasks::lasting() const {
   return goals;
 }
 
-std::string Tasks::doing() const {
+bool Tasks::note_waiting(std::uint64_t tag) {
+  for (Task& one : open_)
+    if (one.goal.tag == tag)
+      return !std::exchange(one.waits, true);
+  return false;
+}
+
+std::string Tasks::doing_later() const {
   std::string text;
-  for (auto one = open_.rbegin(); one != open_.rend(); ++one)
-    text += (text.empty() ? "" : "; ") + whole_text(*one);
   for (const Later& one : later_)
     text += (text.empty() ? "" : "; ") + whole_text(one);
   return text;

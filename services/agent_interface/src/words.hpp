@@ -58,7 +58,7 @@ std::string time_text(double unix_time);
 std::string named_person(const std::string& name);
 /// The words that were said, also where they corrected a sentence before.
 const std::string& words_said(const Utterance& utterance);
-/// "the mail for alice"; for the listener's own task without that name.
+/// "the way to EJ-231 for alice"; for the listener's own task without that name.
 std::string named_task(const Task& task, const std::string& listener);
 bool same_person(const std::string& a, const std::string& b);
 /// True where this utterance may answer a question of the robot with yes or no: it is of the

@@ -256,7 +256,9 @@ TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsPro
   EXPECT_EQ(asked[1].data.writer_lost, v1::WRITER_LOST_CANCEL);
   writer.reset();
   dialogue->step();
-  EXPECT_EQ(answers(), "I drop the mail: the program that wanted it has left or taken it back");
+  EXPECT_EQ(
+      answers(),
+      "I drop the delivery of the mail: the program that wanted it has left or taken it back");
   const auto ended = test::only(goals.take());
   EXPECT_EQ(ended.data.withdrawn, "the program that wanted it has left or taken it back");
   EXPECT_EQ(ended.data.id, asked[1].data.id);
@@ -433,6 +435,15 @@ TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   EXPECT_EQ(answers(), "");
   dialogue->step(103.0);
   EXPECT_TRUE(answers().starts_with("I could not: no bridge has confirmed the stop"));
+
+  say("Flakey, stop");
+  request = stops.take_newest();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(answer(*request, v1::ANSWER_UNDERWAY), "");
+  dialogue->step(1000.0);
+  EXPECT_EQ(answers(),
+            "I could not: the bridge has confirmed the stop (stopped: a program (direct)), but the "
+            "robot was not seen at rest: press the robot's own switch");
 }
 
 // The bus says who speaks; what speakers call themselves is not checked.

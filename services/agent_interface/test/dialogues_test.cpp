@@ -112,11 +112,44 @@ class Conversation : public DialogueTest {
       situation.goals.push_back(goal);
     }
   }
+  /// The state of the newest goal, the seconds since it was accepted, and the reason.
+  void own_goal(const std::string& text) {
+    std::istringstream in(text);
+    KnownGoal goal = known_goal(in);
+    goal.tag = wanted_;
+    in >> goal.elapsed;
+    std::getline(in >> std::ws, goal.reason);
+    goal.queued = goal.reason.empty();
+    std::erase_if(situation.goals, [&](const KnownGoal& one) { return one.tag == wanted_; });
+    situation.goals.push_back(goal);
+  }
+  /// The state, priority, functor, place and asker of a goal of another program.
+  void others_goal(const std::string& text) {
+    std::istringstream in(text);
+    KnownGoal goal = known_goal(in);
+    std::string place;
+    in >> goal.priority >> goal.functor >> place;
+    std::getline(in >> std::ws, goal.asker);
+    if (place != "-")
+      goal.arguments = {saphira::text("place", place)};
+    goal.elapsed = 10.0;
+    situation.goals.push_back(goal);
+  }
+  static KnownGoal known_goal(std::istringstream& in) {
+    std::string state;
+    in >> state;
+    KnownGoal goal;
+    goal.state = state == "waiting"     ? v1::GOAL_WAITING
+                 : state == "suspended" ? v1::GOAL_SUSPENDED
+                                        : v1::GOAL_UNDERWAY;
+    return goal;
+  }
   static std::string yes(bool is) { return is ? "yes" : "no"; }
 
   std::uint64_t wanted_ = 0;  ///< the newest goal
   double ago_ = 0.0;          ///< [s] since an utterance, when it is heard
   bool knows_time_ = true;    ///< of utterances
+  std::uint64_t said_ = 0;    ///< activities' messages
   std::string map_ = kMap;
   std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
   const std::map<std::string, std::function<std::string()>> facts_{
@@ -152,6 +185,10 @@ class Conversation : public DialogueTest {
        [this](const auto& text) {
          last = dialogue.ended({wanted_, false, text});
        }},
+      {"activity",
+       [this](const auto& text) {
+         last = dialogue.says(text, {3, ++said_});
+       }},
       {"seconds pass",
        [this](const auto& text) {
          situation.now = now += std::stod(text);
@@ -185,6 +222,9 @@ class Conversation : public DialogueTest {
              feature.name.clear();
        }},
       {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
+      {"its goal", [this](const auto& text) { own_goal(text); }},
+      {"goal of another", [this](const auto& text) { others_goal(text); }},
+      {"no goals", [this](const auto&) { situation.goals.clear(); }},
       {"emergency stop", [this](const auto& text) { situation.estop = text; }},
       {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
       {"at", [this](const auto& text) { situation.pose_in_map = pose_of(text); }},
@@ -201,7 +241,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 90);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 100);
 }
 
 }  // namespace

@@ -30,6 +30,14 @@ Task task(const std::string& speaker, const std::string& name) {
   return task;
 }
 
+/// The open tasks, the newest first.
+std::string doing(const Tasks& tasks) {
+  std::string text;
+  for (const Task& one : tasks.open())
+    text = whole_text(one) + (text.empty() ? "" : "; ") + text;
+  return text;
+}
+
 /// One case.
 class Errands : public test::LinePlayer {
  public:
@@ -53,7 +61,7 @@ class Errands : public test::LinePlayer {
          }},
         {"restart", [this](auto&) { restart(); }},
         {">", [this](auto& in) { next(rest(in)); }}};
-    facts_ = {{"doing", [this] { return tasks_.doing(); }},
+    facts_ = {{"doing", [this] { return doing(tasks_); }},
               {"asks", [this] { return std::to_string(asks_.size()); }},
               {"spoken for", [this] { return std::to_string(tasks_.spoken_for().second); }},
               {"bob goes on", [this] { return tasks_.going_on("bob"); }},

@@ -55,6 +55,10 @@ struct KnownGoal {
   std::uint64_t tag = 0;  ///< of this dialogue's goals that have not ended
   std::string note{};     ///< beside the state; empty: none
   std::string step{};     ///< of the work, such as "through-door: passes a door"; empty: none
+  Arguments arguments{};  ///< of the goals of others, as far as known
+  int priority = 0;
+  double elapsed = 0.0;  ///< [s] since it was accepted
+  bool queued = true;    ///< not waiting for something else than another goal
 };
 
 /// The world as the dialogue knows it, beside the advice.
@@ -119,7 +123,8 @@ class Dialogue {
   /// A stop that is not of this dialogue (`self`), or an emergency stop, ends orders for a later
   /// time. The first grant shows an earlier stop.
   Outputs granted(const v1::Grant& grant, std::uint64_t self);
-  /// Orders for a later time begin, or ask whether to drop the task of somebody else.
+  /// Orders for a later time begin, or ask whether to drop the task of somebody else. A task that
+  /// turns out to wait is told.
   Outputs come_due(const Situation& situation);
   /// The tags of all goals that are asked for and have no status yet, at `seconds` of a clock that
   /// does not go back. A goal that stays without one for kTakenUp has failed, and is withdrawn.
@@ -267,8 +272,13 @@ class Dialogue {
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
   /// The answer to an utterance that changes nothing: asks back, or says why not. Ends it.
   void refuse(const Utterance& utterance, const std::string& text, Outputs& out) const;
-  /// The robot's present goals in words: its own one, and those of others.
+  /// The robot's present goals in words, the one at work first: its own ones, and those of others.
   std::string doing(const Situation& situation) const;
+  /// A goal of another asker: "the way to library for saphira goal".
+  std::string named_goal(const KnownGoal& goal, Grammar::Form form) const;
+  /// The goal of another asker before all others of them.
+  std::optional<Tasks::Front> front(const Situation& situation) const;
+  void tell_of_waiting(const Situation& situation, Outputs& out);
   /// The destination "here" of things to bring; empty: none.
   std::string bring_to(const Utterance& utterance, const Situation& situation) const;
   /// The place of the map with that name, whatever its hyphens and blanks; empty: none.
@@ -307,7 +317,8 @@ class Dialogue {
 
   std::vector<Gone> gone_;
   std::optional<Ended> ended_;
-  std::uint64_t stop_ = 0;                  ///< the tag of the newest stop
+  UtteranceId unclear_{};   ///< the newest utterance, which was no answer; 0, 0: it was one
+  std::uint64_t stop_ = 0;  ///< the tag of the newest stop
   std::optional<v1::StopId> known_stop_{};  ///< the newest of anybody
   Tasks tasks_;
   std::map<std::uint64_t, double> without_status_;  ///< goals, since when [s]

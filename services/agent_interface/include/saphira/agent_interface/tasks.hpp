@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,8 +102,12 @@ struct Task {
   std::string sample;      ///< that goal as the shell wrote it
   ProgramId program{};     ///< the task ends with this program
   bool brief = false;      ///< a motion or a look: a task goes on after it
+  bool waits = false;      ///< it was told that it waits
   std::vector<Task> then;  ///< the later steps of a sequence
 };
+
+/// With its later steps: "I go to the library, and then I wait there".
+std::string whole_text(const Task& task);
 
 /// The tasks of all people, and their order. A brief goal (a motion, a look) interrupts a
 /// task, which goes on afterwards. A task takes the place of an earlier one of the same person; for
@@ -119,6 +124,14 @@ class Tasks {
     v1::AuditEntry denied{};  ///< this person may not do it; without a text: they may
   };
 
+  /// The goal of another asker that is done before all others of them.
+  struct Front {
+    std::string name;  ///< "the way to library for saphira goal"
+    int priority = 0;
+    bool before_task = true;  ///< it also goes before the open task
+  };
+  /// As it is from now on; nothing: nobody else has a goal that drives.
+  void heed(std::optional<Front> front) { front_ = std::move(front); }
   /// The steps of a command, one after another. A goal of "stop" ends all others at once.
   /// drops: also ends the task of somebody else, without a question.
   Outputs want(std::vector<Task> steps, const Utterance& utterance, bool drops = false);
@@ -150,8 +163,12 @@ class Tasks {
   /// The lasting goals that have not ended.
   std::vector<LastingGoal> lasting() const;
   bool empty() const { return open_.empty(); }
-  /// In the robot's words, the newest first; empty: nothing.
-  std::string doing() const;
+  /// The open tasks, at most one of them brief.
+  const std::vector<Task>& open() const { return open_; }
+  /// The orders for later in the robot's words; empty: none.
+  std::string doing_later() const;
+  /// It is told that an open task waits. False: it was told before.
+  bool note_waiting(std::uint64_t tag);
   /// The utterance that an activity's message answers; 0, 0: none.
   UtteranceId spoken_for() const;
 
@@ -166,9 +183,13 @@ class Tasks {
   void drop_later(const std::string& why, const std::function<bool(const Later&)>& meant,
                   Outputs& out);
   Outputs deny(const Task& task, const Utterance& utterance) const;
+  int priority_of(const Task& next) const;
+  /// "after the way to library for saphira goal, "; empty: a task that begins need not wait.
+  std::string after_others(const Task& next) const;
 
   std::vector<Task> open_;  ///< at most one brief goal and one task
   std::vector<Later> later_;
+  std::optional<Front> front_{};
   std::vector<Task> stopped_;  ///< the steps of the task that the newest stop has ended
   std::uint64_t tag_ = 0;
   /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
