@@ -395,7 +395,7 @@ class Bridge : public saphira::test::LinePlayer {
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 71);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 72);
 }
 
 }  // namespace
