@@ -340,7 +340,7 @@ std::string driver(const Situation& situation) {
   const std::string why = bridge.words.empty() ? "" : ": bridge " + bridge.words;
   if (!situation.grant)
     return "which program drives is not known" + why;
-  if (situation.silence > kListened && bridge.health >= Health::hung)
+  if (situation.silence > kListened && bridge.health >= Health::waiting)
     return "which program drives is not known any more" + why;
   v1::Grant grant = *situation.grant;
   // The bridge hears commands alone, and does not know who would give some.
