@@ -112,12 +112,11 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
       return;
     told = now;
     if (confirmed) {
-      const std::string trouble = situation::trouble(processes.situation());
+      const std::string trouble = situation::condition(processes.situation(), "bridge").words;
       complain(
-          "saphira: NOT SEEN AT REST for %.0f s. Stop the robot by its own switch. (%s.) This goes "
-          "on for %.0f s; Ctrl-C ends it.\n",
-          now - *heard, trouble.empty() ? "its bridge does not say why" : trouble.c_str(),
-          kMostRest);
+          "saphira: NOT SEEN AT REST for %.0f s. Stop the robot by its own switch. (The bridge "
+          "%s.) This goes on for %.0f s; Ctrl-C ends it.\n",
+          now - *heard, trouble.empty() ? "does not say why" : trouble.c_str(), kMostRest);
       return;
     }
     const std::string who = bridges.count() > 0
