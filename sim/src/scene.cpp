@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "saphira/base/format.hpp"
+
 namespace saphira::sim {
 
 namespace {
@@ -159,11 +161,11 @@ std::array<Segment, 4> Scene::outline(const Box& box, const Pose& pose_in_world)
 
 Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose& start_in_world,
                         std::uint64_t seed) {
-  const double free = distance(start_in_world.position());
-  if (free < parameters.radius)
-    throw std::invalid_argument("the robot would stand in a wall: the nearest thing is " +
-                                std::to_string(free) + " m from its middle, its radius is " +
-                                std::to_string(parameters.radius) + " m");
+  const Vec2 at = start_in_world.position();
+  if (const double overlap = parameters.radius - distance(at); overlap > 0.0)
+    throw std::invalid_argument("the robot would stand in " + nearest(at) +
+                                format(": with its radius of %.2f m the two overlap by %.2f m",
+                                       parameters.radius, overlap));
   hulls_near_.put(static_cast<std::uint32_t>(hulls_.size()), start_in_world.position());
   widest_hull_ = std::max(widest_hull_, parameters.radius);
   hulls_.push_back({start_in_world.position(), parameters.radius});
@@ -711,6 +713,19 @@ double Scene::distance(const Vec2& point, RobotNumber but) const {
   for (const Disc& post : posts_)
     best = std::min(best, (post.centre - point).norm() - post.radius);
   return std::min(best, sim::distance(segments_, point));
+}
+
+std::string Scene::nearest(const Vec2& point) const {
+  const double free = distance(point);
+  for (std::size_t i = 0; i < hulls_.size(); ++i)
+    if ((hulls_[i].centre - point).norm() - hulls_[i].radius == free)
+      return "robot " + std::to_string(i + 1);
+  for (const Person& person : persons_)
+    if ((person.at - point).norm() - person.plan->radius == free)
+      return "the person \"" + person.plan->look.name + "\"";
+  if (sim::distance(world_->segments, point) == free)
+    return "a wall";
+  return sim::distance(segments_, point) == free ? "a door or a box" : "a post";
 }
 
 }  // namespace saphira::sim

@@ -37,6 +37,12 @@ class Parser {
     }
     if (!has_width_ || !has_height_)
       throw FileError(file, last, 1, has_width_ ? "expected height" : "expected width");
+    // As in the manual's own sample. The file may as well be cut off.
+    for (const Place& push : pushes_)
+      world_.warnings.push_back(file + ":" + std::to_string(push.line) +
+                                ": this push has no pop: it holds up to the end of the file");
+    pushes_.clear();
+    frames_.resize(1);
   }
 
   World finish() {
@@ -76,11 +82,13 @@ class Parser {
     if (word == "push") {
       if (frames_.size() > kMaxNesting)
         in.fail("expected no more than 100 push inside each other");
+      pushes_.push_back(place);
       frames_.push_back(compose(frames_.back(), pose(in)));
     } else if (word == "pop") {
       if (frames_.size() == 1)
         in.fail("expected a push before this pop");
       frames_.pop_back();
+      pushes_.pop_back();
     } else if (word == "position") {
       if (world_.start)
         in.fail("expected position once");
@@ -173,6 +181,7 @@ class Parser {
   World world_;
   MovableReader movable_;
   std::vector<Claim> claims_;         // in the order of their lines
+  std::vector<Place> pushes_;         // without their pop yet
   std::vector<Pose> frames_{Pose{}};  // frame_in_world; the last one is in force
   bool has_width_ = false;
   bool has_height_ = false;

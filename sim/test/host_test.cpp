@@ -421,6 +421,12 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
       {"found a folder", [](Options& o) { o.socket = "/tmp"; }},
       {"/nowhere/t.csv", [](Options& o) { o.trace = "/nowhere/t.csv"; }},
       {"nobody", [](Options& o) { o.tcp = 0, o.tcp_address = "nobody"; }},
+      {"--position of robot 2: the robot would stand in robot 1: with its radius of 0.22 m the two "
+       "overlap by 0.44 m",
+       [](Options& o) {
+         o.position = Pose{1.5, 7.0, 0.0};
+         o.more.push_back({.robot = {}, .position = o.position});
+       }},
       {"position", [&](Options& o) { o.world = bare; }},
       {"position", [](Options& o) { o.more.push_back({}); }}};
   for (const auto& [part, change] : refused)

@@ -25,6 +25,10 @@ TEST(World, TheManualsSampleLoads) {
   ASSERT_TRUE(world.start);
   EXPECT_EQ(world.start->position(), Vec2(17.5, 14.0));
   EXPECT_DOUBLE_EQ(world.start->th, -kPi / 2);
+  EXPECT_EQ(world.warnings,
+            std::vector<std::string>{source("sim/test/data/manual-sample.wld") +
+                                     ":11: this push has no pop: it holds up to the end of the "
+                                     "file"});
 }
 
 TEST(World, PushesAreNestedAndPopped) {

@@ -24,6 +24,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
+constexpr double kRestPatience = 5.0;      ///< [s] in which a robot is at rest
+constexpr double kMostRest = 30.0;         ///< [s] until the wait for its rest is given up
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
 constexpr double kSilent = 3.0;            ///< [s] until missing intentions are reported
@@ -81,17 +83,18 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const auto began = Clock::now();
   const std::string robot = called(node_options.robot);
   std::set<bus::WriterId> answered;
-  bool heard = false;
-  bool done = false;
+  std::optional<double> heard;
   bool refused = false;
   double told = 0.0;
+  bus::Stop over;  // that of the signals, or the end of patience
   const auto hear = [&](const v1::Answer& answer) {
-    if (!std::exchange(heard, true))
+    if (!heard) {
+      heard = told = seconds_since(began);
       print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
-            seconds_since(began));
+            *heard);
+    }
     if (!bus::ended(answer.code))
       return;
-    done = true;
     refused = refused || !bus::well(answer.code);
     if (bus::well(answer.code))
       print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
@@ -101,10 +104,21 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const auto meanwhile = [&] {
     processes.poll();
     bridges.poll();
-    if (seconds_since(began) <= told + kConfirmPatience ||
-        (heard && bridges.without(answered).empty()))
+    const double now = seconds_since(began);
+    const bool confirmed = heard && bridges.without(answered).empty();
+    if (stop.requested() || (confirmed && now > *heard + kMostRest))
+      over.request();
+    if (now <= told + (confirmed && told == *heard ? kRestPatience : kConfirmPatience))
       return;
-    told = seconds_since(began);
+    told = now;
+    if (confirmed) {
+      const std::string trouble = situation::condition(processes.situation(), "bridge").words;
+      complain(
+          "saphira: NOT SEEN AT REST for %.0f s. Stop the robot by its own switch. (The bridge "
+          "%s.) This goes on for %.0f s; Ctrl-C ends it.\n",
+          now - *heard, trouble.empty() ? "does not say why" : trouble.c_str(), kMostRest);
+      return;
+    }
     const std::string who = bridges.count() > 0
                                 ? "not by the bridge of " + bridges.without(answered)
                                 : who_is_there(processes);
@@ -114,8 +128,8 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
         told, who.c_str());
   };
   stops.ask_each(bus::request("stop"), std::numeric_limits<double>::infinity(),
-                 bridges.servers(&answered), &stop, meanwhile, hear);
-  if (stop.requested()) {
+                 bridges.servers(&answered), &over, meanwhile, hear);
+  if (over.requested()) {
     const std::string missing = bridges.without(answered);
     complain("saphira: ended before %s was seen at rest%s\n", robot.c_str(),
              missing.empty() ? "" : ("; not confirmed by the bridge of " + missing).c_str());
@@ -271,17 +285,26 @@ int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
   auto statuses = node.reader(bus::topics::kGoalStatus);
-  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> goals;
+  auto asked = node.reader(bus::topics::kGoals);
+  using Key = std::pair<std::uint64_t, std::uint64_t>;
+  std::map<Key, v1::GoalStatus> goals;
+  std::map<Key, std::string> calls;  // those of requesters that are still there
   poll_for(node, listening_time(node), stop, [&] {
     deployments.poll();
     keep_newest(statuses, goals, [](const v1::GoalStatus& status) {
-      return std::pair(status.id.writer, status.id.number);
+      return Key{status.id.writer, status.id.number};
     });
+    for (const auto& sample : asked.take())
+      if (!sample.info.disposed)
+        calls[{sample.data.id.writer, sample.data.id.number}] = describe(sample.data);
   });
   deployments.settle(stop);
-  for (const auto& [id, status] : goals)
-    std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id).c_str(), status.functor.c_str(),
+  for (const v1::GoalStatus& status : by_acceptance(goals)) {
+    const auto call = calls.find({status.id.writer, status.id.number});
+    std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id).c_str(),
+                call == calls.end() ? status.functor.c_str() : call->second.c_str(),
                 status.requester.c_str(), bus::describe(status).c_str());
+  }
   if (!goals.empty())
     return bus::kExitOk;
   if (const std::string absent = absence(node, processes, "intentions");

@@ -61,7 +61,7 @@ std::string text_of(const Mind& mind, const Restarts& restarts) {
   if (now.programs.empty())
     return who_is_there(mind.processes()) + "\n" + silent_peers(node);
   std::string text = status_table(now.programs, unheard(now)) + "drive: " + driver(now) + "\n";
-  if (const std::string trouble = situation::trouble(now); !trouble.empty())
+  if (const std::string trouble = situation::all_trouble(now); !trouble.empty())
     text += "trouble: " + trouble + "\n";
   if (const std::string second = second_deployment(now.programs); !second.empty())
     text += second + "\n";

@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
@@ -190,6 +191,19 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     throw std::invalid_argument("expected an activity, found \"" + words[0] +
                                 "\": did you mean activities?");
   return parse_goal(words[0], rest);
+}
+
+std::vector<v1::GoalStatus> by_acceptance(
+    const std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus>& goals) {
+  std::vector<v1::GoalStatus> all;
+  for (const auto& [id, status] : goals)
+    all.push_back(status);
+  const auto accepted = [](const v1::GoalStatus& status) {
+    return std::pair(status.stamp.epoch,
+                     std::round(static_cast<double>(status.stamp.cycle) - status.elapsed / kCycle));
+  };
+  std::ranges::stable_sort(all, {}, accepted);
+  return all;
 }
 
 std::string advice_after_failure(const v1::Goal& goal) {

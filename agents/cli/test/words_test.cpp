@@ -119,6 +119,15 @@ std::string behavior_of(const Json& json) {
   return behavior_display(sample<v1::BehaviorState>(json.at("state")), address(intended),
                           address(schema));
 }
+std::string order_of(const std::vector<v1::GoalStatus>& statuses) {
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> goals;
+  for (const v1::GoalStatus& status : statuses)
+    goals[{status.id.writer, status.id.number}] = status;
+  std::string text;
+  for (const v1::GoalStatus& status : by_acceptance(goals))
+    text += (text.empty() ? "" : " ") + status.functor;
+  return text;
+}
 std::string question_of(const v1::Request& request) {
   std::string text = request.functor;
   for (const v1::Argument& argument : request.arguments)
@@ -132,6 +141,7 @@ const std::map<std::string, std::string (*)(In)>& answers() {
       {"argument", [](In s) { return test::json_of(parse_argument(s)); }},
       {"goal", [](In s) { return describe(parse_request(words_of(s))); }},
       {"goal-of", [](In s) { return describe(std::apply(parse_goal, headed(s))); }},
+      {"order", [](In s) { return order_of(samples<v1::GoalStatus>(Json::parse(s))); }},
       {"advice", [](In s) { return advice_after_failure(parse_request(words_of(s))); }},
       {"device", [](In s) { return text_of(parse_device(words_of(s))); }},
       {"devices", [](In s) { return devices_of(Json::parse(s)); }},
@@ -192,7 +202,7 @@ struct Asked {
 };
 
 TEST(Words, AreAsWritten) {
-  EXPECT_EQ(test::play<test::Questions<Asked>>("agents/cli/test/words.txt"), 37);
+  EXPECT_EQ(test::play<test::Questions<Asked>>("agents/cli/test/words.txt"), 38);
 }
 
 TEST(Words, AMapFileThatWasCutOffIsRefused) {

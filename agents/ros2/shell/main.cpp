@@ -1,8 +1,10 @@
 // The robot as one of ROS 2's. README.md.
 #include <map>
 #include <string>
+#include <utility>
 
 #include "ros_robot.hpp"
+#include "saphira/bus/namesakes.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace {
@@ -21,8 +23,21 @@ int serve(const bus::NodeOptions& node_options, ros2::Options options, const bus
             (options.ros.interface.empty() ? "all interfaces" : options.ros.interface));
   if (options.reads_only)
     node.info("nothing that ROS 2 says reaches the robot");
+  bus::Namesakes others(node);
+  others.act();
+  bool told = false;
   while (!stop.requested()) {
     node.wait(cli::kDrivePeriod, &stop);
+    v1::ServiceStatus& status = node.status();
+    // A second one is right in another domain of ROS 2: it serves, too.
+    if (others.poll()) {
+      if (!std::exchange(told, true))
+        node.warn(status.reason.substr(0, status.reason.find(';')) +
+                  ", too: in one domain of ROS 2 both write its topics and both take cmd_vel, so "
+                  "that one of them has to end");
+      status.state = v1::SERVICE_RUNNING;
+      status.reason.clear();
+    }
     robot.poll();
   }
   return bus::kExitOk;

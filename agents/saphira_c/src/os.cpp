@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "saphira/base/boot_clock.hpp"
@@ -14,10 +15,11 @@ namespace {
 
 constexpr auto kPatience = std::chrono::seconds(8);  // of sfConnectToRobot
 constexpr double kHung = 1.0;                        // [s] of a micro-task
-constexpr double kShort = 0.05;                      // [m] from the end of a position
-constexpr double kStanding = 0.005;                  // [m/s]
-constexpr int kStandsLong = 10;                      // [cycles]
-constexpr int kWaits = 15;                           // [100 ms] until a missing robot is reported
+constexpr double kLastPatience = 3.0;  // [s] after a signal, for a micro-task to return
+constexpr double kShort = 0.05;        // [m] from the end of a position
+constexpr double kStanding = 0.005;    // [m/s]
+constexpr int kStandsLong = 10;        // [cycles]
+constexpr int kWaits = 15;             // [100 ms] until a missing robot is reported
 
 volatile std::sig_atomic_t signalled = 0;
 void on_signal(int number) {
@@ -354,10 +356,20 @@ void Os::finish() {
 }
 
 /// Reports the hanging function: the thread of the micro-tasks cannot. The robot stands by then:
-/// its packets had no answer for longer than the lease.
+/// its packets had no answer for longer than the lease. A signal ends the program all the same.
 void Os::watch() {
+  std::optional<double> ends_at;
   while (!ending_) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (signalled != 0 && !ends_at)
+      ends_at = BootClock::seconds() + kLastPatience;
+    if (ends_at && BootClock::seconds() >= *ends_at && !ending_) {
+      say("interrupted, and a micro-task does not return: the robot is stopped, the program is "
+          "ended without its exit handlers",
+          true);
+      finish();
+      std::_Exit(128 + signalled);
+    }
     const std::lock_guard lock(mutex);
     if (watched_.since == 0.0 || watched_.told || BootClock::seconds() - watched_.since < kHung)
       continue;

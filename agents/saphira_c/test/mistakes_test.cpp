@@ -29,6 +29,10 @@ TEST_F(Mistakes, AMicroTaskThatHangsStopsTheRobot) {
   EXPECT_TRUE(test::wait_until([&] {
     return program.output().find("micro-task \"hangs\"") != std::string::npos;
   })) << program.output();
+  // One signal ends it, as `timeout` and service managers send it.
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.wait(), std::optional<int>(128 + SIGTERM)) << program.output();
+  EXPECT_TRUE(stands());
 }
 
 TEST_F(Mistakes, ExitInACallbackStopsTheRobot) {

@@ -251,6 +251,36 @@ Condition condition(const Situation& situation, const std::string& program) {
                         : present_condition(situation, program);
 }
 
+bool is_lost(const Situation& situation) {
+  if (situation.past || !situation.registration)
+    return false;
+  const v1::RegistrationState state = situation.registration->state;
+  return state == v1::REGISTRATION_LOST || state == v1::REGISTRATION_UNPLACED;
+}
+
+std::string doubt(const Situation& situation) {
+  if (situation.past || !situation.registration || !is_doubtful(*situation.registration))
+    return {};
+  const v1::Registration& place = *situation.registration;
+  const std::uint64_t since = situation.doubtful_since;
+  return format("the robot is %.0f %% sure of its place on the map", 100.0 * place.confidence) +
+         (since == 0
+              ? ""
+              : ", in doubt for " + seconds_text(seconds_of(place.stamp.cycle -
+                                                            std::min(place.stamp.cycle, since)))) +
+         (place.reason.empty() ? "" : ": " + place.reason);
+}
+
+std::string place_trouble(const Situation& situation) {
+  if (!is_lost(situation))
+    return doubt(situation);
+  const v1::Registration& place = *situation.registration;
+  return format("the robot does not know where it is on the map, %.0f %% sure",
+                100.0 * place.confidence) +
+         (place.reason.empty() ? "" : " (" + place.reason + ")") + ": saphira map place X Y TH" +
+         (place.state == v1::REGISTRATION_LOST ? ", or saphira map find" : "");
+}
+
 std::string trouble(const Situation& situation) {
   // The same trouble of several programs is stated once.
   std::vector<std::pair<std::string, std::vector<std::string>>> all;
@@ -264,6 +294,13 @@ std::string trouble(const Situation& situation) {
   std::string text;
   for (const auto& [words, names] : all)
     text += (text.empty() ? "" : "; ") + listed(names) + " " + of_several(words, names.size());
+  return text;
+}
+
+std::string all_trouble(const Situation& situation) {
+  std::string text = trouble(situation);
+  if (const std::string place = place_trouble(situation); !place.empty())
+    text += (text.empty() ? "" : "; ") + place;
   return text;
 }
 
@@ -303,7 +340,7 @@ std::string driver(const Situation& situation) {
   const std::string why = bridge.words.empty() ? "" : ": bridge " + bridge.words;
   if (!situation.grant)
     return "which program drives is not known" + why;
-  if (situation.silence > kListened && bridge.health >= Health::hung)
+  if (situation.silence > kListened && bridge.health >= Health::waiting)
     return "which program drives is not known any more" + why;
   v1::Grant grant = *situation.grant;
   // The bridge hears commands alone, and does not know who would give some.
@@ -338,7 +375,7 @@ std::string to_json(const Situation& situation) {
                              {"step", status.step},
                              {"progress", status.progress}});
   json["missing"] = listed(unheard(situation));
-  json["trouble"] = trouble(situation);
+  json["trouble"] = all_trouble(situation);
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

@@ -54,15 +54,7 @@ void Reason::add_conditions(Cause& cause) const {
       cause.because.push_back({"program", name + " " + condition(scene_, name).words});
   if (scene_.past)
     return;
-  if (lost()) {
-    const v1::Registration& place = *scene_.registration;
-    cause.because.push_back(
-        {"registration", format("the robot does not know where it is on the map, %.0f %% sure",
-                                100.0 * place.confidence) +
-                             (place.reason.empty() ? "" : " (" + place.reason + ")") +
-                             ": saphira map place X Y TH"});
-  }
-  if (const std::string words = doubt(); !words.empty())
+  if (const std::string words = place_trouble(scene_); !words.empty())
     cause.because.push_back({"registration", words});
   // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
@@ -90,9 +82,9 @@ void Reason::add_troubles(Sentence& sentence) const {
     if (!scene_.past && (name == "interpretation" || name == "registration"))
       sentence.add(2, "; " + name + " " + condition(scene_, name).words,
                    "; " + name + " is silent");
-  if (lost())
+  if (is_lost(scene_))
     sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
-  else if (const std::string words = doubt(); !words.empty())
+  else if (const std::string words = doubt(scene_); !words.empty())
     sentence.add(1, "; " + words, "; it is unsure of its place on the map");
 }
 

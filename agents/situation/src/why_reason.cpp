@@ -366,22 +366,6 @@ std::optional<Cause> Reason::age_cause() const {
                           slow_way()};
 }
 
-/// The robot may be elsewhere, and does not count as lost yet; else empty.
-std::string Reason::doubt() const {
-  if (scene_.past || !scene_.registration)
-    return {};
-  const v1::Registration& place = *scene_.registration;
-  if (!is_doubtful(place))
-    return {};
-  const std::uint64_t since = scene_.doubtful_since;
-  return format("the robot is %.0f %% sure of its place on the map", 100.0 * place.confidence) +
-         (since == 0
-              ? ""
-              : ", in doubt for " + seconds_text(seconds_of(place.stamp.cycle -
-                                                            std::min(place.stamp.cycle, since)))) +
-         (place.reason.empty() ? "" : ": " + place.reason);
-}
-
 Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
   Cause cause{"rule",
               "rule " + rule.name + format(" holds to %.2f: ", rule.strength) + control_text(rule)};

@@ -81,7 +81,6 @@ class Reason {
   std::string last_known(bool brief) const;
   std::string goal_so_far(bool brief) const;
   std::string goal_of(const v1::GoalId& id, bool brief) const;
-  std::string doubt() const;
 
   /// " 12 s", for a cycle that is not 0.
   std::string ago(std::uint64_t since) const;
@@ -114,10 +113,6 @@ class Reason {
   Explanation finish(const Sentence& sentence, Cause cause) const;
   /// Adds the conditions of the programs involved, as far as they are not well.
   void add_conditions(Cause& cause) const;
-  bool lost() const {
-    return !scene_.past && scene_.registration &&
-           scene_.registration->state == v1::REGISTRATION_LOST;
-  }
   void add_troubles(Sentence& sentence) const;
 
   const Situation& scene_;

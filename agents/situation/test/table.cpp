@@ -228,6 +228,7 @@ std::string answer(const Case& one) {
       {"why tree", [](const Situation& of) { return to_text(why(of)); }},
       {"drive", driver},
       {"trouble", trouble},
+      {"all trouble", all_trouble},
       {"json", [](const Situation& of) { return to_json(of); }},
       {"clocks", [](const Situation& of) { return clocks_apart(of.programs); }},
       {"unheard", [](const Situation& of) { return situation::listed(unheard(of)); }},

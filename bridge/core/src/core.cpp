@@ -101,6 +101,12 @@ void Core::mind_silence(double now) {
   }
   if (now - std::max(session_.last_packet, session_.last_heard) > kDead)
     return lost("robot link silent", now);
+  // The link may live, as with a simulator whose time stands.
+  if (session_.silent && !stops_.empty() &&
+      now - std::max(session_.last_packet, stops_.front().asked) > kDead)
+    end_stops(AnswerCode::lost, robot_condition(now).reason +
+                                    ": the robot is told to stand and is not seen at rest; stop it "
+                                    "by its own switch");
   if (silence <= kSilent || session_.silent)
     return;
   session_.silent = true;

@@ -132,11 +132,13 @@ Answer Core::stop(const Request& request, double now) {
     publish_grant();
     return {AnswerCode::done, stopped + "; no robot is connected"};
   }
-  stops_.push_back({request.asker, request.number, stopped, session_.stamp.cycle});
+  stops_.push_back({request.asker, request.number, stopped, session_.stamp.cycle, now});
   if (!settings_.lockstep) {
     decide(now);
     flush(now);
   }
+  if (session_.silent)
+    stopped += "; " + robot_condition(now).reason + ": whether it stands is not known";
   return {AnswerCode::underway, stopped};
 }
 

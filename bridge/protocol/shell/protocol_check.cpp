@@ -16,6 +16,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "saphira/base/places.hpp"
 #include "saphira/base/stop_signals.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/check.hpp"
@@ -178,16 +179,20 @@ int main(int argc, char** argv) {
       "protocol's tables. Ends by SIGINT or SIGTERM with a summary; code 1: there were violations"};
   std::string listen;
   std::string server;
-  std::string robots = "config/robots";
+  std::string robots;
   app.add_option("--listen", listen, "Where the client connects: PATH or tcp:HOST:PORT").required();
   app.add_option("--server", server,
                  "Where the robot server is, as the bridge's --robot-port says it")
       .required();
-  app.add_option("--robots", robots, "Folder of robot parameter files");
+  app.add_option(
+      "--robots", robots,
+      "Folder of robot parameter files [the installed ones, or those of the source tree]");
   if (const auto code = app.parse(argc, argv))
     return *code;
   return exit_code_of("saphira-protocol-check", [&] {
     const int stop_fd = stop_on_signals();
+    if (robots.empty())
+      robots = config_folder() + "/robots";
     Proxy proxy(transport::parse_address(listen), transport::parse_address(server), robots);
     proxy.run(stop_fd);
     std::cout << proxy.checker().summary() << std::flush;

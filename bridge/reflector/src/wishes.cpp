@@ -131,12 +131,15 @@ Wish gripper(const Arguments& with, const Robot& robot) {
   const std::uint16_t value = value_of(with, "value");
   const std::string text = "gripper " + action;
   const std::string with_value = text + " " + std::to_string(value);
+  constexpr const char* kOfNumbers = "a robot of this generation (PSOS) takes numbers: 0, 1, 4, 5";
+  constexpr std::array<std::uint16_t, 4> kNumbers{0, 1, 4, 5};
+  if (action == "number" && !robot.later() && std::ranges::find(kNumbers, value) == kNumbers.end())
+    return refused(with_value, kOfNumbers);
   if (action == "number")
     return sent(with_value, {protocol::Gripper{value}}, Proof::thrice);
   const bool takes_value = action == "pressure" || action == "carry";
   if (!robot.later())
-    return refused(takes_value ? with_value : text,
-                   "a robot of this generation (PSOS) takes numbers: 0, 1, 4, 5");
+    return refused(takes_value ? with_value : text, kOfNumbers);
   const auto* const known =
       std::ranges::find(kGripperActions, action, &std::pair<const char*, std::uint16_t>::first);
   const protocol::Gripper command{known->second};

@@ -87,6 +87,8 @@ void Service::check_files() {
   if (!first)
     for (const std::string& file : reload.taken)
       notes.info("took " + file);
+  for (const std::string& file : reload.gone)
+    notes.info(file + " is gone");
   ports_.say(notes.lines());
   changed_ = changed_ || reload.changed;
   if (reload.changed)

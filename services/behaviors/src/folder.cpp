@@ -21,6 +21,7 @@ Folder::Reload Folder::reload(Registry& registry) {
     for (const std::string& schema : files_[name].schemas)
       registry.remove(schema);
     files_.erase(name);
+    reload.gone.push_back(folder_.path_of(name));
   }
   if (changes.any())
     take_changed(changes.changed, registry, reload);
@@ -133,6 +134,7 @@ Folder::Reload Sources::reload(Registry& registry) {
     Folder::Reload reload = layer.folder->reload(layer.schemas);
     all.changed = all.changed || reload.changed;
     all.taken.insert(all.taken.end(), reload.taken.begin(), reload.taken.end());
+    all.gone.insert(all.gone.end(), reload.gone.begin(), reload.gone.end());
     all.faults.insert(all.faults.end(), reload.faults.begin(), reload.faults.end());
     all.warnings.insert(all.warnings.end(), reload.warnings.begin(), reload.warnings.end());
   }

@@ -103,7 +103,10 @@ TEST_F(FolderTest, WhatIsGoneCannotBeIntendedAnewButRunsOn) {
   folder.reload(executive_.registry());
   step();
   fs::remove(path_ / "c.beh");
-  EXPECT_TRUE(folder.reload(executive_.registry()).changed);
+  const Folder::Reload reload = folder.reload(executive_.registry());
+  EXPECT_TRUE(reload.changed);
+  EXPECT_EQ(reload.gone, std::vector<std::string>{(path_ / "c.beh").string()});
+  EXPECT_TRUE(folder.reload(executive_.registry()).gone.empty());
   EXPECT_DOUBLE_EQ(step(), 2);
   executive_.reset();
   std::string trouble;

@@ -308,8 +308,10 @@ void Core::know(const ActivityFolders::Reload& reload, Notes& notes) {
   if (!first)
     for (const std::string& warning : reload.warnings)
       notes.warn(warning);
-  for (const std::string& name : reload.removed)
+  for (const std::string& name : reload.removed) {
     executor_.remove(name);
+    notes.info(name + " is gone: no file gives it any more");
+  }
   for (const Schema& schema : reload.taken) {
     executor_.add(schema);
     if (!first)

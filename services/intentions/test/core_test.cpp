@@ -390,7 +390,7 @@ TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
                                   {Note::Level::info, "took wave of wave.act"}}));
   updates = {};
   updates.removed = {"wave"};
-  EXPECT_TRUE(look(updates).empty());
+  EXPECT_EQ(look(updates), (Lines{{Note::Level::info, "wave is gone: no file gives it any more"}}));
   EXPECT_EQ(core.executor().registry().find("wave"), nullptr);
 }
 

@@ -1,11 +1,14 @@
 #include "saphira/registration/core.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/line_map.hpp"
@@ -66,12 +69,31 @@ maps::Feature artifact_of(const Arguments& arguments) {
   return artifact;
 }
 
-/// An artifact that may be put on a map. A zone without any part near it would matter nowhere.
+/// The map has corridors or rooms, and a place is far from all of them: no way leads there.
+std::optional<std::string> in_no_region(const maps::Map& map, const Vec2& position) {
+  constexpr double kNear = 1.0;  // [m] beside a room that is drawn too small
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const maps::Feature& feature : map.features)
+    if (maps::traits(feature.type).region)
+      nearest = std::min(nearest, maps::Rectangle(feature).distance(position));
+  if (nearest <= kNear || std::isinf(nearest))
+    return std::nullopt;
+  return format(
+      "expected a place in a corridor, junction or room of the map, found one %.1f m from "
+      "the nearest",
+      nearest);
+}
+
+/// An artifact that may be put on a map. A zone without any part near it would matter nowhere, and
+/// nobody goes to a place without a way.
 maps::Feature on_the_map(maps::Feature artifact, const maps::Map& map) {
   const double reach = std::hypot(artifact.length, artifact.width) / 2;
   if (artifact.type == lps::PointType::zone)
     if (const auto why = maps::outside(map, artifact.pose_in_map.position(), kOutside + reach))
       throw std::invalid_argument("the zone is nowhere near the map: " + *why);
+  if (artifact.type == lps::PointType::position)
+    if (const auto why = in_no_region(map, artifact.pose_in_map.position()))
+      throw std::invalid_argument(*why);
   return artifact;
 }
 

@@ -342,7 +342,7 @@ class Hall : public test::LinePlayer {
 };
 
 TEST(RegistrationCore, DoesAsWritten) {
-  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 29);
+  EXPECT_EQ(test::play<Hall>("services/registration/test/core.txt"), 31);
 }
 
 TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {

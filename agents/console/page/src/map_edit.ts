@@ -29,7 +29,7 @@ export const placeOf = (at: Point, name: string): MapArtifact =>
 // The line of a map file [mm, degrees].
 export function lineOf(a: MapArtifact): string {
   const mm = (meters: number) => Math.round(1000 * meters);
-  const name = a.name ? ` "${a.name.replace(/["\n]/g, '')}"` : '';
+  const name = a.name ? ` "${a.name}"` : '';
   const pose = `(${a.id}) ${mm(a.pose_in_map.x)}, ${mm(a.pose_in_map.y)}, ${degrees(a.pose_in_map.th).toFixed(1)}`;
   if (a.type === 'ARTIFACT_POSITION') return `POS ${pose}${name}`;
   return `ZONE ${pose}, ${mm(a.length)}, ${mm(a.width)} ${ruleOf(a)}${a.rule === 'ZONE_SLOW' ? ` ${mm(a.speed)}` : ''}${name}`;
@@ -40,6 +40,7 @@ const change = (link: Link, words: string) => link.ask({type: 'map', words});
 const put = (a: MapArtifact) => `put "${lineOf(a).replace(/["\\]/g, '\\$&')}"`;
 
 export async function add(link: Link, artifact: MapArtifact): Promise<Answer> {
+  if (artifact.name.includes('"')) return {well: false, text: 'A name has no quotation marks: a map file cannot hold them.', id: ''};
   const ids = link.data<SaphiraMap>('map')?.artifacts.map(a => a.id) ?? [];
   const answer = await change(link, put({...artifact, id: 1 + Math.max(0, ...ids)}));
   if (answer.well) undos.push({text: `adding ${nameFor(artifact)}`, puts: false, artifact: {...artifact, id: Number(answer.id)}});

@@ -17,7 +17,7 @@ test('the line of a zone between two corners', () => {
     ['ZONE_PREFERRED', [0, 0], [1, 4], 'ZONE (7) 500, 2000, 0.0, 1000, 4000 preferred'],
   ])
     assert.equal(zone(rule, ...[from, to].map(([x, y]) => ({x, y})), '', 0.15), line);
-  assert.equal(zone('ZONE_KEEP_OUT', {x: 0, y: 0}, {x: 1, y: 1}, 'the "lab"\n'), 'ZONE (7) 500, 500, 0.0, 1000, 1000 keep-out "the lab"');
+  assert.equal(zone('ZONE_KEEP_OUT', {x: 0, y: 0}, {x: 1, y: 1}, 'the lab'), 'ZONE (7) 500, 500, 0.0, 1000, 1000 keep-out "the lab"');
   assert.equal(lineOf({...placeOf({x: 1.5, y: -2}, 'dock'), id: 3}), 'POS (3) 1500, -2000, 0.0 "dock"');
   assert.equal(facing({from: {x: 1, y: 1}, to: {x: 1, y: 0}}), -Math.PI / 2);
 });
@@ -35,6 +35,9 @@ test('what was added is removed, and what was removed is put back, the newest fi
   };
   const dock = placeOf({x: 1, y: 2}, 'dock');
   await add(link, dock);
+  assert.equal(toUndo(), 'adding place dock');
+  assert.deepEqual(await add(link, placeOf({x: 1, y: 2}, 'wet "floor"')),
+    {well: false, text: 'A name has no quotation marks: a map file cannot hold them.', id: ''});
   assert.equal(toUndo(), 'adding place dock');
   await remove(link, {...dock, id: 10});
   assert.equal(toUndo(), 'removing place dock');

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -153,6 +154,8 @@ class Scene {
 
   /// From `point` to the nearest thing of any kind [m]; without the robot `but`.
   double distance(const Vec2& point, RobotNumber but = kNobody) const;
+  /// The nearest thing, in words, such as "robot 1" or "a wall".
+  std::string nearest(const Vec2& point) const;
 
  private:
   friend class Robot;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saphira/idl/intention.hpp"
@@ -36,6 +39,10 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
 /// The numbers may have a unit behind them (30cm, 0.3m/s, 1.57rad). Each with further name=value
 /// words behind it. std::invalid_argument as above.
 v1::Goal parse_request(const std::vector<std::string>& words);
+
+/// The goals in the order of their acceptance, as far as their statuses tell it.
+std::vector<v1::GoalStatus> by_acceptance(
+    const std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus>& goals);
 
 /// Advice where this goal has failed; empty: none.
 std::string advice_after_failure(const v1::Goal& goal);

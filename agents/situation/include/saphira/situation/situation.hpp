@@ -83,6 +83,13 @@ std::string clocks_apart(const std::vector<Program>& programs);
 /// The robot has a place on the map that its readings hardly fit: it may have been carried away.
 bool is_doubtful(const v1::Registration& registration);
 
+/// The robot has no place on the map at present: it is lost, or has not found its place yet.
+bool is_lost(const Situation& situation);
+/// The robot may be elsewhere, and does not count as lost yet, in words; else empty.
+std::string doubt(const Situation& situation);
+/// The trouble with the robot's place on the map, with the remedy, in words; empty: none.
+std::string place_trouble(const Situation& situation);
+
 /// The health of a program.
 enum class Health {
   running,
@@ -109,6 +116,8 @@ Condition condition(const Situation& situation, const std::string& program);
 
 /// The trouble with the programs that move the robot, in words; empty: none.
 std::string trouble(const Situation& situation);
+/// The same, and that with the robot's place on the map.
+std::string all_trouble(const Situation& situation);
 /// The programs of the robot that are hung, silent or not on the bus: those that move it, and those
 /// that others miss.
 std::vector<std::string> unheard(const Situation& situation);

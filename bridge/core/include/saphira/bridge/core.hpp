@@ -266,6 +266,7 @@ class Core {
     std::uint64_t number = 0;
     std::string stopped;      ///< the stopped drivers, in words
     std::uint64_t cycle = 0;  ///< of the stop
+    double asked = 0.0;       ///< [s]
   };
   std::vector<Stopping> stops_;  ///< until the robot is at rest
   std::uint64_t numberless_stops_ = 0;

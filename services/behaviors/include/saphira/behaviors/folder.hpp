@@ -20,6 +20,7 @@ class Folder {
   struct Reload {
     bool changed = false;             ///< schemas came, changed or went, or the errors changed
     std::vector<std::string> taken;   ///< files
+    std::vector<std::string> gone;    ///< likewise
     std::vector<std::string> faults;  ///< of changed files: as FileError has them
     std::vector<std::string> warnings;
   };
