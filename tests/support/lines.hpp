@@ -34,8 +34,8 @@ int each_line(const std::string& file, char comment, const Use& use) {
   return used;
 }
 
-/// Plays a file of mistakes, "text => LINE:COLUMN what was expected", whose texts have "\n" for a
-/// line break: parse(text) has to throw the FileError. Returns how many there are.
+/// Plays a file of mistakes, one a line: "TEXT => LINE:COLUMN EXPECTED", with "\n" for a line break
+/// within TEXT. parse(TEXT) has to throw a FileError with these parts. Returns the number of lines.
 template <class Parse>
 int each_mistake(const std::string& file, const Parse& parse) {
   return each_line(file, '#', [&](const std::string& line) {

@@ -172,13 +172,16 @@ TEST(Wheels, NumbersThatCannotBeStopIt) {
 }
 
 TEST(Wheels, AfterAStopItBeginsAnew) {
-  for (const bool by_rest : {true, false}) {
+  v1::Grant stop;
+  stop.stop = {1, 1};
+  v1::Grant emergency;
+  emergency.estopped = true;
+  for (const auto& [grant, by_rest] :
+       {std::pair(stop, true), std::pair(stop, false), std::pair(emergency, true)}) {
     Wheels wheels;
-    v1::Grant grant;
-    wheels.heard(grant);
+    wheels.heard(v1::Grant());
     wheels.heard(twist(0.3, 0.0), 1.0);
     EXPECT_TRUE(wheels.next(1.0)->active);
-    grant.stop = {1, 1};
     wheels.heard(grant);
     EXPECT_FALSE(wheels.next(1.1)->active);
     wheels.heard(twist(0.3, 0.0), 1.2);

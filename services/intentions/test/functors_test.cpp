@@ -190,7 +190,7 @@ TEST(FollowTrail, IsAsFastAsThePersonAtTheDistanceAndFasterBeyondIt) {
   EXPECT_NEAR(speed(1.21, 0.3), 0.31, 1e-9);
   EXPECT_NEAR(speed(1.5, 0.3), 0.6, 1e-9);
   EXPECT_NEAR(speed(1.5, 0.0), 0.3, 1e-9);
-  EXPECT_NEAR(speed(1.5, -0.5), 0.05, 1e-9) << "who comes is let come";
+  EXPECT_NEAR(speed(1.5, -0.5), 0.05, 1e-9) << "the robot waits for a person who approaches";
   EXPECT_NEAR(speed(3.0, 0.3), 0.8, 1e-9);
 }
 

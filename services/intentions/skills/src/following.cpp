@@ -70,7 +70,7 @@ class Follow : public Activity {
     const bool there = left <= near || (in_sight && to_end.norm() <= near);
     const bool straight = in_sight && between(trail.at(kLookAhead) - robot,
                                               trail.at(2.0 * kLookAhead) - robot) < kInPicture;
-    // KeepOff steers around what is before the goal: so the goal is before the person.
+    // The goal lies short of the person: KeepOff steers around any obstacle on the way to a goal.
     double ahead = in_sight ? std::min(straight ? kAlong : kLookAhead, left - kBefore * distance_)
                             : std::min(left, kLookAhead);
     // Fixed cameras keep a person in the picture who walks around a corner.

@@ -16,7 +16,7 @@ class StopNotice {
   /// from before the first grant is none.
   std::string hear(const v1::Grant& grant) {
     const std::optional<v1::StopId> before = std::exchange(newest_, grant.stop);
-    const bool pressed = grant.estopped && !std::exchange(estopped_, grant.estopped);
+    const bool pressed = grant.estopped && !estopped_;
     estopped_ = grant.estopped;
     if (!before || (*before == grant.stop && !pressed))
       return {};
